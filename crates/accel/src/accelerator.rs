@@ -1,0 +1,101 @@
+//! What every structure can be asked.
+
+use crate::counters::{Count, Counters, Nothing};
+use crate::ray::{Hit, Query, Ray};
+use bilux_math::Aabb;
+
+/// A structure over triangles that answers rays. Made by [`crate::build`]; implemented through [`Traverse`].
+///
+/// Every implementation gives the same answers, bit for bit.
+pub trait Accelerator: Send + Sync {
+    /// The nearest hit, ties to the lowest primitive (and before that, to the lowest instance).
+    fn closest_hit(&self, ray: &Ray, query: &Query) -> Option<Hit>;
+    /// True when anything at all is hit.
+    fn any_hit(&self, ray: &Ray, query: &Query) -> bool;
+    /// As [`Accelerator::closest_hit`], counting what it took.
+    fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit>;
+    /// As [`Accelerator::any_hit`], counting what it took.
+    fn any_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> bool;
+    /// The box around everything.
+    fn bounds(&self) -> Aabb;
+    /// Bytes of the structure, triangles included.
+    fn memory_bytes(&self) -> usize;
+    /// How the tree has grown.
+    fn shape(&self) -> TreeShape;
+}
+
+/// What a structure implements: each query once, over any [`Count`].
+pub trait Traverse: Send + Sync {
+    /// See [`Accelerator::closest_hit`].
+    fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit>;
+    /// See [`Accelerator::any_hit`].
+    fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool;
+    /// See [`Accelerator::bounds`].
+    fn bounds(&self) -> Aabb;
+    /// See [`Accelerator::memory_bytes`].
+    fn memory_bytes(&self) -> usize;
+    /// See [`Accelerator::shape`].
+    fn shape(&self) -> TreeShape;
+}
+
+impl<T: Traverse> Accelerator for T {
+    fn closest_hit(&self, ray: &Ray, query: &Query) -> Option<Hit> {
+        self.closest(ray, query, &mut Nothing)
+    }
+    fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
+        self.any(ray, query, &mut Nothing)
+    }
+    fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit> {
+        self.closest(ray, query, counters)
+    }
+    fn any_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> bool {
+        self.any(ray, query, counters)
+    }
+    fn bounds(&self) -> Aabb {
+        Traverse::bounds(self)
+    }
+    fn memory_bytes(&self) -> usize {
+        Traverse::memory_bytes(self)
+    }
+    fn shape(&self) -> TreeShape {
+        Traverse::shape(self)
+    }
+}
+
+/// How a tree has grown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TreeShape {
+    /// Nodes, leaves included.
+    pub nodes: usize,
+    /// Leaves.
+    pub leaves: usize,
+    /// References to triangles, or pieces of them, in all leaves.
+    pub references: usize,
+    /// Nodes on the longest way from the root to a leaf, both counted; 0 for no tree.
+    pub depth: usize,
+    /// Sum over the leaves of the nodes on the way to each; over `leaves`, the mean depth.
+    pub total_leaf_depth: usize,
+    /// `leaf_sizes[n]` leaves hold `n` references; the last entry counts all larger ones too.
+    pub leaf_sizes: [usize; 17],
+}
+
+impl TreeShape {
+    /// Counts a leaf in.
+    pub fn add_leaf(&mut self, depth: usize, references: usize) {
+        self.nodes += 1;
+        self.leaves += 1;
+        self.references += references;
+        self.depth = self.depth.max(depth);
+        self.total_leaf_depth += depth;
+        self.leaf_sizes[references.min(16)] += 1;
+    }
+
+    /// Mean depth of a leaf over the depth that a perfectly balanced tree would have; 1 is balanced.
+    pub fn imbalance(&self) -> f64 {
+        if self.leaves == 0 {
+            return 1.0;
+        }
+        let mean = self.total_leaf_depth as f64 / self.leaves as f64;
+        mean / (f64::from(self.leaves.ilog2()) + 1.0)
+    }
+}

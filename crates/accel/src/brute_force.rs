@@ -1,0 +1,71 @@
+//! No structure at all: an honest loop over every triangle. The truth that the others are held against.
+
+use crate::accelerator::{Traverse, TreeShape};
+use crate::counters::Count;
+use crate::mesh::TriangleMesh;
+use crate::ray::{Hit, Query, Ray};
+use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
+use crate::triangle::{Nearest, PreparedRay, hits};
+use bilux_math::{Aabb, registry::Entry};
+use std::sync::Arc;
+
+/// Row of [`crate::ACCELERATORS`].
+pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
+    entry: Entry {
+        name: "brute",
+        summary: "every triangle, one after the other: the truth, and the paper's rival",
+        source: "",
+        parameters: &[],
+    },
+    build,
+};
+
+/// All triangles, in the order given.
+#[derive(Debug)]
+pub struct BruteForce {
+    mesh: Arc<TriangleMesh>,
+}
+
+fn build(
+    mesh: Arc<TriangleMesh>,
+    _options: &BuildOptions,
+) -> Result<Box<dyn crate::Accelerator>, BuildError> {
+    Ok(Box::new(BruteForce { mesh }))
+}
+
+impl Traverse for BruteForce {
+    fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
+        count.ray();
+        let ray = PreparedRay::new(ray)?;
+        count.triangles(self.mesh.len());
+        let mut nearest = Nearest::new(&ray.ray);
+        for (index, triangle) in self.mesh.triangles().iter().enumerate() {
+            nearest.test(&ray, query.culling, triangle, index as u32);
+        }
+        nearest.hit()
+    }
+
+    fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
+        count.ray();
+        let Some(ray) = PreparedRay::new(ray) else { return false };
+        for (index, triangle) in self.mesh.triangles().iter().enumerate() {
+            count.triangles(1);
+            if hits(&ray, query.culling, triangle, index as u32) {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.mesh.bounds()
+    }
+
+    fn memory_bytes(&self) -> usize {
+        self.mesh.memory_bytes()
+    }
+
+    fn shape(&self) -> TreeShape {
+        TreeShape::default()
+    }
+}

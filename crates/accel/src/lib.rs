@@ -1,0 +1,34 @@
+//! Ray queries on triangles: watertight, deterministic, one answer whichever structure is asked.
+//!
+//! ```
+//! use bilux_accel::{build, BuildOptions, Query, Ray, TriangleMesh};
+//!
+//! let mesh = TriangleMesh::new(
+//!     vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+//!     vec![[0, 1, 2]],
+//! )?;
+//! let tree = build("auto", mesh.into(), &BuildOptions::default())?;
+//! let ray = Ray::new([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]);
+//! let hit = tree.closest_hit(&ray, &Query::default()).expect("the ray goes through the triangle");
+//! assert_eq!((hit.t, hit.primitive), (1.0, 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # One answer
+//! Every structure returns the same hit as [`brute_force`], bit for bit: the least `t`, and among equal
+//! `t` the lowest primitive. The reasons that this can hold stand in [`triangle`] (the lemma) and in
+//! `docs/adr/0002-one-answer.md`.
+
+pub mod accelerator;
+pub mod brute_force;
+pub mod counters;
+pub mod mesh;
+pub mod ray;
+pub mod registry;
+pub mod triangle;
+
+pub use accelerator::{Accelerator, Traverse, TreeShape};
+pub use counters::Counters;
+pub use mesh::{MeshError, TriangleMesh};
+pub use ray::{Culling, Hit, Primitive, Query, Ray};
+pub use registry::{ACCELERATORS, AcceleratorEntry, BuildError, BuildOptions, build};

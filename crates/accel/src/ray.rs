@@ -1,0 +1,98 @@
+//! Rays, what is asked of them, and what they hit.
+
+/// A half-line, or a piece of one: points `origin + t * direction` for `t_min <= t <= t_max`.
+///
+/// The direction need not be of unit length; `t` counts in its lengths. A ray whose origin or direction
+/// is not finite, or whose direction is zero, hits nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: [f32; 3],
+    /// Where it goes.
+    pub direction: [f32; 3],
+    /// Least `t` that counts as a hit.
+    pub t_min: f32,
+    /// Greatest `t` that counts as a hit; may be infinite.
+    pub t_max: f32,
+    /// When it is sent, in seconds; asked by moving instances only.
+    pub time: f32,
+    /// The primitive that it leaves, which it therefore cannot hit: planes do not meet a line twice.
+    pub exclude: Primitive,
+}
+
+impl Ray {
+    /// A ray from `origin` that goes on for ever.
+    pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Ray {
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0, exclude: Primitive::NONE }
+    }
+
+    /// The point at `t`.
+    pub fn at(&self, t: f32) -> [f32; 3] {
+        std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])
+    }
+}
+
+/// Which triangle of which instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Primitive {
+    /// Index of the instance; 0 where there is only a mesh.
+    pub instance: u32,
+    /// Index of the triangle within its mesh.
+    pub index: u32,
+}
+
+impl Primitive {
+    /// No primitive at all.
+    pub const NONE: Primitive = Primitive { instance: u32::MAX, index: u32::MAX };
+}
+
+/// Where a ray meets a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray, in lengths of its direction.
+    pub t: f32,
+    /// Barycentric weight of the triangle's second vertex, 0..=1.
+    pub u: f32,
+    /// Barycentric weight of the triangle's third vertex, 0..=1.
+    pub v: f32,
+    /// Index of the triangle within its mesh.
+    pub primitive: u32,
+    /// Index of the instance; 0 where there is only a mesh.
+    pub instance: u32,
+}
+
+impl Hit {
+    /// Which triangle of which instance was hit.
+    pub const fn primitive(&self) -> Primitive {
+        Primitive { instance: self.instance, index: self.primitive }
+    }
+}
+
+/// Which side of triangles can be hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Culling {
+    /// Both sides.
+    #[default]
+    None,
+    /// Only the front, from which the vertices run counter-clockwise. For closed, opaque meshes.
+    Back,
+}
+
+/// What is asked of a structure. The switches below `culling` change how much work an answer takes,
+/// never the answer; they are there so that what each saves can be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Query {
+    /// Which side of triangles can be hit. Part of the question.
+    pub culling: Culling,
+    /// End the search at the first hit that nothing nearer can beat (on by default).
+    pub early_out: bool,
+    /// With [`Culling::Back`], reject back faces by the side of their partition plane where the tree
+    /// has one, before the triangle test (on by default).
+    pub cull_by_partition: bool,
+}
+
+impl Default for Query {
+    fn default() -> Query {
+        Query { culling: Culling::None, early_out: true, cull_by_partition: true }
+    }
+}

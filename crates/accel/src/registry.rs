@@ -1,0 +1,79 @@
+//! The table of structures. To add one: a file with its `ENTRY`, and a line here.
+
+use crate::accelerator::Accelerator;
+use crate::brute_force;
+use crate::mesh::TriangleMesh;
+use bilux_math::registry::Entry;
+use std::sync::Arc;
+
+/// Every structure that there is.
+pub const ACCELERATORS: &[AcceleratorEntry] = &[brute_force::ENTRY];
+
+/// The structure that `auto` stands for: the fastest.
+pub const AUTO: &str = "brute";
+
+/// One structure.
+#[derive(Clone, Copy, Debug)]
+pub struct AcceleratorEntry {
+    /// Name, summary, source and parameters.
+    pub entry: Entry,
+    /// Builds one.
+    pub build: BuildFn,
+}
+
+/// How a structure is built.
+pub type BuildFn = fn(Arc<TriangleMesh>, &BuildOptions) -> Result<Box<dyn Accelerator>, BuildError>;
+
+/// Why a structure cannot be built.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// No structure has this name.
+    #[error("there is no accelerator '{0}'")]
+    UnknownName(String),
+}
+
+/// What a builder may be told. Each looks only at what it knows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BuildOptions {
+    /// How `bsp` chooses its planes.
+    pub bsp_split: BspSplit,
+    /// What `bsp` keeps together.
+    pub bsp_group: BspGroup,
+}
+
+/// How the paper's tree chooses a partition plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BspSplit {
+    /// Through the average position, with the average orientation (the paper, section 3.2).
+    #[default]
+    Mean,
+    /// A polygon's own plane: of a few candidates, the one that cuts fewest others. [Fuchs 1983]
+    Fuchs,
+}
+
+/// What the paper's tree keeps together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BspGroup {
+    /// Single polygons (the paper, section 3.2).
+    #[default]
+    Polygons,
+    /// Whole objects.
+    Objects,
+}
+
+/// Builds the structure of this name (`auto` is the fastest) over a mesh.
+///
+/// # Errors
+/// When no structure has this name.
+pub fn build(
+    name: &str,
+    mesh: Arc<TriangleMesh>,
+    options: &BuildOptions,
+) -> Result<Box<dyn Accelerator>, BuildError> {
+    let name = if name == "auto" { AUTO } else { name };
+    match ACCELERATORS.iter().find(|row| row.entry.name == name) {
+        Some(row) => (row.build)(mesh, options),
+        None => Err(BuildError::UnknownName(name.to_owned())),
+    }
+}

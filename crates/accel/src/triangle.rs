@@ -1,0 +1,237 @@
+//! The one triangle test that all structures share.
+//!
+//! The test is that of Woop, Benthin and Wald: shear space so that the ray becomes the z axis, then look
+//! on which side of it the three edges lie [Woop 2013]. Two changes make it exact enough to prune by:
+//!
+//! - Signs are first taken in f32 without fused operations. Rounding is monotone, so a sign that comes
+//!   out strict is the true one; only zeros (and overflows) are undecided.
+//! - Whatever those signs do not reject is evaluated in f64, where a product of two f32 is exact. Signs
+//!   are then all true, and `t`, `u`, `v` have a relative error of about 2⁻⁵⁰ before they are rounded.
+//!
+//! # The lemma that pruning rests on
+//! Let `far` be the greatest distance, on any axis, from the ray's origin to a vertex. If the test accepts
+//! a triangle at `t`, then the point `origin + t · direction` lies within `16 · 2⁻²⁴ · far` of some point
+//! of that triangle, on every axis. So a structure that grows its boxes, or moves its planes, by
+//! [`PreparedRay::pad`] never leaves out a triangle that the test would accept. The proof, which is the
+//! sum of the roundings of the shear, stands in `docs/adr/0002-one-answer.md`.
+//!
+//! Two triangles that share an edge see the same sheared vertices, hence opposite signs there: no ray
+//! passes between them.
+
+use crate::ray::{Culling, Hit, Ray};
+use bilux_math::Aabb;
+
+/// A ray with what the triangle test needs of it, computed once.
+#[derive(Clone, Copy, Debug)]
+pub struct PreparedRay {
+    /// The ray itself.
+    pub ray: Ray,
+    kx: usize,
+    ky: usize,
+    kz: usize,
+    shear_x: f32,
+    shear_y: f32,
+}
+
+/// An accepted triangle, whatever its distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// Distance along the ray.
+    pub t: f32,
+    /// Barycentric weight of the second vertex.
+    pub u: f32,
+    /// Barycentric weight of the third vertex.
+    pub v: f32,
+    /// True when the ray comes from the side from which the vertices run clockwise.
+    pub back: bool,
+}
+
+impl PreparedRay {
+    /// Prepares a ray; `None` when it can hit nothing (see [`Ray`]).
+    #[inline]
+    pub fn new(ray: &Ray) -> Option<PreparedRay> {
+        let finite = ray.origin.iter().chain(&ray.direction).all(|c| c.is_finite());
+        let [dx, dy, dz] = ray.direction.map(f32::abs);
+        if !finite || dx.max(dy).max(dz) == 0.0 || ray.t_min.is_nan() || ray.t_max.is_nan() {
+            return None;
+        }
+        let kz = if dz >= dx && dz >= dy {
+            2
+        } else if dy >= dx {
+            1
+        } else {
+            0
+        };
+        let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
+        let d = ray.direction;
+        Some(PreparedRay { ray: *ray, kx, ky, kz, shear_x: d[kx] / d[kz], shear_y: d[ky] / d[kz] })
+    }
+
+    /// How far every box and plane must be moved outwards so that nothing which the triangle test would
+    /// accept is left out; `bounds` holds all vertices in question. See the lemma above.
+    #[inline]
+    pub fn pad(&self, bounds: &Aabb) -> f32 {
+        let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
+        let far = (0..3).fold(0f32, |far, axis| {
+            let o = self.ray.origin[axis];
+            far.max((low[axis] - o).abs()).max((high[axis] - o).abs())
+        });
+        far * PAD + f32::MIN_POSITIVE
+    }
+
+    /// Where the line of the ray crosses a triangle, ends of the ray not looked at; `None` where it passes by,
+    /// and for triangles without area as the ray sees them.
+    #[inline(always)]
+    pub fn cross(&self, triangle: &[[f32; 3]; 3]) -> Option<Crossing> {
+        let [ax, ay, az] = self.shear(&triangle[0]);
+        let [bx, by, bz] = self.shear(&triangle[1]);
+        let [cx, cy, cz] = self.shear(&triangle[2]);
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        self.cross_exactly([ax, ay, az], [bx, by, bz], [cx, cy, cz])
+    }
+
+    /// A vertex relative to the ray: x and y sheared, z not yet divided by the direction.
+    #[inline(always)]
+    fn shear(&self, vertex: &[f32; 3]) -> [f32; 3] {
+        let o = &self.ray.origin;
+        let z = vertex[self.kz] - o[self.kz];
+        [
+            (vertex[self.kx] - o[self.kx]) - self.shear_x * z,
+            (vertex[self.ky] - o[self.ky]) - self.shear_y * z,
+            z,
+        ]
+    }
+
+    #[inline]
+    fn cross_exactly(&self, a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<Crossing> {
+        let [ax, ay, az] = a.map(f64::from);
+        let [bx, by, bz] = b.map(f64::from);
+        let [cx, cy, cz] = c.map(f64::from);
+        let u = cx * by - cy * bx;
+        let v = ax * cy - ay * cx;
+        let w = bx * ay - by * ax;
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        let det = u + v + w;
+        // Written so that a determinant that is not a number is refused too.
+        if !(det.abs() > 0.0 && det.is_finite()) {
+            return None;
+        }
+        let dz = f64::from(self.ray.direction[self.kz]);
+        let t = (u * az + v * bz + w * cz) / (det * dz);
+        Some(Crossing {
+            t: t as f32,
+            u: (v / det) as f32,
+            v: (w / det) as f32,
+            back: (det < 0.0) != (dz < 0.0),
+        })
+    }
+}
+
+/// 16 units of f32 rounding: twice what the proof asks for.
+const PAD: f32 = 16.0 / 16_777_216.0;
+
+/// The nearest hit so far.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest {
+    /// No hit beyond this counts any more. Prune with `entry > t`, never `>=`: ties go to the lowest primitive.
+    pub t: f32,
+    hit: Option<Hit>,
+}
+
+impl Nearest {
+    /// Nothing hit yet.
+    #[inline]
+    pub fn new(ray: &Ray) -> Nearest {
+        Nearest { t: ray.t_max, hit: None }
+    }
+
+    /// Tests a triangle and keeps its hit if it is nearer, or as near and of a lower index.
+    #[inline(always)]
+    pub fn test(&mut self, ray: &PreparedRay, culling: Culling, triangle: &[[f32; 3]; 3], primitive: u32) {
+        if let Some(crossing) = ray.cross(triangle) {
+            self.offer(ray, culling, crossing, primitive);
+        }
+    }
+
+    /// The rules of [`Nearest::test`] for a crossing that is known already.
+    #[inline]
+    pub fn offer(&mut self, ray: &PreparedRay, culling: Culling, crossing: Crossing, primitive: u32) {
+        if !counts(ray, culling, &crossing, primitive, self.t) {
+            return;
+        }
+        let wins = match self.hit {
+            Some(hit) => crossing.t < hit.t || primitive < hit.primitive,
+            None => true,
+        };
+        if wins {
+            let Crossing { t, u, v, .. } = crossing;
+            self.t = t;
+            self.hit = Some(Hit { t, u, v, primitive, instance: 0 });
+        }
+    }
+
+    /// The hit, if there is one.
+    #[inline]
+    pub fn hit(self) -> Option<Hit> {
+        self.hit
+    }
+}
+
+/// True when a ray hits a triangle anywhere between its ends.
+#[inline(always)]
+pub fn hits(ray: &PreparedRay, culling: Culling, triangle: &[[f32; 3]; 3], primitive: u32) -> bool {
+    ray.cross(triangle).is_some_and(|crossing| counts(ray, culling, &crossing, primitive, ray.ray.t_max))
+}
+
+#[inline(always)]
+fn counts(ray: &PreparedRay, culling: Culling, crossing: &Crossing, primitive: u32, t_max: f32) -> bool {
+    crossing.t >= ray.ray.t_min
+        && crossing.t <= t_max
+        && primitive != ray.ray.exclude.index
+        && !(crossing.back && culling == Culling::Back)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+
+    fn cross(origin: [f32; 3], direction: [f32; 3]) -> Option<Crossing> {
+        PreparedRay::new(&Ray::new(origin, direction))?.cross(&TRIANGLE)
+    }
+
+    #[test]
+    fn front_is_where_the_vertices_run_counter_clockwise() {
+        assert!(!cross([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]).unwrap().back);
+        assert!(cross([0.25, 0.25, -1.0], [0.0, 0.0, 1.0]).unwrap().back);
+    }
+
+    #[test]
+    fn weights_belong_to_the_second_and_third_vertex() {
+        let crossing = cross([0.5, 0.125, 2.0], [0.0, 0.0, -4.0]).unwrap();
+        assert_eq!((crossing.t, crossing.u, crossing.v), (0.5, 0.5, 0.125));
+    }
+
+    #[test]
+    fn vertices_and_edges_are_hit() {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0)] {
+            assert!(cross([x, y, 1.0], [0.0, 0.0, -1.0]).is_some(), "({x}, {y})");
+        }
+        assert!(cross([0.5, 0.500_001, 1.0], [0.0, 0.0, -1.0]).is_none());
+    }
+
+    #[test]
+    fn senseless_rays_hit_nothing() {
+        assert!(cross([f32::NAN, 0.0, 1.0], [0.0, 0.0, -1.0]).is_none());
+        assert!(cross([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]).is_none());
+        assert!(cross([0.0, 0.0, 1.0], [0.0, f32::INFINITY, -1.0]).is_none());
+    }
+}

@@ -1,0 +1,1 @@
+//! What 'bilux bench' runs.

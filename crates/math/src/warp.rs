@@ -1,0 +1,102 @@
+//! Warps of the unit square: each `sample_x` with its density, and its inverse where the tests use one.
+
+use crate::transcendental::{cos, powf, sin, sin_cos};
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
+
+/// The unit square to the unit disc, keeping neighbours neighbours. [Shirley 1997]
+pub fn sample_disc(u: Vec2) -> Vec2 {
+    let p = u * 2.0 - Vec2::ONE;
+    if p == Vec2::ZERO {
+        return Vec2::ZERO;
+    }
+    let (radius, angle) = if p.x.abs() > p.y.abs() {
+        (p.x, FRAC_PI_4 * (p.y / p.x))
+    } else {
+        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
+    };
+    Vec2::new(radius * cos(angle), radius * sin(angle))
+}
+
+/// Density of [`sample_disc`] over the disc's area.
+pub fn disc_pdf_area() -> f32 {
+    FRAC_1_PI
+}
+
+/// Directions about +z with density cosθ/π. [Malley]
+pub fn sample_cosine_hemisphere(u: Vec2) -> Vec3 {
+    let d = sample_disc(u);
+    Vec3::new(d.x, d.y, (1.0 - d.length_squared()).max(0.0).sqrt())
+}
+
+/// Density of [`sample_cosine_hemisphere`]; zero below the horizon.
+pub fn cosine_hemisphere_pdf_solid_angle(cos_theta: f32) -> f32 {
+    cos_theta.max(0.0) * FRAC_1_PI
+}
+
+/// Directions, all equally likely.
+pub fn sample_sphere(u: Vec2) -> Vec3 {
+    let z = 1.0 - 2.0 * u.x;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    Vec3::new(r * c, r * s, z)
+}
+
+/// Density of [`sample_sphere`].
+pub fn sphere_pdf_solid_angle() -> f32 {
+    1.0 / (4.0 * PI)
+}
+
+/// Directions about +z with density (n+1)/2π · cosⁿα, the lobe of Phong. [Lafortune 1994]
+pub fn sample_power_cosine(u: Vec2, exponent: f32) -> Vec3 {
+    let cos_alpha = powf(1.0 - u.x, 1.0 / (exponent + 1.0));
+    let sin_alpha = (1.0 - cos_alpha * cos_alpha).max(0.0).sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    Vec3::new(sin_alpha * c, sin_alpha * s, cos_alpha)
+}
+
+/// Density of [`sample_power_cosine`]; zero below the horizon.
+pub fn power_cosine_pdf_solid_angle(cos_alpha: f32, exponent: f32) -> f32 {
+    if cos_alpha <= 0.0 { 0.0 } else { (exponent + 1.0) / TAU * powf(cos_alpha, exponent) }
+}
+
+/// Barycentric weights (of the second and third vertex), uniform over a triangle's area.
+pub fn sample_triangle(u: Vec2) -> Vec2 {
+    let root = u.x.sqrt();
+    Vec2::new(root * (1.0 - u.y), root * u.y)
+}
+
+/// The point of the unit square that [`sample_triangle`] takes to these weights.
+pub fn invert_triangle(weights: Vec2) -> Vec2 {
+    let root = weights.x + weights.y;
+    Vec2::new(root * root, if root > 0.0 { weights.y / root } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangle_round_trips() {
+        for i in 1..20 {
+            for j in 0..20 {
+                let u = Vec2::new(i as f32 / 20.0, j as f32 / 20.0);
+                assert!(invert_triangle(sample_triangle(u)).abs_diff_eq(u, 1e-5));
+            }
+        }
+    }
+
+    #[test]
+    fn power_cosine_density_integrates_to_one() {
+        for exponent in [0.0, 1.0, 8.0, 100.0] {
+            let n = 20_000;
+            let sum: f64 = (0..n)
+                .map(|i| {
+                    let c = (i as f32 + 0.5) / n as f32;
+                    f64::from(power_cosine_pdf_solid_angle(c, exponent)) * f64::from(TAU) / n as f64
+                })
+                .sum();
+            assert!((sum - 1.0).abs() < 1e-3, "exponent {exponent}: {sum}");
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! What is in the picture: meshes, materials, lights, cameras, and the scenes that Bilux ships.

@@ -1,0 +1,1 @@
+//! How light gets to the film: samplers, tiles and one file per integrator.

@@ -1,0 +1,1 @@
+//! Development only: contract suites, reference scenes and statistical tests.
