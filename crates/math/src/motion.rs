@@ -1,0 +1,389 @@
+//! Transforms that change with time: keyframes of translation, rotation and scale.
+
+use crate::transcendental::{atan2_f64, sin_f64};
+use crate::{Aabb, Transform};
+use glam::{DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
+
+/// A transform for every moment. Between keys, translation and scale go along straight lines and rotation
+/// along the shorter great arc at constant speed [Shoemake 1985]; before the first and after the last
+/// key everything rests.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    course: Course,
+}
+
+/// Where something is at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionKey {
+    /// When, in seconds.
+    pub time_seconds: f32,
+    /// Applied last.
+    pub translation: Vec3,
+    /// Applied second; of any length but zero.
+    pub rotation: Quat,
+    /// Applied first; no component may be zero.
+    pub scale: Vec3,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Course {
+    Still(Transform),
+    /// Two poses at least, in order of time.
+    Keys(Vec<Pose>),
+}
+
+/// A key in f64, its rotation normalised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pose {
+    time: f64,
+    translation: DVec3,
+    rotation: DQuat,
+    scale: DVec3,
+}
+
+/// Scales and translations beyond this (2⁶⁰), and scales below its inverse, are refused, so that every
+/// matrix on the way and its inverse are finite in f32.
+const EXTREME: f64 = (1u64 << 60) as f64;
+
+/// Pieces that a segment is sampled in for its bounds.
+const PIECES: usize = 16;
+
+impl Motion {
+    /// No motion at all.
+    pub const fn still(transform: Transform) -> Motion {
+        Motion { course: Course::Still(transform) }
+    }
+
+    /// Through keys; `None` when there are none, when their times do not increase, when a number is not
+    /// finite or beyond 2⁶⁰, when a scale is below 2⁻⁶⁰ or changes its sign on the way (it would pass
+    /// through zero), or when a rotation is zero.
+    pub fn from_keys(keys: Vec<MotionKey>) -> Option<Motion> {
+        let poses = keys.iter().map(Pose::new).collect::<Option<Vec<_>>>()?;
+        let in_order = poses.windows(2).all(|pair| pair[0].time < pair[1].time);
+        let keeps_signs = poses.windows(2).all(|pair| (pair[0].scale * pair[1].scale).min_element() > 0.0);
+        if !(in_order && keeps_signs) {
+            return None;
+        }
+        match poses.as_slice() {
+            [] => None,
+            [only] => Some(Motion::still(only.transform())),
+            _ => Some(Motion { course: Course::Keys(poses) }),
+        }
+    }
+
+    /// The transform at a time in seconds. The same bits for the same time, always; a time that is not a
+    /// number means the first key's.
+    pub fn at(&self, time_seconds: f32) -> Transform {
+        let poses = match &self.course {
+            Course::Still(transform) => return *transform,
+            Course::Keys(poses) => poses,
+        };
+        let time = f64::from(time_seconds);
+        let next = poses.partition_point(|pose| pose.time <= time);
+        match (next.checked_sub(1).map(|i| &poses[i]), poses.get(next)) {
+            (Some(from), Some(to)) => Segment::new(from, to).at(from.fraction(to, time)).transform(),
+            (Some(pose), None) | (None, Some(pose)) => pose.transform(),
+            (None, None) => Transform::IDENTITY,
+        }
+    }
+
+    /// True when it never moves.
+    pub fn is_still(&self) -> bool {
+        match &self.course {
+            Course::Still(_) => true,
+            Course::Keys(poses) => poses.windows(2).all(|pair| pair[0].same_place(&pair[1])),
+        }
+    }
+
+    /// True when [`Motion::at`] is the same, to the bit, for all times between these, both included.
+    pub fn is_still_over(&self, seconds: [f32; 2]) -> bool {
+        self.segments_over(seconds).all(|(segment, _)| segment.from.same_place(&segment.to))
+    }
+
+    /// A box that holds `bounds` moved by [`Motion::at`] any time between these, both included.
+    ///
+    /// Each segment is sampled in pieces. Along a piece of length `h` (as a fraction of the segment) a
+    /// point leaves the chord between its samples by at most `h²/8` times its greatest acceleration, which
+    /// is `θ² |S p| + 2 θ |ΔS p|` for a rotation by `θ`; the chord itself lies in the samples' box.
+    /// What rounding to f32 adds is below `8 · 2⁻²⁴` of the coordinates.
+    pub fn bounds_over(&self, bounds: &Aabb, seconds: [f32; 2]) -> Aabb {
+        if bounds.is_empty() {
+            return Aabb::EMPTY;
+        }
+        let segments = self.segments_over(seconds);
+        let rests = [self.at(seconds[0]), self.at(seconds[1])].map(|t| moved_by(&t, bounds));
+        segments.fold(rests[0].union(rests[1]), |all, (segment, span)| {
+            all.union(segment.bounds_over(bounds, span))
+        })
+    }
+
+    /// Bounds, between these times, on how much lengths grow under the transform and under its inverse
+    /// (the greatest singular values of both).
+    pub fn stretch_over(&self, seconds: [f32; 2]) -> [f64; 2] {
+        let still = [self.at(seconds[0]), self.at(seconds[1])].map(|transform| {
+            let linear = DMat3::from_mat4(transform.matrix().as_dmat4());
+            [frobenius(linear), frobenius(linear.inverse())]
+        });
+        let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        // Beyond the scales, 2⁻²⁰ covers what rounding the matrix to f32 changes.
+        let slack = 1.0 + 1.0 / 1_048_576.0;
+        self.segments_over(seconds).fold(larger(still[0], still[1]), |all, (segment, _)| {
+            let (s, r) = (segment.from.scale.abs(), segment.to.scale.abs());
+            larger(all, [s.max(r).max_element() * slack, slack / s.min(r).min_element()])
+        })
+    }
+
+    /// The segments that an interval meets, each with the part of it that is met, in `0..=1`.
+    fn segments_over(&self, seconds: [f32; 2]) -> impl Iterator<Item = (Segment, [f64; 2])> {
+        let poses: &[Pose] = match &self.course {
+            Course::Still(_) => &[],
+            Course::Keys(poses) => poses,
+        };
+        let [start, end] = [f64::from(seconds[0].min(seconds[1])), f64::from(seconds[0].max(seconds[1]))];
+        poses.windows(2).filter(move |pair| pair[0].time <= end && pair[1].time >= start).map(move |pair| {
+            let span = [start, end].map(|time| pair[0].fraction(&pair[1], time));
+            (Segment::new(&pair[0], &pair[1]), span)
+        })
+    }
+}
+
+impl Pose {
+    fn new(key: &MotionKey) -> Option<Pose> {
+        let (translation, scale) = (key.translation.as_dvec3(), key.scale.as_dvec3());
+        let rotation = key.rotation.as_dquat();
+        let length = rotation.dot(rotation).sqrt();
+        let sound = key.time_seconds.is_finite()
+            && translation.is_finite()
+            && translation.abs().max_element() <= EXTREME
+            && scale.is_finite()
+            && scale.abs().max_element() <= EXTREME
+            && scale.abs().min_element() >= 1.0 / EXTREME
+            && length.is_finite()
+            && length > 0.0;
+        let time = f64::from(key.time_seconds);
+        sound.then(|| Pose { time, translation, rotation: rotation * (1.0 / length), scale })
+    }
+
+    fn same_place(&self, other: &Pose) -> bool {
+        (self.translation, self.rotation, self.scale) == (other.translation, other.rotation, other.scale)
+    }
+
+    /// Where between two poses a moment lies, clamped to `0..=1`.
+    fn fraction(&self, next: &Pose, time: f64) -> f64 {
+        ((time - self.time) / (next.time - self.time)).clamp(0.0, 1.0)
+    }
+
+    fn matrix(&self) -> DMat4 {
+        DMat4::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    }
+
+    /// Never fails on what [`Pose::new`] lets through.
+    fn transform(&self) -> Transform {
+        Transform::from_matrix(self.matrix()).unwrap_or_default()
+    }
+}
+
+/// The way from one pose to the next.
+struct Segment {
+    from: Pose,
+    to: Pose,
+    /// Half the angle of the rotation between them, radians.
+    half_angle: f64,
+}
+
+impl Segment {
+    fn new(from: &Pose, to: &Pose) -> Segment {
+        let mut to = *to;
+        // A rotation has two quaternions; the nearer one gives the shorter arc.
+        if from.rotation.dot(to.rotation) < 0.0 {
+            to.rotation = -to.rotation;
+        }
+        let length = |q: DQuat| q.dot(q).sqrt();
+        let half_angle =
+            2.0 * atan2_f64(length(to.rotation - from.rotation), length(to.rotation + from.rotation));
+        Segment { from: *from, to, half_angle }
+    }
+
+    fn at(&self, fraction: f64) -> Pose {
+        let (from, to) = (&self.from, &self.to);
+        if from.same_place(to) {
+            return *from;
+        }
+        let turn = |part: f64| {
+            let whole = sin_f64(self.half_angle);
+            if whole > 1e-9 { sin_f64(part * self.half_angle) / whole } else { part }
+        };
+        let rotation = from.rotation * turn(1.0 - fraction) + to.rotation * turn(fraction);
+        Pose {
+            time: from.time,
+            translation: from.translation.lerp(to.translation, fraction),
+            rotation: rotation * (1.0 / rotation.dot(rotation).sqrt()),
+            scale: from.scale.lerp(to.scale, fraction),
+        }
+    }
+
+    fn bounds_over(&self, bounds: &Aabb, [start, end]: [f64; 2]) -> Aabb {
+        let corners = bounds.corners().map(|corner| corner.as_dvec3());
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for step in 0..=PIECES {
+            let matrix = self.at(start + (end - start) * step as f64 / PIECES as f64).matrix();
+            for corner in corners {
+                let p = matrix.transform_point3(corner);
+                (low, high) = (low.min(p), high.max(p));
+            }
+        }
+        let reach = bounds.min.abs().max(bounds.max.abs()).as_dvec3();
+        let (s, r) = (self.from.scale, self.to.scale);
+        let radius = (reach * s.abs().max(r.abs())).length();
+        let growth = (reach * (r - s).abs()).length();
+        let angle = 2.0 * self.half_angle;
+        let piece = (end - start) / PIECES as f64;
+        let bulge = piece * piece / 8.0 * (angle * angle * radius + 2.0 * angle * growth);
+        let far = self.from.translation.abs().max(self.to.translation.abs()).max_element() + radius;
+        grown_outwards(low, high, bulge * (1.0 + 1e-6) + far * ROUNDING)
+    }
+}
+
+/// 8 units of f32 rounding: an entry of a rotation times a scale is rounded once, and the sum over a row
+/// of the entries' sizes is at most √3 times the length of the scaled point.
+const ROUNDING: f64 = 8.0 / 16_777_216.0;
+
+fn frobenius(m: DMat3) -> f64 {
+    m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// The box around a box moved by the matrix of a transform, taken as exact.
+fn moved_by(transform: &Transform, bounds: &Aabb) -> Aabb {
+    let matrix = transform.matrix().as_dmat4();
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let mut far = 0f64;
+    for corner in bounds.corners().map(|corner| corner.as_dvec3()) {
+        let p = matrix.transform_point3(corner);
+        (low, high) = (low.min(p), high.max(p));
+        let sum = DMat3::from_mat4(matrix).abs() * corner.abs() + matrix.w_axis.truncate().abs();
+        far = far.max(sum.max_element());
+    }
+    grown_outwards(low, high, far * 1e-14)
+}
+
+/// A box in f32 that holds one in f64 grown by `margin`.
+fn grown_outwards(low: DVec3, high: DVec3, margin: f64) -> Aabb {
+    let margin = DVec3::splat(margin);
+    let (low, high) = ((low - margin).as_vec3(), (high + margin).as_vec3());
+    Aabb {
+        min: Vec3::new(low.x.next_down(), low.y.next_down(), low.z.next_down()),
+        max: Vec3::new(high.x.next_up(), high.y.next_up(), high.z.next_up()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hash::{hash_words, unit_f32};
+
+    fn key(time_seconds: f32, translation: Vec3, rotation: Quat, scale: Vec3) -> MotionKey {
+        MotionKey { time_seconds, translation, rotation, scale }
+    }
+
+    fn spin() -> Motion {
+        let turned = Quat::from_xyzw(0.0, 0.0, 1.0, 0.0);
+        Motion::from_keys(vec![
+            key(1.0, Vec3::ZERO, Quat::IDENTITY, Vec3::ONE),
+            key(3.0, Vec3::new(4.0, 0.0, 0.0), turned, Vec3::splat(3.0)),
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn rests_before_and_after_its_keys() {
+        let motion = spin();
+        assert_eq!(motion.at(-5.0), motion.at(1.0));
+        assert_eq!(motion.at(9.0), motion.at(3.0));
+        assert_eq!(motion.at(f32::NAN), motion.at(1.0));
+        assert!(motion.at(0.0).is_identity());
+        assert!(!motion.is_still() && motion.is_still_over([-1.0, 0.5]) && !motion.is_still_over([0.0, 1.5]));
+    }
+
+    #[test]
+    fn halfway_is_half_the_way_half_the_angle_and_the_mean_scale() {
+        let p = spin().at(2.0).point(Vec3::X);
+        // Half of a half turn about z brings x to y, scaled by 2, moved by 2.
+        assert!((p - Vec3::new(2.0, 2.0, 0.0)).length() < 1e-6, "{p}");
+    }
+
+    #[test]
+    fn refuses_what_has_no_transform_on_the_way() {
+        let sound = key(0.0, Vec3::ZERO, Quat::IDENTITY, Vec3::ONE);
+        let refused = |keys: &[MotionKey]| assert_eq!(Motion::from_keys(keys.to_vec()), None);
+        refused(&[]);
+        refused(&[sound, sound]);
+        refused(&[sound, MotionKey { time_seconds: 1.0, scale: Vec3::new(1.0, -1.0, 1.0), ..sound }]);
+        refused(&[MotionKey { scale: Vec3::new(1.0, 0.0, 1.0), ..sound }]);
+        refused(&[MotionKey { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..sound }]);
+        refused(&[MotionKey { translation: Vec3::new(f32::NAN, 0.0, 0.0), ..sound }]);
+        assert!(Motion::from_keys(vec![sound]).unwrap().is_still());
+    }
+
+    #[test]
+    fn the_same_pose_twice_is_still_to_the_bit() {
+        let pose = key(0.0, Vec3::X, Quat::from_xyzw(0.1, 0.2, 0.3, 0.4), Vec3::new(0.3, 1.0, 7.0));
+        let motion = Motion::from_keys(vec![pose, MotionKey { time_seconds: 1.0, ..pose }]).unwrap();
+        assert!(motion.is_still());
+        assert!((0..100).all(|i| motion.at(i as f32 / 99.0) == motion.at(0.0)));
+    }
+
+    fn random_motion(seed: u64) -> Motion {
+        let number = |i: u64| unit_f32(hash_words([seed, i]) as u32) * 2.0 - 1.0;
+        let vector = |i: u64| Vec3::new(number(i), number(i + 1), number(i + 2));
+        let keys = (0..3).map(|k| {
+            let turn =
+                Quat::from_xyzw(number(k * 20), number(k * 20 + 1), number(k * 20 + 2), number(k * 20 + 3));
+            let scale = vector(k * 20 + 4).abs() * 3.0 + Vec3::splat(0.01);
+            key(k as f32, vector(k * 20 + 8) * 10.0, turn, scale)
+        });
+        Motion::from_keys(keys.collect()).unwrap()
+    }
+
+    /// How many of many sampled points of moving boxes leave the box shrunk by `shrink` of its size.
+    fn escapes(shrink: f64) -> usize {
+        let mut escaped = 0;
+        for seed in 0..200 {
+            let motion = random_motion(seed);
+            let local = Aabb { min: Vec3::new(-2.0, 0.5, -1.0), max: Vec3::new(1.0, 0.75, 3.0) };
+            let window =
+                [unit_f32(hash_words([seed, 99]) as u32), 0.8 + unit_f32(hash_words([seed, 98]) as u32)];
+            let outer = motion.bounds_over(&local, window);
+            let margin = (outer.extent() * shrink as f32).max(Vec3::ZERO);
+            let (low, high) = ((outer.min + margin).as_dvec3(), (outer.max - margin).as_dvec3());
+            for i in 0..=200 {
+                let time = window[0] + (window[1] - window[0]) * i as f32 / 200.0;
+                let matrix = motion.at(time).matrix().as_dmat4();
+                for corner in local.corners() {
+                    let p = matrix.transform_point3(corner.as_dvec3());
+                    escaped += usize::from(p.cmplt(low).any() || p.cmpgt(high).any());
+                }
+            }
+        }
+        escaped
+    }
+
+    #[test]
+    fn bounds_hold_every_moment_and_a_slightly_smaller_box_does_not() {
+        assert_eq!(escapes(0.0), 0);
+        assert!(escapes(0.02) > 0);
+    }
+
+    #[test]
+    fn stretch_bounds_how_lengths_change() {
+        for seed in 0..100 {
+            let motion = random_motion(seed);
+            let [grow, shrink] = motion.stretch_over([0.0, 2.0]);
+            for i in 0..=100 {
+                let matrix = DMat3::from_mat4(motion.at(i as f32 / 50.0).matrix().as_dmat4());
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE.normalize()] {
+                    assert!((matrix * axis).length() <= grow && (matrix.inverse() * axis).length() <= shrink);
+                }
+            }
+        }
+    }
+}
