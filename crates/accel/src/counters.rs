@@ -37,6 +37,10 @@ pub trait Count {
     fn early_out(&mut self) {}
     /// A back face is rejected without a triangle test.
     fn culled_back_face(&mut self) {}
+    /// Where to count, if anything is counted: for structures that ask others.
+    fn counters(&mut self) -> Option<&mut Counters> {
+        None
+    }
 }
 
 /// Counts nothing, at no cost.
@@ -60,5 +64,8 @@ impl Count for Counters {
     }
     fn culled_back_face(&mut self) {
         self.culled_back_faces += 1;
+    }
+    fn counters(&mut self) -> Option<&mut Counters> {
+        Some(self)
     }
 }

@@ -21,14 +21,19 @@
 
 pub mod accelerator;
 pub mod brute_force;
+pub mod bvh;
 pub mod counters;
+pub mod instancing;
 pub mod mesh;
 pub mod ray;
 pub mod registry;
+pub mod slab;
 pub mod triangle;
 
 pub use accelerator::{Accelerator, Traverse, TreeShape};
+pub use bvh::Bvh;
 pub use counters::Counters;
+pub use instancing::{Instance, TopLevel, TwoLevel};
 pub use mesh::{MeshError, TriangleMesh};
 pub use ray::{Culling, Hit, Primitive, Query, Ray};
 pub use registry::{ACCELERATORS, AcceleratorEntry, BuildError, BuildOptions, build};

@@ -1,16 +1,16 @@
 //! The table of structures. To add one: a file with its `ENTRY`, and a line here.
 
 use crate::accelerator::Accelerator;
-use crate::brute_force;
 use crate::mesh::TriangleMesh;
+use crate::{brute_force, bvh};
 use bilux_math::registry::Entry;
 use std::sync::Arc;
 
 /// Every structure that there is.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[brute_force::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] = &[brute_force::ENTRY, bvh::ENTRY];
 
 /// The structure that `auto` stands for: the fastest.
-pub const AUTO: &str = "brute";
+pub const AUTO: &str = "bvh";
 
 /// One structure.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,279 @@
+//! Building top down by the surface-area heuristic over bins [Wald 2007].
+//!
+//! No step depends on the number of threads: boxes are joined by minima and maxima and items are
+//! counted in whole numbers, so that the order in which pieces are done does not matter.
+
+use super::tree::{EMPTY, MAX_DEPTH, Node, Pair, Tree, planes_of, union};
+use bilux_math::Aabb;
+use rayon::prelude::*;
+
+/// Bins an axis.
+const BINS: usize = 16;
+/// What a visit to a pair of nodes costs, in triangle tests.
+const NODE_COST: f32 = 1.0;
+/// Leaves are never larger.
+const MAX_LEAF: usize = 8;
+/// Below this many items a subtree is built on one thread.
+const PARALLEL: usize = 4096;
+
+/// An item on its way into a leaf.
+#[derive(Clone, Copy)]
+struct Item {
+    planes: [[f32; 3]; 2],
+    index: u32,
+}
+
+impl Item {
+    #[inline(always)]
+    fn centre(&self, axis: usize) -> f32 {
+        self.planes[0][axis] * 0.5 + self.planes[1][axis] * 0.5
+    }
+}
+
+/// See [`Tree::over`].
+pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, Vec<u32>) {
+    let mut items: Vec<Item> = (0..len as u32)
+        .into_par_iter()
+        .filter_map(|index| {
+            let bounds = bounds(index);
+            (!bounds.is_empty()).then(|| Item { planes: planes_of(&bounds), index })
+        })
+        .collect();
+    if items.is_empty() {
+        return (Tree { root: Node::default(), pairs: Vec::new() }, Vec::new());
+    }
+    let planes = items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
+    let mut room = vec![Pair::default(); items.len() - 1];
+    let root =
+        subtree(Task { items: &mut items, first_item: 0, room: &mut room, first_pair: 0, depth: 1 }, planes);
+    let order = items.iter().map(|item| item.index).collect();
+    (compact(root, &room), order)
+}
+
+/// Items to put under one node, and room for the pairs below it: one less than there are items.
+struct Task<'a> {
+    items: &'a mut [Item],
+    first_item: u32,
+    room: &'a mut [Pair],
+    first_pair: u32,
+    depth: usize,
+}
+
+fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> Node {
+    let Task { items, first_item, room, first_pair, depth } = task;
+    let leaf = Node { planes, first: first_item, count: items.len() as u32 };
+    if items.len() == 1 {
+        return leaf;
+    }
+    let split = best_split(items, &planes).filter(|split| depth_allows(depth, split.counts));
+    let leaf_cost = items.len() as f32;
+    if items.len() <= MAX_LEAF && split.as_ref().is_none_or(|split| split.cost >= leaf_cost) {
+        return leaf;
+    }
+    let (middle, halves) = match split {
+        Some(split) => (partition(items, &split), split.halves),
+        None => halve(items),
+    };
+    let Some((pair, room)) = room.split_first_mut() else { return leaf };
+    let (left_items, right_items) = items.split_at_mut(middle);
+    let (left_room, right_room) = room.split_at_mut(middle - 1);
+    let left =
+        Task { items: left_items, first_item, room: left_room, first_pair: first_pair + 1, depth: depth + 1 };
+    let right = Task {
+        items: right_items,
+        first_item: first_item + middle as u32,
+        room: right_room,
+        first_pair: first_pair + middle as u32,
+        depth: depth + 1,
+    };
+    pair.0 = if left.items.len() + right.items.len() >= PARALLEL {
+        let (a, b) = rayon::join(|| subtree(left, halves[0]), || subtree(right, halves[1]));
+        [a, b]
+    } else {
+        [subtree(left, halves[0]), subtree(right, halves[1])]
+    };
+    Node { planes, first: first_pair, count: 0 }
+}
+
+/// True when both children of a node at this depth can still be halved down to single items in time.
+fn depth_allows(depth: usize, counts: [usize; 2]) -> bool {
+    let levels = |count: usize| count.next_power_of_two().ilog2() as usize;
+    counts.iter().all(|&count| depth + 1 + levels(count) <= MAX_DEPTH)
+}
+
+/// Where to cut, and what lies on both sides.
+struct Split {
+    axis: usize,
+    grid: Grid,
+    /// The first bin that goes to the right.
+    bin: usize,
+    /// Expected cost in triangle tests.
+    cost: f32,
+    counts: [usize; 2],
+    halves: [[[f32; 3]; 2]; 2],
+}
+
+/// Maps centres to bins along each axis.
+#[derive(Clone, Copy)]
+struct Grid {
+    least: [f32; 3],
+    scale: [f32; 3],
+}
+
+impl Grid {
+    #[inline(always)]
+    fn bin(&self, item: &Item, axis: usize) -> usize {
+        // A float cast saturates, and what is not a number becomes 0.
+        (((item.centre(axis) - self.least[axis]) * self.scale[axis]) as usize).min(BINS - 1)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    planes: [[f32; 3]; 2],
+    count: usize,
+}
+
+const NO_ITEMS: Bin = Bin { planes: EMPTY, count: 0 };
+
+impl Bin {
+    #[inline(always)]
+    fn with(&self, other: &Bin) -> Bin {
+        Bin { planes: union(&self.planes, &other.planes), count: self.count + other.count }
+    }
+}
+
+type Bins = [[Bin; BINS]; 3];
+
+/// The cheapest cut between two bins; `None` when there is nothing to choose, as when all centres are one.
+fn best_split(items: &[Item], planes: &[[f32; 3]; 2]) -> Option<Split> {
+    let grid = grid_over(items);
+    let bins = fill_bins(items, &grid);
+    let area = half_area(planes);
+    let mut best: Option<Split> = None;
+    for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+        let mut right = [NO_ITEMS; BINS];
+        right[BINS - 1] = bins[axis][BINS - 1];
+        for bin in (1..BINS - 1).rev() {
+            right[bin] = right[bin + 1].with(&bins[axis][bin]);
+        }
+        let mut left = NO_ITEMS;
+        for bin in 1..BINS {
+            left = left.with(&bins[axis][bin - 1]);
+            let right = &right[bin];
+            let tests =
+                half_area(&left.planes) * left.count as f32 + half_area(&right.planes) * right.count as f32;
+            let cost = NODE_COST + tests / area;
+            // Boxes without area, or beyond all numbers, make costs that say nothing.
+            let usable = left.count > 0 && right.count > 0 && cost.is_finite();
+            if usable && best.as_ref().is_none_or(|best| cost < best.cost) {
+                let (counts, halves) = ([left.count, right.count], [left.planes, right.planes]);
+                best = Some(Split { axis, grid, bin, cost, counts, halves });
+            }
+        }
+    }
+    best
+}
+
+fn grid_over(items: &[Item]) -> Grid {
+    let of = |items: &[Item]| {
+        items.iter().fold(EMPTY, |all, item| {
+            let centre = std::array::from_fn(|axis| item.centre(axis));
+            union(&all, &[centre, centre])
+        })
+    };
+    let [least, greatest] = if items.len() >= PARALLEL * 8 {
+        items.par_chunks(PARALLEL).map(of).reduce(|| EMPTY, |a, b| union(&a, &b))
+    } else {
+        of(items)
+    };
+    let scale = std::array::from_fn(|axis| {
+        let scale = BINS as f32 / (greatest[axis] - least[axis]);
+        if scale.is_finite() { scale } else { 0.0 }
+    });
+    Grid { least, scale }
+}
+
+fn fill_bins(items: &[Item], grid: &Grid) -> Bins {
+    let fill = |items: &[Item]| {
+        let mut bins = [[NO_ITEMS; BINS]; 3];
+        for item in items {
+            for (axis, bins) in bins.iter_mut().enumerate() {
+                let bin = &mut bins[grid.bin(item, axis)];
+                bin.planes = union(&bin.planes, &item.planes);
+                bin.count += 1;
+            }
+        }
+        bins
+    };
+    let merge = |a: Bins, b: Bins| {
+        std::array::from_fn(|axis| std::array::from_fn(|bin| a[axis][bin].with(&b[axis][bin])))
+    };
+    if items.len() >= PARALLEL * 8 {
+        items.par_chunks(PARALLEL).map(fill).reduce(|| [[NO_ITEMS; BINS]; 3], merge)
+    } else {
+        fill(items)
+    }
+}
+
+fn half_area(planes: &[[f32; 3]; 2]) -> f32 {
+    let [x, y, z] = std::array::from_fn(|k| planes[1][k] - planes[0][k]);
+    x * y + y * z + z * x
+}
+
+/// Moves the items of the left side to the front and returns how many there are.
+fn partition(items: &mut [Item], split: &Split) -> usize {
+    let goes_left = |item: &Item| split.grid.bin(item, split.axis) < split.bin;
+    let (mut front, mut back) = (0, items.len());
+    loop {
+        while front < back && goes_left(&items[front]) {
+            front += 1;
+        }
+        while front < back && !goes_left(&items[back - 1]) {
+            back -= 1;
+        }
+        if front == back {
+            return front;
+        }
+        items.swap(front, back - 1);
+    }
+}
+
+/// Cuts by number, along the axis on which centres are furthest apart.
+fn halve(items: &mut [Item]) -> (usize, [[[f32; 3]; 2]; 2]) {
+    let middle = items.len() / 2;
+    let spread = |axis: usize| {
+        let centres = || items.iter().map(|item| item.centre(axis));
+        centres().fold(f32::MIN, f32::max) * 0.5 - centres().fold(f32::MAX, f32::min) * 0.5
+    };
+    let axis = (1..3).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
+    items.select_nth_unstable_by(middle, |a, b| {
+        a.centre(axis).total_cmp(&b.centre(axis)).then(a.index.cmp(&b.index))
+    });
+    let around = |items: &[Item]| items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
+    (middle, [around(&items[..middle]), around(&items[middle..])])
+}
+
+/// Leaves out the room that was not needed. Parents come before their children, left before right.
+fn compact(mut root: Node, room: &[Pair]) -> Tree {
+    let mut pairs: Vec<Pair> = Vec::new();
+    // Places that hold the old index of a pair: None for the root's.
+    let mut waiting: Vec<(Option<(usize, usize)>, u32)> =
+        if root.count == 0 { vec![(None, root.first)] } else { Vec::new() };
+    while let Some((place, old)) = waiting.pop() {
+        let new = pairs.len() as u32;
+        match place {
+            None => root.first = new,
+            Some((parent, side)) => pairs[parent].0[side].first = new,
+        }
+        let pair = room[old as usize];
+        pairs.push(pair);
+        for side in [1, 0] {
+            if pair.0[side].count == 0 {
+                waiting.push((Some((new as usize, side)), pair.0[side].first));
+            }
+        }
+    }
+    pairs.shrink_to_fit();
+    Tree { root, pairs }
+}
