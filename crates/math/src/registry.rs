@@ -27,6 +27,13 @@ pub enum ParameterKind {
         /// Greatest channel.
         max: f64,
     },
+    /// As [`ParameterKind::Colour`], or a texture in its place.
+    ColourTexture {
+        /// Least channel.
+        min: f64,
+        /// Greatest channel.
+        max: f64,
+    },
     /// Three coordinates.
     Vector,
     /// One of these words.

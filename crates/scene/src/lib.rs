@@ -1,1 +1,35 @@
-//! What is in the picture: meshes, materials, lights, cameras, and the scenes that Bilux ships.
+//! What is in the picture: meshes, textures, materials, lights and cameras.
+//!
+//! Formats fill a [`SceneBuilder`] with plain data ([`Spec`]s: a kind and its parameters, each with the place
+//! in the file that it came from). [`SceneBuilder::build`] checks all of it against the tables
+//! ([`MATERIALS`], [`LIGHTS`], [`CAMERAS`]) and gives an immutable [`Scene`], which integrators ask.
+//!
+//! Nothing here draws a random number: callers pass them in.
+
+pub mod bsdf;
+pub mod builder;
+pub mod cameras;
+pub mod classic;
+pub mod error;
+pub mod geometry;
+pub mod lights;
+pub mod materials;
+pub mod mesh;
+pub mod parameters;
+pub mod scene;
+pub mod surface;
+pub mod texture;
+
+pub use bilux_accel::{Counters, Primitive, Query, Ray};
+pub use bsdf::{Bsdf, BsdfSample, TransportMode};
+pub use builder::{AccelChoice, Object, SceneBuilder};
+pub use cameras::{CAMERAS, Camera, CameraSample};
+pub use classic::{ClassicLight, ClassicMaterial};
+pub use error::{SceneError, Warning};
+pub use lights::{LIGHTS, Light, LightSample};
+pub use materials::{MATERIALS, Material};
+pub use mesh::Mesh;
+pub use parameters::{Parameters, Reader, Span, Spec, Value};
+pub use scene::{Scene, Tracer};
+pub use surface::Surface;
+pub use texture::Texture;

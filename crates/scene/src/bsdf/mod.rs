@@ -1,0 +1,193 @@
+//! How surfaces scatter light. One lobe a file; a [`Bsdf`] is a sum of lobes on a frame.
+//!
+//! Directions: `wo` is the known one, `wi` the sampled or evaluated one; both are unit and point away from the
+//! surface. `eval` gives f·|cosθi|. In the lobes' own files directions are local, with the normal as z.
+
+mod dielectric;
+mod lambert;
+mod mirror;
+mod phong_lobe;
+
+pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
+pub use lambert::Lambert;
+pub use mirror::Mirror;
+pub use phong_lobe::PhongLobe;
+
+use bilux_math::{Frame, Rgb, Vec2, Vec3, registry::Entry};
+
+/// What is carried along a path: radiance from the lights, or importance from the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TransportMode {
+    /// The path began at the camera: refraction scales radiance by the square of the relative index.
+    Radiance,
+    /// The path began at a light.
+    Importance,
+}
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// The direction.
+    pub wi: Vec3,
+    /// f·|cosθi| over the density (over the probability, for a delta lobe).
+    pub weight: Rgb,
+    /// Density in solid angle; for a delta lobe the probability of having chosen it.
+    pub pdf_solid_angle: f32,
+    /// True for a lobe without width: `eval` and `pdf` know nothing of it.
+    pub is_delta: bool,
+    /// True when `wi` is on the other side of the surface.
+    pub transmits: bool,
+}
+
+/// One way of scattering, on a local frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// Equal in all directions.
+    Lambert(Lambert),
+    /// A perfect mirror.
+    Mirror(Mirror),
+    /// Smooth glass: Fresnel and Snell.
+    Dielectric(Dielectric),
+    /// A cosine power around the mirrored direction, normalised.
+    Phong(PhongLobe),
+}
+
+macro_rules! each_lobe {
+    ($lobe:expr, $l:ident => $body:expr) => {
+        match $lobe {
+            Lobe::Lambert($l) => $body,
+            Lobe::Mirror($l) => $body,
+            Lobe::Dielectric($l) => $body,
+            Lobe::Phong($l) => $body,
+        }
+    };
+}
+
+impl Lobe {
+    /// f·|cosθi|; black for delta lobes.
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        each_lobe!(self, l => l.eval(wo, wi, mode))
+    }
+
+    /// Density of [`Lobe::sample`]; zero for delta lobes.
+    pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        each_lobe!(self, l => l.pdf_solid_angle(wo, wi))
+    }
+
+    /// A direction; `None` where nothing is scattered.
+    pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
+    }
+
+    /// True when it has no width.
+    pub fn is_delta(&self) -> bool {
+        matches!(self, Lobe::Mirror(_) | Lobe::Dielectric(_))
+    }
+
+    /// About how much light it sends on, the weight by which it is chosen.
+    pub fn strength(&self) -> f32 {
+        each_lobe!(self, l => l.strength())
+    }
+}
+
+/// A row of [`BSDFS`].
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfEntry {
+    /// Name, summary, source.
+    pub entry: Entry,
+    /// True when eval(a, b) · |cos b| = eval(b, a) · |cos a| is promised.
+    pub reciprocal: bool,
+    /// True when a white one loses no light.
+    pub lossless: bool,
+    /// Cases for the contract tests: a name and a lobe.
+    pub cases: fn() -> Vec<(&'static str, Lobe)>,
+}
+
+/// Every lobe that there is.
+pub const BSDFS: &[BsdfEntry] = &[lambert::ENTRY, mirror::ENTRY, dielectric::ENTRY, phong_lobe::ENTRY];
+
+/// A sum of lobes at a point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Bsdf {
+    frame: Frame,
+    n_geom: Vec3,
+    lobes: [Option<Lobe>; 3],
+    total_strength: f32,
+}
+
+impl Bsdf {
+    /// A sum of at most three lobes around a shading normal.
+    pub fn new(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; 3]) -> Bsdf {
+        let total_strength = lobes.iter().flatten().map(Lobe::strength).sum();
+        Bsdf { frame: Frame::from_normal(n_shade), n_geom, lobes, total_strength }
+    }
+
+    /// True when all that it scatters goes into single directions.
+    pub fn is_delta(&self) -> bool {
+        self.lobes.iter().flatten().all(Lobe::is_delta)
+    }
+
+    /// f·|cosθi| of all lobes with width.
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        if !self.sides_agree(wo, wi) {
+            return Rgb::BLACK;
+        }
+        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        self.lobes.iter().flatten().map(|lobe| lobe.eval(wo, wi, mode)).sum()
+    }
+
+    /// Density of [`Bsdf::sample`] over the lobes with width.
+    pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.total_strength <= 0.0 {
+            return 0.0;
+        }
+        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        let weighted = |lobe: &Lobe| lobe.strength() * lobe.pdf_solid_angle(wo, wi);
+        self.lobes.iter().flatten().map(weighted).sum::<f32>() / self.total_strength
+    }
+
+    /// A direction: `u_choice` picks the lobe (and reflection or refraction in it), `u` the direction.
+    pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        let (index, u_choice) = self.choose(u_choice)?;
+        let chosen = self.lobes[index].as_ref()?;
+        let share = chosen.strength() / self.total_strength;
+        let local_wo = self.frame.to_local(wo);
+        let mut sample = chosen.sample(local_wo, u_choice, u, mode)?;
+        let local_wi = sample.wi;
+        sample.wi = self.frame.to_world(local_wi).normalize();
+        if sample.is_delta {
+            sample.weight = sample.weight / share;
+            sample.pdf_solid_angle *= share;
+        } else {
+            sample.pdf_solid_angle = self.pdf_solid_angle(wo, sample.wi);
+            sample.weight = self.eval(wo, sample.wi, mode) / sample.pdf_solid_angle;
+        }
+        let on_its_side = (wo.dot(self.n_geom) * sample.wi.dot(self.n_geom) < 0.0) == sample.transmits;
+        (on_its_side && sample.pdf_solid_angle > 0.0).then_some(sample)
+    }
+
+    /// A lobe by its share of the strength, and what is left of the random number.
+    fn choose(&self, u: f32) -> Option<(usize, f32)> {
+        let mut rest = u * self.total_strength;
+        let mut last = None;
+        for (i, lobe) in self.lobes.iter().enumerate() {
+            let strength = lobe.as_ref().map_or(0.0, Lobe::strength);
+            if strength <= 0.0 {
+                continue;
+            }
+            if rest < strength {
+                return Some((i, (rest / strength).clamp(0.0, 1.0 - f32::EPSILON)));
+            }
+            rest -= strength;
+            last = Some((i, 1.0 - f32::EPSILON));
+        }
+        last
+    }
+
+    /// Light must be on the same side of the triangle as of the interpolated surface, or it leaks through.
+    fn sides_agree(&self, wo: Vec3, wi: Vec3) -> bool {
+        let geometric = wo.dot(self.n_geom) * wi.dot(self.n_geom);
+        let shading = wo.dot(self.frame.n) * wi.dot(self.frame.n);
+        geometric * shading > 0.0
+    }
+}

@@ -1,0 +1,75 @@
+//! The highlight of Phong as a BRDF: a cosine power around the mirrored direction, normalised so that it never
+//! gives out more than it gets. [Lafortune 1994]
+
+use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
+use bilux_math::registry::Entry;
+use bilux_math::transcendental::powf;
+use bilux_math::{Frame, Rgb, Vec2, Vec3, warp};
+use std::f32::consts::TAU;
+
+/// Row of [`super::BSDFS`].
+pub(super) const ENTRY: BsdfEntry = BsdfEntry {
+    entry: Entry {
+        name: "phong",
+        summary: "a glossy highlight: a cosine power around the mirrored direction",
+        source: "Lafortune 1994",
+        parameters: &[],
+    },
+    reciprocal: true,
+    lossless: false,
+    cases: || {
+        let lobe = |exponent| Lobe::Phong(PhongLobe { reflectance: Rgb::WHITE, exponent });
+        vec![("wide", lobe(2.0)), ("satin", lobe(32.0)), ("sharp", lobe(500.0))]
+    },
+};
+
+/// A normalised Phong highlight, on both sides of the surface alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhongLobe {
+    /// Reflected fraction of light that falls in straight, 0..=1.
+    pub reflectance: Rgb,
+    /// Power of the cosine, 0 or more.
+    pub exponent: f32,
+}
+
+impl PhongLobe {
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
+        if wo.z * wi.z <= 0.0 {
+            return Rgb::BLACK;
+        }
+        let cos_alpha = Vec3::new(-wo.x, -wo.y, wo.z).dot(wi).max(0.0);
+        self.reflectance * ((self.exponent + 2.0) / TAU * powf(cos_alpha, self.exponent) * wi.z.abs())
+    }
+
+    pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z * wi.z <= 0.0 {
+            return 0.0;
+        }
+        warp::power_cosine_pdf_solid_angle(Vec3::new(-wo.x, -wo.y, wo.z).dot(wi), self.exponent)
+    }
+
+    pub(super) fn sample(
+        &self,
+        wo: Vec3,
+        _u_choice: f32,
+        u: Vec2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        let mirrored = Frame::from_normal(Vec3::new(-wo.x, -wo.y, wo.z));
+        let wi = mirrored.to_world(warp::sample_power_cosine(u, self.exponent)).normalize();
+        let pdf_solid_angle = self.pdf_solid_angle(wo, wi);
+        let weight = self.eval(wo, wi, mode) / pdf_solid_angle;
+        // Directions below the surface carry nothing: their share of the density is lost, as it must be.
+        (pdf_solid_angle > 0.0).then_some(BsdfSample {
+            wi,
+            weight,
+            pdf_solid_angle,
+            is_delta: false,
+            transmits: false,
+        })
+    }
+
+    pub(super) fn strength(&self) -> f32 {
+        self.reflectance.luminance()
+    }
+}

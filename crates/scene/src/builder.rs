@@ -1,0 +1,189 @@
+//! A scene while it is put together: plain data, as files describe it.
+
+use crate::cameras::{self, CameraSpec};
+use crate::error::{SceneError, Warning};
+use crate::geometry::{Geometry, Placed};
+use crate::lights::{self, BuiltLight};
+use crate::materials::{self, Material};
+use crate::mesh::Mesh;
+use crate::parameters::{Parameters, Span, Spec};
+use crate::scene::{Scene, SceneLight, SceneParts};
+use crate::texture::Texture;
+use bilux_accel::{BuildOptions, Query};
+use bilux_math::motion::Motion;
+use bilux_math::{Rgb, Transform, Vec3};
+use std::sync::Arc;
+
+/// A mesh somewhere in the scene.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// What the user calls it; may be empty.
+    pub name: String,
+    /// Its triangles.
+    pub mesh: Arc<Mesh>,
+    /// Index into [`SceneBuilder::materials`].
+    pub material: usize,
+    /// Where it is, and when.
+    pub motion: Motion,
+    /// Keep one copy of the mesh's tree however often it stands in the scene. Without this, and for what does
+    /// not move, triangles are put into one tree of the whole scene.
+    pub instanced: bool,
+}
+
+impl Object {
+    /// A mesh where it was modelled, with the material of this index.
+    pub fn new(name: &str, mesh: Arc<Mesh>, material: usize) -> Object {
+        let motion = Motion::still(Transform::IDENTITY);
+        Object { name: name.to_owned(), mesh, material, motion, instanced: false }
+    }
+
+    /// The same, moved.
+    pub fn placed(self, transform: Transform) -> Object {
+        Object { motion: Motion::still(transform), ..self }
+    }
+}
+
+/// A scene while it is put together. All fields are plain data; [`SceneBuilder::build`] checks them.
+#[derive(Clone, Debug, Default)]
+pub struct SceneBuilder {
+    /// Pictures on surfaces.
+    pub textures: Vec<Arc<Texture>>,
+    /// What surfaces are made of.
+    pub materials: Vec<Spec>,
+    /// What there is to see.
+    pub objects: Vec<Object>,
+    /// What gives light, emissive materials apart.
+    pub lights: Vec<Spec>,
+    /// Where it can be seen from; the first is the default.
+    pub cameras: Vec<CameraSpec>,
+    /// Settings of the render that the file wishes for, not looked at here.
+    pub settings: Parameters,
+    /// What was odd while reading.
+    pub warnings: Vec<Warning>,
+}
+
+/// Which structure answers the rays.
+#[derive(Clone, Debug)]
+pub struct AccelChoice {
+    /// Its name in [`bilux_accel::ACCELERATORS`], or `auto`.
+    pub name: String,
+    /// How it is built.
+    pub options: BuildOptions,
+    /// How it is asked.
+    pub query: Query,
+}
+
+impl Default for AccelChoice {
+    fn default() -> AccelChoice {
+        AccelChoice { name: "auto".to_owned(), options: BuildOptions::default(), query: Query::default() }
+    }
+}
+
+impl SceneBuilder {
+    /// Adds a material and gives its index.
+    pub fn add_material(&mut self, spec: Spec) -> usize {
+        self.materials.push(spec);
+        self.materials.len() - 1
+    }
+
+    /// Adds a warning.
+    pub fn warn(&mut self, message: impl Into<String>, at: Span) {
+        self.warnings.push(Warning { message: message.into(), at });
+    }
+
+    /// The box around all objects at a time in seconds, lights left out.
+    pub fn bounds(&self, time: f32) -> bilux_math::Aabb {
+        let moved = |o: &Object| o.motion.at(time).bounds(&o.mesh.bounds());
+        self.objects.iter().map(moved).fold(bilux_math::Aabb::EMPTY, bilux_math::Aabb::union)
+    }
+
+    /// Checks everything and builds the trees. `shutter` is when light is let in, in seconds; `aspect` the
+    /// film's width over its height.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place.
+    pub fn build(&self, accel: &AccelChoice, shutter: [f32; 2], aspect: f32) -> Result<Scene, SceneError> {
+        let mut materials: Vec<Arc<dyn Material>> = self
+            .materials
+            .iter()
+            .map(|spec| materials::build(spec, &self.textures))
+            .collect::<Result<_, _>>()?;
+        let mut objects = self.objects.clone();
+        for object in &objects {
+            check_mesh(object, materials.len())?;
+        }
+        let (lights, panels) = self.build_lights(&mut objects, &mut materials)?;
+        let cameras = self
+            .cameras
+            .iter()
+            .map(|camera| Ok((camera.spec.name.clone(), cameras::build(camera, aspect)?)))
+            .collect::<Result<Vec<_>, SceneError>>()?;
+        let placed = objects.iter().map(|object| Placed {
+            mesh: object.mesh.clone(),
+            material: object.material as u32,
+            motion: object.motion.clone(),
+            instanced: object.instanced,
+            gives_light: !materials[object.material].emission().is_black(),
+        });
+        let geometry = Geometry::build(placed.collect(), accel)?;
+        let parts = SceneParts::new(geometry, materials, lights, &panels, cameras);
+        Ok(Scene::new(Arc::new(parts), accel, shutter))
+    }
+
+    /// Lights without a surface; those with one become objects. The second result holds, for objects that came
+    /// from lights, their colour in the classic modes.
+    #[allow(clippy::type_complexity)]
+    fn build_lights(
+        &self,
+        objects: &mut Vec<Object>,
+        materials: &mut Vec<Arc<dyn Material>>,
+    ) -> Result<(Vec<SceneLight>, Vec<(usize, Rgb)>), SceneError> {
+        let (mut lights_found, mut panels) = (Vec::new(), Vec::new());
+        for spec in &self.lights {
+            match lights::build(spec)? {
+                BuiltLight::Light(light) => lights_found.push(SceneLight::new(&spec.name, light)),
+                BuiltLight::Surface { mesh, emission, classic } => {
+                    let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
+                    materials.push(materials::build(&black, &[])?);
+                    if let Some(colour) = classic {
+                        panels.push((objects.len(), colour));
+                    }
+                    objects.push(Object::new(&spec.name, Arc::new(mesh), materials.len() - 1));
+                }
+            }
+        }
+        Ok((lights_found, panels))
+    }
+}
+
+/// Attributes must be as many as positions, and indices must name them.
+fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
+    let mesh = &*object.mesh;
+    let name = if object.name.is_empty() { &mesh.name } else { &object.name };
+    let fail = |message: String| Err(SceneError::invalid(message, &Span::default()));
+    if object.material >= materials {
+        return fail(format!("object '{name}' has material {}, but there are {materials}", object.material));
+    }
+    let count = mesh.positions.len();
+    let attributes = [
+        ("normals", mesh.normals.len()),
+        ("texture coordinates", mesh.uvs.len()),
+        ("vertex kd", mesh.vertex_kd.len()),
+        ("vertex ks", mesh.vertex_ks.len()),
+    ];
+    for (what, n) in attributes {
+        if n != 0 && n != count {
+            return fail(format!("mesh '{name}' has {n} {what} for {count} vertices"));
+        }
+    }
+    let out_of_range = |t: &&[u32; 3]| t.iter().any(|&i| i as usize >= count);
+    if let Some(bad) = mesh.triangles.iter().find(out_of_range) {
+        return fail(format!("mesh '{name}' has a triangle {bad:?}, but only {count} vertices"));
+    }
+    Ok(())
+}
+
+/// A shading normal that is usable: unit, and never zero.
+pub(crate) fn unit_or(n: Vec3, fallback: Vec3) -> Vec3 {
+    n.try_normalize().unwrap_or(fallback)
+}

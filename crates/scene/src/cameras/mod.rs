@@ -1,0 +1,107 @@
+//! Where the picture is seen from. One camera a file; the table is [`CAMERAS`].
+
+mod orthographic;
+mod perspective;
+
+use crate::error::SceneError;
+use crate::parameters::{Parameters, Reader, Spec};
+use bilux_accel::Ray;
+use bilux_math::registry::Entry;
+use bilux_math::{Vec2, Vec3};
+use std::sync::Arc;
+
+/// A point of the film, of the lens and of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSample {
+    /// Point of the film, 0..=1 on both axes, y downwards.
+    pub film: Vec2,
+    /// Point of the unit disc, times the aperture; zero for a pinhole.
+    pub lens: Vec2,
+    /// When, in seconds.
+    pub time: f32,
+}
+
+/// Something that turns points of the film into rays.
+pub trait Camera: Send + Sync {
+    /// The ray of a sample; its direction is of unit length.
+    fn ray(&self, sample: &CameraSample) -> Ray;
+    /// Where it looks, a unit vector, at a time in seconds.
+    fn forward(&self, time: f32) -> Vec3;
+}
+
+/// A camera's parameters at a time: one row, or one for every keyframe.
+pub type CameraKeys<'a> = &'a [(f32, Reader<'a>)];
+
+/// A row of [`CAMERAS`].
+#[derive(Clone, Copy, Debug)]
+pub struct CameraEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Makes one from its keyframes (at least one, times rising) and the film's width over its height.
+    pub build: fn(CameraKeys, f32) -> Result<Arc<dyn Camera>, SceneError>,
+}
+
+/// Every camera that there is.
+pub const CAMERAS: &[CameraEntry] = &[perspective::ENTRY, orthographic::ENTRY];
+
+/// A camera as a scene describes it: a spec, and what changes at keyframes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CameraSpec {
+    /// Kind and parameters.
+    pub spec: Spec,
+    /// Times in seconds, rising, each with the parameters that differ from the spec's.
+    pub keyframes: Vec<(f32, Parameters)>,
+}
+
+/// Makes the camera that a spec describes, for a film of this width over height.
+///
+/// # Errors
+/// When no row has its kind, or a parameter is wrong.
+pub fn build(camera: &CameraSpec, aspect: f32) -> Result<Arc<dyn Camera>, SceneError> {
+    let names = CAMERAS.iter().map(|row| row.entry.name);
+    let row = CAMERAS
+        .iter()
+        .find(|row| row.entry.name == camera.spec.kind)
+        .ok_or_else(|| SceneError::unknown("camera", &camera.spec.kind, names, &camera.spec.span))?;
+    let mut keys: Vec<(f32, Spec)> = camera
+        .keyframes
+        .iter()
+        .map(|(time, changes)| {
+            let mut spec = camera.spec.clone();
+            for (key, value, span) in &changes.0 {
+                spec.parameters.set_at(key, value.clone(), span.clone());
+            }
+            (*time, spec)
+        })
+        .collect();
+    if keys.is_empty() {
+        keys.push((0.0, camera.spec.clone()));
+    }
+    if keys.windows(2).any(|pair| !(pair[0].0 < pair[1].0)) {
+        return Err(SceneError::invalid(
+            "the times of a camera's keyframes have to rise: put them in order, each once",
+            &camera.spec.span,
+        ));
+    }
+    let readers = keys
+        .iter()
+        .map(|(time, spec)| Ok((*time, Reader::new(spec, &row.entry)?)))
+        .collect::<Result<Vec<_>, SceneError>>()?;
+    (row.build)(&readers, aspect)
+}
+
+/// The two keyframes around a time, and how far it is between them.
+fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
+    let after = keys.partition_point(|(t, _)| *t <= time);
+    let (low, high) = (after.saturating_sub(1), after.min(keys.len() - 1));
+    let (t0, t1) = (keys[low].0, keys[high].0);
+    let fraction = if t1 > t0 { ((time - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 0.0 };
+    (&keys[low].1, &keys[high].1, fraction)
+}
+
+/// Right, up and forward of a camera that looks from one point to another.
+fn look(position: Vec3, look_at: Vec3, up: Vec3) -> Option<[Vec3; 3]> {
+    let forward = (look_at - position).try_normalize()?;
+    let right = forward.cross(up).try_normalize()?;
+    Some([right, right.cross(forward), forward])
+}

@@ -1,0 +1,148 @@
+//! `perspective`: a pinhole, or a thin lens where an aperture is given.
+
+use super::{Camera, CameraEntry, CameraSample, around, look};
+use crate::error::SceneError;
+use crate::parameters::Reader;
+use bilux_accel::Ray;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::transcendental::tan;
+use bilux_math::{Vec2, Vec3};
+use std::sync::Arc;
+
+pub(super) const ENTRY: CameraEntry = CameraEntry {
+    entry: Entry {
+        name: "perspective",
+        summary: "a pinhole, or a thin lens where an aperture is given",
+        source: "",
+        parameters: &[
+            vector("position", "where the eye is", "0 0 5"),
+            vector("look_at", "the point in the middle of the picture", "0 0 0"),
+            vector("up", "what is up in the picture", "0 1 0"),
+            Parameter {
+                name: "fov",
+                summary: "vertical field of view",
+                unit: "degrees",
+                kind: ParameterKind::Number { min: 0.01, max: 179.0 },
+                default: "40",
+            },
+            Parameter {
+                name: "aperture",
+                summary: "radius of the lens; 0 for a pinhole",
+                unit: "m",
+                kind: ParameterKind::Number { min: 0.0, max: 1e6 },
+                default: "0",
+            },
+            Parameter {
+                name: "focus",
+                summary: "distance at which things are sharp; 0 for that of look_at",
+                unit: "m",
+                kind: ParameterKind::Number { min: 0.0, max: 1e9 },
+                default: "0",
+            },
+            Parameter {
+                name: "mirrored",
+                summary: "left and right swapped, as left-handed cameras have it",
+                unit: "",
+                kind: ParameterKind::Bool,
+                default: "false",
+            },
+        ],
+    },
+    build: |keys, aspect| {
+        let keys = keys
+            .iter()
+            .map(|(time, reader)| Ok((*time, Key::read(reader)?)))
+            .collect::<Result<Vec<_>, SceneError>>()?;
+        let mirrored = keys.first().is_some_and(|(_, key)| key.mirrored);
+        Ok(Arc::new(Perspective { keys, aspect: if mirrored { -aspect } else { aspect } }))
+    },
+};
+
+pub(super) const fn vector(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
+}
+
+struct Perspective {
+    keys: Vec<(f32, Key)>,
+    /// Width over height; negative when mirrored.
+    aspect: f32,
+}
+
+#[derive(Clone, Copy)]
+struct Key {
+    position: Vec3,
+    look_at: Vec3,
+    up: Vec3,
+    /// Half the height of the film at distance 1.
+    tan_half_fov: f32,
+    aperture: f32,
+    focus: f32,
+    mirrored: bool,
+}
+
+impl Key {
+    fn read(reader: &Reader) -> Result<Key, SceneError> {
+        let key = Key {
+            position: reader.vector("position"),
+            look_at: reader.vector("look_at"),
+            up: reader.vector("up"),
+            tan_half_fov: tan(reader.number("fov").to_radians() * 0.5),
+            aperture: reader.number("aperture"),
+            focus: reader.number("focus"),
+            mirrored: reader.bool("mirrored"),
+        };
+        match look(key.position, key.look_at, key.up) {
+            Some(_) => Ok(key),
+            None => Err(SceneError::invalid(
+                "a camera must not look along its own 'up', nor at the point where it stands",
+                reader.span("look_at"),
+            )),
+        }
+    }
+
+    fn lerp(&self, other: &Key, t: f32) -> Key {
+        let mix = |a: f32, b: f32| a + (b - a) * t;
+        Key {
+            position: self.position.lerp(other.position, t),
+            look_at: self.look_at.lerp(other.look_at, t),
+            up: self.up.lerp(other.up, t),
+            tan_half_fov: mix(self.tan_half_fov, other.tan_half_fov),
+            aperture: mix(self.aperture, other.aperture),
+            focus: mix(self.focus, other.focus),
+            mirrored: self.mirrored,
+        }
+    }
+}
+
+impl Perspective {
+    fn key_at(&self, time: f32) -> (Key, [Vec3; 3]) {
+        let (low, high, t) = around(&self.keys, time);
+        let key = if t == 0.0 { *low } else { low.lerp(high, t) };
+        // Between two sound keyframes the view can pass through a senseless one; the first is sound.
+        let axes = look(key.position, key.look_at, key.up)
+            .or_else(|| look(low.position, low.look_at, low.up))
+            .unwrap_or([Vec3::X, Vec3::Y, -Vec3::Z]);
+        (key, axes)
+    }
+}
+
+impl Camera for Perspective {
+    fn ray(&self, sample: &CameraSample) -> Ray {
+        let (key, [right, up, forward]) = self.key_at(sample.time);
+        let x = (2.0 * sample.film.x - 1.0) * key.tan_half_fov * self.aspect;
+        let y = (1.0 - 2.0 * sample.film.y) * key.tan_half_fov;
+        let through = right * x + up * y + forward;
+        let (origin, direction) = if sample.lens == Vec2::ZERO || key.aperture == 0.0 {
+            (key.position, through)
+        } else {
+            let focus = if key.focus > 0.0 { key.focus } else { (key.look_at - key.position).length() };
+            let lens = (right * sample.lens.x + up * sample.lens.y) * key.aperture;
+            (key.position + lens, through * focus - lens)
+        };
+        Ray { time: sample.time, ..Ray::new(origin.to_array(), direction.normalize().to_array()) }
+    }
+
+    fn forward(&self, time: f32) -> Vec3 {
+        self.key_at(time).1[2]
+    }
+}

@@ -1,0 +1,213 @@
+//! The triangles of a scene: what stands still in one tree of the whole scene, what moves or repeats in trees
+//! of its own.
+
+use crate::builder::{AccelChoice, unit_or};
+use crate::error::SceneError;
+use crate::mesh::Mesh;
+use crate::parameters::Span;
+use crate::surface::{Surface, gamma};
+use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
+use bilux_accel::{Accelerator, Hit, Ray, TriangleMesh};
+use bilux_math::motion::Motion;
+use bilux_math::{Rgb, Transform, Vec2, Vec3};
+use std::sync::Arc;
+
+/// An object with its place, as [`Geometry::build`] takes it.
+pub struct Placed {
+    /// Its triangles, in their own space.
+    pub mesh: Arc<Mesh>,
+    /// Index of its material.
+    pub material: u32,
+    /// Where it is, and when.
+    pub motion: Motion,
+    /// Keep a tree of its own.
+    pub instanced: bool,
+    /// Its material gives light.
+    pub gives_light: bool,
+}
+
+/// All triangles, and the trees over them.
+pub struct Geometry {
+    objects: Vec<Placed>,
+    /// What stands still, in world space, in one mesh: the first instance.
+    still: Option<Arc<TriangleMesh>>,
+    /// Index in `still` of each still object's first triangle, with the object; rising.
+    still_objects: Vec<(u32, u32)>,
+    /// The object of each instance; that of `still` is not looked at.
+    instance_objects: Vec<u32>,
+    instances: Vec<Instance>,
+}
+
+impl Geometry {
+    /// Builds every tree. What stands still is moved into the world and put into one tree; what moves or is
+    /// instanced keeps its own, one for each mesh.
+    ///
+    /// # Errors
+    /// When there are too many triangles, or no accelerator has the name.
+    pub fn build(objects: Vec<Placed>, accel: &AccelChoice) -> Result<Geometry, SceneError> {
+        let failed = |e: &dyn std::fmt::Display| SceneError::invalid(e.to_string(), &Span::default());
+        let in_own_tree = |o: &Placed| o.instanced || !o.motion.is_still();
+        let (mut corners, mut still_objects, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, object) in objects.iter().enumerate().filter(|(_, o)| !in_own_tree(o)) {
+            let first = corners.len() as u32;
+            still_objects.push((first, i as u32));
+            corners.extend(world_corners(&object.mesh, &object.motion.at(0.0)));
+            groups.push(first..corners.len() as u32);
+        }
+        let make = |mesh: Arc<TriangleMesh>| -> Result<Arc<dyn Accelerator>, SceneError> {
+            Ok(Arc::from(bilux_accel::build(&accel.name, mesh, &accel.options).map_err(|e| failed(&e))?))
+        };
+        let (mut instances, mut instance_objects) = (Vec::new(), Vec::new());
+        let still = if corners.is_empty() {
+            None
+        } else {
+            let mesh = TriangleMesh::from_corners(corners).and_then(|m| m.with_groups(groups));
+            let mesh = Arc::new(mesh.map_err(|e| failed(&e))?);
+            let motion = Motion::still(Transform::IDENTITY);
+            instances.push(Instance { accelerator: make(mesh.clone())?, motion });
+            instance_objects.push(u32::MAX);
+            Some(mesh)
+        };
+        let mut trees: Vec<(*const Mesh, Arc<dyn Accelerator>)> = Vec::new();
+        for (i, object) in objects.iter().enumerate().filter(|(_, o)| in_own_tree(o)) {
+            let key = Arc::as_ptr(&object.mesh);
+            let tree = match trees.iter().find(|(mesh, _)| *mesh == key) {
+                Some((_, tree)) => tree.clone(),
+                None => {
+                    let corners = world_corners(&object.mesh, &Transform::IDENTITY).collect();
+                    let mesh = TriangleMesh::from_corners(corners).map_err(|e| failed(&e))?;
+                    let tree = make(Arc::new(mesh))?;
+                    trees.push((key, tree.clone()));
+                    tree
+                }
+            };
+            instances.push(Instance { accelerator: tree, motion: object.motion.clone() });
+            instance_objects.push(i as u32);
+        }
+        Ok(Geometry { objects, still, still_objects, instance_objects, instances })
+    }
+
+    /// The top level for a time: cheap, since every tree is shared.
+    pub fn top_level(&self, accel: &AccelChoice, shutter: [f32; 2]) -> TwoLevel {
+        let top = if accel.name.starts_with("brute") { TopLevel::List } else { TopLevel::Bvh };
+        TwoLevel::new(self.instances.clone(), shutter, top)
+    }
+
+    /// The objects.
+    pub fn objects(&self) -> &[Placed] {
+        &self.objects
+    }
+
+    /// The trees, each with where it stands.
+    pub fn instances(&self) -> &[Instance] {
+        &self.instances
+    }
+
+    /// The first primitive of an object, as rays number them.
+    pub fn first_primitive(&self, object: u32) -> u32 {
+        self.still_objects.iter().find(|(_, o)| *o == object).map_or(0, |(first, _)| *first)
+    }
+
+    /// An object's triangles: in world space when it stands still in the common tree, else in its own, with the
+    /// motion that takes them to the world.
+    pub fn object_triangles(&self, object: u32) -> (Vec<[Vec3; 3]>, Motion) {
+        let placed = &self.objects[object as usize];
+        let is_still = self.still_objects.iter().any(|(_, o)| *o == object);
+        let own = if is_still { placed.motion.at(0.0) } else { Transform::IDENTITY };
+        let motion =
+            if is_still { Motion::still(Transform::IDENTITY) } else { placed.motion.clone() };
+        let triangles = world_corners(&placed.mesh, &own).map(|t| t.map(Vec3::from)).collect();
+        (triangles, motion)
+    }
+
+    /// Which object a hit belongs to.
+    pub fn object_of(&self, hit: &Hit) -> u32 {
+        self.locate(hit).0
+    }
+
+    /// The object and the triangle within its mesh.
+    fn locate(&self, hit: &Hit) -> (u32, u32) {
+        if self.still.is_some() && hit.instance == 0 {
+            let after = self.still_objects.partition_point(|(first, _)| *first <= hit.primitive);
+            let (first, object) = self.still_objects[after - 1];
+            (object, hit.primitive - first)
+        } else {
+            (self.instance_objects[hit.instance as usize], hit.primitive)
+        }
+    }
+
+    /// All that shading needs to know of a hit.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let (object, triangle) = self.locate(hit);
+        let placed = &self.objects[object as usize];
+        let mesh = &*placed.mesh;
+        let indices = mesh.triangles[triangle as usize].map(|i| i as usize);
+        let to_world = placed.motion.at(ray.time);
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+        let baked = self.still.as_ref().filter(|_| hit.instance == 0);
+        let corners = match baked {
+            Some(still) => still.triangles()[hit.primitive as usize].map(Vec3::from),
+            None => indices.map(|i| mesh.positions[i]),
+        };
+        let blend = |v: [Vec3; 3]| v[0] * weights[0] + v[1] * weights[1] + v[2] * weights[2];
+        let (p, p_error) = {
+            let p = blend(corners);
+            let error = blend(corners.map(Vec3::abs)) * gamma(7);
+            if baked.is_some() { (p, error) } else { transform_with_error(&to_world, p, error) }
+        };
+        let winding = {
+            let [a, b, c] = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
+            let mirrored = to_world.mirrors();
+            unit_or((b - a).cross(c - a), Vec3::Y) * if mirrored { -1.0 } else { 1.0 }
+        };
+        let n_shade = if mesh.normals.is_empty() {
+            winding
+        } else {
+            unit_or(to_world.normal(blend(indices.map(|i| mesh.normals[i]))), winding)
+        };
+        let n_geom = if n_shade.dot(winding) < 0.0 { -winding } else { winding };
+        let uv = if mesh.uvs.is_empty() {
+            Vec2::new(hit.u, hit.v)
+        } else {
+            let [a, b, c] = indices.map(|i| mesh.uvs[i]);
+            a * weights[0] + b * weights[1] + c * weights[2]
+        };
+        let vertex_colour = |colours: &[Rgb]| {
+            let [a, b, c] = indices.map(|i| colours.get(i).copied());
+            Some(a? * weights[0] + b? * weights[1] + c? * weights[2])
+        };
+        Surface {
+            t: hit.t,
+            p,
+            p_error,
+            n_geom,
+            n_shade,
+            uv,
+            vertex_kd: vertex_colour(&mesh.vertex_kd),
+            vertex_ks: vertex_colour(&mesh.vertex_ks),
+            primitive: hit.primitive(),
+            object,
+            time: ray.time,
+        }
+    }
+}
+
+fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f32; 3]; 3]> {
+    let still = to_world.is_identity();
+    mesh.triangles.iter().map(move |t| {
+        t.map(|i| {
+            let p = mesh.positions[i as usize];
+            if still { p.to_array() } else { to_world.point(p).to_array() }
+        })
+    })
+}
+
+/// A point moved, with the bound on its error moved too. [pbrt 2023, 6.8.5]
+fn transform_with_error(to_world: &Transform, p: Vec3, error: Vec3) -> (Vec3, Vec3) {
+    let m = to_world.matrix();
+    let abs = |v: Vec3| {
+        m.x_axis.truncate().abs() * v.x + m.y_axis.truncate().abs() * v.y + m.z_axis.truncate().abs() * v.z
+    };
+    let rounding = (abs(p.abs()) + m.w_axis.truncate().abs()) * gamma(4);
+    (to_world.point(p), abs(error) * (1.0 + gamma(4)) + rounding)
+}

@@ -1,0 +1,53 @@
+//! `ambient`: the constant light of Equation 1. There is no such light in nature, and the physical integrators
+//! know nothing of it: give them an `environment`.
+
+use super::{BuiltLight, Light, LightEntry, LightSample, colour};
+use crate::classic::ClassicLight;
+use crate::surface::Surface;
+use bilux_math::registry::Entry;
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use std::sync::Arc;
+
+pub(super) const ENTRY: LightEntry = LightEntry {
+    entry: Entry {
+        name: "ambient",
+        summary: "the constant light Ia of Equation 1, in cast, whitted and cook only",
+        source: "Phong 1975",
+        parameters: &[colour("colour", "light that is everywhere", "", "0.3")],
+    },
+    build: |reader| Ok(BuiltLight::Light(Arc::new(Ambient { colour: reader.colour("colour") }))),
+};
+
+struct Ambient {
+    colour: Rgb,
+}
+
+impl Light for Ambient {
+    fn sample_li(&self, _from: Vec3, _time: f32, _u: Vec2) -> Option<LightSample> {
+        None
+    }
+
+    fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
+        0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        0.0
+    }
+
+    fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
+        None
+    }
+
+    fn classic_colour(&self, _bounds: &Aabb) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn classic_ambient(&self) -> Rgb {
+        self.colour
+    }
+}

@@ -1,0 +1,69 @@
+//! `directional`: parallel light from infinitely far, as from the sun.
+
+use super::{BuiltLight, CLASSIC, Light, LightEntry, LightSample, colour, given_classic, vector};
+use crate::classic::ClassicLight;
+use crate::error::SceneError;
+use crate::surface::Surface;
+use bilux_math::registry::Entry;
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, PI};
+use std::sync::Arc;
+
+pub(super) const ENTRY: LightEntry = LightEntry {
+    entry: Entry {
+        name: "directional",
+        summary: "parallel light from infinitely far, as from the sun",
+        source: "",
+        parameters: &[
+            vector("direction", "where the light goes", "-1 -1 -1"),
+            colour("irradiance", "what falls on a surface that faces it", "W/m²", "3"),
+            CLASSIC,
+        ],
+    },
+    build: |reader| {
+        let towards = (-reader.vector("direction")).try_normalize().ok_or_else(|| {
+            SceneError::invalid("a light's direction must not be zero", reader.span("direction"))
+        })?;
+        let (irradiance, classic) = (reader.colour("irradiance"), given_classic(reader));
+        Ok(BuiltLight::Light(Arc::new(Directional { towards, irradiance, classic })))
+    },
+};
+
+struct Directional {
+    towards: Vec3,
+    irradiance: Rgb,
+    classic: Option<Rgb>,
+}
+
+impl Light for Directional {
+    fn sample_li(&self, _from: Vec3, _time: f32, _u: Vec2) -> Option<LightSample> {
+        Some(LightSample {
+            wi: self.towards,
+            li: self.irradiance,
+            point: None,
+            n_light: Vec3::ZERO,
+            pdf_solid_angle: 1.0,
+        })
+    }
+
+    fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
+        0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        let radius = bounds.radius();
+        self.irradiance.luminance() * PI * radius * radius
+    }
+
+    fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
+        Some(ClassicLight { wi: self.towards, position: None, strength: 1.0 })
+    }
+
+    fn classic_colour(&self, _bounds: &Aabb) -> Rgb {
+        self.classic.unwrap_or(self.irradiance * FRAC_1_PI)
+    }
+}

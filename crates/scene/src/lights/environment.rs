@@ -1,0 +1,112 @@
+//! `environment`: light from all around, infinitely far: one colour, or a sky that changes with height.
+
+use super::{BuiltLight, Light, LightEntry, LightSample};
+use crate::classic::ClassicLight;
+use crate::surface::Surface;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+pub(super) const ENTRY: LightEntry = LightEntry {
+    entry: Entry {
+        name: "environment",
+        summary: "light from all around: one colour, or a sky that changes with height",
+        source: "",
+        parameters: &[
+            super::colour("radiance", "what comes from every direction", "W/(m² sr)", "1"),
+            sky("zenith", "what comes from straight above; -1 for radiance"),
+            sky("horizon", "what comes from the sides; -1 for radiance"),
+            sky("ground", "what comes from straight below; -1 for radiance"),
+            Parameter {
+                name: "backdrop",
+                summary: "only to be seen: it lights nothing",
+                unit: "",
+                kind: ParameterKind::Bool,
+                default: "false",
+            },
+        ],
+    },
+    build: |reader| {
+        let radiance = reader.colour("radiance");
+        let part = |key| {
+            let colour = reader.colour(key);
+            if colour.r < 0.0 { radiance } else { colour }
+        };
+        Ok(BuiltLight::Light(Arc::new(Environment {
+            zenith: part("zenith"),
+            horizon: part("horizon"),
+            ground: part("ground"),
+            backdrop: reader.bool("backdrop"),
+        })))
+    },
+};
+
+const fn sky(name: &'static str, summary: &'static str) -> Parameter {
+    let kind = ParameterKind::Colour { min: -1.0, max: 1e12 };
+    Parameter { name, summary, unit: "W/(m² sr)", kind, default: "-1" }
+}
+
+struct Environment {
+    zenith: Rgb,
+    horizon: Rgb,
+    ground: Rgb,
+    backdrop: bool,
+}
+
+impl Environment {
+    /// Radiance averaged over all directions: height is uniform over a sphere.
+    fn mean(&self) -> Rgb {
+        self.horizon * 0.5 + (self.zenith + self.ground) * 0.25
+    }
+}
+
+impl Light for Environment {
+    fn sample_li(&self, _from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
+        if self.backdrop {
+            return None;
+        }
+        let wi = warp::sample_sphere(u);
+        Some(LightSample {
+            wi,
+            li: self.le(wi),
+            point: None,
+            n_light: Vec3::ZERO,
+            pdf_solid_angle: warp::sphere_pdf_solid_angle(),
+        })
+    }
+
+    fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, hit: Option<&Surface>) -> f32 {
+        if self.backdrop || hit.is_some() { 0.0 } else { warp::sphere_pdf_solid_angle() }
+    }
+
+    fn le(&self, direction: Vec3) -> Rgb {
+        let pole = if direction.y < 0.0 { self.ground } else { self.zenith };
+        self.horizon.lerp(pole, direction.y.abs())
+    }
+
+    fn is_backdrop(&self) -> bool {
+        self.backdrop
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        let radius = bounds.radius();
+        if self.backdrop { 0.0 } else { self.mean().luminance() * 4.0 * PI * PI * radius * radius }
+    }
+
+    fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
+        None
+    }
+
+    fn classic_colour(&self, _bounds: &Aabb) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn classic_ambient(&self) -> Rgb {
+        if self.backdrop { Rgb::BLACK } else { self.mean() }
+    }
+}

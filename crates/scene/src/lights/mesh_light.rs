@@ -1,0 +1,143 @@
+//! Triangles that give light. Not in the table: objects whose material gives light become one.
+
+use super::{Light, LightSample};
+use crate::classic::ClassicLight;
+use crate::surface::Surface;
+use bilux_math::motion::Motion;
+use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
+use std::f32::consts::PI;
+
+/// An emissive object, sampled uniformly by the area that its triangles have in their own space.
+pub struct MeshLight {
+    triangles: Vec<[Vec3; 3]>,
+    /// `cdf[i]` is the share of the area in triangles `0..=i`; the last is 1.
+    cdf: Vec<f32>,
+    /// Index of the object's first triangle within its primitive numbering.
+    first_primitive: u32,
+    /// Centre of the area, in the object's own space.
+    middle: Vec3,
+    motion: Motion,
+    radiance: Rgb,
+    classic: Option<Rgb>,
+}
+
+impl MeshLight {
+    /// A light from an object's triangles in its own space; `first_primitive` is the index that rays see of the
+    /// first of them. `None` when they have no area.
+    pub fn new(
+        triangles: Vec<[Vec3; 3]>,
+        first_primitive: u32,
+        motion: Motion,
+        radiance: Rgb,
+        classic: Option<Rgb>,
+    ) -> Option<MeshLight> {
+        let areas: Vec<f64> = triangles.iter().map(|t| f64::from(area(t))).map(finite_or_zero).collect();
+        let total: f64 = areas.iter().sum();
+        if total <= 0.0 {
+            return None;
+        }
+        let mut sum = 0.0;
+        let mut cdf: Vec<f32> = areas
+            .iter()
+            .map(|a| {
+                sum += a;
+                (sum / total) as f32
+            })
+            .collect();
+        if let Some(last) = cdf.last_mut() {
+            *last = 1.0;
+        }
+        let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
+        let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
+        Some(MeshLight { triangles, cdf, first_primitive, middle, motion, radiance, classic })
+    }
+
+    fn share(&self, triangle: usize) -> f32 {
+        self.cdf[triangle] - if triangle == 0 { 0.0 } else { self.cdf[triangle - 1] }
+    }
+
+    fn corners(&self, triangle: usize, time: f32) -> [Vec3; 3] {
+        let to_world = self.motion.at(time);
+        self.triangles[triangle].map(|p| to_world.point(p))
+    }
+
+    /// A point, its normal and its density over area.
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Vec3, f32) {
+        let triangle = self.cdf.partition_point(|&c| c <= u.x).min(self.cdf.len() - 1);
+        let share = self.share(triangle);
+        let below = self.cdf[triangle] - share;
+        let rest = if share > 0.0 { ((u.x - below) / share).clamp(0.0, 1.0) } else { 0.0 };
+        let weights = warp::sample_triangle(Vec2::new(rest, u.y));
+        let [a, b, c] = self.corners(triangle, time);
+        let normal = (b - a).cross(c - a);
+        let point = a * (1.0 - weights.x - weights.y) + b * weights.x + c * weights.y;
+        (point, normal.normalize_or_zero(), share / (0.5 * normal.length()))
+    }
+
+    fn middle(&self, time: f32) -> Vec3 {
+        self.motion.at(time).point(self.middle)
+    }
+
+    fn world_area(&self, time: f32) -> f32 {
+        (0..self.triangles.len()).map(|i| area(&self.corners(i, time))).sum()
+    }
+}
+
+fn area(t: &[Vec3; 3]) -> f32 {
+    (t[1] - t[0]).cross(t[2] - t[0]).length() * 0.5
+}
+
+fn finite_or_zero(x: f64) -> f64 {
+    if x.is_finite() { x } else { 0.0 }
+}
+
+impl Light for MeshLight {
+    fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
+        let (point, normal, pdf_area) = self.sample_point(time, u);
+        let to_light = point - from;
+        let distance2 = to_light.length_squared();
+        let wi = to_light.try_normalize()?;
+        let cos = normal.dot(wi);
+        let pdf_solid_angle = pdf_area * distance2 / cos.abs();
+        (pdf_solid_angle.is_finite() && pdf_solid_angle > 0.0).then(|| LightSample {
+            wi,
+            li: self.radiance,
+            point: Some(point),
+            n_light: if cos < 0.0 { normal } else { -normal },
+            pdf_solid_angle,
+        })
+    }
+
+    fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
+        let Some(hit) = hit else { return 0.0 };
+        let triangle = hit.primitive.index.wrapping_sub(self.first_primitive) as usize;
+        if triangle >= self.triangles.len() {
+            return 0.0;
+        }
+        let pdf_area = self.share(triangle) / area(&self.corners(triangle, hit.time));
+        let pdf = pdf_area * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        // Both sides give light.
+        self.radiance.luminance() * self.world_area(0.0) * PI * 2.0
+    }
+
+    fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
+        let middle = self.middle(time);
+        let (point, ..) = self.sample_point(time, u);
+        let position = middle + (point - middle) * extent;
+        let wi = (position - from).try_normalize()?;
+        Some(ClassicLight { wi, position: Some(position), strength: 1.0 })
+    }
+
+    fn classic_colour(&self, bounds: &Aabb) -> Rgb {
+        let intensity = self.radiance * self.world_area(0.0);
+        self.classic.unwrap_or_else(|| super::classic_colour_of(intensity, self.middle(0.0), bounds))
+    }
+}

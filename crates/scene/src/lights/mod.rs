@@ -1,0 +1,159 @@
+//! Where light comes from. One kind a file; the table is [`LIGHTS`].
+//!
+//! Every light answers twice: as radiometry, for the physical integrators, and as a [`ClassicLight`] without
+//! units or falloff, for Equations 1 and 2. The colour of the latter is the irradiance that the light gives at
+//! the middle of the scene, over π, so that a matt surface there looks alike in both worlds; the parameter
+//! `classic` overrides it.
+
+mod ambient;
+mod directional;
+mod environment;
+mod mesh_light;
+mod point;
+mod rect;
+mod spot;
+
+pub use mesh_light::MeshLight;
+
+use crate::classic::ClassicLight;
+use crate::error::SceneError;
+use crate::mesh::Mesh;
+use crate::parameters::{Reader, Spec};
+use crate::surface::Surface;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use std::sync::Arc;
+
+/// Light that arrives at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit direction towards the light.
+    pub wi: Vec3,
+    /// Incident radiance if nothing is between; for a delta light, irradiance on a surface facing it.
+    pub li: Rgb,
+    /// Where on the light; `None` when infinitely far.
+    pub point: Option<Vec3>,
+    /// Normal of the light at that point, towards the receiver; zero where it has none.
+    pub n_light: Vec3,
+    /// Density of the direction in solid angle; 1 for a delta light.
+    pub pdf_solid_angle: f32,
+}
+
+/// Something that gives light.
+pub trait Light: Send + Sync {
+    /// A direction from which light arrives at `from`; `None` where none does.
+    fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample>;
+
+    /// Density of [`Light::sample_li`] for the direction `wi`, in which `hit` was met (`None`: nothing was, and
+    /// the light is infinitely far). Zero for delta lights.
+    fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32;
+
+    /// Radiance from infinity in a direction away from the scene.
+    fn le(&self, _direction: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
+
+    /// True when it is only to be seen by the camera, directly or through mirrors and glass, and lights nothing.
+    fn is_backdrop(&self) -> bool {
+        false
+    }
+
+    /// True when it has no extent, so that no ray can hit it by chance.
+    fn is_delta(&self) -> bool;
+
+    /// About how much it sends into the scene, for choosing among lights: luminance of the power, in W.
+    fn power(&self, bounds: &Aabb) -> f32;
+
+    /// The light under Equations 1 and 2, from its middle moved by `extent` (0..=1) of its size towards the
+    /// point that `u` picks; `None` where it does not shine.
+    fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight>;
+
+    /// Its colour under Equations 1 and 2, for a scene in these bounds.
+    fn classic_colour(&self, bounds: &Aabb) -> Rgb;
+
+    /// What it adds to the ambient light of Equations 1 and 2.
+    fn classic_ambient(&self) -> Rgb {
+        Rgb::BLACK
+    }
+}
+
+/// What a row makes.
+pub enum BuiltLight {
+    /// A light without a surface.
+    Light(Arc<dyn Light>),
+    /// A surface that gives light; the builder makes it an object and its [`MeshLight`].
+    Surface {
+        /// The surface, in world space.
+        mesh: Mesh,
+        /// Radiance on both sides.
+        emission: Rgb,
+        /// Colour under Equations 1 and 2 where the user gave one.
+        classic: Option<Rgb>,
+    },
+}
+
+/// A row of [`LIGHTS`].
+#[derive(Clone, Copy, Debug)]
+pub struct LightEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Makes one from its parameters.
+    pub build: fn(&Reader) -> Result<BuiltLight, SceneError>,
+}
+
+/// Every light that there is.
+pub const LIGHTS: &[LightEntry] = &[
+    point::ENTRY,
+    directional::ENTRY,
+    spot::ENTRY,
+    rect::ENTRY,
+    environment::ENTRY,
+    ambient::ENTRY,
+];
+
+/// Makes the light that a spec describes.
+///
+/// # Errors
+/// When no row has its kind, or a parameter is wrong.
+pub fn build(spec: &Spec) -> Result<BuiltLight, SceneError> {
+    let names = LIGHTS.iter().map(|row| row.entry.name);
+    let row = LIGHTS
+        .iter()
+        .find(|row| row.entry.name == spec.kind)
+        .ok_or_else(|| SceneError::unknown("light", &spec.kind, names, &spec.span))?;
+    (row.build)(&Reader::new(spec, &row.entry)?)
+}
+
+/// The colour for Equations 1 and 2 of something that gives `intensity` (W/sr) from `position`.
+fn classic_colour_of(intensity: Rgb, position: Vec3, bounds: &Aabb) -> Rgb {
+    let nearest = bounds.radius().max(f32::MIN_POSITIVE) * 0.25;
+    let distance = if bounds.is_empty() { 1.0 } else { (position - bounds.centre()).length().max(nearest) };
+    intensity / (distance * distance * std::f32::consts::PI)
+}
+
+const CLASSIC: Parameter = Parameter {
+    name: "classic",
+    summary: "colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π",
+    unit: "",
+    kind: ParameterKind::Colour { min: -1.0, max: 1e6 },
+    default: "-1",
+};
+
+/// The parameter [`CLASSIC`] where it is given.
+fn given_classic(reader: &Reader) -> Option<Rgb> {
+    let colour = reader.colour("classic");
+    (colour.r >= 0.0 && colour.g >= 0.0 && colour.b >= 0.0).then_some(colour)
+}
+
+const fn colour(
+    name: &'static str,
+    summary: &'static str,
+    unit: &'static str,
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit, kind: ParameterKind::Colour { min: 0.0, max: 1e12 }, default }
+}
+
+const fn vector(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
+}

@@ -1,0 +1,70 @@
+//! `point`: light from a point, the same in all directions.
+
+use super::{BuiltLight, CLASSIC, Light, LightEntry, LightSample, colour, given_classic, vector};
+use crate::classic::ClassicLight;
+use crate::surface::Surface;
+use bilux_math::registry::Entry;
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+pub(super) const ENTRY: LightEntry = LightEntry {
+    entry: Entry {
+        name: "point",
+        summary: "light from a point, the same in all directions",
+        source: "",
+        parameters: &[
+            vector("position", "where it is", "0 5 0"),
+            colour("intensity", "what it sends into each direction", "W/sr", "100"),
+            CLASSIC,
+        ],
+    },
+    build: |reader| {
+        Ok(BuiltLight::Light(Arc::new(Point {
+            position: reader.vector("position"),
+            intensity: reader.colour("intensity"),
+            classic: given_classic(reader),
+        })))
+    },
+};
+
+struct Point {
+    position: Vec3,
+    intensity: Rgb,
+    classic: Option<Rgb>,
+}
+
+impl Light for Point {
+    fn sample_li(&self, from: Vec3, _time: f32, _u: Vec2) -> Option<LightSample> {
+        let to_light = self.position - from;
+        let distance2 = to_light.length_squared();
+        (distance2 > 0.0).then(|| LightSample {
+            wi: to_light / distance2.sqrt(),
+            li: self.intensity / distance2,
+            point: Some(self.position),
+            n_light: Vec3::ZERO,
+            pdf_solid_angle: 1.0,
+        })
+    }
+
+    fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
+        0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        self.intensity.luminance() * 4.0 * PI
+    }
+
+    fn classic(&self, from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
+        let wi = (self.position - from).try_normalize()?;
+        Some(ClassicLight { wi, position: Some(self.position), strength: 1.0 })
+    }
+
+    fn classic_colour(&self, bounds: &Aabb) -> Rgb {
+        self.classic.unwrap_or_else(|| super::classic_colour_of(self.intensity, self.position, bounds))
+    }
+}

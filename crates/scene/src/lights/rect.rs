@@ -1,0 +1,49 @@
+//! `rect`: a flat panel that gives light on both sides; seen, and casting soft shadows.
+
+use super::{BuiltLight, CLASSIC, LightEntry, colour, given_classic, vector};
+use crate::error::SceneError;
+use crate::mesh::Mesh;
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2};
+
+pub(super) const ENTRY: LightEntry = LightEntry {
+    entry: Entry {
+        name: "rect",
+        summary: "a flat panel that gives light on both sides; seen, and casting soft shadows",
+        source: "",
+        parameters: &[
+            vector("position", "its middle", "0 5 0"),
+            vector("edge_u", "from one side to the other", "1 0 0"),
+            vector("edge_v", "from one end to the other", "0 0 1"),
+            colour("radiance", "what it gives out; or give intensity", "W/(m² sr)", "0"),
+            colour("intensity", "radiance times area: kept while the panel shrinks", "W/sr", "0"),
+            CLASSIC,
+        ],
+    },
+    build: |reader| {
+        let (p, u, v) = (reader.vector("position"), reader.vector("edge_u"), reader.vector("edge_v"));
+        let area = u.cross(v).length();
+        if !(area > 0.0 && area.is_finite()) {
+            let message = "edge_u and edge_v of a rect light have to span an area";
+            return Err(SceneError::invalid(message, reader.span("edge_u")));
+        }
+        let emission = if reader.is_given("radiance") {
+            reader.colour("radiance")
+        } else {
+            reader.colour("intensity") / area
+        };
+        if emission == Rgb::BLACK {
+            let message = "a rect light needs 'radiance' or 'intensity'";
+            return Err(SceneError::invalid(message, reader.span("radiance")));
+        }
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let mesh = Mesh {
+            name: "rect light".to_owned(),
+            positions: corners.map(|(a, b)| p + u * a + v * b).to_vec(),
+            uvs: corners.map(|(a, b)| Vec2::new(a + 0.5, b + 0.5)).to_vec(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        Ok(BuiltLight::Surface { mesh, emission, classic: given_classic(reader) })
+    },
+};

@@ -1,0 +1,107 @@
+//! `spot`: light from a point into a cone, with a soft edge.
+
+use super::{BuiltLight, CLASSIC, Light, LightEntry, LightSample, colour, given_classic, vector};
+use crate::classic::ClassicLight;
+use crate::error::SceneError;
+use crate::surface::Surface;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::transcendental::cos;
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+pub(super) const ENTRY: LightEntry = LightEntry {
+    entry: Entry {
+        name: "spot",
+        summary: "light from a point into a cone, with a soft edge",
+        source: "",
+        parameters: &[
+            vector("position", "where it is", "0 5 0"),
+            vector("look_at", "the point in the middle of the cone", "0 0 0"),
+            colour("intensity", "what it sends along its axis", "W/sr", "100"),
+            angle("angle", "from the axis to where it is dark", "30"),
+            angle("inner_angle", "from the axis to where it begins to fade", "25"),
+            CLASSIC,
+        ],
+    },
+    build: |reader| {
+        let position = reader.vector("position");
+        let axis = (reader.vector("look_at") - position).try_normalize().ok_or_else(|| {
+            SceneError::invalid("a spot must not look at the point where it stands", reader.span("look_at"))
+        })?;
+        let outer = reader.number("angle");
+        Ok(BuiltLight::Light(Arc::new(Spot {
+            position,
+            axis,
+            intensity: reader.colour("intensity"),
+            cos_outer: cos(outer.to_radians()),
+            cos_inner: cos(reader.number("inner_angle").min(outer).to_radians()),
+            classic: given_classic(reader),
+        })))
+    },
+};
+
+const fn angle(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    let kind = ParameterKind::Number { min: 0.0, max: 180.0 };
+    Parameter { name, summary, unit: "degrees", kind, default }
+}
+
+struct Spot {
+    position: Vec3,
+    axis: Vec3,
+    intensity: Rgb,
+    cos_outer: f32,
+    cos_inner: f32,
+    classic: Option<Rgb>,
+}
+
+impl Spot {
+    /// 1 within the inner cone, 0 outside of the outer one, smooth between.
+    fn falloff(&self, towards_light: Vec3) -> f32 {
+        let cos = -towards_light.dot(self.axis);
+        if cos >= self.cos_inner {
+            return 1.0;
+        }
+        let x = ((cos - self.cos_outer) / (self.cos_inner - self.cos_outer)).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
+    }
+}
+
+impl Light for Spot {
+    fn sample_li(&self, from: Vec3, _time: f32, _u: Vec2) -> Option<LightSample> {
+        let to_light = self.position - from;
+        let distance2 = to_light.length_squared();
+        let wi = to_light.try_normalize()?;
+        let falloff = self.falloff(wi);
+        (falloff > 0.0).then(|| LightSample {
+            wi,
+            li: self.intensity * (falloff / distance2),
+            point: Some(self.position),
+            n_light: Vec3::ZERO,
+            pdf_solid_angle: 1.0,
+        })
+    }
+
+    fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
+        0.0
+    }
+
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn power(&self, _bounds: &Aabb) -> f32 {
+        // The smooth edge has half of the light of its cosines' range.
+        self.intensity.luminance() * TAU * (1.0 - 0.5 * (self.cos_inner + self.cos_outer))
+    }
+
+    fn classic(&self, from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
+        let wi = (self.position - from).try_normalize()?;
+        let strength = self.falloff(wi);
+        (strength > 0.0).then_some(ClassicLight { wi, position: Some(self.position), strength })
+    }
+
+    fn classic_colour(&self, bounds: &Aabb) -> Rgb {
+        self.classic.unwrap_or_else(|| super::classic_colour_of(self.intensity, self.position, bounds))
+    }
+}

@@ -1,0 +1,53 @@
+//! `diffuse`: matt, equally bright from everywhere.
+
+use super::{EMISSION, Material, MaterialEntry, colour_map, reflectance};
+use crate::bsdf::{Bsdf, Lambert, Lobe};
+use crate::classic::ClassicMaterial;
+use crate::surface::Surface;
+use crate::texture::ColourMap;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+use std::sync::Arc;
+
+pub(super) const ENTRY: MaterialEntry = MaterialEntry {
+    entry: Entry {
+        name: "diffuse",
+        summary: "matt, equally bright from everywhere",
+        source: "Lambert 1760",
+        parameters: &[reflectance("reflectance", "reflected fraction of the light", "0.7"), EMISSION],
+    },
+    build: |reader, textures| {
+        Ok(Arc::new(Diffuse {
+            reflectance: colour_map(reader, "reflectance", textures)?,
+            emission: reader.colour("emission"),
+        }))
+    },
+};
+
+struct Diffuse {
+    reflectance: ColourMap,
+    emission: Rgb,
+}
+
+impl Diffuse {
+    fn albedo(&self, surface: &Surface) -> Rgb {
+        let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
+        (self.reflectance.at(surface.uv) * vertex).clamp(0.0, 1.0)
+    }
+}
+
+impl Material for Diffuse {
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        let lambert = Lobe::Lambert(Lambert { albedo: self.albedo(surface) });
+        Bsdf::new(surface.n_shade, surface.n_geom, [Some(lambert), None, None])
+    }
+
+    fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        let kd = self.albedo(surface);
+        ClassicMaterial { ka: kd, kd, ..ClassicMaterial::default() }
+    }
+
+    fn emission(&self) -> Rgb {
+        self.emission
+    }
+}

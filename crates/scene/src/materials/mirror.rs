@@ -1,0 +1,57 @@
+//! `mirror`: reflects like polished metal.
+
+use super::{EMISSION, Material, MaterialEntry, colour_map, reflectance, spread};
+use crate::bsdf::{Bsdf, Lobe, Mirror};
+use crate::classic::ClassicMaterial;
+use crate::surface::Surface;
+use crate::texture::ColourMap;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+use std::sync::Arc;
+
+pub(super) const ENTRY: MaterialEntry = MaterialEntry {
+    entry: Entry {
+        name: "mirror",
+        summary: "a perfect mirror",
+        source: "",
+        parameters: &[
+            reflectance("reflectance", "reflected fraction of the light", "0.95"),
+            spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
+            EMISSION,
+        ],
+    },
+    build: |reader, textures| {
+        Ok(Arc::new(MirrorMaterial {
+            reflectance: colour_map(reader, "reflectance", textures)?,
+            gloss: reader.number("gloss").to_radians(),
+            emission: reader.colour("emission"),
+        }))
+    },
+};
+
+struct MirrorMaterial {
+    reflectance: ColourMap,
+    gloss: f32,
+    emission: Rgb,
+}
+
+impl Material for MirrorMaterial {
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        let mirror = Lobe::Mirror(Mirror { reflectance: self.reflectance.at(surface.uv) });
+        Bsdf::new(surface.n_shade, surface.n_geom, [Some(mirror), None, None])
+    }
+
+    fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        ClassicMaterial {
+            ks: self.reflectance.at(surface.uv),
+            exponent: 500.0,
+            reflectivity: 1.0,
+            gloss: self.gloss,
+            ..ClassicMaterial::default()
+        }
+    }
+
+    fn emission(&self) -> Rgb {
+        self.emission
+    }
+}

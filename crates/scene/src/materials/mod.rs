@@ -1,0 +1,128 @@
+//! What surfaces are made of. One material a file; the table is [`MATERIALS`].
+//!
+//! A material says two things of a point: its [`Bsdf`], for the physical integrators, and its
+//! [`ClassicMaterial`], for Equations 1 and 2 of the paper. The map between the two:
+//!
+//! | material | ka | kd | ks | kt | exponent | reflectivity | Fresnel |
+//! | --- | --- | --- | --- | --- | --- | --- | --- |
+//! | `phong` | as given | as given | as given | as given | as given | as given | where kt > 0 |
+//! | `diffuse` | reflectance | reflectance | 0 | 0 | – | 0 | no |
+//! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
+//! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
+
+mod dielectric;
+mod diffuse;
+mod mirror;
+mod phong;
+
+use crate::bsdf::Bsdf;
+use crate::classic::ClassicMaterial;
+use crate::error::SceneError;
+use crate::parameters::{Reader, Spec};
+use crate::surface::Surface;
+use crate::texture::{ColourMap, Texture};
+use bilux_math::Rgb;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use std::sync::Arc;
+
+/// Something that surfaces are made of.
+pub trait Material: Send + Sync {
+    /// How light scatters at a point.
+    fn bsdf(&self, surface: &Surface) -> Bsdf;
+    /// The same point under Equations 1 and 2.
+    fn classic(&self, surface: &Surface) -> ClassicMaterial;
+    /// Radiance given out on both sides; black for what is no light.
+    fn emission(&self) -> Rgb {
+        Rgb::BLACK
+    }
+    /// Absorption per metre on the inside, by Beer's law.
+    fn sigma_a(&self) -> Rgb {
+        Rgb::BLACK
+    }
+}
+
+/// A row of [`MATERIALS`].
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Makes one from its parameters.
+    pub build: fn(&Reader, &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError>,
+}
+
+/// Every material that there is.
+pub const MATERIALS: &[MaterialEntry] = &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, dielectric::ENTRY];
+
+/// Makes the material that a spec describes.
+///
+/// # Errors
+/// When no row has its kind, or a parameter is wrong.
+pub fn build(spec: &Spec, textures: &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError> {
+    let names = MATERIALS.iter().map(|row| row.entry.name);
+    let row = MATERIALS
+        .iter()
+        .find(|row| row.entry.name == spec.kind)
+        .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
+    (row.build)(&Reader::new(spec, &row.entry)?, textures)
+}
+
+/// The colour or texture under a key.
+fn colour_map(reader: &Reader, key: &str, textures: &[Arc<Texture>]) -> Result<ColourMap, SceneError> {
+    let texture = match reader.texture(key) {
+        None => None,
+        Some(index) => Some(
+            textures
+                .get(index)
+                .cloned()
+                .ok_or_else(|| SceneError::invalid(format!("no texture {index}"), reader.span(key)))?,
+        ),
+    };
+    Ok(ColourMap { colour: reader.colour(key), texture })
+}
+
+/// Shared by all materials: what a surface gives out by itself.
+const EMISSION: Parameter = Parameter {
+    name: "emission",
+    summary: "radiance that the surface gives out, on both sides",
+    unit: "W/(m² sr)",
+    kind: ParameterKind::Colour { min: 0.0, max: 1e12 },
+    default: "0",
+};
+
+const ABSORPTION: Parameter = Parameter {
+    name: "absorption",
+    summary: "absorption inside, by Beer's law",
+    unit: "1/m",
+    kind: ParameterKind::Colour { min: 0.0, max: 1e6 },
+    default: "0",
+};
+
+const ETA: Parameter = Parameter {
+    name: "eta",
+    summary: "refractive index of the inside over that of the outside",
+    unit: "",
+    kind: ParameterKind::Number { min: 0.1, max: 10.0 },
+    default: "1.5",
+};
+
+const THIN: Parameter = Parameter {
+    name: "thin",
+    summary: "a wall without thickness: light goes straight through",
+    unit: "",
+    kind: ParameterKind::Bool,
+    default: "false",
+};
+
+const fn reflectance(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::ColourTexture { min: 0.0, max: 1.0 }, default }
+}
+
+const fn spread(name: &'static str, summary: &'static str) -> Parameter {
+    Parameter {
+        name,
+        summary,
+        unit: "degrees",
+        kind: ParameterKind::Number { min: 0.0, max: 90.0 },
+        default: "0",
+    }
+}

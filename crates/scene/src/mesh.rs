@@ -1,0 +1,44 @@
+//! Triangles with what shading needs of them.
+
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+
+/// A triangle mesh in its own space. Attributes are per vertex and either absent (empty) or as many as
+/// positions; [`crate::SceneBuilder::build`] checks that.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// What the file calls it; may be empty.
+    pub name: String,
+    /// Vertices.
+    pub positions: Vec<Vec3>,
+    /// Shading normals; need not be of unit length.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, v upwards.
+    pub uvs: Vec<Vec2>,
+    /// Diffuse reflectance per vertex (the paper's Kd).
+    pub vertex_kd: Vec<Rgb>,
+    /// Specular reflectance per vertex (the paper's Ks).
+    pub vertex_ks: Vec<Rgb>,
+    /// Triples of vertices.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// The box around all vertices that triangles name.
+    pub fn bounds(&self) -> Aabb {
+        let named = self.triangles.iter().flatten().filter_map(|&i| self.positions.get(i as usize));
+        Aabb::of_points(named.copied().filter(|p| p.is_finite()))
+    }
+
+    /// Area-weighted vertex normals from the triangles, for meshes that bring none.
+    pub fn smooth_normals(&self) -> Vec<Vec3> {
+        let mut normals = vec![Vec3::ZERO; self.positions.len()];
+        for &[a, b, c] in &self.triangles {
+            let [pa, pb, pc] = [a, b, c].map(|i| self.positions[i as usize]);
+            let n = (pb - pa).cross(pc - pa);
+            for i in [a, b, c] {
+                normals[i as usize] += n;
+            }
+        }
+        normals.iter().map(|n| n.normalize_or_zero()).collect()
+    }
+}

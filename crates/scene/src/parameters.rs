@@ -1,0 +1,304 @@
+//! Parameters as scene files write them, and how a row of a table reads them.
+
+use crate::error::SceneError;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec3};
+use std::fmt;
+use std::sync::Arc;
+
+/// Where something was written; lines and columns count from 1, and 0 means that it is not known.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Span {
+    /// The file, as the user named it; empty when made by the program.
+    pub file: Arc<str>,
+    /// Line.
+    pub line: u32,
+    /// Column.
+    pub column: u32,
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.file.is_empty(), self.line, self.column) {
+            (true, _, _) => f.write_str("(made by the program)"),
+            (_, 0, _) => f.write_str(&self.file),
+            (_, line, 0) => write!(f, "{}:{line}", self.file),
+            (_, line, column) => write!(f, "{}:{line}:{column}", self.file),
+        }
+    }
+}
+
+/// A value in a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// True or false.
+    Bool(bool),
+    /// A whole number.
+    Integer(i64),
+    /// Any other number.
+    Number(f64),
+    /// Text.
+    Text(String),
+    /// A list.
+    List(Vec<Value>),
+    /// An index into [`crate::SceneBuilder::textures`]; readers put it in place of a file's name.
+    Texture(usize),
+}
+
+impl Value {
+    /// A colour or a point as a value.
+    pub fn triple(v: [f32; 3]) -> Value {
+        Value::List(v.map(|c| Value::Number(f64::from(c))).to_vec())
+    }
+
+    fn as_number(&self) -> Option<f64> {
+        match *self {
+            Value::Integer(i) => Some(i as f64),
+            Value::Number(x) => Some(x),
+            _ => None,
+        }
+    }
+}
+
+impl From<f32> for Value {
+    fn from(x: f32) -> Value {
+        Value::Number(f64::from(x))
+    }
+}
+impl From<bool> for Value {
+    fn from(b: bool) -> Value {
+        Value::Bool(b)
+    }
+}
+impl From<&str> for Value {
+    fn from(s: &str) -> Value {
+        Value::Text(s.to_owned())
+    }
+}
+impl From<Rgb> for Value {
+    fn from(c: Rgb) -> Value {
+        Value::triple(c.to_array())
+    }
+}
+impl From<Vec3> for Value {
+    fn from(v: Vec3) -> Value {
+        Value::triple(v.to_array())
+    }
+}
+
+/// Keys with their values, in the order written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Parameters(pub Vec<(String, Value, Span)>);
+
+impl Parameters {
+    /// The value of a key.
+    pub fn find(&self, key: &str) -> Option<(&Value, &Span)> {
+        self.0.iter().find(|(k, ..)| k == key).map(|(_, v, s)| (v, s))
+    }
+
+    /// Sets a key, in place of an older value.
+    pub fn set(&mut self, key: &str, value: impl Into<Value>) {
+        self.set_at(key, value.into(), Span::default());
+    }
+
+    /// Sets a key that was written somewhere.
+    pub fn set_at(&mut self, key: &str, value: Value, span: Span) {
+        match self.0.iter_mut().find(|(k, ..)| k == key) {
+            Some(row) => (row.1, row.2) = (value, span),
+            None => self.0.push((key.to_owned(), value, span)),
+        }
+    }
+}
+
+/// Something to be made from a table: which row, and its parameters.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spec {
+    /// What the user calls it; may be empty.
+    pub name: String,
+    /// The row's name, such as `dielectric`.
+    pub kind: String,
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// Where it was written.
+    pub span: Span,
+}
+
+impl Spec {
+    /// A spec made by the program.
+    pub fn new(name: &str, kind: &str) -> Spec {
+        Spec { name: name.to_owned(), kind: kind.to_owned(), ..Spec::default() }
+    }
+
+    /// The same with one more parameter.
+    pub fn with(mut self, key: &str, value: impl Into<Value>) -> Spec {
+        self.parameters.set(key, value);
+        self
+    }
+}
+
+/// Reads a spec's parameters by the row that describes them. Made by [`Reader::new`], which refuses unknown keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Reader<'a> {
+    spec: &'a Spec,
+    parameters: &'static [Parameter],
+}
+
+impl<'a> Reader<'a> {
+    /// Checks that every key is one of the row's and every value of its kind and within its range.
+    ///
+    /// # Errors
+    /// The first key or value that is wrong, with its place and, for a key, the nearest name.
+    pub fn new(spec: &'a Spec, entry: &Entry) -> Result<Reader<'a>, SceneError> {
+        for (key, value, span) in &spec.parameters.0 {
+            let Some(parameter) = entry.parameters.iter().find(|p| p.name == key) else {
+                let names = entry.parameters.iter().map(|p| p.name);
+                return Err(SceneError::unknown(format!("parameter of {}", entry.name), key, names, span));
+            };
+            check_kind(parameter, value).map_err(|wanted| SceneError::BadValue {
+                what: format!("{}.{}", entry.name, key),
+                wanted,
+                found: describe(value),
+                at: span.clone(),
+            })?;
+        }
+        for parameter in entry.parameters {
+            if parameter.default.is_empty() && spec.parameters.find(parameter.name).is_none() {
+                return Err(SceneError::Missing {
+                    what: format!("{}.{} ({})", entry.name, parameter.name, parameter.summary),
+                    at: spec.span.clone(),
+                });
+            }
+        }
+        Ok(Reader { spec, parameters: entry.parameters })
+    }
+
+    /// True when the file says it, false when the default holds.
+    pub fn is_given(&self, key: &str) -> bool {
+        self.spec.parameters.find(key).is_some()
+    }
+
+    /// Where a key was written, or else the whole spec.
+    pub fn span(&self, key: &str) -> &Span {
+        self.spec.parameters.find(key).map_or(&self.spec.span, |(_, span)| span)
+    }
+
+    /// A number.
+    pub fn number(&self, key: &str) -> f32 {
+        self.value(key).as_number().unwrap_or_default() as f32
+    }
+
+    /// A whole number.
+    pub fn integer(&self, key: &str) -> i64 {
+        self.value(key).as_number().unwrap_or_default() as i64
+    }
+
+    /// True or false.
+    pub fn bool(&self, key: &str) -> bool {
+        self.value(key) == Value::Bool(true)
+    }
+
+    /// Text or a choice.
+    pub fn text(&self, key: &str) -> String {
+        match self.value(key) {
+            Value::Text(text) => text,
+            _ => String::new(),
+        }
+    }
+
+    /// Three numbers, or one for all three.
+    pub fn vector(&self, key: &str) -> Vec3 {
+        triple(&self.value(key)).map_or(Vec3::ZERO, Vec3::from)
+    }
+
+    /// A colour; where a texture is given, white.
+    pub fn colour(&self, key: &str) -> Rgb {
+        triple(&self.value(key)).map_or(Rgb::WHITE, Rgb::from_array)
+    }
+
+    /// The texture given in place of a colour, if one is.
+    pub fn texture(&self, key: &str) -> Option<usize> {
+        match self.value(key) {
+            Value::Texture(index) => Some(index),
+            _ => None,
+        }
+    }
+
+    fn value(&self, key: &str) -> Value {
+        if let Some((value, _)) = self.spec.parameters.find(key) {
+            return value.clone();
+        }
+        let row = self.parameters.iter().find(|p| p.name == key);
+        row.map_or(Value::Bool(false), |p| parse_default(p.kind, p.default))
+    }
+}
+
+/// A default as tables write it: `true`, `1.5`, `1 1 1` or a word.
+fn parse_default(kind: ParameterKind, text: &str) -> Value {
+    match kind {
+        ParameterKind::Bool => Value::Bool(text == "true"),
+        ParameterKind::Text | ParameterKind::Choice(_) => Value::Text(text.to_owned()),
+        _ => {
+            let numbers: Vec<Value> =
+                text.split_whitespace().filter_map(|w| w.parse().ok().map(Value::Number)).collect();
+            match <[Value; 1]>::try_from(numbers) {
+                Ok([one]) => one,
+                Err(many) => Value::List(many),
+            }
+        }
+    }
+}
+
+fn triple(value: &Value) -> Option<[f32; 3]> {
+    match value {
+        Value::List(list) => {
+            let numbers: Option<Vec<f32>> = list.iter().map(|v| v.as_number().map(|x| x as f32)).collect();
+            numbers?.try_into().ok()
+        }
+        one => one.as_number().map(|x| [x as f32; 3]),
+    }
+}
+
+/// What was wanted, where a value is not of its parameter's kind or out of range.
+fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
+    let number_in = |v: Option<f64>, min: f64, max: f64| v.is_some_and(|x| x >= min && x <= max);
+    let (fits, wanted) = match parameter.kind {
+        ParameterKind::Bool => (matches!(value, Value::Bool(_)), "true or false".to_owned()),
+        ParameterKind::Integer { min, max } => (
+            matches!(value, Value::Integer(i) if (min..=max).contains(i)),
+            format!("a whole number from {min} to {max}"),
+        ),
+        ParameterKind::Number { min, max } => {
+            (number_in(value.as_number(), min, max), format!("a number from {min} to {max}"))
+        }
+        ParameterKind::Colour { min, max } => (
+            triple(value).is_some_and(|t| t.iter().all(|&c| number_in(Some(f64::from(c)), min, max))),
+            format!("a colour [r, g, b] with each from {min} to {max}"),
+        ),
+        ParameterKind::ColourTexture { min, max } => (
+            matches!(value, Value::Texture(_))
+                || triple(value).is_some_and(|t| t.iter().all(|&c| number_in(Some(f64::from(c)), min, max))),
+            format!("a colour [r, g, b] with each from {min} to {max}, or {{ texture = \"FILE\" }}"),
+        ),
+        ParameterKind::Vector => (
+            triple(value).is_some_and(|t| t.iter().all(|c| c.is_finite())),
+            "three numbers [x, y, z]".to_owned(),
+        ),
+        ParameterKind::Choice(words) => (
+            matches!(value, Value::Text(t) if words.contains(&t.as_str())),
+            format!("one of {}", words.join(", ")),
+        ),
+        ParameterKind::Text => (matches!(value, Value::Text(_)), "text".to_owned()),
+    };
+    if fits { Ok(()) } else { Err(wanted) }
+}
+
+fn describe(value: &Value) -> String {
+    match value {
+        Value::Bool(b) => b.to_string(),
+        Value::Integer(i) => i.to_string(),
+        Value::Number(x) => x.to_string(),
+        Value::Text(t) => format!("\"{t}\""),
+        Value::List(list) => format!("[{}]", list.iter().map(describe).collect::<Vec<_>>().join(", ")),
+        Value::Texture(_) => "a texture".to_owned(),
+    }
+}

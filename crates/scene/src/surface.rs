@@ -1,0 +1,74 @@
+//! A point on a surface, as materials, lights and integrators see it.
+
+use bilux_accel::{Primitive, Ray};
+use bilux_math::{Rgb, Vec2, Vec3};
+
+/// Where a ray met a surface, in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Distance along the ray, in lengths of its direction.
+    pub t: f32,
+    /// The point.
+    pub p: Vec3,
+    /// Bound on the rounding error of `p`, per axis.
+    pub p_error: Vec3,
+    /// Unit normal of the triangle, on the outside: where the vertex normals point if there are any, else
+    /// where the vertices run counter-clockwise.
+    pub n_geom: Vec3,
+    /// Unit shading normal, interpolated; `n_geom` where the mesh has none.
+    pub n_shade: Vec3,
+    /// Texture coordinates; the barycentric weights where the mesh has none.
+    pub uv: Vec2,
+    /// Diffuse reflectance of the vertices, if the mesh has one.
+    pub vertex_kd: Option<Rgb>,
+    /// Specular reflectance of the vertices, if the mesh has one.
+    pub vertex_ks: Option<Rgb>,
+    /// Which triangle.
+    pub primitive: Primitive,
+    /// Which object of the scene.
+    pub object: u32,
+    /// Time of the ray, in seconds.
+    pub time: f32,
+}
+
+impl Surface {
+    /// A ray that leaves this point and cannot meet it again through rounding: it starts beyond the error
+    /// bound, on the side that it goes to, and leaves out the triangle itself.
+    pub fn spawn(&self, direction: Vec3) -> Ray {
+        let origin = offset_origin(self.p, self.p_error, self.n_geom, direction);
+        Ray {
+            time: self.time,
+            exclude: self.primitive,
+            ..Ray::new(origin.to_array(), direction.to_array())
+        }
+    }
+
+    /// A ray from here to `target`, which it reaches at `t = 1`.
+    pub fn spawn_to(&self, target: Vec3) -> Ray {
+        let origin = offset_origin(self.p, self.p_error, self.n_geom, target - self.p);
+        Ray {
+            time: self.time,
+            exclude: self.primitive,
+            t_max: 1.0,
+            ..Ray::new(origin.to_array(), (target - origin).to_array())
+        }
+    }
+}
+
+/// `p` moved out of its error bounds along the normal, to the side that `direction` goes to. [pbrt 2023, 6.8.6]
+pub fn offset_origin(p: Vec3, p_error: Vec3, n: Vec3, direction: Vec3) -> Vec3 {
+    let distance = n.abs().dot(p_error);
+    let offset = if direction.dot(n) < 0.0 { -n * distance } else { n * distance };
+    let away = |c: f32, o: f32| match o {
+        o if o > 0.0 => (c + o).next_up(),
+        o if o < 0.0 => (c + o).next_down(),
+        _ => c,
+    };
+    Vec3::new(away(p.x, offset.x), away(p.y, offset.y), away(p.z, offset.z))
+}
+
+/// Bound on the relative error of `n` roundings. [Higham 2002, 3.1]
+pub const fn gamma(n: i32) -> f32 {
+    let ne = n as f32 * (f32::EPSILON * 0.5);
+    ne / (1.0 - ne)
+}
