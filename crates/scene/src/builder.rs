@@ -132,12 +132,11 @@ impl SceneBuilder {
 
     /// Lights without a surface; those with one become objects. The second result holds, for objects that came
     /// from lights, their colour in the classic modes.
-    #[allow(clippy::type_complexity)]
     fn build_lights(
         &self,
         objects: &mut Vec<Object>,
         materials: &mut Vec<Arc<dyn Material>>,
-    ) -> Result<(Vec<SceneLight>, Vec<(usize, Rgb)>), SceneError> {
+    ) -> Result<BuiltLights, SceneError> {
         let (mut lights_found, mut panels) = (Vec::new(), Vec::new());
         for spec in &self.lights {
             match lights::build(spec)? {
@@ -155,6 +154,9 @@ impl SceneBuilder {
         Ok((lights_found, panels))
     }
 }
+
+/// Lights without a surface, and the classic colours of objects that came from lights.
+type BuiltLights = (Vec<SceneLight>, Vec<(usize, Rgb)>);
 
 /// Attributes must be as many as positions, and indices must name them.
 fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {

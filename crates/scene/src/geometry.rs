@@ -114,8 +114,7 @@ impl Geometry {
         let placed = &self.objects[object as usize];
         let is_still = self.still_objects.iter().any(|(_, o)| *o == object);
         let own = if is_still { placed.motion.at(0.0) } else { Transform::IDENTITY };
-        let motion =
-            if is_still { Motion::still(Transform::IDENTITY) } else { placed.motion.clone() };
+        let motion = if is_still { Motion::still(Transform::IDENTITY) } else { placed.motion.clone() };
         let triangles = world_corners(&placed.mesh, &own).map(|t| t.map(Vec3::from)).collect();
         (triangles, motion)
     }

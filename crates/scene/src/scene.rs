@@ -201,7 +201,7 @@ impl<'s> Tracer<'s> {
                 return true;
             }
             rest.exclude = surface.primitive;
-            rest.t_min = surface.t;
+            rest.t_min = surface.t.next_up();
         }
         false
     }

@@ -36,11 +36,7 @@ impl Surface {
     /// bound, on the side that it goes to, and leaves out the triangle itself.
     pub fn spawn(&self, direction: Vec3) -> Ray {
         let origin = offset_origin(self.p, self.p_error, self.n_geom, direction);
-        Ray {
-            time: self.time,
-            exclude: self.primitive,
-            ..Ray::new(origin.to_array(), direction.to_array())
-        }
+        Ray { time: self.time, exclude: self.primitive, ..Ray::new(origin.to_array(), direction.to_array()) }
     }
 
     /// A ray from here to `target`, which it reaches at `t = 1`.

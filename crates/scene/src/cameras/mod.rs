@@ -77,7 +77,7 @@ pub fn build(camera: &CameraSpec, aspect: f32) -> Result<Arc<dyn Camera>, SceneE
     if keys.is_empty() {
         keys.push((0.0, camera.spec.clone()));
     }
-    if keys.windows(2).any(|pair| !(pair[0].0 < pair[1].0)) {
+    if keys.windows(2).any(|pair| pair[0].0 >= pair[1].0 || pair[1].0.is_nan()) {
         return Err(SceneError::invalid(
             "the times of a camera's keyframes have to rise: put them in order, each once",
             &camera.spec.span,

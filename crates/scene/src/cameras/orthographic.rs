@@ -31,12 +31,13 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             .iter()
             .map(|(time, reader)| {
                 let position = reader.vector("position");
-                let axes = look(position, reader.vector("look_at"), reader.vector("up")).ok_or_else(|| {
-                    SceneError::invalid(
-                        "a camera must not look along its own 'up', nor at the point where it stands",
-                        reader.span("look_at"),
-                    )
-                })?;
+                let axes =
+                    look(position, reader.vector("look_at"), reader.vector("up")).ok_or_else(|| {
+                        SceneError::invalid(
+                            "a camera must not look along its own 'up', nor at the point where it stands",
+                            reader.span("look_at"),
+                        )
+                    })?;
                 Ok((*time, Key { position, axes, half_height: reader.number("height") * 0.5 }))
             })
             .collect::<Result<Vec<_>, SceneError>>()?;

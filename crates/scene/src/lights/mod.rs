@@ -102,14 +102,8 @@ pub struct LightEntry {
 }
 
 /// Every light that there is.
-pub const LIGHTS: &[LightEntry] = &[
-    point::ENTRY,
-    directional::ENTRY,
-    spot::ENTRY,
-    rect::ENTRY,
-    environment::ENTRY,
-    ambient::ENTRY,
-];
+pub const LIGHTS: &[LightEntry] =
+    &[point::ENTRY, directional::ENTRY, spot::ENTRY, rect::ENTRY, environment::ENTRY, ambient::ENTRY];
 
 /// Makes the light that a spec describes.
 ///

@@ -47,8 +47,11 @@ pub struct MaterialEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
     /// Makes one from its parameters.
-    pub build: fn(&Reader, &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError>,
+    pub build: BuildMaterial,
 }
+
+/// How a material is made from its parameters and the scene's textures.
+pub type BuildMaterial = fn(&Reader, &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError>;
 
 /// Every material that there is.
 pub const MATERIALS: &[MaterialEntry] = &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, dielectric::ENTRY];
