@@ -45,11 +45,16 @@ impl Surface {
         Ray {
             time: self.time,
             exclude: self.primitive,
+            t_min: AWAY,
             t_max: 1.0,
             ..Ray::new(origin.to_array(), (target - origin).to_array())
         }
     }
 }
+
+/// Where a point has no error at all, as on a floor at height 0, its neighbours in the same plane are met at
+/// exactly 0, which therefore does not count.
+const AWAY: f32 = f32::MIN_POSITIVE;
 
 /// `p` moved out of its error bounds along the normal, to the side that `direction` goes to. [pbrt 2023, 6.8.6]
 pub fn offset_origin(p: Vec3, p_error: Vec3, n: Vec3, direction: Vec3) -> Vec3 {
