@@ -1,0 +1,167 @@
+//! What can go wrong with a picture.
+
+use std::path::{Path, PathBuf};
+
+/// Why a picture cannot be read, written, made or compared.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PictureError {
+    /// Something is wrong with this file.
+    #[error("{}: {source}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: Box<PictureError>,
+    },
+    /// The operating system refused.
+    #[error("cannot {action}: {source}")]
+    Io {
+        /// What was tried.
+        action: &'static str,
+        /// Why it did not work.
+        source: std::io::Error,
+    },
+    /// No picture format goes by this name or extension.
+    #[error(
+        "'{name}' is not a picture format that can be {verb}{}; there are: {known}",
+        did_you_mean(suggestion)
+    )]
+    UnknownFormat {
+        /// What was asked for.
+        name: String,
+        /// `read` or `written`.
+        verb: &'static str,
+        /// The nearest name that there is.
+        suggestion: Option<&'static str>,
+        /// Every name that there is.
+        known: String,
+    },
+    /// A table has no row of this name.
+    #[error("there is no {kind} '{name}'{}; there are: {known}", did_you_mean(suggestion))]
+    UnknownName {
+        /// What kind of thing was asked for.
+        kind: &'static str,
+        /// What was asked for.
+        name: String,
+        /// The nearest name that there is.
+        suggestion: Option<&'static str>,
+        /// Every name that there is.
+        known: String,
+    },
+    /// The bytes look like no picture format that we know.
+    #[error("these bytes are of no known picture format; there are: {known}")]
+    Unrecognised {
+        /// Every name that there is.
+        known: String,
+    },
+    /// The file breaks the rules of its format.
+    #[error("{format}: {what}; the file is damaged or was written wrongly, so export it again")]
+    Invalid {
+        /// The format.
+        format: &'static str,
+        /// Which rule, with the values in question.
+        what: String,
+    },
+    /// The file ends too early.
+    #[error("{format}: the file ends in the middle of {part}; it was cut short, so copy or export it again")]
+    Truncated {
+        /// The format.
+        format: &'static str,
+        /// What was being read.
+        part: String,
+    },
+    /// The file is right, but uses something that is not supported.
+    #[error("{format}: {what} is not supported; {advice}")]
+    Unsupported {
+        /// The format.
+        format: &'static str,
+        /// What the file uses.
+        what: String,
+        /// What to do instead.
+        advice: &'static str,
+    },
+    /// The picture would take more memory than allowed.
+    #[error(
+        "{format}: {width} x {height} pixels need {needed} bytes, and the limit is {limit}; raise the memory limit if the file is to be trusted"
+    )]
+    TooLarge {
+        /// The format.
+        format: &'static str,
+        /// Pixels across.
+        width: u64,
+        /// Pixels down.
+        height: u64,
+        /// Bytes that decoding would take; `u64::MAX` where even that overflows.
+        needed: u64,
+        /// The limit in bytes.
+        limit: u64,
+    },
+    /// The file has more bytes than allowed.
+    #[error(
+        "the file has more than the limit of {limit} bytes; raise the memory limit if it is to be trusted"
+    )]
+    FileTooLarge {
+        /// The limit in bytes.
+        limit: u64,
+    },
+    /// The machine has no room.
+    #[error("{format}: no room for {bytes} bytes; free some memory or make the picture smaller")]
+    OutOfMemory {
+        /// The format or operation.
+        format: &'static str,
+        /// How many bytes were wanted.
+        bytes: u64,
+    },
+    /// The picture cannot be put into this format.
+    #[error("{format} cannot hold this picture: {what}")]
+    Unwritable {
+        /// The format.
+        format: &'static str,
+        /// What it has that the format cannot hold, or lacks that it needs, and what to do.
+        what: String,
+    },
+    /// A picture was put together wrongly.
+    #[error("{0}")]
+    Malformed(String),
+    /// Two pictures that should be of one size are not.
+    #[error("the pictures differ in size: {} x {} and {} x {} pixels; render or crop them to one size", a.0, a.1, b.0, b.1)]
+    SizesDiffer {
+        /// Width and height of the first.
+        a: (usize, usize),
+        /// Width and height of the second.
+        b: (usize, usize),
+    },
+}
+
+impl PictureError {
+    pub(crate) fn invalid(format: &'static str, what: impl Into<String>) -> PictureError {
+        PictureError::Invalid { format, what: what.into() }
+    }
+
+    pub(crate) fn truncated(format: &'static str, part: impl Into<String>) -> PictureError {
+        PictureError::Truncated { format, part: part.into() }
+    }
+
+    /// The same error, with the file that it is about.
+    pub fn in_file(self, path: &Path) -> PictureError {
+        match self {
+            PictureError::InFile { .. } => self,
+            source => PictureError::InFile { path: path.to_owned(), source: Box::new(source) },
+        }
+    }
+}
+
+fn did_you_mean(suggestion: &Option<&'static str>) -> String {
+    suggestion.map(|name| format!(" (did you mean '{name}'?)")).unwrap_or_default()
+}
+
+/// The name nearest to `given`, unless all are far from it.
+pub(crate) fn nearest(given: &str, names: impl Iterator<Item = &'static str>) -> Option<&'static str> {
+    let given = given.to_lowercase();
+    names
+        .map(|name| (strsim::damerau_levenshtein(&given, name), name))
+        .filter(|&(distance, name)| distance <= (name.len().max(given.len()) / 2).clamp(1, 3))
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, name)| name)
+}

@@ -1,0 +1,59 @@
+//! Files: whole ones in, whole ones out.
+
+use crate::{Limits, PictureError};
+use std::fs::{self, File, OpenOptions};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+/// A file's bytes; errors where they are more than the limit, whatever the file says of its length.
+pub(super) fn read_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, PictureError> {
+    let file = File::open(path).map_err(|source| PictureError::Io { action: "open it", source })?;
+    let mut bytes = Vec::new();
+    let limit = limits.max_bytes.saturating_add(1);
+    file.take(limit)
+        .read_to_end(&mut bytes)
+        .map_err(|source| PictureError::Io { action: "read it", source })?;
+    if bytes.len() as u64 == limit {
+        return Err(PictureError::FileTooLarge { limit: limits.max_bytes });
+    }
+    Ok(bytes)
+}
+
+/// Writes a file in one step: whoever looks sees the old one or the new one, never a half. The bytes go
+/// into a new file beside the target, which is renamed over it once they are on the disk; where that fails
+/// the new file is removed. Links are followed, and what is not a plain file (a pipe, a terminal) is
+/// written to directly.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
+        return fs::write(&target, bytes).map_err(|source| PictureError::Io { action: "write it", source });
+    }
+    let (beside, file) =
+        create_beside(&target).map_err(|source| PictureError::Io { action: "write beside it", source })?;
+    let written = fill(file, bytes).and_then(|()| fs::rename(&beside, &target));
+    written.map_err(|source| {
+        // The first failure is the one to tell; that of cleaning up adds nothing.
+        let _ = fs::remove_file(&beside);
+        PictureError::Io { action: "write it", source }
+    })
+}
+
+fn fill(mut file: File, bytes: &[u8]) -> std::io::Result<()> {
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// A new file in the target's folder, under a name that nobody has yet.
+fn create_beside(target: &Path) -> std::io::Result<(PathBuf, File)> {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    let process = std::process::id();
+    let mut attempt = 0;
+    loop {
+        let beside = target.with_file_name(format!(".{name}.{process}.{attempt}.part"));
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Ok(file) => return Ok((beside, file)),
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && attempt < 1000 => attempt += 1,
+            Err(error) => return Err(error),
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! OpenEXR: any number of named planes of halves, floats or integers, and texts. [OpenEXR]
+
+use super::{PictureFormatEntry, exr_write};
+use crate::limits::zeroed;
+use crate::{Limits, Picture, PictureError};
+use ::exr::block::UncompressedBlock;
+use ::exr::block::chunk::CompressedBlock;
+use ::exr::error::Error;
+use ::exr::math::Vec2;
+use ::exr::meta::MetaData;
+use ::exr::meta::attribute::{AttributeValue, IntegerBounds, SampleType, Text};
+use ::exr::meta::header::Header;
+use bilux_math::registry::Entry;
+use half::f16;
+use std::collections::HashSet;
+use std::io::Cursor;
+
+/// The row of `exr`.
+pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
+    entry: Entry {
+        name: "exr",
+        summary: "OpenEXR: linear light, layers, integers and texts, all exact: for further work and partial films",
+        source: "OpenEXR",
+        parameters: &[],
+    },
+    extensions: &["exr"],
+    for_display: false,
+    sniff: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
+    read,
+    write: Some(exr_write::write),
+};
+
+pub(super) const FORMAT: &str = "EXR";
+
+/// No renderer makes so many, and every one of them costs time whatever its size.
+const MOST_CHANNELS: usize = 4096;
+
+/// The picture is what the display window shows: beyond a part's data window it is zero. Where there are
+/// several parts, their names go in front of their channels', but for the first one with plain colours.
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(explain)?;
+    let mut frame = Frame::new(reader.meta_data(), limits)?;
+    let meta = reader.meta_data().clone();
+    for chunk in ::exr::block::reader::Reader::all_chunks(reader, false).map_err(explain)? {
+        let chunk = chunk.map_err(explain)?;
+        let smaller_copy = match &chunk.compressed_block {
+            CompressedBlock::Tile(tile) => !tile.coordinates.is_largest_resolution_level(),
+            _ => false,
+        };
+        if !smaller_copy {
+            frame.insert(&UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(explain)?)?;
+        }
+    }
+    frame.into_picture(&meta)
+}
+
+/// The display window, and the planes that fill with what the parts hold.
+struct Frame {
+    window: IntegerBounds,
+    parts: Vec<Part>,
+}
+
+struct Part {
+    /// Top left of the data window.
+    origin: Vec2<i32>,
+    planes: Vec<Plane>,
+    bytes_per_pixel: usize,
+}
+
+struct Plane {
+    name: String,
+    samples: Samples,
+}
+
+enum Samples {
+    Halves(Vec<f32>),
+    Floats(Vec<f32>),
+    Integers(Vec<u32>),
+}
+
+impl Frame {
+    /// Makes room for all planes, after every size has been checked.
+    fn new(meta: &MetaData, limits: &Limits) -> Result<Frame, PictureError> {
+        let channels: usize = meta.headers.iter().map(|header| header.channels.list.len()).sum();
+        let window = meta
+            .headers
+            .first()
+            .map_or(IntegerBounds::zero(), |header| header.shared_attributes.display_window);
+        let (width, height) = (window.size.width() as u64, window.size.height() as u64);
+        if channels > MOST_CHANNELS {
+            return Err(unsupported(format!("a picture of {channels} channels"), "save fewer of them"));
+        }
+        let pixels = limits.check(FORMAT, width, height, 4 * channels as u64)?;
+        meta.headers.iter().try_for_each(|header| check_header(header, limits))?;
+        let main = meta.headers.iter().position(|header| {
+            let plain = |name: &str| {
+                header.channels.list.iter().any(|channel| channel.name.as_slice() == name.as_bytes())
+            };
+            plain("Y") || (plain("R") && plain("G") && plain("B"))
+        });
+        let mut parts = Vec::new();
+        for (index, header) in meta.headers.iter().enumerate() {
+            let named = meta.headers.len() > 1 && main != Some(index);
+            let layer =
+                header.own_attributes.layer_name.as_ref().filter(|_| named).map(text).unwrap_or_default();
+            let plane = |channel: &::exr::meta::attribute::ChannelDescription| {
+                Ok(Plane {
+                    name: layered(&layer, text(&channel.name)),
+                    samples: match channel.sample_type {
+                        SampleType::F16 => Samples::Halves(zeroed(FORMAT, pixels)?),
+                        SampleType::F32 => Samples::Floats(zeroed(FORMAT, pixels)?),
+                        SampleType::U32 => Samples::Integers(zeroed(FORMAT, pixels)?),
+                    },
+                })
+            };
+            parts.push(Part {
+                origin: header.own_attributes.layer_position,
+                planes: header.channels.list.iter().map(plane).collect::<Result<_, PictureError>>()?,
+                bytes_per_pixel: header.channels.bytes_per_pixel,
+            });
+        }
+        Ok(Frame { window, parts })
+    }
+
+    /// Copies what a block shows within the display window. In a block, each row has the samples of the
+    /// first channel, then of the second, and so on.
+    fn insert(&mut self, block: &UncompressedBlock) -> Result<(), PictureError> {
+        let (width, height) = (self.window.size.width() as i64, self.window.size.height() as i64);
+        let wrong = || PictureError::invalid(FORMAT, "a block of pixels is not where it should be");
+        let part = self.parts.get_mut(block.index.layer).ok_or_else(wrong)?;
+        let (columns, rows) = (block.index.pixel_size.width(), block.index.pixel_size.height());
+        if Some(block.data.len())
+            != columns.checked_mul(rows).and_then(|n| n.checked_mul(part.bytes_per_pixel))
+        {
+            return Err(PictureError::invalid(
+                FORMAT,
+                "a block of pixels has not the size that it should have",
+            ));
+        }
+        let left = block.index.pixel_position.x() as i64 + i64::from(part.origin.x())
+            - i64::from(self.window.position.x());
+        let top = block.index.pixel_position.y() as i64 + i64::from(part.origin.y())
+            - i64::from(self.window.position.y());
+        let shown =
+            (-left).clamp(0, columns as i64) as usize..(width - left).clamp(0, columns as i64) as usize;
+        let mut data = &block.data[..];
+        for y in top..top + rows as i64 {
+            for plane in &mut part.planes {
+                let (line, rest) = data.split_at(columns * plane.samples.bytes());
+                data = rest;
+                if (0..height).contains(&y) && !shown.is_empty() {
+                    let start = (y * width + left + shown.start as i64) as usize;
+                    plane.samples.copy(line, shown.clone(), start);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn into_picture(self, meta: &MetaData) -> Result<Picture, PictureError> {
+        let mut picture = Picture::new(self.window.size.width(), self.window.size.height())?;
+        let mut planes: Vec<Plane> = self.parts.into_iter().flat_map(|part| part.planes).collect();
+        // The file has them in the order of their names: A, B, G, R.
+        planes.sort_by_cached_key(|plane| order(&plane.name));
+        let mut taken = HashSet::new();
+        for plane in planes {
+            if !taken.insert(plane.name.clone()) {
+                return Err(PictureError::invalid(FORMAT, format!("it has two channels '{}'", plane.name)));
+            }
+            match plane.samples {
+                Samples::Halves(samples) | Samples::Floats(samples) => {
+                    picture.push_channel(plane.name, samples)?
+                }
+                Samples::Integers(samples) => picture.push_integer_plane(plane.name, samples)?,
+            }
+        }
+        for header in &meta.headers {
+            for (name, value) in header.all_named_attributes() {
+                if let (AttributeValue::Text(value), false) = (value, name == b"name") {
+                    let name = String::from_utf8_lossy(name).into_owned();
+                    picture.metadata.entry(name).or_insert_with(|| text(&value));
+                }
+            }
+        }
+        Ok(picture)
+    }
+}
+
+impl Samples {
+    fn bytes(&self) -> usize {
+        if matches!(self, Samples::Halves(_)) { 2 } else { 4 }
+    }
+
+    /// Copies the samples in `range` of a line to `start` and onward.
+    fn copy(&mut self, line: &[u8], range: std::ops::Range<usize>, start: usize) {
+        let end = start + range.len();
+        match self {
+            Samples::Halves(samples) => {
+                let halves = &line.as_chunks::<2>().0[range];
+                samples[start..end]
+                    .iter_mut()
+                    .zip(halves)
+                    .for_each(|(to, from)| *to = f16::from_ne_bytes(*from).to_f32());
+            }
+            Samples::Floats(samples) => {
+                let floats = &line.as_chunks::<4>().0[range];
+                samples[start..end]
+                    .iter_mut()
+                    .zip(floats)
+                    .for_each(|(to, from)| *to = f32::from_ne_bytes(*from));
+            }
+            Samples::Integers(samples) => {
+                let integers = &line.as_chunks::<4>().0[range];
+                samples[start..end]
+                    .iter_mut()
+                    .zip(integers)
+                    .for_each(|(to, from)| *to = u32::from_ne_bytes(*from));
+            }
+        }
+    }
+}
+
+/// Refuses what the decoder cannot do, and blocks for which there is no room (they stand in memory
+/// compressed, uncompressed, and once more in between).
+fn check_header(header: &Header, limits: &Limits) -> Result<(), PictureError> {
+    if header.deep {
+        return Err(unsupported("deep data".to_owned(), "save a flat picture"));
+    }
+    if header.channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) {
+        return Err(unsupported("subsampled colour".to_owned(), "save RGB without subsampling"));
+    }
+    let block = match header.blocks {
+        ::exr::meta::BlockDescription::Tiles(tiles) => tiles.tile_size,
+        ::exr::meta::BlockDescription::ScanLines => Vec2(
+            header.layer_size.width(),
+            header.compression.scan_lines_per_block().min(header.layer_size.height()),
+        ),
+    };
+    let bytes = 3 * header.channels.bytes_per_pixel as u64;
+    limits.check(FORMAT, block.width() as u64, block.height() as u64, bytes).map(|_| ())
+}
+
+fn unsupported(what: String, advice: &'static str) -> PictureError {
+    PictureError::Unsupported { format: FORMAT, what, advice }
+}
+
+fn text(text: &Text) -> String {
+    String::from_utf8_lossy(text.as_slice()).into_owned()
+}
+
+/// A channel's name with its part's in front, unless it is there already.
+fn layered(layer: &str, name: String) -> String {
+    let there = name.strip_prefix(layer).is_some_and(|rest| rest.starts_with('.'));
+    if there { name } else { crate::picture::qualified(layer, &name) }
+}
+
+/// Layers in the order of their names, the main picture first; in each R, G, B, A, then the others.
+fn order(name: &str) -> (String, usize, String) {
+    let (layer, component) = name.rsplit_once('.').unwrap_or(("", name));
+    let rank = ["R", "G", "B", "Y", "A"].iter().position(|&known| known == component).unwrap_or(usize::MAX);
+    (layer.to_owned(), rank, component.to_owned())
+}
+
+fn explain(error: Error) -> PictureError {
+    match error {
+        Error::NotSupported(what) => {
+            unsupported(what.into_owned(), "save it with ZIP or PIZ compression, as a flat picture")
+        }
+        Error::Invalid(what) if what.contains("missing bytes") => {
+            PictureError::truncated(FORMAT, "the header or the pixels")
+        }
+        Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            PictureError::truncated(FORMAT, "the header or the pixels")
+        }
+        other => PictureError::invalid(FORMAT, other.to_string()),
+    }
+}

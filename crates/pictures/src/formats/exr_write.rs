@@ -1,0 +1,178 @@
+//! Writing OpenEXR: one part, rows from the top, 32-bit floats and integers, ZIP. [OpenEXR]
+//!
+//! Header and tables are written here and not by the library, which keeps texts in a hash map: their order
+//! would change from run to run, and one picture has to give the same bytes every time.
+
+use super::WriteOptions;
+use super::exr::FORMAT;
+use crate::{Alpha, ColourSpace, Picture, PictureError};
+use ::exr::compression::Compression;
+use ::exr::math::Vec2;
+use ::exr::meta::BlockDescription;
+use ::exr::meta::attribute::{ChannelDescription, IntegerBounds, LineOrder, SampleType, Text};
+use ::exr::meta::header::{Header, standard_names};
+use std::borrow::Cow;
+
+/// One plane, whatever its type.
+struct Plane<'a> {
+    name: &'a str,
+    samples: Samples<'a>,
+}
+
+enum Samples<'a> {
+    Floats(&'a [f32]),
+    Integers(&'a [u32]),
+}
+
+/// Rows that are compressed together.
+const BLOCK_ROWS: usize = 16;
+
+/// The library's attributes that are texts, and which may hold anybody's.
+const STANDARD_TEXTS: [&str; 7] =
+    ["owner", "comments", "capDate", "software", "view", "renderingTransform", "lookModTransform"];
+
+pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let linear = picture.colour_space == ColourSpace::LinearRec709 && picture.alpha == Alpha::Premultiplied;
+    let picture = if linear { Cow::Borrowed(picture) } else { Cow::Owned(picture.clone().into_linear()) };
+    let planes = sorted_planes(&picture)?;
+    let mut bytes = header_bytes(&picture, &planes)?;
+    let header = library_header(&picture, &planes);
+    let blocks = picture.height().div_ceil(BLOCK_ROWS);
+    let table = bytes.len();
+    bytes.resize(table + 8 * blocks, 0);
+    for block in 0..blocks {
+        let offset = (bytes.len() as u64).to_le_bytes();
+        bytes[table + 8 * block..][..8].copy_from_slice(&offset);
+        let first = block * BLOCK_ROWS;
+        let rows = first..(first + BLOCK_ROWS).min(picture.height());
+        let section = IntegerBounds::new((0, first as i32), (picture.width(), rows.len()));
+        let data = block_bytes(&planes, picture.width(), rows);
+        let packed = Compression::ZIP16
+            .compress_image_section_to_le(&header, data, section)
+            .map_err(|error| unwritable(error.to_string()))?;
+        bytes.extend_from_slice(&(first as i32).to_le_bytes());
+        bytes.extend_from_slice(&(packed.len() as i32).to_le_bytes());
+        bytes.extend_from_slice(&packed);
+    }
+    Ok(bytes)
+}
+
+/// All planes in the order of their names, as the format wants them.
+fn sorted_planes(picture: &Picture) -> Result<Vec<Plane<'_>>, PictureError> {
+    let floats =
+        picture.channels().iter().map(|c| Plane { name: &c.name, samples: Samples::Floats(&c.samples) });
+    let integers = picture
+        .integer_planes()
+        .iter()
+        .map(|plane| Plane { name: &plane.name, samples: Samples::Integers(&plane.samples) });
+    let mut planes: Vec<Plane> = floats.chain(integers).collect();
+    planes.sort_by_key(|plane| plane.name.as_bytes());
+    match planes.iter().find(|plane| plane.name.len() > 255) {
+        Some(plane) => {
+            Err(unwritable(format!("the channel name '{}' has more than 255 bytes; shorten it", plane.name)))
+        }
+        None if planes.is_empty() => Err(unwritable("it has no channels".to_owned())),
+        None => Ok(planes),
+    }
+}
+
+/// What the library's compressor has to know.
+fn library_header(picture: &Picture, planes: &[Plane]) -> Header {
+    let channels = planes
+        .iter()
+        .map(|plane| ChannelDescription {
+            name: Text::from_slice_unchecked(plane.name.as_bytes()),
+            sample_type: match plane.samples {
+                Samples::Floats(_) => SampleType::F32,
+                Samples::Integers(_) => SampleType::U32,
+            },
+            quantize_linearly: false,
+            sampling: Vec2(1, 1),
+        })
+        .collect();
+    Header::new(Text::from_slice_unchecked(b""), (picture.width(), picture.height()), channels).with_encoding(
+        Compression::ZIP16,
+        BlockDescription::ScanLines,
+        LineOrder::Increasing,
+    )
+}
+
+/// Everything before the table of offsets.
+fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureError> {
+    let right_bottom = [picture.width() as i32 - 1, picture.height() as i32 - 1];
+    let window =
+        [[0; 2], right_bottom].as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect::<Vec<u8>>();
+    let long = planes.iter().map(|plane| plane.name).chain(picture.metadata.keys().map(|key| &key[..]));
+    let long_names = if long.into_iter().any(|name| name.len() > 31) { 0x400 } else { 0 };
+    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01];
+    bytes.extend_from_slice(&(2u32 | long_names).to_le_bytes());
+    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
+        bytes.extend_from_slice(&[name.as_bytes(), b"\0", kind.as_bytes(), b"\0"].concat());
+        bytes.extend_from_slice(&(value.len() as i32).to_le_bytes());
+        bytes.extend_from_slice(value);
+    };
+    attribute("channels", "chlist", &channel_list(planes));
+    attribute("compression", "compression", &[3]);
+    attribute("dataWindow", "box2i", &window);
+    attribute("displayWindow", "box2i", &window);
+    attribute("lineOrder", "lineOrder", &[0]);
+    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
+    attribute("screenWindowCenter", "v2f", &[0; 8]);
+    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+    for (key, value) in &picture.metadata {
+        check_text(key, value)?;
+        attribute(key, "string", value.as_bytes());
+    }
+    bytes.push(0);
+    Ok(bytes)
+}
+
+fn channel_list(planes: &[Plane]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for plane in planes {
+        let kind = if matches!(plane.samples, Samples::Integers(_)) { 0 } else { 2 };
+        bytes.extend_from_slice(plane.name.as_bytes());
+        bytes.push(0);
+        // Type; perceptually linear or not and three unused bytes; no subsampling in x and y.
+        [kind, 0, 1, 1].iter().for_each(|field: &i32| bytes.extend_from_slice(&field.to_le_bytes()));
+    }
+    bytes.push(0);
+    bytes
+}
+
+fn check_text(key: &str, value: &str) -> Result<(), PictureError> {
+    let reserved = standard_names::ALL.contains(&key.as_bytes()) && !STANDARD_TEXTS.contains(&key);
+    let what = if key.is_empty() || key.len() > 255 || key.contains('\0') {
+        format!("the name '{key}' of a text needs 1 to 255 bytes, none of them zero; rename it")
+    } else if reserved {
+        format!("'{key}' is an attribute of the format itself; rename this text")
+    } else if value.len() > i32::MAX as usize {
+        format!("the text '{key}' is longer than 2 GiB; shorten it")
+    } else {
+        return Ok(());
+    };
+    Err(unwritable(what))
+}
+
+/// Rows of native-endian samples; in each row all samples of the first plane, then of the second.
+fn block_bytes(planes: &[Plane], width: usize, rows: std::ops::Range<usize>) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(4 * planes.len() * width * rows.len());
+    for y in rows {
+        let row = y * width..(y + 1) * width;
+        for plane in planes {
+            match plane.samples {
+                Samples::Floats(samples) => {
+                    samples[row.clone()].iter().for_each(|s| bytes.extend_from_slice(&s.to_ne_bytes()))
+                }
+                Samples::Integers(samples) => {
+                    samples[row.clone()].iter().for_each(|s| bytes.extend_from_slice(&s.to_ne_bytes()))
+                }
+            }
+        }
+    }
+    bytes
+}
+
+fn unwritable(what: String) -> PictureError {
+    PictureError::Unwritable { format: FORMAT, what }
+}

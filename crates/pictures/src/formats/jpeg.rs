@@ -1,0 +1,75 @@
+//! JPEG, read only: textures come in it, renderings should not leave in it.
+
+use super::{PictureFormatEntry, planes_of};
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use bilux_math::registry::Entry;
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
+
+/// The row of `jpeg`.
+pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
+    entry: Entry { name: "jpeg", summary: "lossy, 8 bits, sRGB: read only", source: "JPEG", parameters: &[] },
+    extensions: &["jpg", "jpeg", "jpe", "jfif"],
+    for_display: true,
+    sniff: |bytes| bytes.starts_with(&[0xff, 0xd8, 0xff]),
+    read,
+    write: None,
+};
+
+const FORMAT: &str = "JPEG";
+
+/// Decoded bytes, the coefficients of progressive files for up to four components, and three planes.
+const BYTES_PER_PIXEL: u64 = 4 + 4 * 2 + 3 * 4;
+
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let options =
+        DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX));
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(explain)?;
+    let info = decoder.info().ok_or_else(|| PictureError::invalid(FORMAT, "it has no frame header"))?;
+    let pixels = limits.check(FORMAT, info.width.into(), info.height.into(), BYTES_PER_PIXEL)?;
+    // The decoder makes do with whatever pixels there are; we would rather say so.
+    if !is_whole(bytes) {
+        return Err(PictureError::truncated(FORMAT, "the pixels"));
+    }
+    let grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
+    let (names, space): (&[&str], _) =
+        if grey { (&["Y"], ColorSpace::Luma) } else { (&["R", "G", "B"], ColorSpace::RGB) };
+    decoder.set_options(options.jpeg_set_out_colorspace(space));
+    let samples = decoder.decode().map_err(explain)?;
+    if samples.len() < pixels.saturating_mul(names.len()) {
+        return Err(PictureError::truncated(FORMAT, "the pixels"));
+    }
+    let planes =
+        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
+    let mut picture = Picture::new(info.width.into(), info.height.into())?;
+    picture.colour_space = ColourSpace::Srgb;
+    picture.alpha = Alpha::Straight;
+    for (name, plane) in names.iter().zip(planes) {
+        picture.push_channel(*name, plane)?;
+    }
+    Ok(picture)
+}
+
+/// True when an end marker follows the first scan. Segments before it are stepped over, since the
+/// thumbnail in one may hold an end marker of its own.
+fn is_whole(bytes: &[u8]) -> bool {
+    let mut at = 2;
+    while let Some([0xff, marker, high, low]) = bytes.get(at..at + 4) {
+        at += match marker {
+            0xff => 1,
+            0x01 | 0xd0..=0xd9 => 2,
+            _ => 2 + (usize::from(*high) << 8 | usize::from(*low)),
+        };
+        if *marker == 0xda {
+            break;
+        }
+    }
+    bytes.get(at..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
+}
+
+fn explain(error: impl std::fmt::Display) -> PictureError {
+    PictureError::invalid(FORMAT, error.to_string().trim_end().to_owned())
+}

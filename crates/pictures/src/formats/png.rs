@@ -1,0 +1,157 @@
+//! PNG: all that it can hold comes in; 8 or 16 bits, sRGB, go out. [PNG]
+
+use super::{BitDepth, PictureFormatEntry, WriteOptions, display_planes, planes_of};
+use crate::limits::zeroed;
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use ::png::{ColorType, Decoder, DecodingError, Encoder, Info, SrgbRenderingIntent, Transformations};
+use bilux_math::registry::Entry;
+use std::io::{Cursor, ErrorKind};
+
+/// The row of `png`.
+pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
+    entry: Entry {
+        name: "png",
+        summary: "lossless, 8 or 16 bits, sRGB, with alpha: for the screen and the web",
+        source: "PNG",
+        parameters: &[],
+    },
+    extensions: &["png", "apng"],
+    for_display: true,
+    sniff: |bytes| bytes.starts_with(b"\x89PNG"),
+    read,
+    write: Some(write),
+};
+
+const FORMAT: &str = "PNG";
+
+/// The decoder's buffer of at most 8 bytes a pixel, and four planes.
+const BYTES_PER_PIXEL: u64 = 8 + 4 * 4;
+
+/// Texts longer than this are left out: they are not what a picture is read for.
+const LONGEST_TEXT: usize = 1 << 20;
+
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let memory = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
+    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), ::png::Limits { bytes: memory });
+    decoder.set_transformations(Transformations::EXPAND);
+    let header = decoder.read_header_info().map_err(explain)?;
+    let (width, height) = (header.width, header.height);
+    let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
+    let mut reader = decoder.read_info().map_err(explain)?;
+    let size =
+        reader.output_buffer_size().ok_or_else(|| PictureError::invalid(FORMAT, "its size overflows"))?;
+    let mut samples: Vec<u8> = zeroed(FORMAT, size)?;
+    let frame = reader.next_frame(&mut samples).map_err(explain)?;
+    if (frame.width, frame.height) != (width, height) {
+        return Err(PictureError::invalid(FORMAT, "its first frame is smaller than the picture"));
+    }
+    let names: &[&str] = match frame.color_type {
+        ColorType::Grayscale => &["Y"],
+        ColorType::GrayscaleAlpha => &["Y", "A"],
+        ColorType::Rgb => &["R", "G", "B"],
+        ColorType::Rgba => &["R", "G", "B", "A"],
+        ColorType::Indexed => return Err(PictureError::invalid(FORMAT, "it has indices but no palette")),
+    };
+    let planes = if frame.bit_depth == ::png::BitDepth::Sixteen {
+        let (pairs, _) = samples.as_chunks::<2>();
+        let wide = |pair: &[u8; 2]| f32::from(u16::from_be_bytes(*pair)) / 65535.0;
+        planes_of(FORMAT, pairs.iter(), names.len(), pixels, wide)?
+    } else {
+        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?
+    };
+    let mut picture = Picture::new(width as usize, height as usize)?;
+    picture.alpha = Alpha::Straight;
+    picture.colour_space = colour_space(reader.info());
+    for (name, plane) in names.iter().zip(planes) {
+        picture.push_channel(*name, plane)?;
+    }
+    // Texts may stand after the pixels; what is damaged there does not harm the picture.
+    let _ = reader.finish();
+    read_texts(reader.info(), &mut picture);
+    Ok(picture)
+}
+
+/// What the samples mean: sRGB unless a `gAMA` chunk says otherwise. 1/2.2 is how files say sRGB without
+/// the chunk of that name. [PNG, 4.3 and 13.13]
+fn colour_space(info: &Info) -> ColourSpace {
+    let Some(gamma) = info.gama_chunk.filter(|_| info.srgb.is_none()).map(|gamma| gamma.into_value()) else {
+        return ColourSpace::Srgb;
+    };
+    match gamma {
+        1.0 => ColourSpace::LinearRec709,
+        gamma if (gamma - 1.0 / 2.2).abs() < 0.01 => ColourSpace::Srgb,
+        // Such files exist, and mean nothing: they are shown as if the chunk were missing.
+        gamma if !(0.05..=20.0).contains(&gamma) => ColourSpace::Srgb,
+        gamma => ColourSpace::Gamma(gamma),
+    }
+}
+
+fn read_texts(info: &Info, picture: &mut Picture) {
+    for text in &info.uncompressed_latin1_text {
+        picture.metadata.insert(text.keyword.clone(), text.text.clone());
+    }
+    for text in &info.compressed_latin1_text {
+        let mut text = text.clone();
+        if let Ok(plain) = text.decompress_text_with_limit(LONGEST_TEXT).and_then(|()| text.get_text()) {
+            picture.metadata.insert(text.keyword, plain);
+        }
+    }
+    for text in &info.utf8_text {
+        let mut text = text.clone();
+        if let Ok(plain) = text.decompress_text_with_limit(LONGEST_TEXT).and_then(|()| text.get_text()) {
+            picture.metadata.insert(text.keyword, plain);
+        }
+    }
+}
+
+fn explain(error: DecodingError) -> PictureError {
+    match error {
+        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            PictureError::truncated(FORMAT, "the pixels or what comes before them")
+        }
+        DecodingError::LimitsExceeded => PictureError::Unsupported {
+            format: FORMAT,
+            what: "a chunk that needs more memory than the limit".to_owned(),
+            advice: "raise the memory limit if the file is to be trusted",
+        },
+        other => PictureError::invalid(FORMAT, other.to_string()),
+    }
+}
+
+fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let planes = display_planes(FORMAT, picture, options)?;
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, picture.width() as u32, picture.height() as u32);
+    encoder.set_color(match planes.names[..] {
+        ["Y"] => ColorType::Grayscale,
+        ["Y", "A"] => ColorType::GrayscaleAlpha,
+        ["R", "G", "B"] => ColorType::Rgb,
+        _ => ColorType::Rgba,
+    });
+    let samples = match options.bit_depth {
+        BitDepth::Eight => {
+            encoder.set_depth(::png::BitDepth::Eight);
+            planes.to_u8(&planes.names)
+        }
+        BitDepth::Sixteen => {
+            encoder.set_depth(::png::BitDepth::Sixteen);
+            planes.to_u16_be(&planes.names)
+        }
+    };
+    encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    for (keyword, text) in &picture.metadata {
+        let plain = text.chars().all(|letter| u32::from(letter) < 256);
+        let (keyword, text) = (keyword.clone(), text.clone());
+        let added =
+            if plain { encoder.add_text_chunk(keyword, text) } else { encoder.add_itxt_chunk(keyword, text) };
+        added.map_err(unwritable)?;
+    }
+    let mut writer = encoder.write_header().map_err(unwritable)?;
+    writer.write_image_data(&samples).map_err(unwritable)?;
+    writer.finish().map_err(unwritable)?;
+    Ok(bytes)
+}
+
+fn unwritable(error: ::png::EncodingError) -> PictureError {
+    PictureError::Unwritable { format: FORMAT, what: error.to_string() }
+}

@@ -1,0 +1,82 @@
+//! Words and numbers in the text headers of PNM and PFM.
+
+use crate::PictureError;
+
+/// Walks over a header's words; `#` begins a comment that lasts to the end of its line.
+pub(super) struct Tokens<'a> {
+    format: &'static str,
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Tokens<'a> {
+    pub(super) fn new(format: &'static str, bytes: &'a [u8]) -> Tokens<'a> {
+        Tokens { format, bytes, at: 0 }
+    }
+
+    /// The next word, or an error that says what should have been there.
+    pub(super) fn word(&mut self, what: &'static str) -> Result<&'a str, PictureError> {
+        self.skip_blank();
+        let start = self.at;
+        while self.bytes.get(self.at).is_some_and(|byte| !byte.is_ascii_whitespace() && *byte != b'#') {
+            self.at += 1;
+            if self.at - start > LONGEST_WORD {
+                return Err(PictureError::invalid(self.format, format!("the {what} is endlessly long")));
+            }
+        }
+        if start == self.at {
+            return Err(PictureError::truncated(self.format, format!("the {what}")));
+        }
+        let word = std::str::from_utf8(&self.bytes[start..self.at]);
+        word.map_err(|_| PictureError::invalid(self.format, format!("the {what} is no text")))
+    }
+
+    /// The next word as a whole number.
+    pub(super) fn integer(&mut self, what: &'static str) -> Result<u64, PictureError> {
+        let word = self.word(what)?;
+        let wrong =
+            || PictureError::invalid(self.format, format!("the {what} is '{word}', not a whole number"));
+        word.parse().map_err(|_| wrong())
+    }
+
+    /// The next 0 or 1, which need no blank between them (P1).
+    pub(super) fn bit(&mut self) -> Result<bool, PictureError> {
+        self.skip_blank();
+        let bit = match self.bytes.get(self.at) {
+            Some(b'0') => false,
+            Some(b'1') => true,
+            Some(_) => return Err(PictureError::invalid(self.format, "a bit is neither 0 nor 1")),
+            None => return Err(PictureError::truncated(self.format, "the pixels")),
+        };
+        self.at += 1;
+        Ok(bit)
+    }
+
+    /// The bytes after the single blank that ends a binary file's header.
+    pub(super) fn binary(mut self) -> Result<&'a [u8], PictureError> {
+        match self.bytes.get(self.at) {
+            Some(byte) if byte.is_ascii_whitespace() => {
+                self.at += 1;
+                Ok(&self.bytes[self.at..])
+            }
+            Some(_) => Err(PictureError::invalid(self.format, "no blank between the header and the pixels")),
+            None => Err(PictureError::truncated(self.format, "the header")),
+        }
+    }
+
+    fn skip_blank(&mut self) {
+        while let Some(byte) = self.bytes.get(self.at) {
+            match byte {
+                b'#' => {
+                    let rest = &self.bytes[self.at..];
+                    self.at += rest.iter().position(|b| *b == b'\n' || *b == b'\r').unwrap_or(rest.len());
+                }
+                byte if byte.is_ascii_whitespace() => self.at += 1,
+                _ => break,
+            }
+        }
+    }
+}
+
+/// No number that a header may hold is longer.
+const LONGEST_WORD: usize = 64;

@@ -1,0 +1,79 @@
+//! From the light of a scene to what a display can show. To add a curve: a file with its `ENTRY`, and a
+//! line in the table.
+
+mod aces;
+mod none;
+mod reinhard;
+
+use crate::PictureError;
+use crate::error::nearest;
+use crate::picture::{Picture, hold_within};
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+
+/// Every curve that there is; the first is the one that does nothing.
+pub const TONEMAPS: &[ToneMapEntry] = &[none::ENTRY, reinhard::ENTRY, aces::ENTRY];
+
+/// One curve.
+#[derive(Clone, Copy, Debug)]
+pub struct ToneMapEntry {
+    /// Name, summary, source and parameters.
+    pub entry: Entry,
+    /// Linear Rec. 709 in, linear Rec. 709 to be shown out: finite and not negative in, 0..=1 out.
+    pub map: fn(Rgb) -> Rgb,
+}
+
+/// The curve of this name.
+pub fn tone_map(name: &str) -> Result<&'static ToneMapEntry, PictureError> {
+    TONEMAPS.iter().find(|row| row.entry.name == name).ok_or_else(|| PictureError::UnknownName {
+        kind: "tone map",
+        name: name.to_owned(),
+        suggestion: nearest(name, TONEMAPS.iter().map(|row| row.entry.name)),
+        known: TONEMAPS.iter().map(|row| row.entry.name).collect::<Vec<_>>().join(", "),
+    })
+}
+
+/// The main picture ready for a display: exposed by `exposure` stops, tone mapped, sRGB-encoded, alpha
+/// not multiplied in. Layers are left out. A picture that is encoded already, and is neither to be
+/// exposed nor mapped, stays as it is. Errors where the picture has no colour.
+pub fn to_display(picture: &Picture, exposure: f32, curve: &ToneMapEntry) -> Result<Picture, PictureError> {
+    let names: Vec<&str> =
+        ["R", "G", "B", "Y", "A"].into_iter().filter(|&name| picture.channel(name).is_some()).collect();
+    if picture.rgb_planes().is_none() {
+        let what =
+            "a picture for a display needs the channels R, G and B, or Y; choose a layer that has them";
+        return Err(PictureError::Malformed(what.to_owned()));
+    }
+    let mut shown = picture.like();
+    for name in names {
+        shown.push_channel(name, picture.channel(name).unwrap_or_default().to_vec())?;
+    }
+    if exposure == 0.0 && curve.entry.name == none::ENTRY.entry.name {
+        return Ok(shown.into_srgb());
+    }
+    let mut shown = shown.into_linear();
+    let gain = bilux_math::transcendental::powf(2.0, exposure);
+    apply(&mut shown, |colour| (curve.map)(colour.map(|c| hold_within(c * gain, f32::MAX))));
+    Ok(shown.into_srgb())
+}
+
+/// Maps the main picture's colours; alpha is divided out before and multiplied in after.
+fn apply(picture: &mut Picture, map: impl Fn(Rgb) -> Rgb) {
+    let Some(colours) = picture.to_rgb() else { return };
+    let alpha = picture.channel("A").map(<[f32]>::to_vec);
+    let mapped: Vec<Rgb> = colours
+        .into_iter()
+        .enumerate()
+        .map(|(i, colour)| match alpha.as_ref().map(|alpha| alpha[i]) {
+            Some(alpha) if alpha > 0.0 => map(colour / alpha) * alpha,
+            _ => map(colour),
+        })
+        .collect();
+    for (component, index) in [("R", 0), ("G", 1), ("B", 2), ("Y", 0)] {
+        let samples = picture.channel_mut(component).unwrap_or_default();
+        samples
+            .iter_mut()
+            .zip(&mapped)
+            .for_each(|(sample, colour)| *sample = hold_within(colour[index], 1.0));
+    }
+}

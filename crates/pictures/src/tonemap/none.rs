@@ -1,0 +1,16 @@
+//! No curve: what is brighter than white is white.
+
+use super::ToneMapEntry;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+
+/// The row of `none`.
+pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
+    entry: Entry {
+        name: "none",
+        summary: "held within 0 and 1, else unchanged",
+        source: "",
+        parameters: &[],
+    },
+    map: |colour: Rgb| colour.clamp(0.0, 1.0),
+};

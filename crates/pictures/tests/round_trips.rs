@@ -1,0 +1,228 @@
+//! What is written comes back, to the bit where the format can hold it, and the same bytes every time.
+
+use bilux_math::Rgb;
+use bilux_pictures::{
+    Alpha, BitDepth, ColourSpace, Limits, PICTURE_FORMATS, Picture, PictureError, WriteOptions, read,
+    read_bytes, write, write_bytes,
+};
+
+/// Values that a careless writer loses: signed zero, subnormal, huge, infinite, not a number.
+const NASTY: [f32; 8] = [0.0, -0.0, 1e-40, f32::MAX, f32::MIN_POSITIVE, f32::INFINITY, f32::NAN, -3.25];
+
+fn hash(seed: u32) -> u32 {
+    let mut h = seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
+    h = (h ^ (h >> 15)).wrapping_mul(0x85eb_ca6b);
+    h ^ (h >> 13)
+}
+
+fn unit(seed: u32) -> f32 {
+    (hash(seed) >> 8) as f32 / (1 << 24) as f32
+}
+
+fn noise(width: usize, height: usize, names: &[&str]) -> Picture {
+    let mut picture = Picture::new(width, height).unwrap();
+    for (channel, name) in names.iter().enumerate() {
+        let plane = (0..width * height).map(|i| unit((i * 7 + channel) as u32)).collect();
+        picture.push_channel(*name, plane).unwrap();
+    }
+    picture
+}
+
+fn bits(samples: &[f32]) -> Vec<u32> {
+    samples.iter().map(|s| s.to_bits()).collect()
+}
+
+fn round_trip(format: &str, picture: &Picture, options: &WriteOptions) -> Picture {
+    let bytes = write_bytes(format, picture, options).unwrap();
+    assert_eq!(bytes, write_bytes(format, picture, options).unwrap(), "{format} is not deterministic");
+    read_bytes(&bytes, None, &Limits::default()).unwrap()
+}
+
+#[test]
+fn exr_keeps_floats_integers_layers_and_texts_to_the_bit() {
+    for (width, height) in [(1, 1), (7, 5), (33, 17), (100, 64)] {
+        let names =
+            ["R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y"];
+        let mut picture = noise(width, height, &names);
+        for name in ["R", "depth.Z"] {
+            let plane = picture.channel_mut(name).unwrap();
+            plane.iter_mut().zip(NASTY.iter().cycle()).for_each(|(sample, nasty)| *sample = *nasty);
+        }
+        let limbs = |seed| (0..width * height).map(|i| hash(seed + i as u32)).collect::<Vec<u32>>();
+        picture.push_integer_plane("sum.R.0", limbs(1)).unwrap();
+        picture.push_integer_plane("sum.R.1", limbs(2)).unwrap();
+        picture.push_integer_plane("a_very_long_name_that_needs_the_long_name_flag", limbs(3)).unwrap();
+        for key in ["bilux.scale", "comments", "owner", "software", "zebra", "Ünïcode"] {
+            picture.metadata.insert(key.to_owned(), format!("text of {key}: 東京"));
+        }
+        let back = round_trip("exr", &picture, &WriteOptions::default());
+        assert_eq!(back.channels().len(), picture.channels().len());
+        for channel in picture.channels() {
+            let same = bits(back.channel(&channel.name).unwrap()) == bits(&channel.samples);
+            assert!(same, "{} at {width} x {height}", channel.name);
+        }
+        for plane in picture.integer_planes() {
+            assert_eq!(back.integer_plane(&plane.name), Some(&plane.samples[..]));
+        }
+        assert_eq!(back.metadata, picture.metadata);
+        assert_eq!(back.layers(), ["albedo", "depth", "normal", "sum.R"]);
+    }
+}
+
+#[test]
+fn pfm_keeps_floats_to_the_bit() {
+    for names in [&["R", "G", "B"][..], &["Y"]] {
+        let mut picture = noise(13, 9, names);
+        let plane = picture.channel_mut(names[0]).unwrap();
+        plane.iter_mut().zip(NASTY.iter().cycle()).for_each(|(sample, nasty)| *sample = *nasty);
+        let back = round_trip("pfm", &picture, &WriteOptions::default());
+        for name in names {
+            assert_eq!(bits(back.channel(name).unwrap()), bits(picture.channel(name).unwrap()));
+        }
+    }
+}
+
+#[test]
+fn png_and_ppm_keep_every_step() {
+    for (depth, steps) in [(BitDepth::Eight, 255u32), (BitDepth::Sixteen, 65535)] {
+        for (format, names) in [
+            ("png", &["R", "G", "B"][..]),
+            ("png", &["R", "G", "B", "A"]),
+            ("png", &["Y"]),
+            ("png", &["Y", "A"]),
+            ("ppm", &["R", "G", "B"]),
+            ("ppm", &["Y"]),
+        ] {
+            let mut picture = noise(256, 257, names);
+            picture.colour_space = ColourSpace::Srgb;
+            picture.alpha = if format == "png" { Alpha::Straight } else { Alpha::Premultiplied };
+            for name in names {
+                let plane = picture.channel_mut(name).unwrap();
+                plane
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(i, s)| *s = (i as u32 % (steps + 1)) as f32 / steps as f32);
+            }
+            let options = WriteOptions { bit_depth: depth, ..WriteOptions::default() };
+            assert_eq!(round_trip(format, &picture, &options), picture, "{format} {names:?} {steps}");
+        }
+    }
+}
+
+#[test]
+fn png_keeps_texts() {
+    let mut picture = noise(3, 2, &["R", "G", "B"]);
+    picture.metadata.insert("Software".to_owned(), "Bilux".to_owned());
+    picture.metadata.insert("Title".to_owned(), "Teekanne, Größe 5, 東京".to_owned());
+    assert_eq!(round_trip("png", &picture, &WriteOptions::default()).metadata, picture.metadata);
+}
+
+#[test]
+fn hdr_is_within_half_a_step_and_then_exact() {
+    for (width, height) in [(1, 1), (7, 3), (8, 3), (300, 20)] {
+        let mut picture = noise(width, height, &["R", "G", "B"]);
+        for name in ["R", "G", "B"] {
+            let plane = picture.channel_mut(name).unwrap();
+            // Flat stretches, so that there are runs; and many powers of two.
+            plane.iter_mut().enumerate().for_each(|(i, s)| {
+                let exponent = (i / 11 % 60) as i32 - 30;
+                *s =
+                    if i / 50 % 2 == 0 { 0.75 } else { *s } * f32::from_bits(((127 + exponent) as u32) << 23);
+            });
+        }
+        let once = round_trip("hdr", &picture, &WriteOptions::default());
+        for y in 0..height {
+            for x in 0..width {
+                let (a, b) = (picture.rgb(x, y), once.rgb(x, y));
+                let step = a.max_channel() / 128.0;
+                assert!((0..3).all(|c| (a[c] - b[c]).abs() <= 0.5001 * step), "{a:?} became {b:?}");
+            }
+        }
+        assert_eq!(round_trip("hdr", &once, &WriteOptions::default()), once);
+    }
+}
+
+#[test]
+fn hdr_holds_whole_numbers_and_limits() {
+    let colours = [Rgb::grey(1.0), Rgb::new(255.0, 3.0, 0.0), Rgb::grey(f32::INFINITY), Rgb::grey(f32::NAN)];
+    let picture = Picture::from_rgb(4, 1, colours.to_vec()).unwrap();
+    let back = round_trip("hdr", &picture, &WriteOptions::default());
+    assert_eq!((back.rgb(0, 0), back.rgb(1, 0)), (colours[0], colours[1]));
+    assert!(back.rgb(2, 0).r > 1e38 && back.rgb(2, 0).is_finite());
+    assert_eq!(back.rgb(3, 0), Rgb::BLACK);
+}
+
+#[test]
+fn display_formats_encode_light() {
+    let picture = Picture::from_rgb(3, 1, vec![Rgb::grey(0.5), Rgb::grey(7.0), Rgb::grey(-1.0)]).unwrap();
+    for format in ["png", "ppm"] {
+        let back = round_trip(format, &picture, &WriteOptions::default());
+        let bytes: Vec<u32> = (0..3).map(|x| (back.rgb(x, 0).r * 255.0).round() as u32).collect();
+        assert_eq!(bytes, [188, 255, 0]);
+        assert_eq!(back.colour_space, ColourSpace::Srgb);
+    }
+    let brighter = WriteOptions { exposure: 1.0, ..WriteOptions::default() };
+    assert_eq!(round_trip("png", &picture, &brighter).rgb(0, 0), Rgb::WHITE);
+}
+
+#[test]
+fn alpha_is_multiplied_and_divided_where_the_formats_want_it() {
+    let mut picture = Picture::from_rgb(2, 1, vec![Rgb::grey(0.25), Rgb::BLACK]).unwrap();
+    picture.push_channel("A", vec![0.5, 0.0]).unwrap();
+    let options = WriteOptions { bit_depth: BitDepth::Sixteen, ..WriteOptions::default() };
+    let png = round_trip("png", &picture, &options);
+    assert_eq!(png.alpha, Alpha::Straight);
+    assert!((png.clone().into_linear().rgb(0, 0).r - 0.25).abs() < 1e-4);
+    assert!((ColourSpace::Srgb.decode(png.rgb(0, 0).r) - 0.5).abs() < 1e-4);
+    let exr = round_trip("exr", &png, &WriteOptions::default());
+    assert!((exr.rgb(0, 0).r - 0.25).abs() < 1e-4 && exr.alpha == Alpha::Premultiplied);
+}
+
+#[test]
+fn files_are_written_in_one_step_by_extension() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = noise(9, 4, &["R", "G", "B"]);
+    for row in PICTURE_FORMATS.iter().filter(|row| row.write.is_some()) {
+        for extension in row.extensions {
+            let path = folder.path().join(format!("picture.{extension}"));
+            std::fs::write(&path, "the old one").unwrap();
+            write(&path, &picture, &WriteOptions::default()).unwrap();
+            assert_eq!(read(&path).unwrap().width(), 9);
+        }
+    }
+    let left: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert!(left.iter().all(|name| name.to_string_lossy().starts_with("picture.")), "{left:?}");
+}
+
+#[test]
+fn errors_name_the_file_and_the_nearest_format() {
+    let picture = noise(2, 2, &["R", "G", "B"]);
+    let message = |path: &str| write(path, &picture, &WriteOptions::default()).unwrap_err().to_string();
+    let misspelt = message("out.pgn");
+    assert!(misspelt.contains("out.pgn") && misspelt.contains("did you mean 'png'"), "{misspelt}");
+    assert!(message("out.jpg").contains("written"));
+    assert!(message("out").contains("png"));
+    assert!(message("no/such/folder/out.png").contains("no/such/folder/out.png"));
+    let missing = read("no/such/file.png").unwrap_err().to_string();
+    assert!(missing.contains("no/such/file.png"), "{missing}");
+    let depth = noise(2, 2, &["depth.Z"]);
+    let error = write_bytes("png", &depth, &WriteOptions::default()).unwrap_err();
+    assert!(
+        matches!(&error, PictureError::Unwritable { .. }) && error.to_string().contains("depth.Z"),
+        "{error}"
+    );
+    let mut reserved = noise(2, 2, &["Y"]);
+    reserved.metadata.insert("dataWindow".to_owned(), "?".to_owned());
+    assert!(write_bytes("exr", &reserved, &WriteOptions::default()).is_err());
+}
+
+#[test]
+fn planes_have_to_fit() {
+    let mut picture = noise(3, 2, &["R"]);
+    assert!(picture.push_channel("R", vec![0.0; 6]).is_err());
+    assert!(picture.push_integer_plane("R", vec![0; 6]).is_err());
+    assert!(picture.push_channel("G", vec![0.0; 5]).is_err());
+    assert!(picture.push_channel("", vec![0.0; 6]).is_err());
+    assert!(Picture::new(0, 4).is_err() && Picture::new(usize::MAX, usize::MAX).is_err());
+    assert!(Picture::from_rgb(2, 2, vec![Rgb::BLACK; 3]).is_err());
+}
