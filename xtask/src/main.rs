@@ -1,2 +1,44 @@
-//! Repository chores: test, tidy, docs, dist.
-fn main() {}
+//! Repository chores: `cargo xtask COMMAND`.
+
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
+
+mod process;
+mod test;
+
+use std::process::ExitCode;
+
+/// One chore.
+struct Chore {
+    name: &'static str,
+    summary: &'static str,
+    run: fn(&[String]) -> anyhow::Result<()>,
+}
+
+/// Every chore that there is.
+const CHORES: &[Chore] =
+    &[Chore { name: "test", summary: "everything that has to hold before a change lands", run: test::run }];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some((name, rest)) = arguments.split_first() else {
+        return usage("say which chore");
+    };
+    let Some(chore) = CHORES.iter().find(|chore| chore.name == name) else {
+        return usage(&format!("there is no chore '{name}'"));
+    };
+    match (chore.run)(rest) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("xtask {name}: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn usage(trouble: &str) -> ExitCode {
+    eprintln!("xtask: {trouble}\n\nusage: cargo xtask CHORE\n");
+    for chore in CHORES {
+        eprintln!("  {:<11} {}", chore.name, chore.summary);
+    }
+    ExitCode::from(2)
+}

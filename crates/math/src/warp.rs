@@ -23,7 +23,7 @@ pub fn disc_pdf_area() -> f32 {
     FRAC_1_PI
 }
 
-/// Directions about +z with density cosθ/π. [Malley]
+/// Directions about +z with density cosθ/π, by Malley's method: points of the disc, raised to the sphere.
 pub fn sample_cosine_hemisphere(u: Vec2) -> Vec3 {
     let d = sample_disc(u);
     Vec3::new(d.x, d.y, (1.0 - d.length_squared()).max(0.0).sqrt())
