@@ -1,5 +1,6 @@
 //! OpenEXR: any number of named planes of halves, floats or integers, and texts. [OpenEXR]
 
+use super::guard::guarded;
 use super::{PictureFormatEntry, exr_write};
 use crate::limits::zeroed;
 use crate::{Limits, Picture, PictureError};
@@ -26,7 +27,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     extensions: &["exr"],
     for_display: false,
     sniff: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
-    read,
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
     write: Some(exr_write::write),
 };
 

@@ -1,5 +1,6 @@
 //! JPEG, read only: textures come in it, renderings should not leave in it.
 
+use super::guard::guarded;
 use super::{PictureFormatEntry, planes_of};
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -14,7 +15,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     extensions: &["jpg", "jpeg", "jpe", "jfif"],
     for_display: true,
     sniff: |bytes| bytes.starts_with(&[0xff, 0xd8, 0xff]),
-    read,
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
     write: None,
 };
 

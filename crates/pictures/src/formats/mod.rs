@@ -3,6 +3,7 @@
 mod disk;
 mod exr;
 mod exr_write;
+mod guard;
 mod hdr;
 mod jpeg;
 mod pfm;
@@ -11,6 +12,7 @@ mod pnm;
 mod tokens;
 
 pub use disk::write_atomically;
+pub use guard::is_decoding;
 
 use crate::error::nearest;
 use crate::picture::hold_within;

@@ -1,5 +1,6 @@
 //! PNG: all that it can hold comes in; 8 or 16 bits, sRGB, go out. [PNG]
 
+use super::guard::guarded;
 use super::{BitDepth, PictureFormatEntry, WriteOptions, display_planes, planes_of};
 use crate::limits::zeroed;
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
@@ -18,7 +19,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     extensions: &["png", "apng"],
     for_display: true,
     sniff: |bytes| bytes.starts_with(b"\x89PNG"),
-    read,
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
     write: Some(write),
 };
 
@@ -38,6 +39,10 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let (width, height) = (header.width, header.height);
     let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
     let mut reader = decoder.read_info().map_err(explain)?;
+    // The decoder takes the length of a palette on trust.
+    if reader.info().palette.as_ref().is_some_and(|palette| palette.is_empty() || palette.len() % 3 != 0) {
+        return Err(PictureError::invalid(FORMAT, "its palette is not a whole number of colours"));
+    }
     let size =
         reader.output_buffer_size().ok_or_else(|| PictureError::invalid(FORMAT, "its size overflows"))?;
     let mut samples: Vec<u8> = zeroed(FORMAT, size)?;

@@ -1,0 +1,20 @@
+//! What the targets have in common: read any bytes, within bounded memory, without a panic.
+
+use bilux_pictures::{Limits, format_named};
+
+/// What a picture may take while it is decoded. With `-rss_limit_mb` and `-malloc_limit_mb` a little above
+/// it, the fuzzer finds whatever goes beyond.
+const LIMITS: Limits = Limits::new(64 << 20);
+
+/// Reads the bytes as this picture format, whatever they begin with. What is read has to be whole: within
+/// the limits, every plane of the picture's size.
+pub fn read_picture(format: &str, bytes: &[u8]) {
+    let row = format_named(format).expect("a format of the table");
+    let Ok(picture) = (row.read)(bytes, &LIMITS) else { return };
+    let pixels = picture.width() * picture.height();
+    let planes = picture.channels().iter().map(|channel| channel.samples.len());
+    let planes: Vec<usize> =
+        planes.chain(picture.integer_planes().iter().map(|plane| plane.samples.len())).collect();
+    assert!(planes.iter().all(|length| *length == pixels));
+    assert!((planes.len() * pixels * 4) as u64 <= LIMITS.max_bytes);
+}
