@@ -1,5 +1,7 @@
 //! Other people's files, where the folder with them is there.
 
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
+
 use bilux_pictures::{ColourSpace, Limits, PICTURE_FORMATS, Picture, format_named, read, read_bytes};
 use std::path::{Path, PathBuf};
 
