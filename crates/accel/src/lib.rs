@@ -21,6 +21,7 @@
 
 pub mod accelerator;
 pub mod brute_force;
+pub mod bsp;
 pub mod bvh;
 pub mod counters;
 pub mod instancing;

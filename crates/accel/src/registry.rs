@@ -2,12 +2,13 @@
 
 use crate::accelerator::Accelerator;
 use crate::mesh::TriangleMesh;
-use crate::{brute_force, bvh};
+use crate::{brute_force, bsp, bvh};
 use bilux_math::registry::Entry;
 use std::sync::Arc;
 
 /// Every structure that there is.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[brute_force::ENTRY, bvh::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] =
+    &[brute_force::ENTRY, bsp::paper::ENTRY, bsp::sah::ENTRY, bvh::ENTRY];
 
 /// The structure that `auto` stands for: the fastest.
 pub const AUTO: &str = "bvh";
@@ -31,6 +32,9 @@ pub enum BuildError {
     /// No structure has this name.
     #[error("there is no accelerator '{0}'")]
     UnknownName(String),
+    /// The tree would have more nodes than can be numbered.
+    #[error("the mesh is too large for this accelerator: its tree has more nodes than can be numbered")]
+    TooManyNodes,
 }
 
 /// What a builder may be told. Each looks only at what it knows.
@@ -40,6 +44,20 @@ pub struct BuildOptions {
     pub bsp_split: BspSplit,
     /// What `bsp` keeps together.
     pub bsp_group: BspGroup,
+    /// How much time a builder may take for a better structure.
+    pub quality: Quality,
+}
+
+/// How much time a builder may take for a better structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// Ready soon.
+    Fast,
+    /// Between the two.
+    #[default]
+    Balanced,
+    /// Cheapest to ask.
+    Best,
 }
 
 /// How the paper's tree chooses a partition plane.

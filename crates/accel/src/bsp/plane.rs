@@ -1,0 +1,114 @@
+//! Partition planes as a tree stores them, and on which side of one something lies.
+
+use bilux_math::{Aabb, DVec3, Vec3};
+
+/// Where a tree's own coordinates have their origin, and how exact they are.
+///
+/// Planes are stored in f32 relative to the middle of the mesh, so that their rounding is bounded by the
+/// size of the mesh, however far from the origin it stands. Builders work in f64.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Space {
+    /// Middle of the mesh.
+    pub(super) centre: Vec3,
+    /// What counts as touching a plane: 8 units of f32 rounding of the greatest half-extent. A plane through
+    /// points of the mesh, once its coefficients are rounded to f32, is never further from them.
+    pub(super) tolerance: f64,
+}
+
+impl Space {
+    pub(super) fn new(bounds: &Aabb) -> Space {
+        if bounds.is_empty() {
+            return Space { centre: Vec3::ZERO, tolerance: 0.0 };
+        }
+        let centre = bounds.centre();
+        let half = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).max_element();
+        Space { centre, tolerance: half * (8.0 / 16_777_216.0) }
+    }
+
+    /// A vertex in the tree's coordinates.
+    pub(super) fn local(&self, vertex: [f32; 3]) -> DVec3 {
+        Vec3::from(vertex).as_dvec3() - self.centre.as_dvec3()
+    }
+}
+
+/// A plane: points where `normal · x = at`. The coefficients are exactly f32, whatever type holds them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plane {
+    normal: DVec3,
+    at: f64,
+    /// The axis that the normal is, or 3.
+    axis: u8,
+}
+
+/// On which side of a plane something lies, the tolerance granted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Where `normal · x` is less.
+    Left,
+    /// Where it is greater.
+    Right,
+    /// In the plane.
+    On,
+    /// On either side.
+    Both,
+}
+
+/// A normal that leans less than this is taken for an axis: the plane then moves by less than the tolerance.
+const NEARLY_STRAIGHT: f64 = 1.0 / 16_777_216.0;
+
+impl Plane {
+    /// Perpendicular to an axis.
+    pub(super) fn perpendicular(axis: usize, at: f64) -> Plane {
+        Plane { normal: DVec3::AXES[axis], at: f64::from(at as f32), axis: axis as u8 }
+    }
+
+    /// Through a point; `None` when the normal has no direction.
+    pub(super) fn through(point: DVec3, normal: DVec3) -> Option<Plane> {
+        let normal = normal.try_normalize()?;
+        let slant = |axis: usize| (normal - normal[axis] * DVec3::AXES[axis]).abs().max_element();
+        if let Some(axis) = (0..3).find(|&axis| slant(axis) < NEARLY_STRAIGHT) {
+            return Some(Plane::perpendicular(axis, point[axis]));
+        }
+        let normal = normal.as_vec3().as_dvec3();
+        Some(Plane { normal, at: f64::from(normal.dot(point) as f32), axis: 3 })
+    }
+
+    /// The axis that it is perpendicular to, if it is.
+    pub(super) fn axis(&self) -> Option<usize> {
+        (self.axis < 3).then_some(usize::from(self.axis))
+    }
+
+    /// Normal and distance from the origin of the tree's coordinates.
+    pub(super) fn coefficients(&self) -> ([f32; 3], f32) {
+        (self.normal.as_vec3().to_array(), self.at as f32)
+    }
+
+    /// Two directions within it; with the normal they make a right-handed frame.
+    pub(super) fn axes(&self) -> (DVec3, DVec3) {
+        let x = self.normal.any_orthonormal_vector();
+        (x, self.normal.cross(x))
+    }
+
+    /// Signed distance, positive on the right.
+    #[inline(always)]
+    pub(super) fn distance(&self, point: DVec3) -> f64 {
+        self.normal.dot(point) - self.at
+    }
+
+    /// Where the convex hull of some points lies.
+    #[inline]
+    pub(super) fn side(&self, points: &[DVec3], tolerance: f64) -> Side {
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &point in points {
+            let distance = self.distance(point);
+            least = least.min(distance);
+            greatest = greatest.max(distance);
+        }
+        match (least < -tolerance, greatest > tolerance) {
+            (true, false) => Side::Left,
+            (false, true) => Side::Right,
+            (false, false) => Side::On,
+            (true, true) => Side::Both,
+        }
+    }
+}

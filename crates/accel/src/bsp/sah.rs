@@ -1,0 +1,223 @@
+//! The tree that makes rays cheapest: planes of any orientation, weighed by the surface-area heuristic
+//! [Ize 2008].
+//!
+//! A random ray that crosses a convex cell crosses a convex part of it with the probability that is the ratio
+//! of their surfaces. So a plane costs a ray one step and, weighed thus, the triangles on either side;
+//! the cheapest plane is taken, or none where a leaf is cheaper.
+//! - High in the tree, where cells are boxes, only planes perpendicular to the axes are weighed, all of them
+//!   in one sweep: other planes do not pay there, and cost much to find.
+//! - Near the leaves ([`Quality`] says how near) ten planes of every triangle are: its own, three
+//!   through its edges perpendicular to it, and the six of the box around what the cell has left of it.
+//!
+//! Planes perpendicular to an axis are stored, walked and weighed as the cheaper ones that they are.
+
+use super::cell::Cell;
+use super::pieces::{Parts, Pieces};
+use super::plane::{Plane, Side, Space};
+use super::sweep;
+use super::tree::{Branch, BspTree, MAX_DEPTH};
+use crate::mesh::TriangleMesh;
+use crate::registry::{AcceleratorEntry, BuildError, BuildOptions, Quality};
+use bilux_math::{DVec3, registry::Entry};
+use std::sync::Arc;
+
+/// Row of [`crate::ACCELERATORS`].
+pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
+    entry: Entry {
+        name: "bsp-sah",
+        summary: "planes of any orientation, weighed by the surface-area heuristic; many along the axes",
+        source: "Ize 2008",
+        parameters: &[],
+    },
+    build,
+};
+
+/// Most references per triangle. No way down the tree may multiply references by more.
+pub const GROWTH: f64 = 8.0;
+
+/// What a ray pays for a plane perpendicular to an axis, in triangle tests.
+pub(super) const AXIS_STEP: f64 = 0.4;
+
+/// What a ray pays for any other plane, in triangle tests.
+const STEP: f64 = 0.8;
+
+/// Partitions of more references grow on two threads.
+const PARALLEL: usize = 1024;
+
+fn build(mesh: Arc<TriangleMesh>, options: &BuildOptions) -> Result<Box<dyn crate::Accelerator>, BuildError> {
+    Ok(Box::new(BspTree::sah(&mesh, options.quality)?))
+}
+
+impl BspTree {
+    /// The tree that makes rays cheapest.
+    ///
+    /// # Errors
+    /// When the tree has more nodes than can be numbered.
+    pub fn sah(mesh: &TriangleMesh, quality: Quality) -> Result<BspTree, BuildError> {
+        let space = Space::new(&mesh.bounds());
+        let few = match quality {
+            Quality::Fast => 0,
+            Quality::Balanced => 16,
+            Quality::Best => 64,
+        };
+        let grower = Grower { mesh, space, few };
+        let pieces = Pieces::of_mesh(mesh, &space);
+        let margin = DVec3::splat(space.tolerance);
+        let bounds = mesh.bounds();
+        let low = bounds.min.as_dvec3() - space.centre.as_dvec3() - margin;
+        let high = bounds.max.as_dvec3() - space.centre.as_dvec3() + margin;
+        let root = grower.grow(pieces, Room::Box(low, high), GROWTH, 0);
+        BspTree::new(mesh, &space, &root, false)
+    }
+}
+
+/// The cell that a partition fills.
+enum Room {
+    /// Between two corners.
+    Box(DVec3, DVec3),
+    /// Cut by other planes than boxes have.
+    Polyhedron(Cell),
+}
+
+/// A plane and what it is expected to cost, in triangle tests.
+#[derive(Clone, Copy)]
+pub(super) struct Choice {
+    pub(super) plane: Plane,
+    pub(super) cost: f64,
+    /// What lies in the plane goes left.
+    pub(super) on_left: bool,
+}
+
+struct Grower<'a> {
+    mesh: &'a TriangleMesh,
+    space: Space,
+    /// Partitions of at most so many references have all their planes weighed.
+    few: usize,
+}
+
+impl Grower<'_> {
+    fn grow(&self, pieces: Pieces, room: Room, growth: f64, depth: usize) -> Branch {
+        let choice = if depth < MAX_DEPTH { self.choose(&pieces, &room, growth) } else { None };
+        let Some(Choice { plane, on_left, .. }) = choice else {
+            return Branch::Leaf(pieces.into_triangles());
+        };
+        let before = pieces.len();
+        let Parts { mut left, on, mut right } = pieces.split(&plane, self.space.tolerance);
+        drop(pieces);
+        if on_left {
+            left.append(&on)
+        } else {
+            right.append(&on)
+        }
+        let growth = growth * before as f64 / (left.len() + right.len()) as f64;
+        let [left_room, right_room] = room.split(&plane);
+        let grow_left = || self.grow(left, left_room, growth, depth + 1);
+        let grow_right = || self.grow(right, right_room, growth, depth + 1);
+        let (left, right) =
+            if before > PARALLEL { rayon::join(grow_left, grow_right) } else { (grow_left(), grow_right()) };
+        Branch::Fork { plane, on: Vec::new(), children: Box::new([left, right]) }
+    }
+
+    /// The cheapest plane; `None` where a leaf is cheaper.
+    fn choose(&self, pieces: &Pieces, room: &Room, growth: f64) -> Option<Choice> {
+        let leaf = pieces.len() as f64;
+        let most = (leaf * growth) as usize;
+        if pieces.is_empty() {
+            return None;
+        }
+        if let (Room::Box(low, high), true) = (room, pieces.len() > self.few) {
+            let best = sweep::cheapest(pieces, *low, *high, self.space.tolerance, most);
+            if best.is_some_and(|best| best.cost < leaf) {
+                return best;
+            }
+        }
+        let cell = room.cell();
+        let mut best = None;
+        let mut cost = leaf;
+        for sample in 0..pieces.len().min(self.few) {
+            let piece = sample * pieces.len() / pieces.len().min(self.few);
+            for plane in self.planes(pieces, piece).into_iter().flatten() {
+                if let Some(choice) = self.weigh(plane, pieces, &cell, cost, most) {
+                    cost = choice.cost;
+                    best = Some(choice);
+                }
+            }
+        }
+        best
+    }
+
+    /// The planes that belong to one piece.
+    fn planes(&self, pieces: &Pieces, piece: usize) -> [Option<Plane>; 10] {
+        let triangle = self.mesh.triangles()[pieces.triangles()[piece] as usize];
+        let [a, b, c] = triangle.map(|vertex| self.space.local(vertex));
+        let normal = (b - a).cross(c - a);
+        let points = pieces.points(piece);
+        let low = points.iter().fold(DVec3::INFINITY, |low, &p| low.min(p));
+        let high = points.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p));
+        [
+            Plane::through(a, normal),
+            Plane::through(a, (b - a).cross(normal)),
+            Plane::through(b, (c - b).cross(normal)),
+            Plane::through(c, (a - c).cross(normal)),
+            Some(Plane::perpendicular(0, low.x)),
+            Some(Plane::perpendicular(1, low.y)),
+            Some(Plane::perpendicular(2, low.z)),
+            Some(Plane::perpendicular(0, high.x)),
+            Some(Plane::perpendicular(1, high.y)),
+            Some(Plane::perpendicular(2, high.z)),
+        ]
+    }
+
+    /// What a plane costs, if less than `limit` and without more than `most` references.
+    fn weigh(&self, plane: Plane, pieces: &Pieces, cell: &Cell, limit: f64, most: usize) -> Option<Choice> {
+        let (mut left, mut right, mut on) = (0, 0, 0);
+        for points in pieces.iter() {
+            match plane.side(points, self.space.tolerance) {
+                Side::Left => left += 1,
+                Side::Right => right += 1,
+                Side::On => on += 1,
+                Side::Both => (left, right) = (left + 1, right + 1),
+            }
+        }
+        let step = if plane.axis().is_some() { AXIS_STEP } else { STEP };
+        // Surfaces of the parts sum to at least the whole's: no plane is cheaper than this.
+        if left + right + on > most || step + left.min(right) as f64 >= limit {
+            return None;
+        }
+        let choice =
+            Choice::new(plane, step, cell.areas(&plane).map(|a| a / cell.area()), [left, right, on])?;
+        (choice.cost < limit).then_some(choice)
+    }
+}
+
+impl Choice {
+    /// From the surfaces of the two parts over the whole's and how many references lie left, right and
+    /// in the plane. `None` for a plane that parts nothing.
+    pub(super) fn new(plane: Plane, step: f64, areas: [f64; 2], counts: [usize; 3]) -> Option<Choice> {
+        let [left, right, on] = counts.map(|count| count as f64);
+        let on_left = areas[0] < areas[1];
+        let cost = step + areas[0] * left + areas[1] * right + areas[0].min(areas[1]) * on;
+        // Also refuses what is not a number.
+        (cost >= step && areas[0] > 0.0 && areas[1] > 0.0).then_some(Choice { plane, cost, on_left })
+    }
+}
+
+impl Room {
+    fn cell(&self) -> Cell {
+        match self {
+            Room::Box(low, high) => Cell::of_box(*low, *high),
+            Room::Polyhedron(cell) => cell.clone(),
+        }
+    }
+
+    fn split(&self, plane: &Plane) -> [Room; 2] {
+        if let (Room::Box(low, high), Some(axis)) = (self, plane.axis()) {
+            let at = plane.coefficients().1;
+            let (mut middle_low, mut middle_high) = (*low, *high);
+            middle_low[axis] = f64::from(at);
+            middle_high[axis] = f64::from(at);
+            return [Room::Box(*low, middle_high), Room::Box(middle_low, *high)];
+        }
+        self.cell().split(plane).map(Room::Polyhedron)
+    }
+}

@@ -1,0 +1,356 @@
+//! The tree as rays walk it, whatever rule it was grown by.
+
+use super::facing::{Facing, View};
+use super::path::{Passage, Path, earlier, later};
+use super::plane::{Plane, Space};
+use crate::accelerator::{Traverse, TreeShape};
+use crate::counters::Count;
+use crate::mesh::TriangleMesh;
+use crate::ray::{Culling, Hit, Query, Ray};
+use crate::registry::BuildError;
+use crate::triangle::{Nearest, PreparedRay, hits};
+use bilux_math::{Aabb, DVec3, Vec3};
+use std::ops::{ControlFlow, Range};
+
+/// A grown tree, before it is laid out.
+#[derive(Debug)]
+pub(super) enum Branch {
+    /// Triangles that are tested together.
+    Leaf(Vec<u32>),
+    /// A plane, the triangles within it, and what lies left and right of it.
+    Fork { plane: Plane, on: Vec<u32>, children: Box<[Branch; 2]> },
+}
+
+/// Most forks on the way from the root to a leaf.
+pub(super) const MAX_DEPTH: usize = 48;
+
+/// A fork leaves at most two things for later: what lies in its plane, and its far side.
+const STACK: usize = 2 * MAX_DEPTH;
+
+/// Binary space partitioning: planes of any orientation, front to back.
+#[derive(Debug)]
+pub struct BspTree {
+    /// In depth-first order: the left child of a fork follows it.
+    nodes: Vec<Node>,
+    /// Normal and place of planes that are not perpendicular to an axis.
+    planes: Vec<[f32; 4]>,
+    /// The triangles of each leaf, side by side; one that belongs to several leaves is stored in each.
+    references: Vec<Reference>,
+    facings: Vec<Facing>,
+    bounds: Aabb,
+    centre: Vec3,
+}
+
+/// Eight bytes: what it is (lowest three bits of `tag`), a number (the rest), and a payload.
+///
+/// | kind | number | payload |
+/// | --- | --- | --- |
+/// | 0, 1, 2: axis plane | right child | the plane's place, as f32 |
+/// | 3: plane | right child | index of the plane |
+/// | 4: plane with triangles in it | right child | index of the plane; the next node is a leaf with those |
+/// | 5: leaf | how many references | the first reference |
+/// | 6: leaf that has a facing | how many references | the first; the next node's payload is the facing |
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    tag: u32,
+    payload: u32,
+}
+
+const PLANE: u32 = 3;
+const FULL_PLANE: u32 = 4;
+const LEAF: u32 = 5;
+const FACING_LEAF: u32 = 6;
+
+#[derive(Clone, Copy, Debug)]
+struct Reference {
+    corners: [[f32; 3]; 3],
+    primitive: u32,
+}
+
+impl Node {
+    #[inline(always)]
+    fn kind(self) -> u32 {
+        self.tag & 7
+    }
+
+    #[inline(always)]
+    fn number(self) -> u32 {
+        self.tag >> 3
+    }
+
+    /// # Errors
+    /// When the numbers do not fit, beyond some hundred million nodes.
+    fn new(kind: u32, number: usize, payload: usize) -> Result<Node, BuildError> {
+        match (u32::try_from(number), u32::try_from(payload)) {
+            (Ok(number), Ok(payload)) if number < 1 << 29 => Ok(Node { tag: number << 3 | kind, payload }),
+            _ => Err(BuildError::TooManyNodes),
+        }
+    }
+}
+
+impl BspTree {
+    /// Lays a grown tree out. With `with_facings`, leaves know which way their triangles face.
+    pub(super) fn new(
+        mesh: &TriangleMesh,
+        space: &Space,
+        root: &Branch,
+        with_facings: bool,
+    ) -> Result<BspTree, BuildError> {
+        let mut tree = BspTree {
+            nodes: Vec::new(),
+            planes: Vec::new(),
+            references: Vec::new(),
+            facings: Vec::new(),
+            bounds: mesh.bounds(),
+            centre: space.centre,
+        };
+        tree.lay_out(mesh, root, with_facings)?;
+        Ok(tree)
+    }
+
+    fn lay_out(&mut self, mesh: &TriangleMesh, branch: &Branch, facings: bool) -> Result<(), BuildError> {
+        let (plane, on, children) = match branch {
+            Branch::Leaf(triangles) => return self.lay_out_leaf(mesh, triangles, facings),
+            Branch::Fork { plane, on, children } => (plane, on, children),
+        };
+        let here = self.nodes.len();
+        let (normal, at) = plane.coefficients();
+        let (kind, payload) = match plane.axis() {
+            Some(axis) if on.is_empty() => (axis as u32, at.to_bits() as usize),
+            _ => {
+                self.planes.push([normal[0], normal[1], normal[2], at]);
+                (if on.is_empty() { PLANE } else { FULL_PLANE }, self.planes.len() - 1)
+            }
+        };
+        self.nodes.push(Node::new(kind, 0, payload)?);
+        if !on.is_empty() {
+            self.lay_out_leaf(mesh, on, facings)?;
+        }
+        self.lay_out(mesh, &children[0], facings)?;
+        self.nodes[here] = Node::new(kind, self.nodes.len(), payload)?;
+        self.lay_out(mesh, &children[1], facings)
+    }
+
+    fn lay_out_leaf(
+        &mut self,
+        mesh: &TriangleMesh,
+        triangles: &[u32],
+        facings: bool,
+    ) -> Result<(), BuildError> {
+        let facing = if facings { Facing::of(mesh, triangles) } else { None };
+        let kind = if facing.is_some() { FACING_LEAF } else { LEAF };
+        self.nodes.push(Node::new(kind, triangles.len(), self.references.len())?);
+        if let Some(facing) = facing {
+            self.nodes.push(Node::new(LEAF, 0, self.facings.len())?);
+            self.facings.push(facing);
+        }
+        let reference =
+            |&primitive: &u32| Reference { corners: mesh.triangles()[primitive as usize], primitive };
+        self.references.extend(triangles.iter().map(reference));
+        Ok(())
+    }
+}
+
+/// Something that a walk has put off.
+#[derive(Clone, Copy, Default)]
+struct Later {
+    node: u32,
+    from: f32,
+    until: f32,
+}
+
+impl BspTree {
+    /// Takes a ray to every leaf that may hold a hit, nearest first. What `visit` gives back is the distance
+    /// beyond which nothing counts any more.
+    #[inline(always)]
+    fn walk<C: Count>(
+        &self,
+        ray: &PreparedRay,
+        query: &Query,
+        count: &mut C,
+        mut visit: impl FnMut(&[Reference], &mut C) -> ControlFlow<(), f32>,
+    ) {
+        if self.nodes.is_empty() || self.bounds.is_empty() {
+            return;
+        }
+        let path = Path::new(ray, &self.bounds, self.centre);
+        let (low, high) = (self.bounds.min - self.centre, self.bounds.max - self.centre);
+        let Some((mut from, mut until)) = path.clip(low, high, ray.ray.t_min, ray.ray.t_max) else { return };
+        let view = self.view(ray, query);
+        let mut limit = f32::INFINITY;
+        let mut stack = [Later::default(); STACK];
+        let mut waiting = 0;
+        let mut index = 0;
+        loop {
+            count.node();
+            let node = self.nodes[index];
+            let passage = match node.kind() {
+                axis @ 0..=2 => path.across(axis as usize, f32::from_bits(node.payload)),
+                PLANE | FULL_PLANE => path.through(self.planes[node.payload as usize]),
+                _ => {
+                    let references = self.seen(index, node, view.as_ref(), count);
+                    match visit(references, count) {
+                        ControlFlow::Break(()) => return,
+                        ControlFlow::Continue(nearest) if query.early_out => limit = nearest,
+                        ControlFlow::Continue(_) => {}
+                    }
+                    loop {
+                        if waiting == 0 {
+                            return;
+                        }
+                        waiting -= 1;
+                        let next = stack[waiting];
+                        if next.from <= limit {
+                            (index, from, until) =
+                                (next.node as usize, next.from, earlier(next.until, limit));
+                            break;
+                        }
+                        count.early_out();
+                    }
+                    continue;
+                }
+            };
+            let Passage { flip, near_until, far_from } = passage;
+            let left = if node.kind() == FULL_PLANE { self.after_leaf(index + 1) } else { index + 1 };
+            let (near, far) =
+                if flip == 0 { (left, node.number()) } else { (node.number() as usize, left as u32) };
+            if near_until < from {
+                index = far as usize;
+            } else if far_from > until {
+                index = near;
+            } else {
+                let (between, beyond) = (earlier(until, near_until), later(from, far_from));
+                stack[waiting] = Later { node: far, from: beyond, until };
+                waiting += 1;
+                if node.kind() == FULL_PLANE {
+                    stack[waiting] = Later { node: index as u32 + 1, from: beyond, until: between };
+                    waiting += 1;
+                }
+                (index, until) = (near, between);
+            }
+        }
+    }
+
+    /// The node behind a leaf.
+    fn after_leaf(&self, leaf: usize) -> usize {
+        if self.nodes[leaf].kind() == FACING_LEAF { leaf + 2 } else { leaf + 1 }
+    }
+
+    /// The triangles of a leaf, or none when the ray is sure to see only their backs.
+    #[inline(always)]
+    fn seen<C: Count>(&self, leaf: usize, node: Node, view: Option<&View>, count: &mut C) -> &[Reference] {
+        let first = node.payload as usize;
+        let references = &self.references[first..first + node.number() as usize];
+        if let (FACING_LEAF, Some(view)) = (node.kind(), view) {
+            let facing = self.nodes[leaf + 1].payload as usize;
+            if view.sees_backs_only(&self.facings[facing]) {
+                references.iter().for_each(|_| count.culled_back_face());
+                return &[];
+            }
+        }
+        references
+    }
+
+    fn view(&self, ray: &PreparedRay, query: &Query) -> Option<View> {
+        let asked = query.culling == Culling::Back && query.cull_by_partition;
+        (asked && !self.facings.is_empty()).then(|| View::new(ray, &self.bounds))
+    }
+}
+
+impl Traverse for BspTree {
+    fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
+        count.ray();
+        let ray = PreparedRay::new(ray)?;
+        let mut nearest = Nearest::new(&ray.ray);
+        self.walk(&ray, query, count, |references, count| {
+            count.triangles(references.len());
+            for reference in references {
+                nearest.test(&ray, query.culling, &reference.corners, reference.primitive);
+            }
+            ControlFlow::Continue(nearest.t)
+        });
+        nearest.hit()
+    }
+
+    fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
+        count.ray();
+        let Some(ray) = PreparedRay::new(ray) else { return false };
+        let mut found = false;
+        self.walk(&ray, query, count, |references, count| {
+            for reference in references {
+                count.triangles(1);
+                if hits(&ray, query.culling, &reference.corners, reference.primitive) {
+                    found = true;
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(f32::INFINITY)
+        });
+        found
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    fn memory_bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+            + size_of_val(self.planes.as_slice())
+            + size_of_val(self.references.as_slice())
+            + size_of_val(self.facings.as_slice())
+    }
+
+    fn shape(&self) -> TreeShape {
+        let mut shape = TreeShape::default();
+        if !self.nodes.is_empty() {
+            self.measure(0, 1, &mut shape);
+        }
+        shape
+    }
+}
+
+/// A node, read out.
+pub(super) enum Content {
+    Leaf(Range<usize>),
+    Fork { normal: DVec3, at: f64, on: Option<usize>, left: usize, right: usize },
+}
+
+impl BspTree {
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The triangles of a range of references.
+    pub(super) fn primitives(&self, references: Range<usize>) -> impl Iterator<Item = u32> {
+        self.references[references].iter().map(|reference| reference.primitive)
+    }
+
+    /// What a node is.
+    pub(super) fn content(&self, index: usize) -> Content {
+        let node = self.nodes[index];
+        let (number, payload) = (node.number() as usize, node.payload as usize);
+        let (normal, at, on) = match node.kind() {
+            axis @ 0..=2 => (DVec3::AXES[axis as usize], f32::from_bits(node.payload), None),
+            PLANE | FULL_PLANE => {
+                let [x, y, z, at] = self.planes[payload];
+                (Vec3::new(x, y, z).as_dvec3(), at, (node.kind() == FULL_PLANE).then_some(index + 1))
+            }
+            _ => return Content::Leaf(payload..payload + number),
+        };
+        let left = on.map_or(index + 1, |on| self.after_leaf(on));
+        Content::Fork { normal, at: f64::from(at), on, left, right: number }
+    }
+
+    /// Counts a branch into a shape. Triangles within a plane count as a leaf of their own.
+    fn measure(&self, index: usize, depth: usize, shape: &mut TreeShape) {
+        match self.content(index) {
+            Content::Leaf(references) => shape.add_leaf(depth, references.len()),
+            Content::Fork { on, left, right, .. } => {
+                shape.nodes += 1;
+                for child in on.into_iter().chain([left, right]) {
+                    self.measure(child, depth + 1, shape);
+                }
+            }
+        }
+    }
+}
