@@ -35,6 +35,10 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 /// Most references per triangle. No way down the tree may multiply references by more.
 pub const GROWTH: f64 = 8.0;
 
+/// Forks above a leaf beyond twice those of a balanced tree of triangles. Around a vertex where many triangles
+/// meet, a plane pays at every scale, without end.
+const DEPTH: usize = 8;
+
 /// What a ray pays for a plane perpendicular to an axis, in triangle tests.
 pub(super) const AXIS_STEP: f64 = 0.4;
 
@@ -60,8 +64,9 @@ impl BspTree {
             Quality::Balanced => 16,
             Quality::Best => 64,
         };
-        let grower = Grower { mesh, space, few };
         let pieces = Pieces::of_mesh(mesh, &space);
+        let deepest = (DEPTH + 2 * pieces.len().max(1).ilog2() as usize).min(MAX_DEPTH);
+        let grower = Grower { mesh, space, few, deepest };
         let margin = DVec3::splat(space.tolerance);
         let bounds = mesh.bounds();
         let low = bounds.min.as_dvec3() - space.centre.as_dvec3() - margin;
@@ -93,11 +98,13 @@ struct Grower<'a> {
     space: Space,
     /// Partitions of at most so many references have all their planes weighed.
     few: usize,
+    /// Most forks above a leaf.
+    deepest: usize,
 }
 
 impl Grower<'_> {
     fn grow(&self, pieces: Pieces, room: Room, growth: f64, depth: usize) -> Branch {
-        let choice = if depth < MAX_DEPTH { self.choose(&pieces, &room, growth) } else { None };
+        let choice = if depth < self.deepest { self.choose(&pieces, &room, growth) } else { None };
         let Some(Choice { plane, on_left, .. }) = choice else {
             return Branch::Leaf(pieces.into_triangles());
         };
