@@ -4,7 +4,7 @@ use crate::mesh::TriangleMesh;
 use crate::triangle::PreparedRay;
 use bilux_math::{Aabb, DVec3, Vec3};
 
-/// The common orientation of a few triangles, and how far each may be from it.
+/// The common orientation of a run of triangles, and how far each may be from it.
 ///
 /// The triangle test calls a triangle a back face by the sign of its sheared area, which is exact for the
 /// sheared vertices; those are off by at most 6 units of rounding of `far`. With edges no longer than `L`
@@ -13,6 +13,8 @@ use bilux_math::{Aabb, DVec3, Vec3};
 /// `roughness` L / 2A. Sixteen are granted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facing {
+    /// How many triangles the run has.
+    pub(super) count: u32,
     normal: Vec3,
     /// Longest difference between `normal` and the unit normal of a triangle.
     spread: f32,
@@ -21,24 +23,50 @@ pub(super) struct Facing {
 }
 
 impl Facing {
-    /// The mean orientation of some triangles; `None` when they have none, or rays of no direction could
-    /// be known to see nothing but backs.
-    pub(super) fn of(mesh: &TriangleMesh, triangles: &[u32]) -> Option<Facing> {
-        let corners = || triangles.iter().map(|&index| mesh.triangles()[index as usize]);
-        let mut sum = DVec3::ZERO;
-        for triangle in corners() {
-            sum += orientation(&triangle)?;
+    /// Of triangles with area, at least one.
+    fn of(mesh: &TriangleMesh, run: &[u32]) -> Facing {
+        let corners = || run.iter().map(|&index| &mesh.triangles()[index as usize]);
+        let sum: DVec3 = corners().filter_map(orientation).sum();
+        let normal = sum.normalize_or_zero().as_vec3();
+        let difference = |normal_of_one: DVec3| (normal_of_one - normal.as_dvec3()).length();
+        let spread = corners().filter_map(orientation).map(difference).fold(0.0, f64::max);
+        let roughness = corners().map(edge_over_area).fold(0.0, f64::max);
+        Facing {
+            count: run.len() as u32,
+            normal,
+            spread: spread as f32 * ROUND_UP + EVALUATION,
+            roughness: roughness as f32 * ROUND_UP,
         }
-        let normal = sum.try_normalize()?.as_vec3();
-        let (mut spread, mut roughness) = (0f64, 0f64);
-        for triangle in corners() {
-            spread = spread.max((orientation(&triangle)? - normal.as_dvec3()).length());
-            roughness = roughness.max(edge_over_area(&triangle));
-        }
-        let (spread, roughness) = (spread as f32 * ROUND_UP + EVALUATION, roughness as f32 * ROUND_UP);
-        (spread < 1.0 && roughness.is_finite()).then_some(Facing { normal, spread, roughness })
+    }
+
+    /// For triangles without area, of which nothing is ever known.
+    fn unknown(count: usize) -> Facing {
+        Facing { count: count as u32, normal: Vec3::ZERO, spread: f32::INFINITY, roughness: f32::INFINITY }
     }
 }
+
+/// Puts the triangles of a partition into runs that face much the same way, each run like its first.
+pub(super) fn in_runs(mesh: &TriangleMesh, triangles: &[u32]) -> (Vec<u32>, Vec<Facing>) {
+    let facing = |&index: &u32| Some((index, orientation(&mesh.triangles()[index as usize])?));
+    let mut oriented: Vec<(u32, DVec3)> = triangles.iter().filter_map(facing).collect();
+    let (mut order, mut facings) = (Vec::with_capacity(triangles.len()), Vec::new());
+    while let Some(&(_, first)) = oriented.first() {
+        let (run, rest) = oriented.into_iter().partition(|(_, normal)| normal.dot(first) >= ALIKE);
+        oriented = rest;
+        let start = order.len();
+        order.extend(Vec::<(u32, DVec3)>::into_iter(run).map(|(index, _)| index));
+        facings.push(Facing::of(mesh, &order[start..]));
+    }
+    let start = order.len();
+    order.extend(triangles.iter().filter(|&index| facing(index).is_none()));
+    if order.len() > start {
+        facings.push(Facing::unknown(order.len() - start));
+    }
+    (order, facings)
+}
+
+/// Cosine between normals that face alike.
+const ALIKE: f64 = 0.9;
 
 /// Unit normal towards the side from which the vertices run counter-clockwise; `None` without area.
 pub(super) fn orientation(triangle: &[[f32; 3]; 3]) -> Option<DVec3> {

@@ -1,6 +1,6 @@
 //! The tree as rays walk it, whatever rule it was grown by.
 
-use super::facing::{Facing, View};
+use super::facing::{Facing, View, in_runs};
 use super::path::{Passage, Path, earlier, later};
 use super::plane::{Plane, Space};
 use crate::accelerator::{Traverse, TreeShape};
@@ -49,7 +49,7 @@ pub struct BspTree {
 /// | 3: plane | right child | index of the plane |
 /// | 4: plane with triangles in it | right child | index of the plane; the next node is a leaf with those |
 /// | 5: leaf | how many references | the first reference |
-/// | 6: leaf that has a facing | how many references | the first; the next node's payload is the facing |
+/// | 6: leaf in runs that have facings | how many references | the first; the next node's payload is its first facing |
 #[derive(Clone, Copy, Debug)]
 struct Node {
     tag: u32,
@@ -137,17 +137,24 @@ impl BspTree {
         triangles: &[u32],
         facings: bool,
     ) -> Result<(), BuildError> {
-        let facing = if facings { Facing::of(mesh, triangles) } else { None };
-        let kind = if facing.is_some() { FACING_LEAF } else { LEAF };
+        let with_facings = facings && !triangles.is_empty();
+        let kind = if with_facings { FACING_LEAF } else { LEAF };
         self.nodes.push(Node::new(kind, triangles.len(), self.references.len())?);
-        if let Some(facing) = facing {
+        if with_facings {
             self.nodes.push(Node::new(LEAF, 0, self.facings.len())?);
-            self.facings.push(facing);
+            let (order, facings) = in_runs(mesh, triangles);
+            self.facings.extend(facings);
+            self.refer(mesh, &order);
+        } else {
+            self.refer(mesh, triangles);
         }
+        Ok(())
+    }
+
+    fn refer(&mut self, mesh: &TriangleMesh, triangles: &[u32]) {
         let reference =
             |&primitive: &u32| Reference { corners: mesh.triangles()[primitive as usize], primitive };
         self.references.extend(triangles.iter().map(reference));
-        Ok(())
     }
 }
 
@@ -188,8 +195,7 @@ impl BspTree {
                 axis @ 0..=2 => path.across(axis as usize, f32::from_bits(node.payload)),
                 PLANE | FULL_PLANE => path.through(self.planes[node.payload as usize]),
                 _ => {
-                    let references = self.seen(index, node, view.as_ref(), count);
-                    match visit(references, count) {
+                    match self.visit_leaf(index, view.as_ref(), count, &mut visit) {
                         ControlFlow::Break(()) => return,
                         ControlFlow::Continue(nearest) if query.early_out => limit = nearest,
                         ControlFlow::Continue(_) => {}
@@ -236,19 +242,50 @@ impl BspTree {
         if self.nodes[leaf].kind() == FACING_LEAF { leaf + 2 } else { leaf + 1 }
     }
 
-    /// The triangles of a leaf, or none when the ray is sure to see only their backs.
+    /// Visits the triangles of a leaf, but for those of which the ray is sure to see only backs.
     #[inline(always)]
-    fn seen<C: Count>(&self, leaf: usize, node: Node, view: Option<&View>, count: &mut C) -> &[Reference] {
+    fn visit_leaf<C: Count>(
+        &self,
+        leaf: usize,
+        view: Option<&View>,
+        count: &mut C,
+        visit: &mut impl FnMut(&[Reference], &mut C) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<(), f32> {
+        let node = self.nodes[leaf];
         let first = node.payload as usize;
         let references = &self.references[first..first + node.number() as usize];
-        if let (FACING_LEAF, Some(view)) = (node.kind(), view) {
-            let facing = self.nodes[leaf + 1].payload as usize;
-            if view.sees_backs_only(&self.facings[facing]) {
-                references.iter().for_each(|_| count.culled_back_face());
-                return &[];
+        match view {
+            Some(view) if node.kind() == FACING_LEAF => {
+                let facings = self.nodes[leaf + 1].payload as usize;
+                self.visit_fronts(references, &self.facings[facings..], view, count, visit)
+            }
+            _ => visit(references, count),
+        }
+    }
+
+    /// Visits a leaf run by run.
+    fn visit_fronts<C: Count>(
+        &self,
+        mut references: &[Reference],
+        facings: &[Facing],
+        view: &View,
+        count: &mut C,
+        visit: &mut impl FnMut(&[Reference], &mut C) -> ControlFlow<(), f32>,
+    ) -> ControlFlow<(), f32> {
+        let mut nearest = visit(&[], count)?;
+        for facing in facings {
+            let Some((run, rest)) = references.split_at_checked(facing.count as usize) else { break };
+            references = rest;
+            if view.sees_backs_only(facing) {
+                run.iter().for_each(|_| count.culled_back_face());
+            } else {
+                nearest = visit(run, count)?;
+            }
+            if references.is_empty() {
+                break;
             }
         }
-        references
+        ControlFlow::Continue(nearest)
     }
 
     fn view(&self, ray: &PreparedRay, query: &Query) -> Option<View> {
