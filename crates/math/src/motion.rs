@@ -87,6 +87,23 @@ impl Motion {
         }
     }
 
+    /// First this motion, then `next`. `None` when this one moves and `next` is not a similarity (a turn, an even
+    /// scaling and a shift; even and square within a thousandth), for then no keys say the same.
+    pub fn then(&self, next: &Transform) -> Option<Motion> {
+        let poses = match &self.course {
+            Course::Still(transform) => return Some(Motion::still(transform.then(next))),
+            Course::Keys(poses) => poses,
+        };
+        let (scale, rotation, translation) = similarity(next)?;
+        let moved = poses.iter().map(|pose| Pose {
+            time: pose.time,
+            translation: translation + rotation * (pose.translation * scale),
+            rotation: rotation * pose.rotation,
+            scale: pose.scale * scale,
+        });
+        Some(Motion { course: Course::Keys(moved.collect()) })
+    }
+
     /// True when it never moves.
     pub fn is_still(&self) -> bool {
         match &self.course {
@@ -145,6 +162,20 @@ impl Motion {
             (Segment::new(&pair[0], &pair[1]), span)
         })
     }
+}
+
+/// Scale, rotation and translation of a transform that has only these.
+fn similarity(transform: &Transform) -> Option<(f64, DQuat, DVec3)> {
+    let matrix = transform.matrix().as_dmat4();
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate());
+    let scale = (x.length() + y.length() + z.length()) / 3.0;
+    let even = [x, y, z].iter().all(|axis| (axis.length() / scale - 1.0).abs() < 1e-3);
+    let square = [x.dot(y), y.dot(z), z.dot(x)].iter().all(|dot| dot.abs() < 1e-3 * scale * scale);
+    let upright = x.cross(y).dot(z) > 0.0;
+    (even && square && upright).then(|| {
+        let rotation = DQuat::from_mat3(&DMat3::from_cols(x / scale, y / scale, z / scale)).normalize();
+        (scale, rotation, matrix.w_axis.truncate())
+    })
 }
 
 impl Pose {
@@ -309,6 +340,26 @@ mod tests {
         let p = spin().at(2.0).point(Vec3::X);
         // Half of a half turn about z brings x to y, scaled by 2, moved by 2.
         assert!((p - Vec3::new(2.0, 2.0, 0.0)).length() < 1e-6, "{p}");
+    }
+
+    #[test]
+    fn followed_by_a_similarity_it_moves_alike() {
+        let turn = Quat::from_xyzw(0.0, 0.6, 0.0, 0.8);
+        let next = DMat4::from_scale_rotation_translation(
+            DVec3::splat(2.0),
+            turn.as_dquat(),
+            DVec3::new(1.0, -2.0, 3.0),
+        );
+        let next = Transform::from_matrix(next).unwrap();
+        let both = spin().then(&next).unwrap();
+        for time in [0.0, 1.0, 1.7, 2.5, 4.0] {
+            let p = Vec3::new(0.3, -0.7, 1.1);
+            let apart = both.at(time).point(p) - next.point(spin().at(time).point(p));
+            assert!(apart.length() < 1e-5, "{time}: {apart}");
+        }
+        let uneven = Transform::from_matrix(DMat4::from_scale(DVec3::new(1.0, 2.0, 1.0))).unwrap();
+        assert!(spin().then(&uneven).is_none());
+        assert!(Motion::still(Transform::IDENTITY).then(&uneven).is_some());
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod builder;
 pub mod cameras;
 pub mod classic;
 pub mod error;
+pub mod generators;
 pub mod geometry;
 pub mod lights;
 pub mod materials;

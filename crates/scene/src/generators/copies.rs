@@ -1,0 +1,27 @@
+//! The paper's script: copies of a model, each at a fixed offset from the last.
+
+use crate::builder::{Object, SceneBuilder};
+use bilux_math::{DMat4, Transform, Vec3};
+
+/// The scene with all of its objects `count` times: the copy `i` (from 0, which is the original) stands
+/// `i * offset` away from it. Meshes and materials are shared; lights, cameras and settings stay as they are.
+pub fn copies(scene: &SceneBuilder, count: u32, offset: Vec3) -> SceneBuilder {
+    let mut result = scene.clone();
+    result.objects = (0..count)
+        .flat_map(|i| {
+            let by = (offset.as_dvec3() * f64::from(i)).as_vec3();
+            scene.objects.iter().map(move |object| moved(object, i, by))
+        })
+        .collect();
+    result
+}
+
+fn moved(object: &Object, i: u32, by: Vec3) -> Object {
+    if i == 0 {
+        return object.clone();
+    }
+    let shift = Transform::from_matrix(DMat4::from_translation(by.as_dvec3())).unwrap_or_default();
+    // A shift follows every motion.
+    let motion = object.motion.then(&shift).unwrap_or_else(|| object.motion.clone());
+    Object { name: format!("{} {}", object.name, i + 1), motion, ..object.clone() }
+}

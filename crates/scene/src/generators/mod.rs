@@ -1,0 +1,80 @@
+//! Every scene that Bilux ships, made by formula. One scene a file; the table is [`GENERATORS`].
+//!
+//! ```
+//! use bilux_scene::{Spec, Value, generators};
+//!
+//! let five = Spec::new("", "teapots").with("count", Value::Integer(5));
+//! assert_eq!(generators::generate(&five)?.objects.len(), 6);
+//! # Ok::<(), bilux_scene::SceneError>(())
+//! ```
+
+mod copies;
+mod cornell;
+mod coverage;
+pub mod shapes;
+pub mod teapot;
+mod teapots;
+
+pub use copies::copies;
+
+use crate::builder::SceneBuilder;
+use crate::error::SceneError;
+use crate::parameters::{Reader, Spec};
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+
+/// A row of [`GENERATORS`].
+#[derive(Clone, Copy, Debug)]
+pub struct GeneratorEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Makes the scene, with its camera and its lights.
+    pub generate: fn(&Reader) -> Result<SceneBuilder, SceneError>,
+}
+
+/// Every scene that there is.
+pub const GENERATORS: &[GeneratorEntry] = &[teapots::ENTRY, teapot::ENTRY, cornell::ENTRY, cornell::SPHERES];
+
+/// Makes the scene that a spec describes.
+///
+/// # Errors
+/// When no row has its kind, or a parameter is wrong.
+pub fn generate(spec: &Spec) -> Result<SceneBuilder, SceneError> {
+    let names = GENERATORS.iter().map(|row| row.entry.name);
+    let row = GENERATORS
+        .iter()
+        .find(|row| row.entry.name == spec.kind)
+        .ok_or_else(|| SceneError::unknown("scene to generate", &spec.kind, names, &spec.span))?;
+    (row.generate)(&Reader::new(spec, &row.entry)?)
+}
+
+const fn integer(
+    name: &'static str,
+    summary: &'static str,
+    min: i64,
+    max: i64,
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Integer { min, max }, default }
+}
+
+const fn switch(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default }
+}
+
+const fn length(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    let kind = ParameterKind::Number { min: 1e-6, max: 1e6 };
+    Parameter { name, summary, unit: "m", kind, default }
+}
+
+const fn vector(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
+}
+
+const fn choice(
+    name: &'static str,
+    summary: &'static str,
+    words: &'static [&'static str],
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
+}

@@ -1,0 +1,249 @@
+//! The scenes that we ship: what their users count on.
+
+#![allow(clippy::print_stderr, reason = "a test that skips says so")]
+
+use bilux_math::{Aabb, Vec3};
+use bilux_scene::generators::teapot::{Teapot, patches};
+use bilux_scene::generators::{GENERATORS, copies, generate, shapes};
+use bilux_scene::{AccelChoice, Mesh, Object, SceneBuilder, Spec, Value};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+fn bits(p: Vec3) -> [u32; 3] {
+    p.to_array().map(f32::to_bits)
+}
+
+/// How often each edge is walked from its first to its second end, ends known by the bits of their positions.
+fn edges(mesh: &Mesh) -> HashMap<[[u32; 3]; 2], u32> {
+    let mut edges = HashMap::new();
+    for t in &mesh.triangles {
+        let corner = |k: usize| bits(mesh.positions[t[k % 3] as usize]);
+        for k in 0..3 {
+            *edges.entry([corner(k), corner(k + 1)]).or_insert(0) += 1;
+        }
+    }
+    edges
+}
+
+/// Edges that are not walked once in each direction.
+fn open_edges(mesh: &Mesh) -> usize {
+    let edges = edges(mesh);
+    edges.iter().filter(|([a, b], n)| **n != 1 || edges.get(&[*b, *a]) != Some(&1)).count()
+}
+
+/// Six times the volume, by the signed tetrahedra from the origin.
+fn volume(mesh: &Mesh) -> f64 {
+    let corner = |i: u32| mesh.positions[i as usize].as_dvec3();
+    let six: f64 = mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum();
+    six / 6.0
+}
+
+/// The least cosine between a triangle's winding and the normals of its corners.
+fn least_agreement(mesh: &Mesh) -> f32 {
+    let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).normalize();
+    let cosines = mesh.triangles.iter().flat_map(|t| {
+        let winding = normal(t.map(|i| mesh.positions[i as usize]));
+        t.map(|i| winding.dot(mesh.normals[i as usize]))
+    });
+    cosines.fold(1.0, f32::min)
+}
+
+#[test]
+fn the_teapot_has_two_triangles_a_square_less_those_at_its_poles() {
+    for n in [1u32, 2, 4, 8, 16] {
+        let teapot = Teapot { tessellation: n, ..Teapot::default() };
+        let whole = teapot.mesh().triangles.len() as u32;
+        // The lid's four patches and the bottom's four meet in a pole each.
+        assert_eq!(whole, 32 * 2 * n * n - 8 * n, "tessellation {n}");
+        let open = Teapot { bottom: false, ..teapot }.mesh().triangles.len() as u32;
+        assert_eq!(whole - open, 4 * (2 * n * n - n), "the bottom at {n}");
+    }
+}
+
+#[test]
+fn neighbouring_patches_share_their_edges_to_the_bit() {
+    // At 1 the halves of handle and spout are flat and lie on each other.
+    for n in [2, 3, 8, 13] {
+        let mesh = Teapot { tessellation: n, ..Teapot::default() }.mesh();
+        // Newell's teapot is open in five places: the lid's edge, the rim's, both ends of handle and spout.
+        let rings = 4 * n + 4 * n + 4 * (2 * n);
+        let open = open_edges(&mesh) as u32;
+        assert_eq!(open, rings, "tessellation {n}");
+    }
+}
+
+#[test]
+fn normals_point_outwards_and_match_finite_differences() {
+    for patch in patches(true) {
+        let n = 4096;
+        for (i, j) in [(0, 1000), (n / 3, n / 2), (n / 2, n - 1), (n - 1, 17), (1234, 3000)] {
+            let at = |i: u32, j: u32| patch.at(i, j, n).0;
+            let (i0, i1) = (i.max(1) - 1, (i + 1).min(n));
+            let (j0, j1) = (j.max(1) - 1, (j + 1).min(n));
+            let difference = (at(i1, j) - at(i0, j)).cross(at(i, j1) - at(i, j0)).normalize();
+            let cosine = difference.dot(patch.at(i, j, n).1);
+            assert!(cosine > 0.99999, "{cosine} at {i}, {j}");
+        }
+    }
+    let mesh = Teapot { tessellation: 32, ..Teapot::default() }.mesh();
+    assert!(least_agreement(&mesh) > 0.7, "{}", least_agreement(&mesh));
+    assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-5));
+}
+
+#[test]
+fn poles_have_upright_normals() {
+    let mesh = Teapot::default().mesh();
+    let on_axis = |p: &Vec3| p.x.abs().max(p.z.abs()) == 0.0;
+    let poles: Vec<_> = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| on_axis(p)).collect();
+    assert_eq!(poles.len(), 8 * 9);
+    for (p, n) in poles {
+        let wanted = if p.y > 1.0 { Vec3::Y } else { Vec3::NEG_Y };
+        assert!(n.distance(wanted) < 1e-6, "{n} at {p}");
+    }
+}
+
+#[test]
+fn the_teapot_has_the_height_asked_for_and_stands_on_the_ground() {
+    for height in [0.1, 1.0, 3.15, 250.0] {
+        let bounds = Teapot { height, tessellation: 16, ..Teapot::default() }.mesh().bounds();
+        assert_eq!(bounds.min.y, 0.0);
+        assert!((f64::from(bounds.max.y) / height - 1.0).abs() < 1e-6, "{height}");
+    }
+}
+
+#[test]
+fn the_control_points_are_newells() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes/asc/teapot.bpt");
+    let Ok(text) = std::fs::read_to_string(path) else {
+        eprintln!("skipped: {path} is not there");
+        return;
+    };
+    let micro = |x: f64| (x * 1e6).round() as i64;
+    let numbers: Vec<f64> = text.split_whitespace().map(|w| w.parse().unwrap()).collect();
+    // A count, then for each patch its degrees (3 3) and 16 points, z up.
+    let mut theirs: Vec<Vec<[i64; 3]>> = numbers[1..]
+        .chunks(50)
+        .map(|patch| patch[2..].chunks(3).map(|p| [micro(p[0]), micro(p[2]), micro(-p[1])]).collect())
+        .collect();
+    let mut ours: Vec<Vec<[i64; 3]>> = patches(true)
+        .map(|patch| patch.0.iter().flatten().map(|p| p.to_array().map(micro)).collect())
+        .collect();
+    for patch in theirs.iter_mut().chain(&mut ours) {
+        patch.sort_unstable();
+    }
+    theirs.sort();
+    ours.sort();
+    assert_eq!(theirs, ours);
+}
+
+#[test]
+fn shapes_are_closed_and_face_outwards() {
+    let centre = Vec3::new(0.3, -1.0, 2.0);
+    let box_bounds = Aabb { min: centre - Vec3::ONE, max: centre + Vec3::new(1.0, 2.0, 3.0) };
+    let sphere = 4.0 / 3.0 * std::f64::consts::PI;
+    let ring = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 2.0 * 0.25;
+    let lumpy = |d: Vec3| 1.0 + 0.3 * (d.x * d.y - d.z * d.z);
+    for (mesh, wanted, tolerance) in [
+        (shapes::cuboid(box_bounds), 24.0, 1e-6),
+        (shapes::icosphere(centre, 1.0, 4), sphere, 0.01),
+        (shapes::uv_sphere(centre, 1.0, 48, 24), sphere, 0.02),
+        (shapes::torus(centre, 2.0, 0.5, 64, 32), ring, 0.02),
+        (shapes::blob(centre, 4, lumpy), sphere * 0.75, 0.3),
+    ] {
+        assert_eq!(open_edges(&mesh), 0, "{}", mesh.name);
+        let found = volume(&mesh);
+        assert!((found / wanted - 1.0).abs() < tolerance, "{}: {found} for {wanted}", mesh.name);
+        if !mesh.normals.is_empty() {
+            assert!(least_agreement(&mesh) > 0.8, "{}", mesh.name);
+        }
+    }
+    assert_eq!(shapes::icosphere(centre, 1.0, 3).triangles.len(), 20 * 64);
+    let boards = shapes::chessboard(Vec3::ZERO, 8.0, 8);
+    assert!(boards.iter().all(|b| b.triangles.len() == 64));
+    assert_eq!(boards[0].bounds().extent(), Vec3::new(8.0, 0.0, 8.0));
+}
+
+#[test]
+fn every_generator_makes_a_scene_that_builds() {
+    for row in GENERATORS {
+        let scene = generate(&Spec::new("", row.entry.name)).unwrap();
+        assert!(!scene.objects.is_empty(), "{}", row.entry.name);
+        let built = scene.build(&AccelChoice::default(), [0.0, 0.0], 1.0);
+        assert!(built.is_ok(), "{}: {:?}", row.entry.name, built.err());
+    }
+}
+
+#[test]
+fn generators_refuse_what_they_do_not_know() {
+    let error = |spec: &Spec| generate(spec).err().unwrap().to_string();
+    assert!(error(&Spec::new("", "teapts")).contains("did you mean 'teapots'?"));
+    let misspelt = Spec::new("", "teapots").with("cuont", Value::Integer(2));
+    assert!(error(&misspelt).contains("did you mean 'count'?"), "{}", error(&misspelt));
+    let none = Spec::new("", "teapots").with("count", Value::Integer(0));
+    assert!(error(&none).contains("from 1 to"), "{}", error(&none));
+    let layout = Spec::new("", "teapots").with("layout", "papr");
+    assert!(error(&layout).contains("one of paper, equal-coverage"), "{}", error(&layout));
+    let fine = Spec::new("", "teapot").with("tessellation", Value::Integer(257));
+    assert!(error(&fine).contains("from 1 to 256"), "{}", error(&fine));
+}
+
+#[test]
+fn five_teapots_are_about_twenty_thousand_triangles() {
+    let five = generate(&Spec::new("", "teapots").with("count", Value::Integer(5))).unwrap();
+    let triangles: usize = five.objects.iter().map(|o| o.mesh.triangles.len()).sum();
+    assert!((19_000..21_000).contains(&triangles), "{triangles}");
+}
+
+#[test]
+fn teapots_at_equal_coverage_cover_as_much_whatever_their_number() {
+    use bilux_scene::{CameraSample, Tracer};
+    let covered = |count: i64| {
+        let spec = Spec::new("", "teapots")
+            .with("layout", "equal-coverage")
+            .with("count", Value::Integer(count))
+            .with("tessellation", Value::Integer(3));
+        let scene = generate(&spec).unwrap().build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+        let mut tracer = Tracer::new(&scene, false);
+        let n = 100;
+        let hits = (0..n * n).filter(|k| {
+            let film = bilux_math::Vec2::new((k % n) as f32 + 0.5, (k / n) as f32 + 0.5) / n as f32;
+            let sample = CameraSample { film, lens: bilux_math::Vec2::ZERO, time: 0.0 };
+            let hit = tracer.closest(&scene.cameras()[0].1.ray(&sample));
+            hit.is_some_and(|s| (s.object as i64) < count)
+        });
+        hits.count() as f64 / f64::from(n * n)
+    };
+    for count in [1, 2, 3, 5, 10, 100] {
+        let share = covered(count);
+        assert!((share - 0.2).abs() < 0.012, "{count} teapots cover {share}");
+    }
+}
+
+#[test]
+fn one_teapot_moves_among_still_ones_and_the_camera_walks() {
+    let spec = Spec::new("", "teapots").with("moving", true).with("walk", true);
+    let scene = generate(&spec).unwrap();
+    let moving: Vec<bool> = scene.objects.iter().map(|o| !o.motion.is_still()).collect();
+    assert_eq!(moving, [false, false, true, false]);
+    assert!(scene.cameras[0].keyframes.len() > 2);
+    assert_eq!(scene.cameras[0].keyframes.last().unwrap().0, 4.0);
+}
+
+#[test]
+fn copies_stand_exactly_at_multiples_of_the_offset() {
+    let mut scene = SceneBuilder::default();
+    let material = scene.add_material(Spec::new("", "diffuse"));
+    let mesh = Arc::new(shapes::icosphere(Vec3::new(0.1, 0.2, 0.3), 1.7, 1));
+    scene.objects.push(Object::new("ball", mesh.clone(), material));
+    let offset = Vec3::new(0.1, -0.7, 1e3);
+    let row = copies(&scene, 100, offset);
+    assert_eq!(row.objects.len(), 100);
+    for (i, object) in row.objects.iter().enumerate() {
+        assert!(Arc::ptr_eq(&object.mesh, &mesh));
+        let by = (offset.as_dvec3() * i as f64).as_vec3();
+        for &p in &mesh.positions {
+            assert_eq!(object.motion.at(0.0).point(p), p + by, "copy {i}");
+        }
+    }
+    assert_eq!(copies(&scene, 0, offset).objects.len(), 0);
+}
