@@ -1,1 +1,5 @@
-//! Development only: contract suites, reference scenes and statistical tests.
+//! Development only: contract suites, reference scenes and statistical tests, each with a planted bug that it
+//! catches.
+
+pub mod bsdf_contract;
+pub mod chi_square;

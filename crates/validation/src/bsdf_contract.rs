@@ -1,0 +1,222 @@
+//! What every BSDF promises, checked on any of them: see DESIGN, "Contract suites".
+
+use crate::chi_square::{p_value, uniforms};
+use bilux_math::transcendental::sin_cos;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::bsdf::{Bsdf, Lobe};
+use bilux_scene::{BsdfSample, TransportMode};
+
+/// A way of scattering with its three functions, so that a bug can be planted in any of them. Directions are
+/// local, with the normal as z.
+pub struct Scatterer {
+    /// f·|cosθi|.
+    pub eval: Box<dyn Fn(Vec3, Vec3, TransportMode) -> Rgb>,
+    /// Density of `sample`.
+    pub pdf: Box<dyn Fn(Vec3, Vec3) -> f32>,
+    /// A direction.
+    pub sample: SampleFn,
+}
+
+/// `wo`, a number that chooses, two for the direction, the mode.
+pub type SampleFn = Box<dyn Fn(Vec3, f32, Vec2, TransportMode) -> Option<BsdfSample>>;
+
+impl From<Lobe> for Scatterer {
+    fn from(lobe: Lobe) -> Scatterer {
+        Scatterer {
+            eval: Box::new(move |wo, wi, mode| lobe.eval(wo, wi, mode)),
+            pdf: Box::new(move |wo, wi| lobe.pdf_solid_angle(wo, wi)),
+            sample: Box::new(move |wo, choice, u, mode| lobe.sample(wo, choice, u, mode)),
+        }
+    }
+}
+
+impl From<Bsdf> for Scatterer {
+    fn from(bsdf: Bsdf) -> Scatterer {
+        Scatterer {
+            eval: Box::new(move |wo, wi, mode| bsdf.eval(wo, wi, mode)),
+            pdf: Box::new(move |wo, wi| bsdf.pdf_solid_angle(wo, wi)),
+            sample: Box::new(move |wo, choice, u, mode| bsdf.sample(wo, choice, u, mode)),
+        }
+    }
+}
+
+/// What is promised beyond the contract that holds for all.
+#[derive(Clone, Copy, Debug)]
+pub struct Promise {
+    /// eval(a, b)·|cos a| = eval(b, a)·|cos b|.
+    pub reciprocal: bool,
+    /// A white one loses no light.
+    pub lossless: bool,
+}
+
+/// The checks, by name.
+pub const CHECKS: [(&str, Check); 6] = [
+    ("samples follow the density", samples_follow_the_density),
+    ("weight times density is eval", weight_times_density_is_eval),
+    ("reciprocity, or else the adjoint", reciprocity_or_adjoint),
+    ("energy", energy),
+    ("delta lobes hide from eval", delta_lobes_hide),
+    ("lobes of zero chance give no sample", samples_are_sound),
+];
+
+/// One check: what it found wrong, if anything.
+pub type Check = fn(&Scatterer, Promise) -> Result<(), String>;
+
+const RADIANCE: TransportMode = TransportMode::Radiance;
+const IMPORTANCE: TransportMode = TransportMode::Importance;
+/// Samples of each χ² test and of each mean.
+const SAMPLES: u64 = 60_000;
+/// Chance of a false alarm of one suite over all its directions, shared out after Šidák.
+const SIGNIFICANCE: f64 = 1e-4;
+
+/// Known directions: above and below the surface, steep and grazing.
+fn known_directions() -> Vec<Vec3> {
+    let at = |degrees: f32, turn: f32| {
+        let (sin, cos) = sin_cos(degrees.to_radians());
+        let (y, x) = sin_cos(turn);
+        Vec3::new(sin * x, sin * y, cos)
+    };
+    vec![at(5.0, 0.3), at(35.0, 2.0), at(62.0, 4.0), at(80.0, 5.5), -at(40.0, 1.0)]
+}
+
+/// χ² of `sample` against `pdf`; the share of delta samples is held against their probabilities instead.
+pub fn samples_follow_the_density(s: &Scatterer, _promise: Promise) -> Result<(), String> {
+    let directions = known_directions();
+    let bound = SIGNIFICANCE / directions.len() as f64;
+    for (i, &wo) in directions.iter().enumerate() {
+        let deltas =
+            (0..64).filter_map(|k| draw(s, wo, i as u64, k, RADIANCE)).filter(|x| x.is_delta).count();
+        if deltas > 0 {
+            shares_follow(s, wo, i as u64)?;
+            continue;
+        }
+        let sample = |choice, u| (s.sample)(wo, choice, u, RADIANCE).map(|x| x.wi);
+        let p = p_value(SAMPLES, i as u64, sample, |wi| (s.pdf)(wo, wi));
+        if p < bound {
+            return Err(format!("χ² at wo {wo}: p = {p:.2e} < {bound:.2e}"));
+        }
+    }
+    Ok(())
+}
+
+fn draw(s: &Scatterer, wo: Vec3, stream: u64, i: u64, mode: TransportMode) -> Option<BsdfSample> {
+    let (choice, u) = uniforms(stream, i);
+    (s.sample)(wo, choice, u, mode)
+}
+
+/// Each delta direction is drawn as often as its probability says, within five standard deviations.
+fn shares_follow(s: &Scatterer, wo: Vec3, stream: u64) -> Result<(), String> {
+    for transmits in [false, true] {
+        let of_side: Vec<f64> = (0..SAMPLES)
+            .filter_map(|i| draw(s, wo, stream, i, RADIANCE))
+            .filter(|x| x.is_delta && x.transmits == transmits)
+            .map(|x| f64::from(x.pdf_solid_angle))
+            .collect();
+        let Some(&probability) = of_side.first() else { continue };
+        let n = SAMPLES as f64;
+        let deviation = (of_side.len() as f64 - n * probability).abs();
+        if deviation > 5.0 * (n * probability * (1.0 - probability)).sqrt() + 1.0 {
+            let drawn = of_side.len() as f64 / n;
+            return Err(format!("delta at wo {wo}: drawn {drawn:.4}, said {probability:.4}"));
+        }
+    }
+    Ok(())
+}
+
+/// What `sample` says of its direction is what `eval` and `pdf` say of it.
+pub fn weight_times_density_is_eval(s: &Scatterer, _promise: Promise) -> Result<(), String> {
+    for (i, wo) in known_directions().into_iter().enumerate() {
+        for x in (0..2000).filter_map(|k| draw(s, wo, 100 + i as u64, k, RADIANCE)).filter(|x| !x.is_delta) {
+            let (f, pdf) = ((s.eval)(wo, x.wi, RADIANCE), (s.pdf)(wo, x.wi));
+            let said = x.weight * x.pdf_solid_angle;
+            let far = |a: f32, b: f32| (a - b).abs() > 2e-3 * a.abs().max(b.abs()).max(1e-6);
+            if far(pdf, x.pdf_solid_angle) {
+                return Err(format!("wo {wo}, wi {}: pdf {pdf}, sampled with {}", x.wi, x.pdf_solid_angle));
+            }
+            if (0..3).any(|c| far(f[c], said[c])) {
+                return Err(format!("wo {wo}, wi {}: eval {f:?}, weight times pdf {said:?}", x.wi));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Helmholtz where promised; else refracted radiance is importance over the square of the relative index.
+pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), String> {
+    for (i, wo) in known_directions().into_iter().enumerate() {
+        for k in 0..500 {
+            if promise.reciprocal {
+                let (_, u) = uniforms(200 + i as u64, k);
+                let wi = bilux_math::warp::sample_sphere(u);
+                let there = (s.eval)(wo, wi, RADIANCE) * wo.z.abs();
+                let back = (s.eval)(wi, wo, RADIANCE) * wi.z.abs();
+                if (0..3).any(|c| (there[c] - back[c]).abs() > 1e-3 * there[c].max(back[c]).max(1e-5)) {
+                    return Err(format!("wo {wo}, wi {wi}: {there:?} there, {back:?} back"));
+                }
+            } else if let (Some(r), Some(t)) =
+                (draw(s, wo, 200 + i as u64, k, RADIANCE), draw(s, wo, 200 + i as u64, k, IMPORTANCE))
+            {
+                let sin = |d: Vec3| (1.0 - d.z * d.z).max(0.0).sqrt();
+                let eta = if r.transmits { sin(wo) / sin(r.wi) } else { 1.0 };
+                let (radiance, importance) = (r.weight.luminance() * eta * eta, t.weight.luminance());
+                if (radiance - importance).abs() > 1e-2 * importance {
+                    return Err(format!("wo {wo}: radiance·η² {radiance}, importance {importance}"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// No more goes out than came in; all of it where promised.
+pub fn energy(s: &Scatterer, promise: Promise) -> Result<(), String> {
+    for (i, wo) in known_directions().into_iter().enumerate() {
+        let weights: Vec<f64> = (0..SAMPLES)
+            .map(|k| {
+                draw(s, wo, 300 + i as u64, k, IMPORTANCE).map_or(0.0, |x| f64::from(x.weight.max_channel()))
+            })
+            .collect();
+        let n = weights.len() as f64;
+        let mean = weights.iter().sum::<f64>() / n;
+        let variance = weights.iter().map(|w| (w - mean) * (w - mean)).sum::<f64>() / (n - 1.0);
+        let error = 5.0 * (variance / n).sqrt() + 1e-5;
+        if mean > 1.0 + error {
+            return Err(format!("wo {wo}: gives out {mean:.5} of the light"));
+        }
+        if promise.lossless && mean < 1.0 - error {
+            return Err(format!("wo {wo}: keeps only {mean:.5} of the light, and promised all"));
+        }
+    }
+    Ok(())
+}
+
+/// A direction without width has no density that `eval` or `pdf` could give.
+pub fn delta_lobes_hide(s: &Scatterer, _promise: Promise) -> Result<(), String> {
+    for (i, wo) in known_directions().into_iter().enumerate() {
+        let samples: Vec<BsdfSample> =
+            (0..64).filter_map(|k| draw(s, wo, 400 + i as u64, k, RADIANCE)).collect();
+        if !samples.is_empty() && samples.iter().all(|x| x.is_delta) {
+            for x in &samples {
+                if (s.pdf)(wo, x.wi) != 0.0 || !(s.eval)(wo, x.wi, RADIANCE).is_black() {
+                    return Err(format!("wo {wo}: a delta direction shows in eval or pdf"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Directions are of unit length, weights finite and not negative, densities positive, sides as said.
+pub fn samples_are_sound(s: &Scatterer, _promise: Promise) -> Result<(), String> {
+    for (i, wo) in known_directions().into_iter().enumerate() {
+        for x in (0..2000).filter_map(|k| draw(s, wo, 500 + i as u64, k, RADIANCE)) {
+            let unit = (x.wi.length() - 1.0).abs() < 1e-4;
+            let light = x.weight.is_finite() && (0..3).all(|c| x.weight[c] >= 0.0);
+            let side = (wo.z * x.wi.z < 0.0) == x.transmits;
+            if !(unit && light && side && x.pdf_solid_angle > 0.0) {
+                return Err(format!("wo {wo}: unsound sample {x:?}"));
+            }
+        }
+    }
+    Ok(())
+}
