@@ -2,8 +2,11 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
 
+mod licences;
 mod process;
 mod test;
+mod tidy;
+mod workspace;
 
 use std::process::ExitCode;
 
@@ -15,8 +18,11 @@ struct Chore {
 }
 
 /// Every chore that there is.
-const CHORES: &[Chore] =
-    &[Chore { name: "test", summary: "everything that has to hold before a change lands", run: test::run }];
+const CHORES: &[Chore] = &[
+    Chore { name: "test", summary: "everything that has to hold before a change lands", run: test::run },
+    Chore { name: "tidy", summary: "the repository's own rules", run: tidy::run },
+    Chore { name: "licences", summary: "every package that we build on is permissive", run: licences::run },
+];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -12,6 +12,8 @@ struct Step {
 
 const STEPS: &[Step] = &[
     Step { name: "fmt", run: fmt },
+    Step { name: "tidy", run: |_| crate::tidy::run(&[]) },
+    Step { name: "licences", run: |_| crate::licences::run(&[]) },
     Step { name: "clippy", run: clippy },
     Step { name: "test", run: tests },
     Step { name: "doc", run: doc },

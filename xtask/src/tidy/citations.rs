@@ -1,0 +1,99 @@
+//! Whatever a comment cites, `[Woop 2013]` or `[Schlick 1994, eq. 15]`, and whatever an entry of a
+//! registry names as its source, has its line in `REFERENCES.md`, which begins `- **[Woop 2013]**`.
+
+use super::Violation;
+use super::repository::Repository;
+use std::collections::BTreeSet;
+
+const LIST: &str = "REFERENCES.md";
+
+pub(super) fn check(repository: &Repository) -> Vec<Violation> {
+    let Some(list) = repository.file(LIST) else {
+        return vec![Violation::new(LIST, 0, "is missing")];
+    };
+    let (keys, mut violations) = keys(&list.text);
+    for (file, rust) in repository.rust() {
+        for (number, (line, comment)) in file.text.lines().zip(rust.comments.lines()).enumerate() {
+            let cited = citations(comment).into_iter().chain(source(line));
+            for key in cited.filter(|key| !keys.contains(key)) {
+                let message = format!("[{key}] has no line in {LIST}");
+                violations.push(Violation::new(&file.path, number + 1, message));
+            }
+        }
+    }
+    violations
+}
+
+/// The keys of the list; one that stands there twice is a violation.
+fn keys(list: &str) -> (BTreeSet<&str>, Vec<Violation>) {
+    let mut keys = BTreeSet::new();
+    let mut violations = Vec::new();
+    for (number, line) in list.lines().enumerate() {
+        let key = line.strip_prefix("- **[").and_then(|rest| rest.split_once("]**"));
+        if let Some((key, _)) = key.filter(|(key, _)| !keys.insert(*key)) {
+            violations.push(Violation::new(LIST, number + 1, format!("[{key}] stands here twice")));
+        }
+    }
+    (keys, violations)
+}
+
+/// The keys cited in one line of a comment. Links, `[text](…)` and `` [`item`] ``, are none.
+fn citations(comment: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    for part in comment.split('[').skip(1) {
+        let Some((inside, after)) = part.split_once(']') else { continue };
+        if !after.starts_with(['(', ':']) {
+            let keys = inside.split(';').map(|key| key.split(',').next().unwrap_or_default().trim());
+            found.extend(keys.filter(|key| is_key(key)));
+        }
+    }
+    found
+}
+
+/// A name and then a year or a number: `Woop 2013`, `IEC 61966-2-1`.
+fn is_key(key: &str) -> bool {
+    let Some((name, year)) = key.rsplit_once(' ') else { return false };
+    name.starts_with(char::is_uppercase)
+        && year.len() >= 4
+        && year.as_bytes().iter().take(4).all(u8::is_ascii_digit)
+}
+
+/// The source that an entry of a registry names in this line.
+fn source(line: &str) -> Option<&str> {
+    let (_, rest) = line.split_once("source: \"")?;
+    rest.split_once('"').map(|(key, _)| key).filter(|key| !key.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FOUND: &str = "- **[Woop 2013]** S. Woop, C. Benthin, I. Wald.\n";
+
+    fn check_text(text: &str) -> Vec<usize> {
+        let repository = Repository::planted(&[("REFERENCES.md", FOUND), ("a.rs", text)]);
+        check(&repository).into_iter().map(|found| found.line).collect()
+    }
+
+    #[test]
+    fn planted_keys_are_found() {
+        assert_eq!(check_text("// see [Nobody 1999]\n"), [1]);
+        assert_eq!(check_text("/// By [Woop 2013; Nobody 1999, eq. 3].\n"), [1]);
+        assert_eq!(check_text("\n/* [IEC 61966-2-1] */\n"), [2]);
+        assert_eq!(check_text("source: \"Nobody\",\n"), [1]);
+    }
+
+    #[test]
+    fn known_keys_links_and_code_pass() {
+        assert!(check_text("//! [Woop 2013, section 3], [`Ray`], [a 2000](x), [0, 1000]\n").is_empty());
+        assert!(check_text("let a = [Nobody 1999]; f(\"[Nobody 1999]\");\n").is_empty());
+        assert!(check_text("source: \"Woop 2013\",\nsource: \"\",\n").is_empty());
+    }
+
+    #[test]
+    fn a_key_stands_once() {
+        let twice = Repository::planted(&[("REFERENCES.md", &FOUND.repeat(2))]);
+        assert_eq!(check(&twice), [Violation::new("REFERENCES.md", 2, "[Woop 2013] stands here twice")]);
+        assert_eq!(check(&Repository::default()).len(), 1, "no list at all");
+    }
+}

@@ -1,0 +1,84 @@
+//! Which crate may know of which: the direction rules of `ARCHITECTURE.md`, for every kind of dependency.
+
+use super::Violation;
+use super::repository::Repository;
+use crate::workspace::Package;
+
+/// Crate, what it may use of the workspace. In the order of the house, from the ground up.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("bilux-math", &[]),
+    ("bilux-accel", &["bilux-math"]),
+    ("bilux-pictures", &["bilux-math"]),
+    ("bilux-scene", &["bilux-math", "bilux-accel", "bilux-pictures"]),
+    ("bilux-transport", &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene"]),
+    ("bilux-formats", &["bilux-math", "bilux-pictures", "bilux-scene"]),
+    ("bilux", LIBRARIES),
+    ("bilux-bench", WITH_FACADE),
+    ("bilux-cli", &["bilux", "bilux-bench"]),
+    ("bilux-validation", WITH_FACADE),
+    ("xtask", &[]),
+];
+
+const LIBRARIES: &[&str] =
+    &["bilux-math", "bilux-accel", "bilux-pictures", "bilux-scene", "bilux-transport", "bilux-formats"];
+
+const WITH_FACADE: &[&str] = &[
+    "bilux",
+    "bilux-math",
+    "bilux-accel",
+    "bilux-pictures",
+    "bilux-scene",
+    "bilux-transport",
+    "bilux-formats",
+];
+
+pub(super) fn check(repository: &Repository) -> Vec<Violation> {
+    let members: Vec<_> = repository.packages.iter().filter(|package| package.member).collect();
+    let is_member = |name: &str| members.iter().any(|member| member.name == name);
+    members.iter().flat_map(|member| check_member(member, is_member)).collect()
+}
+
+fn check_member(member: &Package, is_member: impl Fn(&str) -> bool) -> Vec<Violation> {
+    let manifest = |message: String| Violation::new(&member.name, 0, message);
+    let Some((_, allowed)) = MAY_USE.iter().find(|(name, _)| *name == member.name) else {
+        return vec![manifest(
+            "has no place in the house: say in the rule `directions` what it may use".into(),
+        )];
+    };
+    let ours = member.dependencies.iter().filter(|name| is_member(name));
+    let wrong = ours.filter(|name| !allowed.contains(&name.as_str()));
+    wrong.map(|name| manifest(format!("must not know of {name} (see ARCHITECTURE.md)"))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn member(name: &str, dependencies: &[&str]) -> Package {
+        let dependencies = dependencies.iter().map(|&name| name.to_owned()).collect();
+        Package { name: name.to_owned(), member: true, dependencies, ..Package::default() }
+    }
+
+    #[test]
+    fn a_planted_wrong_way_is_found() {
+        let packages = vec![
+            member("bilux-accel", &["bilux-math", "bilux-scene", "rayon"]),
+            member("bilux-scene", &["bilux-accel"]),
+            member("bilux-math", &[]),
+            member("bilux-teapot", &[]),
+        ];
+        let found = check(&Repository { packages, ..Repository::default() });
+        let found: Vec<_> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert_eq!(found[0], "bilux-accel: must not know of bilux-scene (see ARCHITECTURE.md)");
+        assert!(found[1].starts_with("bilux-teapot: has no place"));
+    }
+
+    #[test]
+    fn nobody_may_use_what_stands_above() {
+        for (at, (name, allowed)) in MAY_USE.iter().enumerate() {
+            let below: Vec<_> = MAY_USE[..at].iter().map(|(name, _)| name).collect();
+            assert!(allowed.iter().all(|other| below.contains(&other)), "{name}");
+        }
+    }
+}

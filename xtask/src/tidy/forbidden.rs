@@ -1,0 +1,53 @@
+//! Words that never belong in the repository: what is unfinished, and what is true of one machine only.
+
+use super::Violation;
+use super::repository::Repository;
+
+const UNFINISHED: &str = "finish it, or leave it out";
+const ONE_MACHINE: &str = "the path of one machine";
+const HOST: &str = "the host name of a package registry: name the package instead";
+
+/// Word, why not.
+const WORDS: &[(&str, &str)] = &[
+    ("todo!", UNFINISHED),
+    ("unimplemented!", UNFINISHED),
+    ("TODO", UNFINISHED),
+    ("FIXME", UNFINISHED),
+    ("/work/", ONE_MACHINE),
+    ("/root/", ONE_MACHINE),
+    ("/home/", ONE_MACHINE),
+    ("/Users/", ONE_MACHINE),
+    ("crates.io", HOST),
+    ("docs.rs", HOST),
+    ("pypi.org", HOST),
+    ("npmjs.", HOST),
+];
+
+/// Where such words have to stand: this list, and what is taken from others word by word.
+const EXEMPT: &[&str] = &["xtask/src/tidy/forbidden.rs", "Cargo.lock", "fuzz/Cargo.lock", "LICENSES.txt"];
+
+pub(super) fn check(repository: &Repository) -> Vec<Violation> {
+    let mut violations = Vec::new();
+    for file in repository.files.iter().filter(|file| !EXEMPT.contains(&file.path.as_str())) {
+        for (number, line) in file.text.lines().enumerate() {
+            for (word, why) in WORDS.iter().filter(|(word, _)| line.contains(word)) {
+                violations.push(Violation::new(&file.path, number + 1, format!("'{word}': {why}")));
+            }
+        }
+    }
+    violations
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_planted_word_is_found() {
+        for (word, why) in WORDS {
+            let text = format!("fine\nnot {word}fine\n");
+            let found = check(&Repository::planted(&[("docs/a.md", &text), ("Cargo.lock", &text)]));
+            assert_eq!(found, [Violation::new("docs/a.md", 2, format!("'{word}': {why}"))]);
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! `cargo xtask tidy`: the repository's own rules. One rule a file; the table is [`RULES`].
+
+mod changelog;
+mod citations;
+mod dependencies;
+mod directions;
+mod file_length;
+mod forbidden;
+mod front_page;
+mod function_length;
+mod ignored_tests;
+mod links;
+mod manifests;
+mod registries;
+mod repository;
+mod rust_text;
+mod unsafe_code;
+
+use anyhow::{Result, bail};
+use repository::Repository;
+use std::fmt;
+
+/// One rule.
+struct Rule {
+    name: &'static str,
+    check: fn(&Repository) -> Vec<Violation>,
+}
+
+/// Every rule that there is. Each one's file says what it asks, why, and how to satisfy it.
+const RULES: &[Rule] = &[
+    Rule { name: "file-length", check: file_length::check },
+    Rule { name: "function-length", check: function_length::check },
+    Rule { name: "forbidden", check: forbidden::check },
+    Rule { name: "ignored-tests", check: ignored_tests::check },
+    Rule { name: "unsafe-code", check: unsafe_code::check },
+    Rule { name: "citations", check: citations::check },
+    Rule { name: "links", check: links::check },
+    Rule { name: "registries", check: registries::check },
+    Rule { name: "manifests", check: manifests::check },
+    Rule { name: "directions", check: directions::check },
+    Rule { name: "dependencies", check: dependencies::check },
+    Rule { name: "changelog", check: changelog::check },
+    Rule { name: "front-page", check: front_page::check },
+];
+
+/// Something that a rule does not allow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Violation {
+    path: String,
+    /// From 1; 0 for the whole file.
+    line: usize,
+    message: String,
+}
+
+impl Violation {
+    fn new(path: &str, line: usize, message: impl Into<String>) -> Violation {
+        Violation { path: path.to_owned(), line, message: message.into() }
+    }
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(out, "{}: {}", self.path, self.message),
+            line => write!(out, "{}:{line}: {}", self.path, self.message),
+        }
+    }
+}
+
+/// Applies every rule to the repository as it lies on the disk.
+pub(crate) fn run(_: &[String]) -> Result<()> {
+    let repository = Repository::read()?;
+    let mut count = 0;
+    for rule in RULES {
+        for violation in (rule.check)(&repository) {
+            println!("{violation} [{}]", rule.name);
+            count += 1;
+        }
+    }
+    if count > 0 {
+        bail!("{count} untidy places");
+    }
+    println!("{} files, {} rules, all tidy", repository.files.len(), RULES.len());
+    Ok(())
+}

@@ -1,0 +1,55 @@
+//! `unsafe` stands only in the modules that DESIGN gives it to, and each has its `// SAFETY:` (or, on the
+//! declaration of an unsafe function, its `# Safety`) in the lines right above.
+
+use super::Violation;
+use super::repository::Repository;
+
+/// Path or its beginning, reason.
+const ALLOWED: &[(&str, &str)] = &[("crates/accel/src/simd", "the kernels of the wide structures")];
+
+/// How far above the word its reason may begin: attributes and a longer reason need room.
+const REACH: usize = 12;
+
+pub(super) fn check(repository: &Repository) -> Vec<Violation> {
+    let mut violations = Vec::new();
+    for (file, rust) in repository.rust() {
+        let allowed = ALLOWED.iter().any(|(path, _)| file.path.starts_with(path));
+        let comments: Vec<_> = rust.comments.lines().collect();
+        for (number, line) in rust.code.lines().enumerate().filter(|(_, line)| says_unsafe(line)) {
+            let above = &comments[number.saturating_sub(REACH)..=number];
+            if !allowed {
+                let message = "`unsafe` outside the modules that may have it: find a safe way";
+                violations.push(Violation::new(&file.path, number + 1, message));
+            } else if !above.iter().any(|line| line.contains("SAFETY:") || line.contains("# Safety")) {
+                let message = format!("`{}` without its `// SAFETY:`", line.trim());
+                violations.push(Violation::new(&file.path, number + 1, message));
+            }
+        }
+    }
+    violations
+}
+
+/// Whether the word stands in a line of code; `unsafe_code`, the lint, is another word.
+fn says_unsafe(line: &str) -> bool {
+    line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == "unsafe")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planted_blocks_are_found() {
+        let bare = "fn f() {\n    unsafe { g() }\n}\n";
+        let argued = "fn f() {\n    // SAFETY: g asks for nothing.\n    unsafe { g() }\n}\n";
+        let elsewhere = "#![deny(unsafe_code)] // unsafe\nconst S: &str = \"unsafe\";\n";
+        let repository = Repository::planted(&[
+            ("crates/accel/src/simd/a.rs", bare),
+            ("crates/accel/src/simd/b.rs", argued),
+            ("crates/scene/src/c.rs", argued),
+            ("crates/scene/src/d.rs", elsewhere),
+        ]);
+        let found: Vec<_> = check(&repository).into_iter().map(|found| (found.path, found.line)).collect();
+        assert_eq!(found, [("crates/accel/src/simd/a.rs".into(), 2), ("crates/scene/src/c.rs".into(), 3)]);
+    }
+}
