@@ -1,1 +1,25 @@
-//! Scene files: .asc, OBJ, PLY, STL and the native TOML, in and out.
+//! Scene files in and out. One format a folder; the table is [`SCENE_FORMATS`].
+//!
+//! A reader turns bytes into a [`bilux_scene::SceneBuilder`], which is plain data: nothing is checked
+//! against the scene's tables here and nothing is rendered. Whatever the bytes, a reader gives a scene or
+//! a [`FormatError`] that says where and what to do; it holds no more memory than
+//! [`ReadOptions::max_memory`], and opens nothing outside the folder of the scene unless allowed.
+
+mod asc;
+mod bake;
+mod budget;
+mod error;
+mod float;
+mod formats;
+mod normals;
+mod obj;
+mod options;
+mod polygon;
+mod reading;
+mod text;
+mod values;
+mod writing;
+
+pub use error::FormatError;
+pub use formats::{SCENE_FORMATS, SceneFormatEntry, format_named, format_of_path, read, read_bytes, write};
+pub use options::{ReadOptions, WriteOptions};

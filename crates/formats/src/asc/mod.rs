@@ -1,0 +1,53 @@
+//! `.asc`: one keyword, then three vertices, and again. See `docs/formats/asc.md`.
+
+mod read;
+mod write;
+
+use crate::formats::SceneFormatEntry;
+use crate::text::Cursor;
+use bilux_math::registry::Entry;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "asc",
+        summary: "plain lists of triangles: a keyword line, then three lines of position, normal and uv",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["asc"],
+    capabilities: &[
+        "triangles",
+        "normals",
+        "uv",
+        "vertex-kd",
+        "vertex-ks",
+        "materials: kd, ks, reflectivity",
+    ],
+    sniff,
+    read: Some(read::read),
+    write: Some(write::write),
+};
+
+/// A line that begins with a word, then three of which each is all numbers, 8 at least.
+fn sniff(bytes: &[u8]) -> bool {
+    let mut cursor = Cursor::new(&bytes[..bytes.len().min(4096)]);
+    let mut vertices = 0;
+    while !cursor.is_done() && vertices < 3 {
+        let (mut numbers, mut others) = (0, 0);
+        loop {
+            match cursor.word() {
+                b"" => break,
+                word if crate::float::parse_f32(word).is_some() => numbers += 1,
+                _ => others += 1,
+            }
+        }
+        cursor.end_line();
+        match (numbers, others) {
+            (0, 0) => {}
+            (8.., 0) => vertices += 1,
+            _ if vertices > 0 => return false,
+            _ => {}
+        }
+    }
+    vertices == 3
+}

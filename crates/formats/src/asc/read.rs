@@ -1,0 +1,312 @@
+//! Reading `.asc`.
+
+use crate::FormatError;
+use crate::float::parse_f32;
+use crate::reading::{Oddities, Reading, Source, default_material};
+use crate::text::{Cursor, Places, name_of, quoted};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Numbers of a vertex: position, normal, uv; then what else there is.
+const PLAIN: usize = 8;
+/// The same and an integer of which nobody knows the meaning.
+const NINTH: usize = 9;
+/// The same as [`PLAIN`], and kd and ks.
+const COLOURED: usize = 14;
+/// The most numbers that a line may hold: three coloured vertices.
+const MOST: usize = 3 * COLOURED;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let mut reader = Asc {
+        reading,
+        cursor: Cursor::new(source.bytes),
+        places: Places::new(source.name, source.bytes),
+        name: source.name.clone(),
+        scene: SceneBuilder::default(),
+        oddities: Oddities::default(),
+        group: Group { name: source.stem(), ..Group::default() },
+        materials: HashMap::new(),
+    };
+    reader.groups()?;
+    let Asc { mut scene, oddities, places, .. } = reader;
+    if scene.objects.is_empty() {
+        let message = "there is no triangle in it: each is a line with a word, then three lines of 8 numbers \
+                       (x y z, nx ny nz, u v)";
+        return Err(FormatError::malformed(message, places.whole()));
+    }
+    oddities.into_warnings(&mut scene);
+    Ok(scene)
+}
+
+struct Asc<'a, 'o, 'r> {
+    reading: &'r mut Reading<'o>,
+    cursor: Cursor<'a>,
+    places: Places<'a>,
+    name: Arc<str>,
+    scene: SceneBuilder,
+    oddities: Oddities,
+    group: Group,
+    /// Index of each material, by its values.
+    materials: HashMap<String, usize>,
+}
+
+/// Triangles that belong together, until the next `object` line.
+#[derive(Default)]
+struct Group {
+    name: String,
+    mesh: Mesh,
+    config: Option<Spec>,
+}
+
+/// Some of a line's words as numbers.
+struct Numbers {
+    values: [f32; MOST],
+    count: usize,
+}
+
+impl Asc<'_, '_, '_> {
+    fn groups(&mut self) -> Result<(), FormatError> {
+        // What the line before said, if it was no vertex.
+        let mut keyword = None;
+        loop {
+            self.skip_empty_lines();
+            self.cursor.skip_blanks();
+            if self.cursor.is_done() {
+                break;
+            }
+            let start = self.cursor.offset();
+            let first = self.cursor.peek_word();
+            if keyword.is_some() && parse_f32(first).is_some() {
+                self.triangle()?;
+                keyword = None;
+                continue;
+            }
+            self.cursor.word();
+            if let Some(before) = keyword.replace(start) {
+                self.note_line_without_triangle(before);
+            }
+            match first {
+                b"object" => self.begin_group()?,
+                b"config" if self.next_is_number() => {
+                    self.config(start)?;
+                    keyword = None;
+                }
+                _ => self.after_keyword(start)?,
+            }
+        }
+        if let Some(start) =
+            keyword.filter(|_| !self.scene.objects.is_empty() || !self.group.mesh.triangles.is_empty())
+        {
+            let message = "the file ends after this line, where a triangle should follow: it was cut off";
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        }
+        self.finish_group()
+    }
+
+    /// Ordinary files have none but `object`, `config` and comments.
+    fn note_line_without_triangle(&mut self, start: usize) {
+        let mut line = Cursor::new(&self.places.bytes()[start..]);
+        let word = line.word();
+        if word != b"object" && !word.starts_with(b"#") && !word.starts_with(b"//") {
+            let places = &self.places;
+            self.oddities.note("a line is followed by no triangle and left out", || places.at(start));
+        }
+    }
+
+    fn next_is_number(&self) -> bool {
+        parse_f32(self.cursor.peek_word()).is_some()
+    }
+
+    /// A keyword's line: any text, or numbers of the triangle behind the keyword.
+    fn after_keyword(&mut self, start: usize) -> Result<(), FormatError> {
+        let mut ahead = self.cursor.clone();
+        let mut count = 0;
+        while parse_f32(ahead.word()).is_some() {
+            count += 1;
+        }
+        let is_number = parse_f32(&self.places.bytes()[start..self.cursor.offset()]).is_some();
+        if is_number && count > 0 {
+            let message = "a triangle begins with a line of one word, but this is a line of numbers: are there \
+                           three vertices to each triangle?";
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        }
+        if stride_of(count).is_none() {
+            self.cursor.end_line();
+        }
+        Ok(())
+    }
+
+    /// `object NAME`: what follows belongs together. A name that starts with `-` is a comment.
+    fn begin_group(&mut self) -> Result<(), FormatError> {
+        self.finish_group()?;
+        let name = self.cursor.rest_of_line();
+        self.cursor.end_line();
+        self.group.name = if name.starts_with(b"-") { String::new() } else { name_of(name) };
+        Ok(())
+    }
+
+    /// `config ks.r ks.g ks.b kd.r kd.g kd.b reflectivity`.
+    fn config(&mut self, start: usize) -> Result<(), FormatError> {
+        let numbers = self.line_of_numbers()?;
+        if numbers.count != 7 {
+            let message = format!(
+                "'config' takes 7 numbers (ks red, green, blue, kd red, green, blue, reflectivity), not {}",
+                numbers.count
+            );
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        }
+        if !self.group.mesh.triangles.is_empty() {
+            self.finish_group()?;
+        }
+        let [ks_r, ks_g, ks_b, kd_r, kd_g, kd_b, reflectivity, ..] = numbers.values;
+        let span = self.places.at(start);
+        let mut spec = Spec { span: span.clone(), ..Spec::new("", "phong") };
+        let values = [
+            ("kd", Value::triple([kd_r, kd_g, kd_b])),
+            ("ks", Value::triple([ks_r, ks_g, ks_b])),
+            ("reflectivity", reflectivity.into()),
+        ];
+        for (key, value) in values {
+            spec.parameters.set_at(key, value, span.clone());
+        }
+        self.group.config = Some(spec);
+        Ok(())
+    }
+
+    /// Three vertices. The first line says how many numbers each has; lines may also be broken anywhere.
+    fn triangle(&mut self) -> Result<(), FormatError> {
+        let start = self.cursor.offset();
+        let mut numbers = self.line_of_numbers()?;
+        let broken = numbers.count < PLAIN;
+        let Some(stride) = stride_of(numbers.count).or(broken.then_some(PLAIN)) else {
+            let found = numbers.count;
+            let message =
+                format!("a vertex has 8 numbers (x y z, nx ny nz, u v), or 14 with kd and ks, not {found}");
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        };
+        let needed = 3 * stride;
+        while numbers.count < needed {
+            self.skip_empty_lines();
+            let line = self.cursor.offset();
+            let count = numbers.count;
+            if self.cursor.is_done() {
+                let message =
+                    format!("the file ends after {count} of a triangle's {needed} numbers: it was cut off");
+                return Err(FormatError::malformed(message, self.places.at(line)));
+            }
+            let more = self.line_of_numbers()?;
+            let fits = if broken { count + more.count <= needed } else { more.count == stride };
+            if !fits {
+                let message = format!("this vertex has {} numbers, where {stride} were expected", more.count);
+                return Err(FormatError::malformed(message, self.places.at(line)));
+            }
+            numbers.values[count..count + more.count].copy_from_slice(&more.values[..more.count]);
+            numbers.count += more.count;
+        }
+        if numbers.values[..numbers.count].iter().any(|x| !x.is_finite()) {
+            let places = &self.places;
+            self.oddities.note("a triangle has numbers that are infinite or no numbers; it is kept", || {
+                places.at(start)
+            });
+        }
+        if stride == NINTH {
+            let places = &self.places;
+            self.oddities.note("a ninth number per vertex is left out", || places.at(start));
+        }
+        self.push(&numbers.values, stride)
+    }
+
+    fn skip_empty_lines(&mut self) {
+        while self.cursor.peek_word().is_empty() && !self.cursor.is_done() {
+            self.cursor.end_line();
+        }
+    }
+
+    /// All words up to the line's end, as numbers.
+    fn line_of_numbers(&mut self) -> Result<Numbers, FormatError> {
+        let mut numbers = Numbers { values: [0.0; MOST], count: 0 };
+        loop {
+            self.cursor.skip_blanks();
+            let at = self.cursor.offset();
+            let word = self.cursor.word();
+            if word.is_empty() {
+                break;
+            }
+            let Some(value) = parse_f32(word) else {
+                let message =
+                    format!("{} is no number, but a number of a vertex should stand here", quoted(word));
+                return Err(FormatError::malformed(message, self.places.at(at)));
+            };
+            let Some(slot) = numbers.values.get_mut(numbers.count) else {
+                let message = format!("there are more than {MOST} numbers on this line: a vertex has 8");
+                return Err(FormatError::malformed(message, self.places.at(at)));
+            };
+            *slot = value;
+            numbers.count += 1;
+        }
+        self.cursor.end_line();
+        Ok(numbers)
+    }
+
+    fn push(&mut self, values: &[f32], stride: usize) -> Result<(), FormatError> {
+        let mesh = &self.group.mesh;
+        if !mesh.positions.is_empty() && mesh.vertex_kd.is_empty() == (stride == COLOURED) {
+            // All vertices of a mesh have kd and ks, or none: the rest becomes an object of its own.
+            let (name, config) = (self.group.name.clone(), self.group.config.clone());
+            self.finish_group()?;
+            (self.group.name, self.group.config) = (name, config);
+        }
+        self.reading.budget.take::<([f32; COLOURED], u32)>(3, &self.name)?;
+        let mesh = &mut self.group.mesh;
+        let Ok(first) = u32::try_from(mesh.positions.len() + 3).map(|end| end - 3) else {
+            let message =
+                "an object has more than 4 billion vertices: cut it into several with 'object' lines";
+            return Err(FormatError::malformed(message, self.places.whole()));
+        };
+        for vertex in values[..3 * stride].chunks_exact(stride) {
+            mesh.positions.push(Vec3::from_slice(&vertex[0..3]));
+            mesh.normals.push(Vec3::from_slice(&vertex[3..6]));
+            mesh.uvs.push(Vec2::from_slice(&vertex[6..8]));
+            if let [r, g, b, sr, sg, sb] = vertex[PLAIN..] {
+                mesh.vertex_kd.push(Rgb::new(r, g, b));
+                mesh.vertex_ks.push(Rgb::new(sr, sg, sb));
+            }
+        }
+        mesh.triangles.push([first, first + 1, first + 2]);
+        Ok(())
+    }
+
+    /// Makes an object of what was gathered, if that is anything.
+    fn finish_group(&mut self) -> Result<(), FormatError> {
+        let Group { name, mut mesh, config } = std::mem::take(&mut self.group);
+        if mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        self.reading.budget.take::<(Object, Spec, Mesh)>(2, &self.name)?;
+        let material = self.material(config, !mesh.vertex_kd.is_empty());
+        mesh.name.clone_from(&name);
+        self.scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+        Ok(())
+    }
+
+    /// The material of a group. Where vertices bring kd and ks, these are the constants themselves, so that
+    /// the material's own factors are 1 unless the file says otherwise.
+    fn material(&mut self, config: Option<Spec>, coloured: bool) -> usize {
+        let spec = match (config, coloured) {
+            (Some(spec), _) => spec,
+            (None, true) => Spec::new("vertices", "phong").with("kd", 1.0).with("ks", 1.0),
+            (None, false) => default_material(),
+        };
+        let key = format!("{:?}", spec.parameters.0.iter().map(|(_, value, _)| value).collect::<Vec<_>>());
+        let scene = &mut self.scene;
+        *self.materials.entry(key).or_insert_with(|| scene.add_material(spec))
+    }
+}
+
+/// Numbers per vertex of a line that holds a whole vertex, or a whole triangle.
+fn stride_of(count: usize) -> Option<usize> {
+    let strides = [PLAIN, NINTH, COLOURED];
+    strides.into_iter().find(|&stride| count == stride || count == 3 * stride)
+}

@@ -1,0 +1,44 @@
+//! How much memory reading may still take.
+
+use crate::FormatError;
+
+/// Counts what a reader holds against what it may hold.
+#[derive(Clone, Debug)]
+pub(crate) struct Budget {
+    limit: u64,
+    spent: u64,
+}
+
+impl Budget {
+    pub(crate) fn new(limit: u64) -> Budget {
+        Budget { limit, spent: 0 }
+    }
+
+    /// What is left, in bytes.
+    pub(crate) fn left(&self) -> u64 {
+        self.limit - self.spent
+    }
+
+    /// Takes bytes for what a file decodes to. Lists grow by doubling, so each counts twice.
+    #[inline]
+    pub(crate) fn take<T>(&mut self, count: usize, file: &str) -> Result<(), FormatError> {
+        self.take_bytes(2 * count as u64 * size_of::<T>() as u64, file)
+    }
+
+    /// Takes as many bytes as it says.
+    #[inline]
+    pub(crate) fn take_bytes(&mut self, bytes: u64, file: &str) -> Result<(), FormatError> {
+        match self.spent.checked_add(bytes).filter(|&spent| spent <= self.limit) {
+            Some(spent) => {
+                self.spent = spent;
+                Ok(())
+            }
+            None => Err(FormatError::TooLarge { file: file.to_owned(), limit: self.limit }),
+        }
+    }
+
+    /// Gives back what is no longer held.
+    pub(crate) fn give_back(&mut self, bytes: u64) {
+        self.spent = self.spent.saturating_sub(bytes);
+    }
+}

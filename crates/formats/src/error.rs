@@ -1,0 +1,89 @@
+//! What can be wrong with a scene file.
+
+use bilux_pictures::PictureError;
+use bilux_scene::{SceneError, Span, Warning};
+use std::path::PathBuf;
+
+/// Why a scene file cannot be read or written. Every message says what, where and what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FormatError {
+    /// A file cannot be opened, read or written.
+    #[error("{}: cannot {action}: {source}", .path.display())]
+    Io {
+        /// Which file.
+        path: PathBuf,
+        /// What was tried, such as `open it`.
+        action: &'static str,
+        /// What the machine says.
+        source: std::io::Error,
+    },
+    /// The file is not what its format says.
+    #[error("{at}: {message}")]
+    Malformed {
+        /// What is wrong and what to do.
+        message: String,
+        /// Where.
+        at: Span,
+    },
+    /// A file that another one names is not there.
+    #[error("{at}: there is no file '{name}' in {}; put it there, or correct its name", .folder.display())]
+    MissingFile {
+        /// The name as written.
+        name: String,
+        /// Where it was looked for.
+        folder: PathBuf,
+        /// Where it is named.
+        at: Span,
+    },
+    /// A file that another one names is not in the scene's folder.
+    #[error(
+        "{at}: '{name}' lies outside the scene's folder, and only files in it are opened; copy it there, or \
+         allow files outside"
+    )]
+    Outside {
+        /// The name as written.
+        name: String,
+        /// Where it is named.
+        at: Span,
+    },
+    /// More memory is needed than is allowed.
+    #[error("{file}: reading it takes more than the {limit} bytes that are allowed; allow more memory")]
+    TooLarge {
+        /// Which file.
+        file: String,
+        /// How many bytes are allowed.
+        limit: u64,
+    },
+    /// No format goes by this name.
+    #[error(
+        "{name}: this is no scene format that can be {wanted}{}; known are {}",
+        .nearest.as_ref().map(|n| format!(" (did you mean '{n}'?)")).unwrap_or_default(),
+        .known.join(", ")
+    )]
+    UnknownFormat {
+        /// The extension, name or file.
+        name: String,
+        /// `read` or `written`.
+        wanted: &'static str,
+        /// The nearest known name, when one is near.
+        nearest: Option<String>,
+        /// All that are known.
+        known: Vec<String>,
+    },
+    /// A name or a value in a scene file is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A texture cannot be written.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// Something odd, where strictness was asked for.
+    #[error("{0} (only a warning, were it not for strict reading)")]
+    Strict(Warning),
+}
+
+impl FormatError {
+    pub(crate) fn malformed(message: impl Into<String>, at: Span) -> FormatError {
+        FormatError::Malformed { message: message.into(), at }
+    }
+}

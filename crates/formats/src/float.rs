@@ -1,0 +1,174 @@
+//! Decimal numbers, exactly: the nearest f32 of a text, and the shortest text of an f32.
+
+use std::io::Write;
+
+/// The f32 nearest to a decimal number; `nan`, `inf` and what C compilers print for them count as numbers.
+///
+/// Digits and power of ten that fit an f64 exactly give the nearest f64 by one rounding
+/// [Clinger 1990]; its nearest f32 is that of the decimal too, unless it lies exactly between two of them.
+/// Everything else goes to the standard library.
+#[inline]
+pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
+    match quick(word) {
+        Some(value) => Some(value),
+        None => thorough(word),
+    }
+}
+
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
+    1e19, 1e20, 1e21, 1e22,
+];
+
+#[inline]
+fn quick(word: &[u8]) -> Option<f32> {
+    let (negative, mut rest) = match word {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, word),
+    };
+    // 18 digits cannot overflow.
+    if rest.len() > 19 {
+        return None;
+    }
+    let (mut mantissa, mut digits, mut power, mut after_point) = (0u64, 0, 0i32, false);
+    while let [first, tail @ ..] = rest {
+        match first {
+            b'0'..=b'9' => {
+                mantissa = mantissa * 10 + u64::from(first - b'0');
+                digits += 1;
+                power -= i32::from(after_point);
+            }
+            b'.' if !after_point => after_point = true,
+            b'e' | b'E' => {
+                power += small_integer(tail)?;
+                break;
+            }
+            _ => return None,
+        }
+        rest = tail;
+    }
+    if digits == 0 || digits > 18 || mantissa >= 1 << 53 {
+        return None;
+    }
+    let scale = *POWERS.get(power.unsigned_abs() as usize)?;
+    let value = if power < 0 { mantissa as f64 / scale } else { mantissa as f64 * scale };
+    let between = value.to_bits() & ((1 << 29) - 1) == 1 << 28;
+    let normal = value == 0.0 || (value >= f64::from(f32::MIN_POSITIVE) && value <= f64::from(f32::MAX));
+    let narrow = value as f32;
+    (normal && !between).then_some(if negative { -narrow } else { narrow })
+}
+
+/// An exponent of up to four digits.
+fn small_integer(text: &[u8]) -> Option<i32> {
+    let (sign, digits) = match text {
+        [b'-', rest @ ..] => (-1, rest),
+        [b'+', rest @ ..] => (1, rest),
+        _ => (1, text),
+    };
+    let fits = !digits.is_empty() && digits.len() <= 4 && digits.iter().all(u8::is_ascii_digit);
+    fits.then(|| sign * digits.iter().fold(0, |n, d| n * 10 + i32::from(d - b'0')))
+}
+
+#[cold]
+fn thorough(word: &[u8]) -> Option<f32> {
+    let text = std::str::from_utf8(word).ok()?;
+    text.parse().ok().or_else(|| {
+        // What C runtimes print: 1.#QNAN, -1.#IND00, nan(ind).
+        let bare = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
+        let is_nan = bare.starts_with("nan(") || bare.starts_with("1.#qnan") || bare.starts_with("1.#ind");
+        match bare.starts_with("1.#inf") {
+            true => Some(if text.starts_with('-') { f32::NEG_INFINITY } else { f32::INFINITY }),
+            false => is_nan.then_some(f32::NAN),
+        }
+    })
+}
+
+/// Appends the shortest text that reads back as the same f32.
+pub(crate) fn push_f32(out: &mut Vec<u8>, value: f32) {
+    let start = out.len();
+    // Writing to a list cannot fail.
+    let _ = write!(out, "{value:?}");
+    if out[start..].ends_with(b".0") {
+        out.truncate(out.len() - 2);
+    }
+}
+
+/// Appends numbers with blanks between.
+pub(crate) fn push_f32s(out: &mut Vec<u8>, values: &[f32]) {
+    for (i, &value) in values.iter().enumerate() {
+        if i > 0 {
+            out.push(b' ');
+        }
+        push_f32(out, value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn reads_every_way_of_writing_a_number() {
+        let cases: [(&str, f32); 12] = [
+            ("1", 1.0),
+            ("+1.5", 1.5),
+            ("-0", -0.0),
+            (".5", 0.5),
+            ("5.", 5.0),
+            ("1e-3", 0.001),
+            (".8e-001", 0.08),
+            ("-.7e+02", -70.0),
+            ("1E10", 1e10),
+            ("0.000000000000000000000000000000000000000001", 1e-42),
+            ("123456789012345678901234567890", 1.234_567_9e29),
+            ("1e999", f32::INFINITY),
+        ];
+        for (text, value) in cases {
+            assert_eq!(parse_f32(text.as_bytes()).map(f32::to_bits), Some(value.to_bits()), "{text}");
+        }
+        for text in ["nan", "-NaN", "nan(ind)", "1.#QNAN", "-1.#IND00"] {
+            assert!(parse_f32(text.as_bytes()).is_some_and(f32::is_nan), "{text}");
+        }
+        assert_eq!(parse_f32(b"-1.#INF"), Some(f32::NEG_INFINITY));
+        for text in ["", "-", ".", "e5", "1e", "1e+", "1.2.3", "1,5", "0x10", "1f", "one"] {
+            assert_eq!(parse_f32(text.as_bytes()), None, "{text}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn equals_the_standard_library(mantissa in 0u64..1_000_000_000_000, places in 0usize..18, e in -50i32..50) {
+            let digits = format!("{mantissa:018}");
+            for text in [
+                format!("{}.{}", &digits[..18 - places], &digits[18 - places..]),
+                format!("-{mantissa}e{e}"),
+            ] {
+                let expected: f32 = text.parse().unwrap();
+                prop_assert_eq!(parse_f32(text.as_bytes()).unwrap().to_bits(), expected.to_bits(), "{}", text);
+            }
+        }
+
+        #[test]
+        fn what_lies_between_two_numbers_rounds_as_the_standard_library_says(bits in 0u32..0x7f00_0000) {
+            let low = f32::from_bits(bits);
+            let middle = (f64::from(low) + f64::from(low.next_up())) * 0.5;
+            for value in [middle, middle.next_up(), middle.next_down()] {
+                for text in [format!("{value}"), format!("{value:e}"), format!("{value:.16e}")] {
+                    let expected: f32 = text.parse().unwrap();
+                    prop_assert_eq!(parse_f32(text.as_bytes()).unwrap().to_bits(), expected.to_bits());
+                }
+            }
+        }
+
+        #[test]
+        fn printed_numbers_read_back_to_the_bit(bits: u32) {
+            let value = f32::from_bits(bits);
+            let mut text = Vec::new();
+            push_f32(&mut text, value);
+            let back = parse_f32(&text).unwrap();
+            prop_assert!(back.to_bits() == bits || (back.is_nan() && value.is_nan()));
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The table of formats, and reading and writing by it.
+
+use crate::reading::{Reading, Source};
+use crate::text::whole_file;
+use crate::writing::{Writing, write_all};
+use crate::{FormatError, ReadOptions, WriteOptions, asc, obj};
+use bilux_math::registry::Entry;
+use bilux_scene::error::nearest_name;
+use bilux_scene::{SceneBuilder, Warning};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Every format that there is.
+pub const SCENE_FORMATS: &[SceneFormatEntry] = &[asc::ENTRY, obj::ENTRY];
+
+/// A row of [`SCENE_FORMATS`].
+#[derive(Clone, Copy, Debug)]
+pub struct SceneFormatEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Extensions in lower case without the dot, the usual one first.
+    pub extensions: &'static [&'static str],
+    /// What of a scene a file of this format can hold.
+    pub capabilities: &'static [&'static str],
+    /// True when bytes look like this format.
+    pub(crate) sniff: fn(&[u8]) -> bool,
+    pub(crate) read: Option<ReadFormat>,
+    pub(crate) write: Option<WriteFormat>,
+}
+
+/// Turns bytes into a scene.
+pub(crate) type ReadFormat = fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>;
+/// Turns a scene into bytes.
+pub(crate) type WriteFormat = fn(&SceneBuilder, &mut Writing) -> Result<(), FormatError>;
+
+impl SceneFormatEntry {
+    /// Whether files of this format can be read.
+    pub fn reads(&self) -> bool {
+        self.read.is_some()
+    }
+
+    /// Whether files of this format can be written.
+    pub fn writes(&self) -> bool {
+        self.write.is_some()
+    }
+}
+
+/// The format of a name or an extension, in any case.
+pub fn format_named(name: &str) -> Option<&'static SceneFormatEntry> {
+    let name = name.to_lowercase();
+    SCENE_FORMATS.iter().find(|row| row.entry.name == name || row.extensions.contains(&&*name))
+}
+
+/// The format that a path's extension says, for writing; so that a command line can be refused before the work.
+///
+/// # Errors
+/// When no format that can be written has this extension; with the nearest one.
+pub fn format_of_path(path: &Path) -> Result<&'static SceneFormatEntry, FormatError> {
+    let found = extension(path).and_then(|e| format_named(&e)).filter(|row| row.writes());
+    found.ok_or_else(|| unknown(path, "written", SceneFormatEntry::writes))
+}
+
+/// Reads a scene file. Its extension says which format it is; where that is unknown, its first bytes do.
+///
+/// # Errors
+/// What is wrong, with its place; see [`FormatError`].
+pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatError> {
+    let folder = path.parent();
+    let mut reading = Reading::new(options, folder);
+    let bytes = reading.load(path)?;
+    let row = match extension(path).and_then(|e| format_named(&e)) {
+        Some(row) => row,
+        None => sniffed(&bytes).ok_or_else(|| unknown(path, "read", SceneFormatEntry::reads))?,
+    };
+    let name = path.display().to_string().into();
+    read_source(row, &mut reading, &Source { bytes: &bytes, name: &name, folder })
+}
+
+/// Reads a scene from memory. `format` is a name or an extension, or empty to go by the bytes; `base` the
+/// folder of files that it names; `name` what messages call it.
+///
+/// # Errors
+/// What is wrong, with its place; see [`FormatError`].
+pub fn read_bytes(
+    bytes: &[u8],
+    format: &str,
+    base: Option<&Path>,
+    name: &str,
+    options: &ReadOptions,
+) -> Result<SceneBuilder, FormatError> {
+    let found = if format.is_empty() { sniffed(bytes) } else { format_named(format) };
+    let asked = if format.is_empty() { name } else { format };
+    let row = found.ok_or_else(|| unknown(Path::new(asked), "read", SceneFormatEntry::reads))?;
+    let mut reading = Reading::new(options, base);
+    reading.budget.take_bytes(bytes.len() as u64, name)?;
+    read_source(row, &mut reading, &Source { bytes, name: &Arc::from(name), folder: base })
+}
+
+/// Writes a scene in the format of the path's extension, files beside it included, each in one step: beside
+/// its place first, then renamed over it. Gives what the format could not hold.
+///
+/// # Errors
+/// When the format is unknown, or a file cannot be written.
+pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Result<Vec<Warning>, FormatError> {
+    let row = format_of_path(path)?;
+    let mut writing = Writing::new(path, options);
+    if let Some(write) = row.write {
+        write(scene, &mut writing)?;
+    }
+    write_all(path, writing)
+}
+
+/// Reads with a row that was found, and holds the result against the options.
+pub(crate) fn read_source(
+    row: &SceneFormatEntry,
+    reading: &mut Reading,
+    source: &Source,
+) -> Result<SceneBuilder, FormatError> {
+    let Some(read) = row.read else {
+        return Err(unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
+    };
+    if source.bytes.is_empty() {
+        return Err(FormatError::malformed("the file is empty", whole_file(source.name)));
+    }
+    let scene = read(reading, source)?;
+    match scene.warnings.first() {
+        Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
+        _ => Ok(scene),
+    }
+}
+
+fn sniffed(bytes: &[u8]) -> Option<&'static SceneFormatEntry> {
+    SCENE_FORMATS.iter().find(|row| row.reads() && (row.sniff)(bytes))
+}
+
+fn extension(path: &Path) -> Option<String> {
+    path.extension().map(|e| e.to_string_lossy().into_owned())
+}
+
+pub(crate) fn unknown(
+    path: &Path,
+    wanted: &'static str,
+    can: impl Fn(&SceneFormatEntry) -> bool,
+) -> FormatError {
+    let known: Vec<String> =
+        SCENE_FORMATS.iter().filter(|r| can(r)).flat_map(|r| r.extensions).map(|&e| e.to_owned()).collect();
+    let asked = extension(path).unwrap_or_else(|| path.display().to_string());
+    let nearest = nearest_name(&asked, &known);
+    FormatError::UnknownFormat { name: path.display().to_string(), wanted, nearest, known }
+}

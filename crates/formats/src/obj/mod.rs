@@ -1,0 +1,40 @@
+//! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
+
+mod assemble;
+mod mtl;
+mod mtl_write;
+mod read;
+mod write;
+
+use crate::formats::SceneFormatEntry;
+use crate::text::Cursor;
+use bilux_math::registry::Entry;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "obj",
+        summary: "Wavefront OBJ with its materials (MTL)",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["obj"],
+    capabilities: &["polygons", "normals", "uv", "vertex-kd", "objects", "materials", "textures"],
+    sniff,
+    read: Some(read::read),
+    write: Some(write::write),
+};
+
+/// The first statement is one of the usual ones.
+fn sniff(bytes: &[u8]) -> bool {
+    let mut cursor = Cursor::new(&bytes[..bytes.len().min(4096)]);
+    while !cursor.is_done() {
+        match cursor.word() {
+            word if word.is_empty() || word.starts_with(b"#") => cursor.end_line(),
+            b"v" | b"vn" | b"vt" => return crate::float::parse_f32(cursor.word()).is_some(),
+            b"mtllib" => return true,
+            b"o" | b"g" | b"s" | b"usemtl" => cursor.end_line(),
+            _ => return false,
+        }
+    }
+    false
+}

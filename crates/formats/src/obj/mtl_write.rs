@@ -1,0 +1,153 @@
+//! Writing MTL, so that [`super::mtl`] reads the same material back.
+
+use super::write::one_line;
+use crate::FormatError;
+use crate::float::{push_f32, push_f32s};
+use crate::reading::default_material;
+use crate::values::{colour, number, texture};
+use crate::writing::Writing;
+use bilux_math::Rgb;
+use bilux_scene::{SceneBuilder, Spec, Value};
+use std::collections::HashSet;
+
+/// Writes every material but the plain one into a library beside; gives the name of each.
+pub(super) fn write_library(
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+) -> Result<Vec<Option<String>>, FormatError> {
+    let plain = default_material();
+    let mut taken = HashSet::new();
+    let mut out = Vec::new();
+    let mut names = Vec::new();
+    for spec in &scene.materials {
+        if (&spec.kind, &spec.parameters) == (&plain.kind, &plain.parameters) && spec.name == plain.name {
+            names.push(None);
+            continue;
+        }
+        let name = unused_name(&spec.name, &mut taken);
+        out.extend_from_slice(format!("newmtl {name}\n").as_bytes());
+        names.push(Some(name));
+        write_material(spec, scene, writing, &mut out)?;
+        out.push(b'\n');
+    }
+    if !out.is_empty() {
+        let library = format!("{}.mtl", writing.stem);
+        writing.main.extend_from_slice(format!("mtllib {library}\n").as_bytes());
+        writing.beside.push((library, out));
+    }
+    Ok(names)
+}
+
+fn unused_name(name: &str, taken: &mut HashSet<String>) -> String {
+    let name = Some(one_line(name)).filter(|n| !n.is_empty()).unwrap_or_else(|| "material".to_owned());
+    let numbered = (2..).map(|i| format!("{name}_{i}"));
+    let free = std::iter::once(name.clone()).chain(numbered).find(|n| !taken.contains(n)).unwrap_or(name);
+    taken.insert(free.clone());
+    free
+}
+
+/// Parameters that MTL holds, by kind.
+const HELD: [(&str, &[&str]); 4] = [
+    ("phong", &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "thin"]),
+    ("diffuse", &["reflectance", "emission"]),
+    ("mirror", &["reflectance", "emission"]),
+    ("dielectric", &["eta", "tint"]),
+];
+
+fn write_material(
+    spec: &Spec,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+    out: &mut Vec<u8>,
+) -> Result<(), FormatError> {
+    let held = HELD.iter().find(|(kind, _)| *kind == spec.kind);
+    if held.is_none() {
+        writing.warn(format!("OBJ files hold no material '{}': a matt one stands in its place", spec.kind));
+    }
+    for (key, ..) in &spec.parameters.0 {
+        if held.is_some_and(|(_, keys)| !keys.contains(&key.as_str())) {
+            writing.warn(format!("OBJ files hold no '{key}' of a material: left out"));
+        }
+    }
+    let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
+    match spec.kind.as_str() {
+        "phong" => write_phong(spec, out),
+        "mirror" => {
+            push_colour(out, "Kd", Rgb::BLACK);
+            push_colour(out, "Ks", grey("reflectance", 0.95));
+            out.extend_from_slice(b"illum 3\n");
+        }
+        "dielectric" => {
+            push_number(out, "Ni", number(spec, "eta").unwrap_or(1.5));
+            push_colour(out, "Tf", grey("tint", 1.0));
+            out.extend_from_slice(b"illum 7\n");
+        }
+        _ => {
+            push_colour(out, "Kd", grey("reflectance", 0.7));
+            push_colour(out, "Ks", Rgb::BLACK);
+            out.extend_from_slice(b"illum 1\n");
+        }
+    }
+    if let Some(emission) = colour(spec, "emission").filter(|c| !c.is_black()) {
+        push_colour(out, "Ke", emission);
+    }
+    for (map, keys) in [("map_Kd", ["kd", "reflectance"]), ("map_Ks", ["ks", "ks"])] {
+        let index = keys.into_iter().find_map(|key| texture(spec, key));
+        let file = index.map(|index| writing.texture(scene, index)).transpose()?.flatten();
+        if let Some(file) = file {
+            out.extend_from_slice(format!("{map} {file}\n").as_bytes());
+        }
+    }
+    Ok(())
+}
+
+fn write_phong(spec: &Spec, out: &mut Vec<u8>) {
+    let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
+    let kt = grey("kt", 0.0);
+    // What `d` leaves of kd was taken from it when it was read.
+    let opacity = if spec.parameters.find("thin").is_some_and(|(v, _)| *v == Value::Bool(true)) {
+        1.0 - kt.max_channel()
+    } else {
+        1.0
+    };
+    if opacity < 1.0 {
+        let kd = if opacity > 0.0 { grey("kd", 0.7) / opacity } else { Rgb::BLACK };
+        push_colour(out, "Kd", kd);
+        push_number(out, "d", opacity);
+        push_colour(out, "Tf", kt / kt.max_channel());
+    } else {
+        push_colour(out, "Kd", grey("kd", 0.7));
+        if !kt.is_black() {
+            push_colour(out, "Kt", kt);
+        }
+    }
+    push_colour(out, "Ks", grey("ks", 0.3));
+    if let Some(exponent) = number(spec, "exponent") {
+        push_number(out, "Ns", exponent);
+    }
+    if let Some(eta) = number(spec, "eta") {
+        push_number(out, "Ni", eta);
+    }
+    match number(spec, "reflectivity").unwrap_or(1.0) {
+        0.0 => out.extend_from_slice(b"illum 2\n"),
+        part => {
+            // Not of the format, but other programs write it too, and the rest pass over it.
+            push_number(out, "Kr", part);
+            out.extend_from_slice(b"illum 3\n");
+        }
+    }
+}
+
+fn push_colour(out: &mut Vec<u8>, key: &str, colour: Rgb) {
+    out.extend_from_slice(key.as_bytes());
+    out.push(b' ');
+    push_f32s(out, &colour.to_array());
+    out.push(b'\n');
+}
+
+fn push_number(out: &mut Vec<u8>, key: &str, number: f32) {
+    out.extend_from_slice(key.as_bytes());
+    out.push(b' ');
+    push_f32(out, number);
+    out.push(b'\n');
+}

@@ -1,0 +1,171 @@
+//! One job of reading: what is allowed, what has been used, which files belong to it.
+
+use crate::budget::Budget;
+use crate::{FormatError, ReadOptions};
+use bilux_math::Rgb;
+use bilux_pictures::Limits;
+use bilux_scene::{SceneBuilder, Span, Spec, Texture};
+use std::collections::HashMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The bytes that a reader reads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source<'a> {
+    /// The whole file.
+    pub(crate) bytes: &'a [u8],
+    /// Its name, for messages.
+    pub(crate) name: &'a Arc<str>,
+    /// Its folder, in which the files that it names lie; `None` when it came from no file.
+    pub(crate) folder: Option<&'a Path>,
+}
+
+impl Source<'_> {
+    /// Its name without folder and extension.
+    pub(crate) fn stem(&self) -> String {
+        Path::new(&**self.name).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+    }
+}
+
+/// What all readers of one job share.
+pub(crate) struct Reading<'o> {
+    pub(crate) options: &'o ReadOptions,
+    pub(crate) budget: Budget,
+    /// Nothing outside this folder is opened.
+    root: Option<PathBuf>,
+    textures: HashMap<PathBuf, Arc<Texture>>,
+}
+
+impl<'o> Reading<'o> {
+    pub(crate) fn new(options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
+        let root = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
+        Reading { options, budget: Budget::new(options.max_memory), root, textures: HashMap::new() }
+    }
+
+    /// The file that a file names, if it is there and may be opened.
+    pub(crate) fn locate(
+        &self,
+        folder: Option<&Path>,
+        name: &str,
+        at: &Span,
+    ) -> Result<PathBuf, FormatError> {
+        let Some(folder) = folder.map(non_empty) else {
+            let message = format!("'{name}' cannot be looked for: the scene did not come from a folder");
+            return Err(FormatError::malformed(message, at.clone()));
+        };
+        let missing =
+            || FormatError::MissingFile { name: name.to_owned(), folder: folder.to_owned(), at: at.clone() };
+        // Files from other machines name folders of those; then what they mean often lies beside.
+        let portable = name.replace('\\', "/");
+        let beside = portable.rsplit('/').next().unwrap_or_default();
+        if beside.is_empty() || name.contains('\0') {
+            return Err(missing());
+        }
+        let found = [folder.join(name), folder.join(&portable), folder.join(beside)]
+            .into_iter()
+            .find_map(|path| fs::canonicalize(path).ok())
+            .ok_or_else(missing)?;
+        match &self.root {
+            Some(root) if found.starts_with(root) || self.options.allow_outside => Ok(found),
+            None if self.options.allow_outside => Ok(found),
+            _ => Err(FormatError::Outside { name: name.to_owned(), at: at.clone() }),
+        }
+    }
+
+    /// A file's bytes. They count as held until [`Reading::release`].
+    pub(crate) fn load(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
+        let failed = |action| move |source| FormatError::Io { path: path.to_owned(), action, source };
+        let file = fs::File::open(path).map_err(failed("open it"))?;
+        let metadata = file.metadata().map_err(failed("open it"))?;
+        if metadata.is_dir() {
+            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
+            return Err(failed("read it")(source));
+        }
+        let limit = self.budget.left();
+        let mut bytes = Vec::new();
+        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed("read it"))?;
+        self.budget.take_bytes(bytes.len() as u64, &path.display().to_string())?;
+        Ok(bytes)
+    }
+
+    /// Gives back the bytes of a loaded file.
+    pub(crate) fn release(&mut self, bytes: Vec<u8>) {
+        self.budget.give_back(bytes.len() as u64);
+    }
+
+    /// A picture as a texture in linear light; decoded once however often it is named.
+    pub(crate) fn texture(
+        &mut self,
+        folder: Option<&Path>,
+        name: &str,
+        at: &Span,
+    ) -> Result<Arc<Texture>, FormatError> {
+        let path = self.locate(folder, name, at)?;
+        if let Some(texture) = self.textures.get(&path) {
+            return Ok(texture.clone());
+        }
+        let bytes = self.load(&path)?;
+        let hint = path.extension().and_then(|e| e.to_str());
+        // The decoder's planes and the texels are held side by side for a moment.
+        let limits = Limits::new(self.budget.left() / 2);
+        let decoded = bilux_pictures::read_bytes(&bytes, hint, &limits);
+        let picture = decoded
+            .map_err(|e| {
+                FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
+            })?
+            .into_linear();
+        self.budget.take_bytes((picture.pixel_count() * size_of::<Rgb>()) as u64, name)?;
+        let (width, height) = (picture.width(), picture.height());
+        let texels = picture.to_rgb().ok_or_else(|| {
+            FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
+        })?;
+        self.release(bytes);
+        let texture = Arc::new(Texture { name: name.to_owned(), width, height, texels });
+        self.textures.insert(path, texture.clone());
+        Ok(texture)
+    }
+}
+
+fn non_empty(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
+}
+
+/// The material of files that say nothing about it.
+pub(crate) fn default_material() -> Spec {
+    Spec::new("default", "phong")
+}
+
+/// Counts odd things by kind, so that a file with a million of them gives one warning.
+#[derive(Debug, Default)]
+pub(crate) struct Oddities {
+    kinds: Vec<(String, u64, Span)>,
+}
+
+/// Kinds beyond this are not told apart: a file of garbage has thousands.
+const MOST_KINDS: usize = 40;
+
+impl Oddities {
+    /// Notes one more of a kind; `at` is asked only for the first.
+    pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
+        let kinds = self.kinds.len();
+        match self.kinds.iter_mut().find(|(kind, ..)| kind == what) {
+            Some((_, count, _)) => *count += 1,
+            None if kinds > MOST_KINDS => {}
+            None if kinds == MOST_KINDS => {
+                self.kinds.push(("there is more that is odd from here on".to_owned(), 1, at()));
+            }
+            None => self.kinds.push((what.to_owned(), 1, at())),
+        }
+    }
+
+    /// Turns them into warnings, each with its count and the place of the first.
+    pub(crate) fn into_warnings(self, scene: &mut SceneBuilder) {
+        for (what, count, at) in self.kinds {
+            let times =
+                if count > 1 { format!(" ({count} times; this is the first)") } else { String::new() };
+            scene.warn(format!("{what}{times}"), at);
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Lines and words of a text file, with their places. Lines end at CR, LF or both.
+
+use bilux_scene::Span;
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// Walks through a text word by word, line by line.
+#[derive(Clone, Debug)]
+pub(crate) struct Cursor<'a> {
+    bytes: &'a [u8],
+    pos: usize,
+}
+
+const fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | 0x0b | 0x0c | 0)
+}
+
+const fn is_newline(byte: u8) -> bool {
+    matches!(byte, b'\n' | b'\r')
+}
+
+impl<'a> Cursor<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Cursor<'a> {
+        Cursor { bytes, pos: 0 }
+    }
+
+    /// How many bytes have been passed.
+    #[inline]
+    pub(crate) fn offset(&self) -> usize {
+        self.pos
+    }
+
+    pub(crate) fn is_done(&self) -> bool {
+        self.pos >= self.bytes.len()
+    }
+
+    /// Passes blanks, and line ends after a backslash, which continue a line.
+    #[inline]
+    pub(crate) fn skip_blanks(&mut self) {
+        while let Some(&byte) = self.bytes.get(self.pos) {
+            match byte {
+                b if is_blank(b) => self.pos += 1,
+                b'\\' => match &self.bytes[self.pos + 1..] {
+                    [b'\r', b'\n', ..] => self.pos += 3,
+                    [b'\r' | b'\n', ..] => self.pos += 2,
+                    _ => break,
+                },
+                _ => break,
+            }
+        }
+    }
+
+    /// The next word of this line; empty at its end.
+    #[inline]
+    pub(crate) fn word(&mut self) -> &'a [u8] {
+        self.skip_blanks();
+        let rest = &self.bytes[self.pos..];
+        let length = rest.iter().position(|&b| is_blank(b) || is_newline(b)).unwrap_or(rest.len());
+        let continued = length < rest.len() && is_newline(rest[length]) && rest[..length].ends_with(b"\\");
+        let length = length - usize::from(continued);
+        self.pos += length;
+        &rest[..length]
+    }
+
+    /// The same without passing it.
+    #[inline]
+    pub(crate) fn peek_word(&self) -> &'a [u8] {
+        self.clone().word()
+    }
+
+    /// The rest of this line without blanks around it; continued lines are not joined.
+    pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.pos..];
+        let length = rest.iter().position(|&b| is_newline(b)).unwrap_or(rest.len());
+        self.pos += length;
+        let line = &rest[..length];
+        let start = line.iter().position(|&b| !is_blank(b)).unwrap_or(length);
+        let end = line.iter().rposition(|&b| !is_blank(b)).map_or(start, |last| last + 1);
+        &line[start..end]
+    }
+
+    /// Goes to the start of the next line, with continued lines passed as one.
+    #[inline]
+    pub(crate) fn end_line(&mut self) {
+        loop {
+            let rest = &self.bytes[self.pos..];
+            let Some(length) = rest.iter().position(|&b| is_newline(b)) else {
+                self.pos = self.bytes.len();
+                return;
+            };
+            let continued = rest[..length].ends_with(b"\\");
+            self.pos += length + if rest[length..].starts_with(b"\r\n") { 2 } else { 1 };
+            if !continued {
+                return;
+            }
+        }
+    }
+}
+
+/// Where in a file a byte stands. Asking in rising order passes over the file once in all.
+#[derive(Clone, Debug)]
+pub(crate) struct Places<'a> {
+    file: Arc<str>,
+    bytes: &'a [u8],
+    /// Offset, line and start of line last asked for.
+    last: Cell<(usize, u32, usize)>,
+}
+
+impl<'a> Places<'a> {
+    pub(crate) fn new(file: &Arc<str>, bytes: &'a [u8]) -> Places<'a> {
+        Places { file: file.clone(), bytes, last: Cell::new((0, 1, 0)) }
+    }
+
+    /// Line and column of a byte.
+    pub(crate) fn at(&self, offset: usize) -> Span {
+        let offset = offset.min(self.bytes.len());
+        let (mut pos, mut line, mut start) =
+            if self.last.get().0 <= offset { self.last.get() } else { (0, 1, 0) };
+        while pos < offset {
+            let byte = self.bytes[pos];
+            pos += 1;
+            let inside_crlf = byte == b'\r' && self.bytes.get(pos) == Some(&b'\n');
+            if is_newline(byte) && !inside_crlf {
+                (line, start) = (line.saturating_add(1), pos);
+            }
+        }
+        self.last.set((pos, line, start));
+        let column = u32::try_from(offset - start + 1).unwrap_or(u32::MAX);
+        Span { file: self.file.clone(), line, column }
+    }
+
+    /// The whole file.
+    pub(crate) fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// The place of the file as a whole.
+    pub(crate) fn whole(&self) -> Span {
+        whole_file(&self.file)
+    }
+}
+
+/// The place of a file as a whole.
+pub(crate) fn whole_file(file: &Arc<str>) -> Span {
+    Span { file: file.clone(), line: 0, column: 0 }
+}
+
+/// A piece of a file in quotes for a message: short, and without control characters.
+pub(crate) fn quoted(bytes: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let text: String = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)])
+        .chars()
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .take(LONGEST)
+        .collect();
+    let more = if bytes.len() > text.len() { "…" } else { "" };
+    format!("'{text}{more}'")
+}
+
+/// Text of a file as a name, whatever its encoding.
+pub(crate) fn name_of(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_lines_for_every_line_end() {
+        for end in ["\n", "\r", "\r\n"] {
+            let text = format!("a  b{end}{end}\t c \\{end} d{end}e");
+            let mut cursor = Cursor::new(text.as_bytes());
+            let mut lines = Vec::new();
+            while !cursor.is_done() {
+                let mut words = Vec::new();
+                loop {
+                    match cursor.word() {
+                        b"" => break,
+                        word => words.push(name_of(word)),
+                    }
+                }
+                lines.push(words.join(","));
+                cursor.end_line();
+            }
+            assert_eq!(lines, ["a,b", "", "c,d", "e"], "{end:?}");
+        }
+    }
+
+    #[test]
+    fn places_count_every_line_end_once() {
+        let file: Arc<str> = "f".into();
+        for end in ["\n", "\r", "\r\n"] {
+            let text = format!("ab{end}{end}xyz");
+            let places = Places::new(&file, text.as_bytes());
+            let z = text.find('z').unwrap();
+            assert_eq!(places.at(z).to_string(), "f:3:3");
+            assert_eq!(places.at(1).to_string(), "f:1:2");
+            assert_eq!(places.at(usize::MAX).to_string(), "f:3:4");
+        }
+    }
+}

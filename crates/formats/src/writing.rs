@@ -1,0 +1,75 @@
+//! One job of writing: files are made in memory, and reach the disk only when all are done.
+
+use crate::{FormatError, WriteOptions};
+use bilux_pictures::{Picture, write_atomically};
+use bilux_scene::{SceneBuilder, Span, Warning};
+use std::path::Path;
+
+/// The files of a scene while they are made.
+pub(crate) struct Writing<'o> {
+    #[allow(dead_code, reason = "for formats that have both text and binary")]
+    pub(crate) options: &'o WriteOptions,
+    /// The main file's name without folder and extension.
+    pub(crate) stem: String,
+    /// The main file.
+    pub(crate) main: Vec<u8>,
+    /// Files beside it, by name.
+    pub(crate) beside: Vec<(String, Vec<u8>)>,
+    /// Textures written so far: index and file name.
+    textures: Vec<(usize, String)>,
+    /// What the format could not hold.
+    pub(crate) warnings: Vec<Warning>,
+}
+
+impl<'o> Writing<'o> {
+    pub(crate) fn new(path: &Path, options: &'o WriteOptions) -> Writing<'o> {
+        let stem = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
+        Writing {
+            options,
+            stem,
+            main: Vec::new(),
+            beside: Vec::new(),
+            textures: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The name of a file beside the scene that holds a texture; made when it is first asked for. Samples of
+    /// 8-bit pictures come back as they were; what is brighter than white goes into an EXR.
+    pub(crate) fn texture(
+        &mut self,
+        scene: &SceneBuilder,
+        index: usize,
+    ) -> Result<Option<String>, FormatError> {
+        let Some(texture) = scene.textures.get(index) else { return Ok(None) };
+        if let Some((_, name)) = self.textures.iter().find(|(i, _)| *i == index) {
+            return Ok(Some(name.clone()));
+        }
+        let bright = texture.texels.iter().any(|t| !t.is_finite() || t.max_channel() > 1.0);
+        let format = if bright { "exr" } else { "png" };
+        let name = format!("{}-texture-{}.{format}", self.stem, index + 1);
+        let picture = Picture::from_rgb(texture.width, texture.height, texture.texels.clone())?;
+        let bytes = bilux_pictures::write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
+        self.beside.push((name.clone(), bytes));
+        self.textures.push((index, name.clone()));
+        Ok(Some(name))
+    }
+
+    /// Tells what could not be held, once.
+    pub(crate) fn warn(&mut self, message: impl Into<String>) {
+        let warning = Warning { message: message.into(), at: Span::default() };
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
+    }
+}
+
+/// Writes the files beside first, so that the main file never names one that is not there.
+pub(crate) fn write_all(path: &Path, writing: Writing) -> Result<Vec<Warning>, FormatError> {
+    for (name, bytes) in &writing.beside {
+        let beside = path.with_file_name(name);
+        write_atomically(&beside, bytes).map_err(|e| e.in_file(&beside))?;
+    }
+    write_atomically(path, &writing.main).map_err(|e| e.in_file(path))?;
+    Ok(writing.warnings)
+}

@@ -1,0 +1,27 @@
+//! Scene files as users have them: real ones, broken ones, and there and back again.
+
+#![allow(clippy::print_stdout, reason = "tests say what they skip")]
+
+mod asc;
+mod obj;
+mod round_trips;
+mod shared_files;
+
+use bilux_formats::{FormatError, ReadOptions, read_bytes};
+use bilux_scene::SceneBuilder;
+
+/// Reads a text that came from no folder.
+fn read_text(format: &str, text: impl AsRef<[u8]>) -> Result<SceneBuilder, FormatError> {
+    read_bytes(text.as_ref(), format, None, &format!("scene.{format}"), &ReadOptions::default())
+}
+
+/// The message of a refusal.
+#[track_caller]
+fn refusal(format: &str, text: impl AsRef<[u8]>) -> String {
+    read_text(format, text).expect_err("this should be refused").to_string()
+}
+
+/// Warnings, one a line.
+fn warnings(scene: &SceneBuilder) -> String {
+    scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,71 @@
+//! There and back again: what a format can hold comes back to the bit.
+
+use crate::shared_files::scenes;
+use bilux_formats::{ReadOptions, WriteOptions, read, write};
+use bilux_scene::{Mesh, SceneBuilder};
+use std::path::Path;
+
+/// Every corner of every triangle, in order, as bits: what a picture depends on.
+fn corners(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let bits = |i: usize| {
+        let mut all = mesh.positions[i].to_array().to_vec();
+        all.extend(mesh.normals.get(i).into_iter().flat_map(|n| n.to_array()));
+        all.extend(mesh.uvs.get(i).into_iter().flat_map(|uv| uv.to_array()));
+        all.extend(mesh.vertex_kd.get(i).into_iter().flat_map(|c| c.to_array()));
+        all.into_iter().map(f32::to_bits).collect()
+    };
+    mesh.triangles.iter().flatten().map(|&i| bits(i as usize)).collect()
+}
+
+#[track_caller]
+fn assert_same(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
+    assert_eq!(a.objects.len(), b.objects.len(), "{what}");
+    for (a_object, b_object) in a.objects.iter().zip(&b.objects) {
+        assert!(corners(&a_object.mesh) == corners(&b_object.mesh), "{what}: a mesh differs");
+        let material = |scene: &SceneBuilder, index: usize| {
+            let spec = &scene.materials[index];
+            let values: Vec<_> = spec.parameters.0.iter().map(|(k, v, _)| (k.clone(), v.clone())).collect();
+            (spec.kind.clone(), values)
+        };
+        assert_eq!(material(a, a_object.material), material(b, b_object.material), "{what}");
+    }
+}
+
+fn there(scene: &SceneBuilder, path: &Path) -> SceneBuilder {
+    let warnings = write(path, scene, &WriteOptions::default()).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    read(path, &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn asc_to_obj_to_asc_loses_nothing() {
+    let Some(root) = scenes() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["ext_object_config", "floor_crlf", "teapot_cr", "teapot_floor_cr", "teapot_lf"] {
+        let original = read(&root.join(format!("asc/{name}.asc")), &ReadOptions::default()).unwrap();
+        let as_obj = there(&original, &folder.path().join(format!("{name}.obj")));
+        let back = there(&as_obj, &folder.path().join(format!("{name}.asc")));
+        assert_same(&original, &back, name);
+        let vertices = |s: &SceneBuilder| s.objects.iter().map(|o| o.mesh.positions.len()).sum::<usize>();
+        assert_eq!(vertices(&original), vertices(&back));
+    }
+}
+
+#[test]
+fn obj_comes_back_from_obj() {
+    let Some(root) = scenes() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for name in [
+        "spot.obj",
+        "teapot.obj",
+        "tinyobj/cornell_box.obj",
+        "tinyobj/cube-vertexcol.obj",
+        "tinyobj/issue-138.obj",
+    ] {
+        let original = read(&root.join("obj").join(name), &ReadOptions::default()).unwrap();
+        let back = there(&original, &folder.path().join("out.obj"));
+        assert_same(&original, &back, name);
+        let names = |s: &SceneBuilder| s.objects.iter().map(|o| o.name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&original), names(&back));
+    }
+}
