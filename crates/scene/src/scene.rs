@@ -117,6 +117,11 @@ impl Scene {
         &self.parts.lights
     }
 
+    /// Index in [`Scene::lights`] of the light that an object is.
+    pub fn light_index_of(&self, object: u32) -> Option<usize> {
+        self.parts.object_lights[object as usize].map(|i| i as usize)
+    }
+
     /// The light that an object is.
     pub fn light_of(&self, object: u32) -> Option<&SceneLight> {
         self.parts.object_lights[object as usize].map(|i| &self.parts.lights[i as usize])
@@ -141,6 +146,21 @@ impl Scene {
     /// Radiance from infinity in a direction away from the scene.
     pub fn background(&self, direction: Vec3) -> Rgb {
         self.parts.lights.iter().map(|l| l.light.le(direction)).sum()
+    }
+
+    /// The greatest channel of the radiance that any surface gives out, or that comes from infinity straight
+    /// above, below or from a side.
+    pub fn brightest_radiance(&self) -> f32 {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+        let surfaces = self.parts.materials.iter().map(|m| m.emission());
+        let infinity = axes.into_iter().map(|axis| self.background(axis));
+        surfaces.chain(infinity).map(Rgb::max_channel).fold(0.0, f32::max)
+    }
+
+    /// The greatest channel of all that lights give in the classic modes.
+    pub fn classic_brightness(&self) -> f32 {
+        let lights: Rgb = self.parts.lights.iter().map(|l| l.classic_colour).sum();
+        (lights + self.parts.classic_ambient).max_channel()
     }
 
     /// True when some surface gives light.

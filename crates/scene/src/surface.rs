@@ -1,5 +1,6 @@
 //! A point on a surface, as materials, lights and integrators see it.
 
+use crate::lights::LightSample;
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -37,6 +38,14 @@ impl Surface {
     pub fn spawn(&self, direction: Vec3) -> Ray {
         let origin = offset_origin(self.p, self.p_error, self.n_geom, direction);
         Ray { time: self.time, exclude: self.primitive, ..Ray::new(origin.to_array(), direction.to_array()) }
+    }
+
+    /// A ray from here to where a light was sampled, as far as nothing of the light itself can be in its way.
+    pub fn spawn_to_light(&self, sample: &LightSample) -> Ray {
+        match sample.point {
+            Some(point) => Ray { t_max: 1.0 - sample.clearance, ..self.spawn_to(point) },
+            None => self.spawn(sample.wi),
+        }
     }
 
     /// A ray from here to `target`, which it reaches at `t = 1`.

@@ -1,1 +1,32 @@
-//! How light gets to the film: samplers, tiles and one file per integrator.
+//! How light gets to the film: samplers, the film, tiles, and one file per integrator.
+//!
+//! An integrator ([`INTEGRATORS`]) answers what radiance comes along a ray; [`render`] asks it for every sample
+//! of every pixel and adds up the [`Film`]. At a fixed number of samples the film is a pure function of scene,
+//! settings and seed: the same bytes for any number of threads, any crop, and any split into ranges of samples.
+
+mod classic;
+pub mod error;
+pub mod film;
+pub mod filters;
+pub mod integrators;
+mod light_choice;
+mod medium;
+pub mod partial;
+pub mod render;
+pub mod replay;
+pub mod sampler;
+mod task;
+pub mod window;
+
+pub use error::{FilmError, RenderError};
+pub use film::{Film, SamplePlace, Trouble, scale_exponent};
+pub use filters::{FILTERS, Filter, FilterEntry};
+pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrator};
+pub use light_choice::LightChoice;
+pub use render::{
+    DEFAULT_MAX_DEPTH, MAX_DEPTH, PixelAnchor, Progress, RenderSettings, Rendered, Silent, render,
+};
+pub use replay::{Replay, replay};
+pub use sampler::PixelSampler;
+pub use task::{Event, Task};
+pub use window::{Coverage, Window};

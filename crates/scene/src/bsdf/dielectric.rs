@@ -59,19 +59,27 @@ impl Dielectric {
             reflected = 2.0 * reflected / (1.0 + reflected);
         }
         if u_choice < reflected {
-            return Some(self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, 1.0, false));
+            return Some(self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, None));
         }
         let wi = if self.thin { -wo } else { refract(wo, normal, eta)? };
-        let scale = match mode {
-            TransportMode::Radiance if !self.thin => 1.0 / (eta * eta),
-            _ => 1.0,
-        };
-        Some(self.towards(wi, 1.0 - reflected, scale, true))
+        let eta = if self.thin { 1.0 } else { eta };
+        let mut sample = self.towards(wi, 1.0 - reflected, Some(eta));
+        if mode == TransportMode::Radiance {
+            sample.weight = sample.weight / (eta * eta);
+        }
+        Some(sample)
     }
 
     /// The weight of a direction is f·|cosθ| / probability: Fresnel's share cancels against the choice.
-    fn towards(&self, wi: Vec3, probability: f32, scale: f32, transmits: bool) -> BsdfSample {
-        BsdfSample { wi, weight: self.tint * scale, pdf_solid_angle: probability, is_delta: true, transmits }
+    fn towards(&self, wi: Vec3, probability: f32, refracted: Option<f32>) -> BsdfSample {
+        BsdfSample {
+            wi,
+            weight: self.tint,
+            pdf_solid_angle: probability,
+            is_delta: true,
+            transmits: refracted.is_some(),
+            eta: refracted.unwrap_or(1.0),
+        }
     }
 
     pub(super) fn strength(&self) -> f32 {

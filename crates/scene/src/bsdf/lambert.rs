@@ -56,6 +56,7 @@ impl Lambert {
             pdf_solid_angle,
             is_delta: false,
             transmits: false,
+            eta: 1.0,
         })
     }
 

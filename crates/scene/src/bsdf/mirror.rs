@@ -46,6 +46,7 @@ impl Mirror {
             pdf_solid_angle: 1.0,
             is_delta: true,
             transmits: false,
+            eta: 1.0,
         })
     }
 

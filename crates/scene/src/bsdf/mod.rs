@@ -37,6 +37,8 @@ pub struct BsdfSample {
     pub is_delta: bool,
     /// True when `wi` is on the other side of the surface.
     pub transmits: bool,
+    /// Index of the far side over that of the near side where light is refracted, else 1.
+    pub eta: f32,
 }
 
 /// One way of scattering, on a local frame.

@@ -66,6 +66,7 @@ impl PhongLobe {
             pdf_solid_angle,
             is_delta: false,
             transmits: false,
+            eta: 1.0,
         })
     }
 

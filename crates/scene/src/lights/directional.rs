@@ -43,6 +43,7 @@ impl Light for Directional {
             point: None,
             n_light: Vec3::ZERO,
             pdf_solid_angle: 1.0,
+            clearance: 0.0,
         })
     }
 

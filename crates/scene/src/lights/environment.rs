@@ -73,6 +73,7 @@ impl Light for Environment {
             point: None,
             n_light: Vec3::ZERO,
             pdf_solid_angle: warp::sphere_pdf_solid_angle(),
+            clearance: 0.0,
         })
     }
 

@@ -61,17 +61,17 @@ impl MeshLight {
         self.triangles[triangle].map(|p| to_world.point(p))
     }
 
-    /// A point, its normal and its density over area.
-    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Vec3, f32) {
+    /// A point, its normal, its density over area, and its triangle's corners.
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Vec3, f32, [Vec3; 3]) {
         let triangle = self.cdf.partition_point(|&c| c <= u.x).min(self.cdf.len() - 1);
         let share = self.share(triangle);
         let below = self.cdf[triangle] - share;
         let rest = if share > 0.0 { ((u.x - below) / share).clamp(0.0, 1.0) } else { 0.0 };
         let weights = warp::sample_triangle(Vec2::new(rest, u.y));
-        let [a, b, c] = self.corners(triangle, time);
+        let corners @ [a, b, c] = self.corners(triangle, time);
         let normal = (b - a).cross(c - a);
         let point = a * (1.0 - weights.x - weights.y) + b * weights.x + c * weights.y;
-        (point, normal.normalize_or_zero(), share / (0.5 * normal.length()))
+        (point, normal.normalize_or_zero(), share / (0.5 * normal.length()), corners)
     }
 
     fn middle(&self, time: f32) -> Vec3 {
@@ -87,13 +87,22 @@ fn area(t: &[Vec3; 3]) -> f32 {
     (t[1] - t[0]).cross(t[2] - t[0]).length() * 0.5
 }
 
+/// See [`LightSample::clearance`]: a hit lies within a few roundings of its triangle's plane, as far as its
+/// corners and the ray's origin are from each other and from the world's origin (the lemma of
+/// [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and so many times `1 / cos` of that along the ray.
+fn clearance(from: Vec3, point: Vec3, corners: &[Vec3; 3], cos: f32) -> f32 {
+    let far = corners.iter().map(|c| c.distance(from)).fold(0.0, f32::max);
+    let size = far + from.abs().max_element().max(point.abs().max_element());
+    (64.0 * f32::EPSILON * size / (cos * point.distance(from))).min(0.5)
+}
+
 fn finite_or_zero(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }
 }
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (point, normal, pdf_area) = self.sample_point(time, u);
+        let (point, normal, pdf_area, corners) = self.sample_point(time, u);
         let to_light = point - from;
         let distance2 = to_light.length_squared();
         let wi = to_light.try_normalize()?;
@@ -105,6 +114,7 @@ impl Light for MeshLight {
             point: Some(point),
             n_light: if cos < 0.0 { normal } else { -normal },
             pdf_solid_angle,
+            clearance: clearance(from, point, &corners, cos.abs()),
         })
     }
 

@@ -37,6 +37,9 @@ pub struct LightSample {
     pub n_light: Vec3,
     /// Density of the direction in solid angle; 1 for a delta light.
     pub pdf_solid_angle: f32,
+    /// How far before `point`, as a fraction of the distance, a ray towards it may already meet the light's
+    /// own surface through rounding; 0 for a light without a surface.
+    pub clearance: f32,
 }
 
 /// Something that gives light.

@@ -44,6 +44,7 @@ impl Light for Point {
             point: Some(self.position),
             n_light: Vec3::ZERO,
             pdf_solid_angle: 1.0,
+            clearance: 0.0,
         })
     }
 

@@ -67,6 +67,6 @@ impl Material for Glass {
     }
 
     fn sigma_a(&self) -> Rgb {
-        self.sigma_a
+        if self.thin { Rgb::BLACK } else { self.sigma_a }
     }
 }

@@ -35,7 +35,7 @@ pub trait Material: Send + Sync {
     fn emission(&self) -> Rgb {
         Rgb::BLACK
     }
-    /// Absorption per metre on the inside, by Beer's law.
+    /// Absorption per metre on the inside, by Beer's law; none where there is no inside.
     fn sigma_a(&self) -> Rgb {
         Rgb::BLACK
     }

@@ -118,6 +118,6 @@ impl Material for Phong {
     }
 
     fn sigma_a(&self) -> Rgb {
-        self.constants.sigma_a
+        if self.constants.thin { Rgb::BLACK } else { self.constants.sigma_a }
     }
 }

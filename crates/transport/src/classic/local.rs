@@ -1,0 +1,102 @@
+//! Local illumination: Equation 1.
+
+use super::shadow::Shadows;
+use crate::task::Task;
+use bilux_math::transcendental::powf;
+use bilux_math::{Rgb, Vec2, Vec3, frame::reflect};
+use bilux_scene::{ClassicLight, ClassicMaterial, Surface};
+
+/// How Equation 1 is read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalRules {
+    pub(crate) specular: Specular,
+    pub(crate) shadows: Shadows,
+    pub(crate) rule: ShadowRule,
+    /// How much of their size area lights have, 0..=1.
+    pub(crate) light_extent: f32,
+}
+
+/// Which direction makes the highlight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Specular {
+    /// That halfway between viewer and light, against the normal. [Blinn 1977]
+    Halfway,
+    /// The mirrored light, against the viewer. [Phong 1975]
+    Reflect,
+}
+
+/// What is off in shadow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ShadowRule {
+    /// Each light that is blocked.
+    PerLight,
+    /// All of it, ambient light too, where every light is blocked; nothing where one is not.
+    Paper,
+}
+
+/// The terms of Equation 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Local {
+    /// ka · Ia.
+    pub(crate) ambient: Rgb,
+    /// kd · Σ (N·L).
+    pub(crate) diffuse: Rgb,
+    /// Σ (N·L')ⁿ, without ks.
+    pub(crate) highlight: Rgb,
+}
+
+impl LocalRules {
+    /// What lights do at a point that is seen from `eye` (a unit vector away from the surface).
+    pub(crate) fn illuminate(
+        &self,
+        task: &mut Task,
+        surface: &Surface,
+        material: &ClassicMaterial,
+        eye: Vec3,
+    ) -> Local {
+        let scene = task.scene();
+        let mut local = Local { ambient: material.ka * scene.classic_ambient(), ..Local::default() };
+        let (mut lights, mut open) = (0, false);
+        for light in scene.lights() {
+            let u = if self.light_extent > 0.0 { task.sampler.next_2d() } else { Vec2::ZERO };
+            let Some(seen) = light.light.classic(surface.p, surface.time, u, self.light_extent) else {
+                continue;
+            };
+            lights += 1;
+            let lit = faced(surface.n_shade, seen.wi, eye);
+            let arrives = match self.rule {
+                ShadowRule::PerLight if lit.is_none() => continue,
+                ShadowRule::Paper if open => Rgb::WHITE,
+                _ => self.shadows.transmitted(task, surface, &seen),
+            };
+            open |= !arrives.is_black();
+            let Some((n, n_dot_l)) = lit else { continue };
+            let arrives = if self.rule == ShadowRule::Paper { Rgb::WHITE } else { arrives };
+            let colour = light.classic_colour * seen.strength * arrives;
+            local.diffuse += material.kd * colour * n_dot_l;
+            if !material.ks.is_black() {
+                local.highlight += colour * self.highlight(n, &seen, eye, material.exponent);
+            }
+        }
+        if self.rule == ShadowRule::Paper && lights > 0 && !open { Local::default() } else { local }
+    }
+
+    fn highlight(&self, n: Vec3, light: &ClassicLight, eye: Vec3, exponent: f32) -> f32 {
+        let cos = match self.specular {
+            Specular::Halfway => (light.wi + eye).try_normalize().map_or(0.0, |halfway| n.dot(halfway)),
+            Specular::Reflect => reflect(light.wi, n).dot(eye),
+        };
+        powf(cos.max(0.0), exponent)
+    }
+}
+
+/// The normal on the side of viewer and light, and its cosine with the light; `None` where these two are on
+/// different sides, and the light does not count.
+fn faced(n: Vec3, wi: Vec3, eye: Vec3) -> Option<(Vec3, f32)> {
+    let (n_dot_l, n_dot_e) = (n.dot(wi), n.dot(eye));
+    match n_dot_l * n_dot_e > 0.0 {
+        false => None,
+        true if n_dot_l < 0.0 => Some((-n, -n_dot_l)),
+        true => Some((n, n_dot_l)),
+    }
+}

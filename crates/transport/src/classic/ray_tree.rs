@@ -1,0 +1,225 @@
+//! Whitted's tree of rays: Equation 2, I = Ia + kd Σ(N·L) + ks S + kt T.
+//!
+//! S is the clamped sum of highlight and reflected light, T the refracted light. In glass, Fresnel's law shares
+//! the light between them. With extents above zero the rays spread, and the tree is that of distributed ray
+//! tracing [Cook 1984]; with all extents zero it draws no random number.
+
+use super::{Local, LocalRules};
+use crate::medium::transmittance;
+use crate::sampler::PixelSampler;
+use crate::task::Task;
+use bilux_math::hash::hash_words;
+use bilux_math::transcendental::{cos, sin_cos};
+use bilux_math::{Frame, Rgb, Vec3, frame::reflect};
+use bilux_scene::bsdf::{fresnel_dielectric, refract, schlick};
+use bilux_scene::{ClassicMaterial, Ray, Surface};
+
+/// How Equation 2 is read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayTree {
+    pub(crate) local: LocalRules,
+    pub(crate) fresnel: FresnelLaw,
+    /// Rays of less weight are not followed.
+    pub(crate) cutoff: f32,
+    /// How much of the material's gloss reflected rays have, 0..=1.
+    pub(crate) gloss_extent: f32,
+    /// How much of the material's translucency refracted rays have, 0..=1.
+    pub(crate) translucency_extent: f32,
+}
+
+/// Which law shares light between reflection and refraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum FresnelLaw {
+    Schlick,
+    Exact,
+}
+
+/// A ray in the tree.
+#[derive(Clone, Copy)]
+struct Node {
+    /// Names its stream of random numbers.
+    id: u64,
+    /// Scattering events before it.
+    depth: u32,
+    /// The most that it can count in the picture.
+    weight: f32,
+    /// Absorption where it goes, as far as is known.
+    sigma_a: Rgb,
+}
+
+impl Node {
+    fn child(&self, branch: u64, weight: f32, sigma_a: Rgb) -> Node {
+        Node { id: hash_words([self.id, branch]), depth: self.depth + 1, weight, sigma_a }
+    }
+}
+
+/// A point with what both branches need: which side the ray came from.
+struct Place<'a> {
+    surface: &'a Surface,
+    material: &'a ClassicMaterial,
+    /// Back along the ray.
+    eye: Vec3,
+    /// Shading normal on the side of `eye`.
+    n: Vec3,
+    /// Normal of the triangle on the side of `eye`.
+    n_flat: Vec3,
+    outside: bool,
+}
+
+impl RayTree {
+    /// The intensity that comes along a camera ray.
+    pub(crate) fn intensity(&self, task: &mut Task, ray: &Ray) -> Rgb {
+        self.trace(task, ray, Node { id: 1, depth: 0, weight: 1.0, sigma_a: Rgb::BLACK })
+    }
+
+    fn trace(&self, task: &mut Task, ray: &Ray, node: Node) -> Rgb {
+        let direction = Vec3::from(ray.direction);
+        let Some(surface) = task.tracer.closest(ray) else {
+            task.note(node.depth, || format!("leaves the scene towards {direction}"));
+            return task.scene().background(direction);
+        };
+        let outside = surface.n_geom.dot(direction) <= 0.0;
+        let material = task.scene().material(&surface);
+        let sigma_a = if outside { node.sigma_a } else { material.sigma_a() };
+        let left = transmittance(sigma_a, surface.t);
+        let emission = material.emission();
+        if !emission.is_black() {
+            task.note(node.depth, || format!("reaches a light at {}", surface.p));
+            return left * emission.clamp(0.0, 1.0);
+        }
+        if node.depth >= task.max_depth {
+            task.note(node.depth, || format!("is not followed beyond {}", surface.p));
+            return Rgb::BLACK;
+        }
+        left * self.shade(task, &surface, &material.classic(&surface), -direction, node)
+    }
+
+    /// Equation 2.
+    fn shade(
+        &self,
+        task: &mut Task,
+        surface: &Surface,
+        material: &ClassicMaterial,
+        eye: Vec3,
+        node: Node,
+    ) -> Rgb {
+        task.sampler.enter(node.id);
+        let place = Place::new(surface, material, eye);
+        let Local { ambient, diffuse, highlight } = self.local.illuminate(task, surface, material, eye);
+        task.note(node.depth, || {
+            let name = &task_name(surface);
+            format!("meets {name} at {}, {}", surface.p, if place.outside { "outside" } else { "inside" })
+        });
+        let mut sum = ambient + diffuse;
+        let share = self.reflected_share(&place);
+        if !material.ks.is_black() {
+            let reflected = self.reflected(task, &place, share * material.reflectivity, node);
+            sum += material.ks * (highlight + reflected).clamp(0.0, 1.0);
+        }
+        if !material.kt.is_black() {
+            let through = if material.fresnel { 1.0 - share } else { 1.0 };
+            sum += material.kt * self.refracted(task, &place, through, node);
+        }
+        sum
+    }
+
+    /// How much of the light is reflected: all of it where Fresnel's law is not asked.
+    fn reflected_share(&self, place: &Place) -> f32 {
+        let material = place.material;
+        if !material.fresnel {
+            return 1.0;
+        }
+        let cos = place.n.dot(place.eye);
+        let share = match self.fresnel {
+            FresnelLaw::Schlick => schlick(cos, place.eta()),
+            FresnelLaw::Exact => fresnel_dielectric(cos, place.eta()),
+        };
+        // Light that goes to and fro between the two faces of a pane adds up. [pbrt 2023, eq. 9.12]
+        if material.thin { 2.0 * share / (1.0 + share) } else { share }
+    }
+
+    /// Light from the reflected direction, times `share`.
+    fn reflected(&self, task: &mut Task, place: &Place, share: f32, node: Node) -> Rgb {
+        let weight = node.weight * share * place.material.ks.max_channel();
+        if share <= 0.0 || weight < self.cutoff {
+            return Rgb::BLACK;
+        }
+        let spread = place.material.gloss * self.gloss_extent;
+        let direction = place.spread(place.mirrored(), spread, &mut task.sampler);
+        let sigma_a = if place.outside { node.sigma_a } else { place.material.sigma_a };
+        let child = node.child(0, weight, sigma_a);
+        task.note(node.depth, || format!("reflects towards {direction}, share {share}"));
+        self.trace(task, &place.surface.spawn(direction), child) * share
+    }
+
+    /// Light from the refracted direction, times `share`; none under total internal reflection.
+    fn refracted(&self, task: &mut Task, place: &Place, share: f32, node: Node) -> Rgb {
+        let weight = node.weight * share * place.material.kt.max_channel();
+        if share <= 0.0 || weight < self.cutoff {
+            return Rgb::BLACK;
+        }
+        let Some(straight) = place.refracted() else {
+            return Rgb::BLACK;
+        };
+        let spread = place.material.translucency * self.translucency_extent;
+        let direction = place.spread(straight, spread, &mut task.sampler);
+        let sigma_a = match place.outside {
+            _ if place.material.thin => node.sigma_a,
+            true => place.material.sigma_a,
+            false => Rgb::BLACK,
+        };
+        let child = node.child(1, weight, sigma_a);
+        task.note(node.depth, || format!("refracts towards {direction}, share {share}"));
+        self.trace(task, &place.surface.spawn(direction), child) * share
+    }
+}
+
+fn task_name(surface: &Surface) -> String {
+    format!("object {} triangle {}", surface.object, surface.primitive.index)
+}
+
+impl<'a> Place<'a> {
+    fn new(surface: &'a Surface, material: &'a ClassicMaterial, eye: Vec3) -> Place<'a> {
+        let outside = surface.n_geom.dot(eye) >= 0.0;
+        let facing = |n: Vec3| if outside { n } else { -n };
+        let (n_flat, n) = (facing(surface.n_geom), facing(surface.n_shade));
+        // Seen edge-on, the interpolated normal may face away; then the triangle's own has to do.
+        let n = if n.dot(eye) > 0.0 { n } else { n_flat };
+        Place { surface, material, eye, n, n_flat, outside }
+    }
+
+    /// Index of the far side over that of the near side. A pane is met from outside on both sides.
+    fn eta(&self) -> f32 {
+        if self.outside || self.material.thin { self.material.eta } else { 1.0 / self.material.eta }
+    }
+
+    fn mirrored(&self) -> Vec3 {
+        let direction = reflect(self.eye, self.n);
+        let above = direction.dot(self.n_flat) > 0.0;
+        (if above { direction } else { reflect(self.eye, self.n_flat) }).normalize()
+    }
+
+    fn refracted(&self) -> Option<Vec3> {
+        if self.material.thin {
+            return Some(-self.eye);
+        }
+        let direction = refract(self.eye, self.n, self.eta())?;
+        let below = direction.dot(self.n_flat) < 0.0;
+        if below { Some(direction) } else { refract(self.eye, self.n_flat, self.eta()) }
+    }
+
+    /// A direction spread evenly over the cone of this half-angle, and kept on its side of the surface.
+    fn spread(&self, axis: Vec3, angle: f32, sampler: &mut PixelSampler) -> Vec3 {
+        if angle <= 0.0 {
+            return axis;
+        }
+        let u = sampler.next_2d();
+        let cos_theta = 1.0 - u.x * (1.0 - cos(angle));
+        let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+        let (s, c) = sin_cos(std::f32::consts::TAU * u.y);
+        let local = Vec3::new(sin_theta * c, sin_theta * s, cos_theta);
+        let direction = Frame::from_normal(axis).to_world(local).normalize();
+        let crossed = direction.dot(self.n_flat) * axis.dot(self.n_flat) < 0.0;
+        if crossed { -reflect(direction, self.n_flat) } else { direction }
+    }
+}

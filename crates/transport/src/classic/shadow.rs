@@ -1,0 +1,64 @@
+//! Whether light of the classic modes arrives.
+
+use crate::medium::transmittance;
+use crate::task::Task;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{ClassicLight, Ray, Surface};
+
+/// What is between a light and a surface does this.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Shadows {
+    /// Nothing: every light shines on all that faces it.
+    Off,
+    /// It blocks the light, glass too, as in Whitted's and the paper's pictures.
+    Opaque,
+    /// Glass lets the light through, straight on, coloured.
+    Tinted,
+}
+
+/// Panes that light goes through at most before it counts as blocked.
+const MOST_PANES: usize = 64;
+
+impl Shadows {
+    /// The share of a light that arrives at a point.
+    pub(crate) fn transmitted(self, task: &mut Task, surface: &Surface, light: &ClassicLight) -> Rgb {
+        if self == Shadows::Off {
+            return Rgb::WHITE;
+        }
+        let ray = match light.position {
+            Some(position) => surface.spawn_to(position),
+            None => surface.spawn(light.wi),
+        };
+        match self {
+            Shadows::Tinted => through_glass(task, ray),
+            _ if task.tracer.blocked(&ray) => Rgb::BLACK,
+            _ => Rgb::WHITE,
+        }
+    }
+}
+
+/// What is left of light along a ray that glass colours and everything else blocks, lamps apart.
+fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
+    let scene = task.scene();
+    let direction = Vec3::from(ray.direction);
+    let (mut left, mut before) = (Rgb::WHITE, 0.0);
+    for _ in 0..MOST_PANES {
+        let Some(surface) = task.tracer.closest(&ray) else { return left };
+        if scene.light_of(surface.object).is_none() {
+            let material = scene.material(&surface).classic(&surface);
+            if surface.n_geom.dot(direction) > 0.0 && !material.thin {
+                left *= transmittance(material.sigma_a, (surface.t - before) * direction.length());
+            } else {
+                // Once for each body: where the light comes in.
+                left *= material.kt;
+            }
+            if material.kt.is_black() || left.is_black() {
+                return Rgb::BLACK;
+            }
+            before = surface.t;
+        }
+        ray.exclude = surface.primitive;
+        ray.t_min = surface.t.next_up();
+    }
+    Rgb::BLACK
+}

@@ -1,0 +1,131 @@
+//! What can go wrong between a scene and its picture.
+
+use crate::window::Window;
+use bilux_pictures::PictureError;
+use bilux_scene::SceneError;
+use std::ops::Range;
+
+/// Why films cannot be made, merged or read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FilmError {
+    /// A side of zero, or absurdly long.
+    #[error("a picture of {width} x {height} pixels: a side is 1 to {} pixels", crate::film::MAX_SIDE)]
+    Size {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// A crop that is empty or beyond the film.
+    #[error(
+        "the crop {window} (x, y, width, height) has to have a pixel and to lie within {width} x {height} pixels"
+    )]
+    Window {
+        /// The crop.
+        window: Window,
+        /// Pixels across the film.
+        width: u32,
+        /// Pixels down the film.
+        height: u32,
+    },
+    /// The machine has no room.
+    #[error("no room for a film of {pixels} pixels; free some memory or make the picture smaller")]
+    NoRoom {
+        /// How many pixels were wanted.
+        pixels: u64,
+    },
+    /// Films of different sizes.
+    #[error(
+        "the films are of different sizes, {} x {} and {} x {} pixels; render all parts at one size, with a crop if need be",
+        first[0], first[1], second[0], second[1]
+    )]
+    OtherSize {
+        /// Width and height of the one.
+        first: [u32; 2],
+        /// Width and height of the other.
+        second: [u32; 2],
+    },
+    /// Films of different scenes or settings.
+    #[error(
+        "the films are of different scenes or settings; parts of one picture differ only in samples and crop"
+    )]
+    OtherPicture,
+    /// Films that hold the same samples.
+    #[error(
+        "both films hold the samples {}..{} of the pixels {window} (x, y, width, height); each sample may be in one part only",
+        samples.start, samples.end
+    )]
+    Overlap {
+        /// Pixels that both hold.
+        window: Window,
+        /// Samples that both hold.
+        samples: Range<u32>,
+    },
+    /// More samples than sums can hold.
+    #[error("{samples} samples in one pixel; the most is {}", crate::film::MAX_SAMPLES)]
+    TooManySamples {
+        /// How many.
+        samples: u64,
+    },
+    /// A picture that is no partial film.
+    #[error("this is not a partial film: {what}; make one with --samples or --crop and an .exr name")]
+    NotAFilm {
+        /// What is missing or wrong.
+        what: String,
+    },
+    /// A picture could not be made.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+}
+
+/// Why nothing can be rendered.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The film cannot be made.
+    #[error(transparent)]
+    Film(#[from] FilmError),
+    /// The range of samples makes no sense.
+    #[error(
+        "samples {start}..{end} of {spp} for each pixel: the range has to hold a sample, end within {spp}, and {spp} may be 1 to {}",
+        crate::film::MAX_SAMPLES
+    )]
+    Samples {
+        /// First sample.
+        start: u32,
+        /// One after the last.
+        end: u32,
+        /// Samples in all.
+        spp: u32,
+    },
+    /// Paths may not be that long.
+    #[error("a depth of {depth} scattering events; the most is {}", crate::render::MAX_DEPTH)]
+    Depth {
+        /// What was asked for.
+        depth: u32,
+    },
+    /// A pixel that is not on the film.
+    #[error("pixel {x},{y} is not on a film of {width} x {height} pixels")]
+    Pixel {
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// A name that no table holds, or a wrong parameter.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The operating system gives no threads.
+    #[error("cannot start {threads} threads: {reason}; ask for fewer")]
+    Threads {
+        /// How many were wanted; 0 for one each core.
+        threads: usize,
+        /// Why not.
+        reason: String,
+    },
+}

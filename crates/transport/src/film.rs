@@ -1,0 +1,423 @@
+//! The film: fixed-point sums that come out the same in whatever order samples arrive.
+//!
+//! A sample is rounded to a multiple of 2⁻ᵏ and added to a 64-bit integer, so sums do not depend on threads,
+//! tiles or parts. The scale `k` comes from the scene alone ([`scale_exponent`]). Rounding goes up or down by a
+//! hash of pixel and sample, so that it is right on average even for light far below one step.
+//!
+//! Nothing is hidden: a sample that is infinite or not a number is left out of the mean, one that is beyond the
+//! scale is held at its end, and both are counted and located, pixel by pixel.
+
+use crate::error::FilmError;
+use crate::window::{Coverage, Window};
+use bilux_math::Rgb;
+use bilux_math::hash::hash_words;
+use bilux_scene::Scene;
+use std::ops::Range;
+
+/// The most samples of one pixel: with [`SAMPLE_BITS`], sums cannot overflow.
+pub const MAX_SAMPLES: u32 = 1 << 22;
+
+/// A sample is held within ±2⁴¹ steps.
+pub(crate) const SAMPLE_BITS: i32 = 41;
+
+/// The longest side, in pixels.
+pub const MAX_SIDE: u32 = 1 << 16;
+
+/// A film, or a window of one. Coordinates are those of the whole film throughout.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    window: Window,
+    scale_exponent: i32,
+    pub(crate) sums: Vec<[i64; 3]>,
+    pub(crate) counts: Vec<u32>,
+    /// Empty as long as there is none.
+    pub(crate) trouble: Vec<PixelTrouble>,
+    pub(crate) coverage: Coverage,
+    /// What the film is of: any text that differs where scene or settings differ; given by the caller. Films
+    /// with different fingerprints do not merge.
+    pub fingerprint: String,
+}
+
+/// What went wrong in one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct PixelTrouble {
+    pub(crate) non_finite: u32,
+    pub(crate) first_non_finite: u32,
+    pub(crate) overflowed: u32,
+    pub(crate) first_overflowed: u32,
+}
+
+/// Where a sample was that went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SamplePlace {
+    /// Column.
+    pub x: u32,
+    /// Row, downwards.
+    pub y: u32,
+    /// Index of the sample within the pixel.
+    pub sample: u32,
+}
+
+/// Samples that went wrong.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Trouble {
+    /// How many were infinite or not a number; they are left out of their pixels' means.
+    pub non_finite: u64,
+    /// The first of them, row by row.
+    pub first_non_finite: Option<SamplePlace>,
+    /// How many were brighter than the film can hold; they count as the brightest that it can.
+    pub overflowed: u64,
+    /// The first of them, row by row.
+    pub first_overflowed: Option<SamplePlace>,
+}
+
+/// The scale for a scene, a pure function of it: the top of the range is 2⁶ times the brightest radiance that
+/// anything gives out, or 2¹⁶ times all that lights give to the middle of the scene, whichever is more.
+pub fn scale_exponent(scene: &Scene) -> i32 {
+    let brightest = scene.brightest_radiance() * 64.0;
+    let typical = scene.classic_brightness() * 65_536.0;
+    match brightest.max(typical) {
+        reach if reach.is_normal() => SAMPLE_BITS - 1 - ilog2(reach),
+        _ => SAMPLE_BITS - 16,
+    }
+}
+
+/// The exponent of a normal number.
+fn ilog2(x: f32) -> i32 {
+    (x.to_bits() >> 23 & 0xff) as i32 - 127
+}
+
+impl Film {
+    /// An empty film of `width` × `height` pixels, whose steps are 2^-`scale_exponent`.
+    ///
+    /// # Errors
+    /// When a side is zero or beyond [`MAX_SIDE`], or the machine has no room.
+    pub fn new(width: u32, height: u32, scale_exponent: i32) -> Result<Film, FilmError> {
+        Film::windowed(width, height, Window::whole(width, height), scale_exponent)
+    }
+
+    /// A film of which only a window takes memory.
+    ///
+    /// # Errors
+    /// As [`Film::new`]; and when the window is empty or not within the film.
+    pub fn windowed(width: u32, height: u32, window: Window, scale_exponent: i32) -> Result<Film, FilmError> {
+        let fits = |side: u32| (1..=MAX_SIDE).contains(&side);
+        if !fits(width) || !fits(height) {
+            return Err(FilmError::Size { width, height });
+        }
+        if window.is_empty() || !Window::whole(width, height).contains(&window) {
+            return Err(FilmError::Window { window, width, height });
+        }
+        let pixels = window.pixels();
+        let (sums, counts) = (zeroed(pixels)?, zeroed(pixels)?);
+        Ok(Film { width, height, window, sums, counts, ..Film::part(scale_exponent) })
+    }
+
+    /// An empty piece of a film, to be given its place by [`Film::restart`] and its film by [`Film::absorb`].
+    pub(crate) fn part(scale_exponent: i32) -> Film {
+        Film {
+            width: 0,
+            height: 0,
+            window: Window::default(),
+            scale_exponent: scale_exponent.clamp(-1000, 1000),
+            sums: Vec::new(),
+            counts: Vec::new(),
+            trouble: Vec::new(),
+            coverage: Coverage::default(),
+            fingerprint: String::new(),
+        }
+    }
+
+    /// Bytes that a film of this many pixels takes.
+    pub const fn memory_bytes(pixels: u64) -> u64 {
+        pixels.saturating_mul((size_of::<[i64; 3]>() + size_of::<u32>()) as u64)
+    }
+
+    /// Pixels across the whole film.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Pixels down the whole film.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The part of the film that is kept.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Sums count in steps of 2 to the minus this.
+    pub fn scale_exponent(&self) -> i32 {
+        self.scale_exponent
+    }
+
+    /// Which samples of which pixels are in.
+    pub fn coverage(&self) -> &Coverage {
+        &self.coverage
+    }
+
+    /// Notes that these samples of these pixels are in; [`Film::merge`] goes by it.
+    pub fn cover(&mut self, window: Window, samples: Range<u32>) {
+        self.coverage.insert(window, samples);
+    }
+
+    /// Adds a sample of radiance to a pixel within the window; beyond it, nothing happens.
+    #[inline]
+    pub fn add(&mut self, x: u32, y: u32, sample: u32, radiance: Rgb) {
+        let Some(index) = self.window.index(x, y) else { return };
+        if !radiance.is_finite() {
+            return self.note_non_finite(index, sample);
+        }
+        let scale = exp2(self.scale_exponent);
+        let dither = hash_words([u64::from(x) << 32 | u64::from(y), u64::from(sample)]);
+        let limit = (1i64 << SAMPLE_BITS) as f64;
+        let mut overflowed = false;
+        for (channel, value) in radiance.to_array().into_iter().enumerate() {
+            let up = (dither >> (21 * channel) & 0x1f_ffff) as f64 * (1.0 / 2_097_152.0);
+            let steps = (f64::from(value) * scale + up).floor();
+            overflowed |= steps.abs() >= limit;
+            self.sums[index][channel] += steps.clamp(1.0 - limit, limit - 1.0) as i64;
+        }
+        self.counts[index] += 1;
+        if overflowed {
+            self.note_overflowed(index, sample);
+        }
+    }
+
+    #[cold]
+    fn note_non_finite(&mut self, index: usize, sample: u32) {
+        let trouble = self.trouble_at(index);
+        let first = PixelTrouble { non_finite: 1, first_non_finite: sample, ..PixelTrouble::default() };
+        trouble.absorb(&first);
+    }
+
+    #[cold]
+    fn note_overflowed(&mut self, index: usize, sample: u32) {
+        let trouble = self.trouble_at(index);
+        trouble.absorb(&PixelTrouble { overflowed: 1, first_overflowed: sample, ..PixelTrouble::default() });
+    }
+
+    fn trouble_at(&mut self, index: usize) -> &mut PixelTrouble {
+        if self.trouble.is_empty() {
+            self.trouble = vec![PixelTrouble::default(); self.window.pixels()];
+        }
+        &mut self.trouble[index]
+    }
+
+    /// Adds another film's samples. In whatever order films are merged, the sums are the same.
+    ///
+    /// # Errors
+    /// When the films are of different sizes, scales or fingerprints, when both hold a sample, or when a pixel
+    /// would get more than [`MAX_SAMPLES`].
+    pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
+        if (self.width, self.height) != (other.width, other.height) {
+            let size = |film: &Film| [film.width, film.height];
+            return Err(FilmError::OtherSize { first: size(self), second: size(other) });
+        }
+        if self.fingerprint != other.fingerprint || self.scale_exponent != other.scale_exponent {
+            return Err(FilmError::OtherPicture);
+        }
+        if let Some((window, samples)) = self.coverage.overlap(&other.coverage) {
+            return Err(FilmError::Overlap { window, samples });
+        }
+        self.check_counts(other)?;
+        self.grow_to(self.window.union(&other.window))?;
+        self.absorb(other);
+        self.coverage.extend(&other.coverage);
+        Ok(())
+    }
+
+    fn check_counts(&self, other: &Film) -> Result<(), FilmError> {
+        let most = |film: &Film| film.counts.iter().copied().max().unwrap_or(0);
+        let total = u64::from(most(self)) + u64::from(most(other));
+        if total > u64::from(MAX_SAMPLES) {
+            Err(FilmError::TooManySamples { samples: total })
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Makes room for a larger window.
+    fn grow_to(&mut self, window: Window) -> Result<(), FilmError> {
+        if window == self.window {
+            return Ok(());
+        }
+        let mut larger = Film::windowed(self.width, self.height, window, self.scale_exponent)?;
+        larger.absorb(self);
+        (larger.coverage, larger.fingerprint) =
+            (std::mem::take(&mut self.coverage), std::mem::take(&mut self.fingerprint));
+        *self = larger;
+        Ok(())
+    }
+
+    /// Adds the sums of a film whose window lies within this one's; coverage is left as it is.
+    pub(crate) fn absorb(&mut self, part: &Film) {
+        for (row, y) in (part.window.y..part.window.y + part.window.height).enumerate() {
+            let Some(start) = self.window.index(part.window.x, y) else { continue };
+            let from = row * part.window.width as usize;
+            for i in 0..part.window.width as usize {
+                self.counts[start + i] += part.counts[from + i];
+                for channel in 0..3 {
+                    self.sums[start + i][channel] += part.sums[from + i][channel];
+                }
+                if let Some(trouble) = part.trouble.get(from + i).filter(|t| t.is_any()) {
+                    self.trouble_at(start + i).absorb(trouble);
+                }
+            }
+        }
+    }
+
+    /// Empties the piece and moves its window.
+    pub(crate) fn restart(&mut self, window: Window) {
+        self.window = window;
+        let pixels = window.pixels();
+        self.sums.clear();
+        self.sums.resize(pixels, [0; 3]);
+        self.counts.clear();
+        self.counts.resize(pixels, 0);
+        self.trouble.clear();
+    }
+
+    /// What went wrong, over all pixels.
+    pub fn trouble(&self) -> Trouble {
+        let mut total = Trouble::default();
+        for (index, pixel) in self.trouble.iter().enumerate() {
+            let at = |sample| {
+                let (x, y) = self.window.position(index);
+                SamplePlace { x, y, sample }
+            };
+            total.non_finite += u64::from(pixel.non_finite);
+            total.overflowed += u64::from(pixel.overflowed);
+            if pixel.non_finite > 0 {
+                total.first_non_finite.get_or_insert_with(|| at(pixel.first_non_finite));
+            }
+            if pixel.overflowed > 0 {
+                total.first_overflowed.get_or_insert_with(|| at(pixel.first_overflowed));
+            }
+        }
+        total
+    }
+
+    /// How many samples a pixel's mean is of.
+    pub fn samples(&self, x: u32, y: u32) -> u32 {
+        self.window.index(x, y).map_or(0, |index| self.counts[index])
+    }
+
+    /// The mean of a pixel's samples: black where there are none, not a number where all of them were bad.
+    pub fn pixel(&self, x: u32, y: u32) -> Rgb {
+        self.window.index(x, y).map_or(Rgb::BLACK, |index| self.mean(index))
+    }
+
+    fn mean(&self, index: usize) -> Rgb {
+        let bad = self.trouble.get(index).is_some_and(|t| t.non_finite > 0);
+        match self.counts[index] {
+            0 if bad => Rgb::grey(f32::NAN),
+            0 => Rgb::BLACK,
+            count => {
+                let step = exp2(-self.scale_exponent) / f64::from(count);
+                Rgb::from_array(self.sums[index].map(|sum| (sum as f64 * step) as f32))
+            }
+        }
+    }
+
+    /// The means of the whole film in rows, the top one first; black beyond the window.
+    pub fn to_rgb(&self) -> Vec<Rgb> {
+        let whole = Window::whole(self.width, self.height);
+        (0..whole.pixels()).map(|i| whole.position(i)).map(|(x, y)| self.pixel(x, y)).collect()
+    }
+}
+
+impl PixelTrouble {
+    fn is_any(&self) -> bool {
+        self.non_finite > 0 || self.overflowed > 0
+    }
+
+    /// Adds counts; the first sample is the least of both.
+    fn absorb(&mut self, other: &PixelTrouble) {
+        let first = |n: u32, first: u32, m: u32, second: u32| match (n, m) {
+            (_, 0) => first,
+            (0, _) => second,
+            _ => first.min(second),
+        };
+        self.first_non_finite =
+            first(self.non_finite, self.first_non_finite, other.non_finite, other.first_non_finite);
+        self.first_overflowed =
+            first(self.overflowed, self.first_overflowed, other.overflowed, other.first_overflowed);
+        self.non_finite = self.non_finite.saturating_add(other.non_finite);
+        self.overflowed = self.overflowed.saturating_add(other.overflowed);
+    }
+}
+
+/// 2 to the power of `exponent`, exact, for exponents within ±1000.
+fn exp2(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}
+
+/// As many zeros as asked for, or an error where the machine has no room.
+pub(crate) fn zeroed<T: Clone + Default>(count: usize) -> Result<Vec<T>, FilmError> {
+    let mut buffer = Vec::new();
+    buffer.try_reserve_exact(count).map_err(|_| FilmError::NoRoom { pixels: count as u64 })?;
+    buffer.resize(count, T::default());
+    Ok(buffer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_do_not_depend_on_the_order() {
+        let samples: Vec<Rgb> =
+            (0..100).map(|i| Rgb::new(i as f32 * 1e-9, 1.0 / (i + 1) as f32, 3e4)).collect();
+        let mut forwards = Film::new(2, 1, 24).unwrap();
+        let mut backwards = forwards.clone();
+        for (i, &sample) in samples.iter().enumerate() {
+            forwards.add(1, 0, i as u32, sample);
+        }
+        for (i, &sample) in samples.iter().enumerate().rev() {
+            backwards.add(1, 0, i as u32, sample);
+        }
+        assert_eq!(forwards, backwards);
+        assert_eq!(forwards.samples(1, 0), 100);
+    }
+
+    #[test]
+    fn light_far_below_a_step_is_right_on_average() {
+        let mut film = Film::new(64, 64, 10).unwrap();
+        let faint = 0.05 / 1024.0;
+        for (x, y, sample) in (0..64 * 64 * 16).map(|i| (i % 64, i / 64 % 64, i / 4096)) {
+            film.add(x, y, sample, Rgb::grey(faint));
+        }
+        let mean = film.to_rgb().iter().map(|c| f64::from(c.g)).sum::<f64>() / 4096.0;
+        assert!((mean / f64::from(faint) - 1.0).abs() < 0.08, "{mean} for {faint}");
+    }
+
+    #[test]
+    fn what_is_not_finite_is_counted_located_and_not_black() {
+        let mut film = Film::new(3, 2, 20).unwrap();
+        film.add(2, 1, 7, Rgb::new(0.0, f32::NAN, 0.0));
+        film.add(1, 1, 5, Rgb::grey(f32::INFINITY));
+        film.add(1, 1, 4, Rgb::grey(f32::NEG_INFINITY));
+        film.add(1, 1, 6, Rgb::WHITE);
+        film.add(0, 0, 9, Rgb::grey(1e30));
+        let trouble = film.trouble();
+        assert_eq!(trouble.non_finite, 3);
+        assert_eq!(trouble.first_non_finite, Some(SamplePlace { x: 1, y: 1, sample: 4 }));
+        assert_eq!(trouble.first_overflowed, Some(SamplePlace { x: 0, y: 0, sample: 9 }));
+        assert!(film.pixel(2, 1).r.is_nan());
+        assert_eq!(film.pixel(1, 1), Rgb::WHITE);
+        assert!(film.pixel(0, 0).r > 1e5);
+    }
+
+    #[test]
+    fn senseless_sizes_are_refused() {
+        assert!(matches!(Film::new(0, 5, 0), Err(FilmError::Size { .. })));
+        assert!(matches!(Film::new(5, u32::MAX, 0), Err(FilmError::Size { .. })));
+        let outside = Window { x: 4, y: 0, width: 2, height: 1 };
+        assert!(matches!(Film::windowed(5, 5, outside, 0), Err(FilmError::Window { .. })));
+    }
+}

@@ -1,0 +1,79 @@
+//! `cast`: Equation 1 where a camera ray meets the first surface. No reflection, no refraction.
+
+use super::{CameraSpread, IntegratorEntry, PixelIntegrator};
+use crate::classic::{LocalRules, SPECULAR, ShadowRule, Shadows, specular};
+use crate::task::Task;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::Ray;
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "cast",
+        summary: "ray casting: Equation 1 where a ray meets the first surface",
+        source: "Appel 1968",
+        parameters: &[
+            Parameter {
+                name: "shadows",
+                summary: "lights that are blocked are off",
+                unit: "",
+                kind: ParameterKind::Bool,
+                default: "true",
+            },
+            SPECULAR,
+            Parameter {
+                name: "viewer",
+                summary: "where highlights are seen from: the eye (local), or far behind the film (infinite)",
+                unit: "",
+                kind: ParameterKind::Choice(&["local", "infinite"]),
+                default: "local",
+            },
+        ],
+    },
+    covers: "L(D|G)?E",
+    classic: true,
+    default_spp: 4,
+    build: |reader| {
+        Ok(Box::new(Cast {
+            rules: LocalRules {
+                specular: specular(reader),
+                shadows: if reader.bool("shadows") { Shadows::Opaque } else { Shadows::Off },
+                rule: ShadowRule::PerLight,
+                light_extent: 0.0,
+            },
+            infinite_viewer: reader.text("viewer") == "infinite",
+        }))
+    },
+};
+
+struct Cast {
+    rules: LocalRules,
+    infinite_viewer: bool,
+}
+
+impl PixelIntegrator for Cast {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        let direction = Vec3::from(ray.direction);
+        let Some(surface) = task.tracer.closest(ray) else {
+            task.note(0, || "leaves the scene".to_owned());
+            return task.scene().background(direction);
+        };
+        task.note(0, || format!("meets object {} at {}", surface.object, surface.p));
+        let material = task.scene().material(&surface);
+        let emission = material.emission();
+        if !emission.is_black() {
+            return emission.clamp(0.0, 1.0);
+        }
+        if task.max_depth == 0 {
+            return Rgb::BLACK;
+        }
+        let eye = if self.infinite_viewer { -task.camera.forward(ray.time) } else { -direction };
+        let classic = material.classic(&surface);
+        let local = self.rules.illuminate(task, &surface, &classic, eye);
+        (local.ambient + local.diffuse + classic.ks * local.highlight).clamp(0.0, 1.0)
+    }
+
+    fn camera_spread(&self) -> CameraSpread {
+        CameraSpread::NONE
+    }
+}

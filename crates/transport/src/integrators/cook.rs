@@ -1,0 +1,67 @@
+//! `cook`: distributed ray tracing. The rays of `whitted`, spread over pixel, gloss, translucency, area lights,
+//! lens and time. With every extent zero it is `whitted`, to the bit.
+
+use super::{CameraSpread, IntegratorEntry, PixelIntegrator};
+use crate::classic::{self, CUTOFF, FRESNEL, RayTree, SHADOW_RULE, SHADOWS, SPECULAR};
+use crate::task::Task;
+use bilux_math::Rgb;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::{Ray, Reader};
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "cook",
+        summary: "distributed ray tracing: soft shadows, gloss, translucency, depth of field, motion blur",
+        source: "Cook 1984",
+        parameters: &[
+            SPECULAR,
+            FRESNEL,
+            SHADOW_RULE,
+            SHADOWS,
+            CUTOFF,
+            extent("extent", "all extents together; the ones below are relative to it"),
+            extent("pixel", "share of the pixel filter that samples spread over"),
+            extent("gloss", "share of the materials' gloss that reflected rays spread over"),
+            extent("translucency", "share of the materials' translucency that refracted rays spread over"),
+            extent("lights", "share of their size that area lights have"),
+            extent("lens", "share of the camera's aperture that is open"),
+            extent("shutter", "share of the time that the shutter is open"),
+        ],
+    },
+    covers: "L(D|G)?(S|G)*E",
+    classic: true,
+    default_spp: 64,
+    build: |reader| Ok(Box::new(Cook::new(reader))),
+};
+
+const fn extent(name: &'static str, summary: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Number { min: 0.0, max: 1.0 }, default: "1" }
+}
+
+struct Cook {
+    tree: RayTree,
+    spread: CameraSpread,
+}
+
+impl Cook {
+    fn new(reader: &Reader) -> Cook {
+        let extent = |key| reader.number("extent") * reader.number(key);
+        let mut tree = classic::ray_tree(reader);
+        tree.local.light_extent = extent("lights");
+        tree.gloss_extent = extent("gloss");
+        tree.translucency_extent = extent("translucency");
+        let spread =
+            CameraSpread { pixel: extent("pixel"), lens: extent("lens"), shutter: extent("shutter") };
+        Cook { tree, spread }
+    }
+}
+
+impl PixelIntegrator for Cook {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        self.tree.intensity(task, ray)
+    }
+
+    fn camera_spread(&self) -> CameraSpread {
+        self.spread
+    }
+}

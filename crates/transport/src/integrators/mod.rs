@@ -1,0 +1,85 @@
+//! How the light that comes along a camera ray is found. One integrator a file; the table is [`INTEGRATORS`].
+
+mod cast;
+mod cook;
+mod path;
+mod whitted;
+
+use crate::task::Task;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+use bilux_scene::{Ray, Reader, SceneError, Spec};
+
+/// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render`].
+pub trait PixelIntegrator: Send + Sync {
+    /// Radiance (in the classic modes: intensity) that comes along a camera ray.
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
+
+    /// How far samples spread over pixel, lens and shutter.
+    fn camera_spread(&self) -> CameraSpread {
+        CameraSpread::FULL
+    }
+}
+
+/// How far samples spread, each 0..=1 of what filter, aperture and shutter give. With 0, pixels are sampled
+/// in a regular pattern that begins in the middle, and lens and shutter in their middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSpread {
+    /// Over the pixel's filter.
+    pub pixel: f32,
+    /// Over the lens.
+    pub lens: f32,
+    /// Over the time that the shutter is open.
+    pub shutter: f32,
+}
+
+impl CameraSpread {
+    /// All of it.
+    pub const FULL: CameraSpread = CameraSpread { pixel: 1.0, lens: 1.0, shutter: 1.0 };
+    /// None of it.
+    pub const NONE: CameraSpread = CameraSpread { pixel: 0.0, lens: 0.0, shutter: 0.0 };
+}
+
+/// A row of [`INTEGRATORS`].
+#[derive(Clone, Copy, Debug)]
+pub struct IntegratorEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Which paths from light (L) to eye (E) it finds, in the notation of [Heckbert 1990]: D for diffuse, G for
+    /// glossy and S for specular scattering.
+    pub covers: &'static str,
+    /// True for Equations 1 and 2, whose intensities have no units; false for radiometry.
+    pub classic: bool,
+    /// Samples of each pixel where nothing else is said.
+    pub default_spp: u32,
+    /// Makes one from its parameters.
+    pub build: fn(&Reader) -> Result<Box<dyn PixelIntegrator>, SceneError>,
+}
+
+/// Every integrator that there is.
+pub const INTEGRATORS: &[IntegratorEntry] = &[cast::ENTRY, whitted::ENTRY, cook::ENTRY, path::ENTRY];
+
+/// The row of this name.
+///
+/// # Errors
+/// When there is none.
+pub fn find(name: &str) -> Result<&'static IntegratorEntry, SceneError> {
+    find_at(name, &Default::default())
+}
+
+/// Makes the integrator that a spec describes.
+///
+/// # Errors
+/// When no row has its kind, or a parameter is wrong.
+pub fn build(spec: &Spec) -> Result<Box<dyn PixelIntegrator>, SceneError> {
+    let row = find_at(&spec.kind, &spec.span)?;
+    (row.build)(&Reader::new(spec, &row.entry)?)
+}
+
+fn find_at(name: &str, span: &bilux_scene::parameters::Span) -> Result<&'static IntegratorEntry, SceneError> {
+    let names = INTEGRATORS.iter().map(|row| row.entry.name);
+    INTEGRATORS
+        .iter()
+        .find(|row| row.entry.name == name)
+        .ok_or_else(|| SceneError::unknown("integrator", name, names, span))
+}

@@ -1,0 +1,250 @@
+//! `path`: path tracing from the camera. At each vertex a light is sampled and the surface's scattering is
+//! sampled, and the two are joined by the power heuristic. [Kajiya 1986; Veach 1997, 9.2]
+
+use super::{IntegratorEntry, PixelIntegrator};
+use crate::medium::transmittance;
+use crate::task::Task;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Bsdf, BsdfSample, Material, Ray, Surface, TransportMode};
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "path",
+        summary: "path tracing: all of the light, by chance, right on average",
+        source: "Kajiya 1986",
+        parameters: &[
+            Parameter {
+                name: "sampling",
+                summary: "how lights are found: both ways, weighted (mis), by picking points on lights, or by \
+                          scattering alone",
+                unit: "",
+                kind: ParameterKind::Choice(&["mis", "lights", "scattering"]),
+                default: "mis",
+            },
+            Parameter {
+                name: "roulette_depth",
+                summary: "scattering events after which weak paths may end by chance",
+                unit: "",
+                kind: ParameterKind::Integer { min: 0, max: 1000 },
+                default: "4",
+            },
+        ],
+    },
+    covers: "L(D|G|S)*E",
+    classic: false,
+    default_spp: 64,
+    build: |reader| {
+        let sampling = match reader.text("sampling").as_str() {
+            "lights" => Sampling::Lights,
+            "scattering" => Sampling::Scattering,
+            _ => Sampling::Mis,
+        };
+        Ok(Box::new(Path { sampling, roulette_depth: reader.integer("roulette_depth") as u32 }))
+    },
+};
+
+struct Path {
+    sampling: Sampling,
+    roulette_depth: u32,
+}
+
+/// How light is found where both ways could find it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Sampling {
+    Mis,
+    Lights,
+    Scattering,
+}
+
+/// A path while it grows from the camera.
+struct Walk {
+    ray: Ray,
+    /// Scattering events so far.
+    depth: u32,
+    /// Weight of all of them, over their density.
+    beta: Rgb,
+    /// What refraction has divided radiance by so far (η²), which survival must not depend on.
+    eta_scale: f32,
+    /// Where the last event was, and the density of its direction; `None` after the camera and after events
+    /// without width, where no light can be sampled.
+    last: Option<(Vec3, f32)>,
+    /// True while all events have been without width: what only the camera sees may still be seen.
+    specular: bool,
+    /// Absorption where the ray goes, as far as is known.
+    sigma_a: Rgb,
+}
+
+impl PixelIntegrator for Path {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        let mut walk = Walk {
+            ray: *ray,
+            depth: 0,
+            beta: Rgb::WHITE,
+            eta_scale: 1.0,
+            last: None,
+            specular: true,
+            sigma_a: Rgb::BLACK,
+        };
+        let mut sum = Rgb::BLACK;
+        loop {
+            let Some(surface) = task.tracer.closest(&walk.ray) else {
+                return sum + walk.beta * self.from_infinity(task, &walk);
+            };
+            let direction = Vec3::from(walk.ray.direction);
+            let material = task.scene().material(&surface);
+            let outside = surface.n_geom.dot(direction) <= 0.0;
+            let sigma_a = if outside { walk.sigma_a } else { material.sigma_a() };
+            walk.beta *= transmittance(sigma_a, surface.t);
+            sum += walk.beta * self.emitted(task, &walk, &surface, material);
+            if walk.depth >= task.max_depth {
+                return sum;
+            }
+            task.sampler.enter(u64::from(walk.depth) + 1);
+            let bsdf = material.bsdf(&surface);
+            sum += walk.beta * self.from_lights(task, &surface, &bsdf, -direction, sigma_a);
+            let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
+            let Some(sample) = bsdf.sample(-direction, u_choice, u, TransportMode::Radiance) else {
+                task.note(walk.depth, || format!("is absorbed at {}", surface.p));
+                return sum;
+            };
+            walk.scatter(&surface, material, &sample, sigma_a);
+            task.note(walk.depth, || {
+                let kind = if sample.transmits { "transmitted" } else { "scattered" };
+                let object = surface.object;
+                format!("{kind} by object {object} at {} towards {}", surface.p, sample.wi)
+            });
+            if !self.survives(&mut walk, task) {
+                return sum;
+            }
+        }
+    }
+}
+
+impl Path {
+    /// Light from infinity that the ray meets, weighted against having sampled it.
+    fn from_infinity(&self, task: &mut Task, walk: &Walk) -> Rgb {
+        let direction = Vec3::from(walk.ray.direction);
+        task.note(walk.depth, || format!("leaves the scene towards {direction}"));
+        let mut sum = Rgb::BLACK;
+        for (index, light) in task.scene().lights().iter().enumerate() {
+            let radiance = light.light.le(direction);
+            if radiance.is_black() {
+                continue;
+            }
+            sum += match walk.last {
+                _ if light.light.is_backdrop() && !walk.specular => Rgb::BLACK,
+                _ if light.light.is_backdrop() => radiance,
+                None => radiance,
+                Some((from, pdf)) => {
+                    let light_pdf = light.light.li_pdf_solid_angle(from, direction, None);
+                    radiance * self.scattering_weight(pdf, light_pdf * task.lights.probability(index))
+                }
+            };
+        }
+        sum
+    }
+
+    /// Light that the surface itself gives out, weighted against having sampled it.
+    fn emitted(&self, task: &mut Task, walk: &Walk, surface: &Surface, material: &dyn Material) -> Rgb {
+        let radiance = material.emission();
+        if radiance.is_black() {
+            return radiance;
+        }
+        task.note(walk.depth, || format!("meets a light at {}", surface.p));
+        match (walk.last, task.scene().light_index_of(surface.object)) {
+            (Some((from, pdf)), Some(index)) => {
+                let light = &task.scene().lights()[index].light;
+                let direction = Vec3::from(walk.ray.direction);
+                let light_pdf = light.li_pdf_solid_angle(from, direction, Some(surface));
+                radiance * self.scattering_weight(pdf, light_pdf * task.lights.probability(index))
+            }
+            _ => radiance,
+        }
+    }
+
+    /// One light, sampled from a surface: what it sends along `wo`.
+    fn from_lights(&self, task: &mut Task, surface: &Surface, bsdf: &Bsdf, wo: Vec3, sigma_a: Rgb) -> Rgb {
+        let (u_light, u) = (task.sampler.next_1d(), task.sampler.next_2d());
+        if bsdf.is_delta() {
+            return Rgb::BLACK;
+        }
+        let Some((index, probability)) = task.lights.sample(u_light) else {
+            return Rgb::BLACK;
+        };
+        let light = &task.scene().lights()[index].light;
+        if self.sampling == Sampling::Scattering && !light.is_delta() {
+            return Rgb::BLACK;
+        }
+        let Some(sample) = light.sample_li(surface.p, surface.time, u) else {
+            return Rgb::BLACK;
+        };
+        let scattered = bsdf.eval(wo, sample.wi, TransportMode::Radiance);
+        if scattered.is_black() {
+            return Rgb::BLACK;
+        }
+        let light_pdf = sample.pdf_solid_angle * probability;
+        let weight = match self.sampling {
+            Sampling::Mis if !light.is_delta() => {
+                power_heuristic(light_pdf, bsdf.pdf_solid_angle(wo, sample.wi))
+            }
+            _ => 1.0,
+        };
+        if task.tracer.occluded(&surface.spawn_to_light(&sample)) {
+            return Rgb::BLACK;
+        }
+        // Beyond the last surface there is no absorbing glass: its boundary would have blocked the ray.
+        let distance = sample.point.map_or(0.0, |point| point.distance(surface.p));
+        scattered * sample.li * transmittance(sigma_a, distance) * (weight / light_pdf)
+    }
+
+    /// Weight of light that scattering has found and light sampling could have found.
+    fn scattering_weight(&self, pdf: f32, light_pdf: f32) -> f32 {
+        match self.sampling {
+            Sampling::Mis => power_heuristic(pdf, light_pdf),
+            Sampling::Lights if light_pdf > 0.0 => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Russian roulette by what the path could still carry. [Arvo 1990]
+    fn survives(&self, walk: &mut Walk, task: &mut Task) -> bool {
+        if walk.beta.is_black() {
+            return false;
+        }
+        let u = task.sampler.next_1d();
+        if walk.depth <= self.roulette_depth {
+            return true;
+        }
+        let survival = (walk.beta.max_channel() * walk.eta_scale).min(0.95);
+        if u < survival {
+            walk.beta = walk.beta / survival;
+            return true;
+        }
+        // What is not a number must reach the film, which reports it.
+        survival.is_nan()
+    }
+}
+
+impl Walk {
+    /// The next ray.
+    fn scatter(&mut self, surface: &Surface, material: &dyn Material, sample: &BsdfSample, sigma_a: Rgb) {
+        self.beta *= sample.weight;
+        self.depth += 1;
+        self.specular &= sample.is_delta;
+        self.last = (!sample.is_delta).then_some((surface.p, sample.pdf_solid_angle));
+        self.eta_scale *= sample.eta * sample.eta;
+        self.sigma_a = match (sample.transmits, sample.wi.dot(surface.n_geom) < 0.0) {
+            (false, _) => sigma_a,
+            (true, true) => material.sigma_a(),
+            (true, false) => Rgb::BLACK,
+        };
+        self.ray = surface.spawn(sample.wi);
+    }
+}
+
+/// Weight of a sample of density `a` against another way of density `b`. [Veach 1997, eq. 9.17]
+fn power_heuristic(a: f32, b: f32) -> f32 {
+    // By the ratio, so that squares of large densities do not overflow.
+    if a > 0.0 { 1.0 / (1.0 + (b / a) * (b / a)) } else { 0.0 }
+}

@@ -1,0 +1,260 @@
+//! Films as pictures, and partial films that lose nothing: their sums travel as integer layers of an EXR.
+
+use crate::error::FilmError;
+use crate::film::{Film, MAX_SAMPLES, PixelTrouble, SAMPLE_BITS, zeroed};
+use crate::window::{Coverage, Window};
+use bilux_pictures::Picture;
+use std::ops::Range;
+use std::str::FromStr;
+
+/// Marks a picture as a partial film, and says how it is laid out.
+const FORMAT: (&str, &str) = ("bilux.film", "1");
+
+/// More pieces than any sane set of parts has; keeps checks of strangers' files short.
+const MOST_PIECES: usize = 4096;
+
+/// The names of the sums' planes: the lower and the upper halves of each channel.
+const SUMS: [[&str; 2]; 3] =
+    [["sum.R.low", "sum.R.high"], ["sum.G.low", "sum.G.high"], ["sum.B.low", "sum.B.high"]];
+
+const SAMPLES: &str = "samples";
+
+const TROUBLE: [&str; 4] =
+    ["bad.non_finite", "bad.first_non_finite", "bad.overflowed", "bad.first_overflowed"];
+
+impl Film {
+    /// The whole film as a linear picture; black where there are no samples.
+    ///
+    /// # Errors
+    /// When there is no room for it.
+    pub fn to_picture(&self) -> Result<Picture, FilmError> {
+        Ok(Picture::from_rgb(self.width() as usize, self.height() as usize, self.to_rgb())?)
+    }
+
+    /// The film's window alone as a linear picture.
+    ///
+    /// # Errors
+    /// When there is no room for it.
+    pub fn window_to_picture(&self) -> Result<Picture, FilmError> {
+        let window = self.window();
+        let pixels =
+            (0..window.pixels()).map(|i| window.position(i)).map(|(x, y)| self.pixel(x, y)).collect();
+        Ok(Picture::from_rgb(window.width as usize, window.height as usize, pixels)?)
+    }
+
+    /// The film's window with all that [`Film::from_partial`] needs to go on from here, to be written as EXR.
+    /// Other programs see the picture.
+    ///
+    /// # Errors
+    /// When there is no room for it.
+    pub fn to_partial(&self) -> Result<Picture, FilmError> {
+        let mut picture = self.window_to_picture()?;
+        let half = |channel: usize, shift: u32| {
+            self.sums.iter().map(|sum| (sum[channel] >> shift) as u32).collect::<Vec<u32>>()
+        };
+        for (channel, [low, high]) in SUMS.into_iter().enumerate() {
+            picture.push_integer_plane(low, half(channel, 0))?;
+            picture.push_integer_plane(high, half(channel, 32))?;
+        }
+        picture.push_integer_plane(SAMPLES, self.counts.clone())?;
+        if !self.trouble.is_empty() {
+            for (field, name) in TROUBLE.into_iter().enumerate() {
+                let plane = self.trouble.iter().map(|t| t.to_array()[field]).collect();
+                picture.push_integer_plane(name, plane)?;
+            }
+        }
+        let mut note = |key: &str, value: String| picture.metadata.insert(key.to_owned(), value);
+        note(FORMAT.0, FORMAT.1.to_owned());
+        note("bilux.size", format!("{},{}", self.width(), self.height()));
+        note("bilux.window", self.window().to_string());
+        note("bilux.scale_exponent", self.scale_exponent().to_string());
+        note("bilux.fingerprint", self.fingerprint.clone());
+        note("bilux.coverage", coverage_text(self.coverage()));
+        Ok(picture)
+    }
+
+    /// The film that [`Film::to_partial`] was made from.
+    ///
+    /// # Errors
+    /// When the picture is no partial film, or says things of itself that cannot be.
+    pub fn from_partial(picture: &Picture) -> Result<Film, FilmError> {
+        let text = |key: &str| match picture.metadata.get(key) {
+            Some(text) => Ok(text.as_str()),
+            None => Err(not_a_film(format!("it has no text '{key}'"))),
+        };
+        if text(FORMAT.0)? != FORMAT.1 {
+            return Err(not_a_film(format!("it is of version '{}', and this reads '1'", text(FORMAT.0)?)));
+        }
+        let [width, height] = numbers(text("bilux.size")?)?;
+        let window = window_of(text("bilux.window")?)?;
+        let [scale_exponent] = numbers::<i32, 1>(text("bilux.scale_exponent")?)?;
+        if (window.width as usize, window.height as usize) != (picture.width(), picture.height()) {
+            return Err(not_a_film(format!("its window {window} is not of the picture's size")));
+        }
+        let mut film = Film::windowed(width, height, window, scale_exponent)?;
+        film.fingerprint = text("bilux.fingerprint")?.to_owned();
+        film.coverage = coverage_of(text("bilux.coverage")?, &window)?;
+        film.read_planes(picture)?;
+        Ok(film)
+    }
+
+    fn read_planes(&mut self, picture: &Picture) -> Result<(), FilmError> {
+        let plane = |name: &str| match picture.integer_plane(name) {
+            Some(plane) => Ok(plane),
+            None => Err(not_a_film(format!("it has no integer layer '{name}'"))),
+        };
+        for (channel, [low, high]) in SUMS.into_iter().enumerate() {
+            let halves = plane(low)?.iter().zip(plane(high)?);
+            for (sum, (low, high)) in self.sums.iter_mut().zip(halves) {
+                sum[channel] = (u64::from(*high) << 32 | u64::from(*low)) as i64;
+            }
+        }
+        self.counts.copy_from_slice(plane(SAMPLES)?);
+        for (i, (&count, sums)) in self.counts.iter().zip(&self.sums).enumerate() {
+            let most = u64::from(count) << SAMPLE_BITS;
+            if count > MAX_SAMPLES || sums.iter().any(|sum| sum.unsigned_abs() > most) {
+                let (x, y) = self.window().position(i);
+                return Err(not_a_film(format!("its sums at pixel {x},{y} cannot be")));
+            }
+        }
+        if picture.integer_plane(TROUBLE[0]).is_some() {
+            let planes = [plane(TROUBLE[0])?, plane(TROUBLE[1])?, plane(TROUBLE[2])?, plane(TROUBLE[3])?];
+            self.trouble = zeroed(self.counts.len())?;
+            for (i, trouble) in self.trouble.iter_mut().enumerate() {
+                *trouble = PixelTrouble::from_array(planes.map(|plane| plane[i]));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PixelTrouble {
+    fn to_array(self) -> [u32; 4] {
+        [self.non_finite, self.first_non_finite, self.overflowed, self.first_overflowed]
+    }
+
+    fn from_array([non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4]) -> PixelTrouble {
+        PixelTrouble { non_finite, first_non_finite, overflowed, first_overflowed }
+    }
+}
+
+/// Such as `0,0,64,64:0..16;64,0,64,64:0..8`.
+fn coverage_text(coverage: &Coverage) -> String {
+    let piece =
+        |(window, samples): &(Window, Range<u32>)| format!("{window}:{}..{}", samples.start, samples.end);
+    coverage.pieces().iter().map(piece).collect::<Vec<_>>().join(";")
+}
+
+fn coverage_of(text: &str, within: &Window) -> Result<Coverage, FilmError> {
+    let wrong = || not_a_film(format!("its coverage is not what a film writes: '{:.80}'", text));
+    let mut coverage = Coverage::default();
+    for (i, piece) in text.split(';').filter(|piece| !piece.is_empty()).enumerate() {
+        let (window, range) = piece.split_once(':').ok_or_else(wrong)?;
+        let (start, end) = range.split_once("..").ok_or_else(wrong)?;
+        let (window, samples) = (window_of(window)?, parse(start)?..parse(end)?);
+        if i >= MOST_PIECES || !within.contains(&window) || samples.end > MAX_SAMPLES {
+            return Err(wrong());
+        }
+        let mut one = Coverage::default();
+        one.insert(window, samples);
+        if one.overlap(&coverage).is_some() {
+            return Err(wrong());
+        }
+        coverage.extend(&one);
+    }
+    Ok(coverage)
+}
+
+fn window_of(text: &str) -> Result<Window, FilmError> {
+    let [x, y, width, height] = numbers(text)?;
+    Ok(Window { x, y, width, height })
+}
+
+fn numbers<T: FromStr, const N: usize>(text: &str) -> Result<[T; N], FilmError> {
+    let parts: Vec<T> = text.split(',').map(parse).collect::<Result<_, _>>()?;
+    parts.try_into().map_err(|_| not_a_film(format!("'{text:.40}' should be {N} numbers")))
+}
+
+fn parse<T: FromStr>(text: &str) -> Result<T, FilmError> {
+    text.parse().map_err(|_| not_a_film(format!("'{text:.40}' should be a number")))
+}
+
+fn not_a_film(what: String) -> FilmError {
+    FilmError::NotAFilm { what }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::Rgb;
+    use bilux_pictures::{Limits, WriteOptions, read_bytes, write_bytes};
+
+    fn film(window: Window) -> Film {
+        let mut film = Film::windowed(9, 7, window, 30).unwrap();
+        film.fingerprint = "a scene".to_owned();
+        for i in 0..window.pixels() {
+            let (x, y) = window.position(i);
+            film.add(x, y, 0, Rgb::new(x as f32 * 0.1, -0.3, 1.0 / (y + 1) as f32));
+        }
+        film.cover(window, 0..1);
+        film
+    }
+
+    #[test]
+    fn a_partial_film_comes_back_from_exr_to_the_bit() {
+        let mut film = film(Window { x: 2, y: 1, width: 4, height: 3 });
+        film.add(3, 2, 1, Rgb::grey(f32::NAN));
+        let bytes = write_bytes("exr", &film.to_partial().unwrap(), &WriteOptions::default()).unwrap();
+        let read = read_bytes(&bytes, None, &Limits::default()).unwrap();
+        let back = Film::from_partial(&read).unwrap();
+        assert_eq!(back, film);
+        assert_eq!(back.trouble(), film.trouble());
+    }
+
+    #[test]
+    fn parts_merge_in_any_order_to_the_whole() {
+        let whole = film(Window::whole(9, 7));
+        let parts: Vec<Film> = Window::whole(9, 7).tiles(4).into_iter().map(film).collect();
+        for rotated in 0..parts.len() {
+            let order = parts.iter().cycle().skip(rotated).take(parts.len());
+            let merged = order.cloned().reduce(|mut a, b| {
+                a.merge(&b).unwrap();
+                a
+            });
+            assert_eq!(merged.unwrap(), whole);
+        }
+    }
+
+    #[test]
+    fn what_does_not_belong_together_is_refused() {
+        let left = Window { x: 0, y: 0, width: 5, height: 7 };
+        let right = Window { x: 4, y: 0, width: 5, height: 7 };
+        let error = film(left).merge(&film(right)).unwrap_err();
+        assert!(error.to_string().contains("samples 0..1 of the pixels 4,0,1,7"), "{error}");
+        let mut other = film(Window { x: 5, y: 0, width: 4, height: 7 });
+        other.fingerprint = "another scene".to_owned();
+        assert!(matches!(film(left).merge(&other), Err(FilmError::OtherPicture)));
+        let larger = Film::new(10, 7, 30).unwrap();
+        assert!(matches!(film(left).merge(&larger), Err(FilmError::OtherSize { .. })));
+    }
+
+    #[test]
+    fn other_pictures_and_lies_are_refused() {
+        let plain = Picture::from_rgb(2, 1, vec![Rgb::WHITE; 2]).unwrap();
+        assert!(matches!(Film::from_partial(&plain), Err(FilmError::NotAFilm { .. })));
+        let honest = film(Window::whole(9, 7)).to_partial().unwrap();
+        for (key, lie) in [
+            ("bilux.size", "4294967295,4294967295"),
+            ("bilux.size", "9"),
+            ("bilux.window", "4294967295,0,9,7"),
+            ("bilux.scale_exponent", "x"),
+            ("bilux.coverage", "0,0,9,7:0..1;8,6,1,1:0..1"),
+            ("bilux.coverage", "0,0,90,7:0..1"),
+            ("bilux.film", "2"),
+        ] {
+            let mut picture = honest.clone();
+            picture.metadata.insert(key.to_owned(), lie.to_owned());
+            assert!(Film::from_partial(&picture).is_err(), "{key} = {lie}");
+        }
+    }
+}

@@ -1,0 +1,334 @@
+//! The tile loop: every sample of every pixel, on all cores, into one film.
+
+use crate::error::RenderError;
+use crate::film::{Film, MAX_SAMPLES, scale_exponent};
+use crate::filters::Filter;
+use crate::integrators::PixelIntegrator;
+use crate::light_choice::LightChoice;
+use crate::sampler::{PixelSampler, regular_pattern};
+use crate::task::Task;
+use crate::window::Window;
+use bilux_accel::Counters;
+use bilux_math::{Vec2, warp};
+use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer};
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Scattering events after the camera where nothing else is said.
+pub const DEFAULT_MAX_DEPTH: u32 = 16;
+
+/// The greatest depth that may be asked for.
+pub const MAX_DEPTH: u32 = 1000;
+
+/// Side of a tile, in pixels.
+const TILE: u32 = 16;
+
+/// The most samples of each pixel in one pass over the film.
+const PASS: u32 = 32;
+
+/// Enough for trees of rays as deep as [`MAX_DEPTH`].
+const STACK_BYTES: usize = 16 << 20;
+
+/// What is to be rendered, apart from scene, camera and integrator.
+#[derive(Clone, Debug)]
+pub struct RenderSettings {
+    /// Pixels across the whole film.
+    pub width: u32,
+    /// Pixels down the whole film.
+    pub height: u32,
+    /// Samples of each pixel in all.
+    pub spp: u32,
+    /// Which of them are to be taken now.
+    pub samples: Range<u32>,
+    /// Which pixels; `None` for all.
+    pub crop: Option<Window>,
+    /// Another seed gives other noise.
+    pub seed: u64,
+    /// How many threads; 0 for one each core.
+    pub threads: usize,
+    /// Greatest number of scattering events after the camera; 0 is emission only.
+    pub max_depth: u32,
+    /// Where in a pixel its middle sample lies.
+    pub pixel_anchor: PixelAnchor,
+    /// How samples spread around the pixel's middle.
+    pub filter: Filter,
+    /// Count nodes and triangle tests, not only rays.
+    pub count_work: bool,
+}
+
+/// Which point stands for a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelAnchor {
+    /// Its middle.
+    #[default]
+    Centre,
+    /// Its upper left corner, at integer coordinates, as older renderers have it.
+    Corner,
+}
+
+impl RenderSettings {
+    /// Every sample of a film of this size.
+    pub fn new(width: u32, height: u32, spp: u32) -> RenderSettings {
+        RenderSettings {
+            width,
+            height,
+            spp,
+            samples: 0..spp,
+            crop: None,
+            seed: 0,
+            threads: 0,
+            max_depth: DEFAULT_MAX_DEPTH,
+            pixel_anchor: PixelAnchor::Centre,
+            filter: Filter::default(),
+            count_work: false,
+        }
+    }
+
+    fn window(&self) -> Window {
+        self.crop.unwrap_or(Window::whole(self.width, self.height))
+    }
+
+    fn check(&self) -> Result<(), RenderError> {
+        let Range { start, end } = self.samples;
+        let spp = self.spp;
+        if start >= end || end > spp || spp > MAX_SAMPLES {
+            return Err(RenderError::Samples { start, end, spp });
+        }
+        if self.max_depth > MAX_DEPTH {
+            return Err(RenderError::Depth { depth: self.max_depth });
+        }
+        Ok(())
+    }
+}
+
+/// Whom to tell how far it is, and who may stop it. Called from many threads, about once for each tile.
+pub trait Progress: Sync {
+    /// So many samples and rays more.
+    fn advance(&self, samples: u64, rays: u64);
+    /// True when the work is to stop; what is finished is kept.
+    fn is_cancelled(&self) -> bool;
+}
+
+/// Nobody to tell, and nobody to stop it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn advance(&self, _samples: u64, _rays: u64) {}
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The film; [`Film::trouble`] tells of samples that went wrong.
+    pub film: Film,
+    /// What the rays took; only `rays` unless [`RenderSettings::count_work`] was on.
+    pub counters: Counters,
+    /// True when it was stopped. Then [`Film::coverage`] tells which samples are in; each is there whole.
+    pub cancelled: bool,
+}
+
+/// Renders the samples asked for.
+///
+/// # Errors
+/// When the size, crop, range of samples or depth makes no sense, or the machine gives no room or threads.
+pub fn render(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    progress: &dyn Progress,
+) -> Result<Rendered, RenderError> {
+    settings.check()?;
+    let film = Film::windowed(settings.width, settings.height, settings.window(), scale_exponent(scene))?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.threads)
+        .stack_size(STACK_BYTES)
+        .build()
+        .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })?;
+    let eye = Eye::new(scene, camera, integrator, settings);
+    let work = Work {
+        eye,
+        progress,
+        tiles: settings.window().tiles(TILE),
+        passes: passes(&settings.samples),
+        next: AtomicU64::new(0),
+        dropped: Mutex::new(Vec::new()),
+        film: Mutex::new(film),
+    };
+    let mut counters = Counters::default();
+    pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
+    let (film, cancelled) = work.finish();
+    Ok(Rendered { film, counters, cancelled })
+}
+
+/// Ranges of samples that double in length, so that the first picture is there soon.
+fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
+    let (mut start, mut passes) = (samples.start, Vec::new());
+    while start < samples.end {
+        let length = (start - samples.start).clamp(1, PASS).min(samples.end - start);
+        passes.push(start..start + length);
+        start += length;
+    }
+    passes
+}
+
+/// One rendering, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
+struct Work<'a> {
+    eye: Eye<'a>,
+    progress: &'a dyn Progress,
+    tiles: Vec<Window>,
+    passes: Vec<Range<u32>>,
+    next: AtomicU64,
+    /// Jobs that were taken but not finished.
+    dropped: Mutex<Vec<u64>>,
+    film: Mutex<Film>,
+}
+
+impl<'a> Work<'a> {
+    /// One thread's share.
+    fn run(&self) -> Counters {
+        let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
+        let mut part = Film::part(scale_exponent(self.eye.scene));
+        let jobs = (self.tiles.len() * self.passes.len()) as u64;
+        loop {
+            let job = self.next.fetch_add(1, Ordering::Relaxed);
+            if job >= jobs {
+                return tracer.counters;
+            }
+            let tile = self.tiles[job as usize % self.tiles.len()];
+            let samples = self.passes[job as usize / self.tiles.len()].clone();
+            part.restart(tile);
+            let rays_before = tracer.counters.rays;
+            if !self.render_tile(tile, samples.clone(), &mut tracer, &mut part) {
+                self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
+                return tracer.counters;
+            }
+            self.film.lock().unwrap_or_else(PoisonError::into_inner).absorb(&part);
+            let taken = tile.pixels() as u64 * samples.len() as u64;
+            self.progress.advance(taken, tracer.counters.rays - rays_before);
+        }
+    }
+
+    /// False when it was stopped on the way.
+    fn render_tile(
+        &self,
+        tile: Window,
+        samples: Range<u32>,
+        tracer: &mut Tracer<'a>,
+        part: &mut Film,
+    ) -> bool {
+        for y in tile.y..tile.y + tile.height {
+            if self.progress.is_cancelled() {
+                return false;
+            }
+            for x in tile.x..tile.x + tile.width {
+                for sample in samples.clone() {
+                    let (ray, mut task) = self.eye.sample(tracer, x, y, sample);
+                    part.add(x, y, sample, self.eye.integrator.radiance(&ray, &mut task));
+                }
+            }
+        }
+        true
+    }
+
+    /// The film with its coverage, and whether anything is missing.
+    fn finish(self) -> (Film, bool) {
+        let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let dropped = self.dropped.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if dropped.is_empty() {
+            film.cover(self.eye.settings.window(), self.eye.settings.samples.clone());
+            return (film, false);
+        }
+        let taken = self.next.into_inner();
+        let tiles = self.tiles.len() as u64;
+        for (pass, samples) in self.passes.iter().enumerate() {
+            let first = pass as u64 * tiles;
+            let is_done = |job: &u64| *job < taken && !dropped.contains(job);
+            if (first..first + tiles).all(|job| is_done(&job)) {
+                film.cover(self.eye.settings.window(), samples.clone());
+            } else {
+                for job in (first..first + tiles).filter(is_done) {
+                    film.cover(self.tiles[(job - first) as usize], samples.clone());
+                }
+            }
+        }
+        (film, true)
+    }
+}
+
+/// Turns a sample's number into a camera ray and the tools for it.
+pub(crate) struct Eye<'a> {
+    scene: &'a Scene,
+    camera: &'a dyn Camera,
+    pub(crate) integrator: &'a dyn PixelIntegrator,
+    settings: &'a RenderSettings,
+    lights: LightChoice,
+}
+
+impl<'a> Eye<'a> {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        camera: &'a dyn Camera,
+        integrator: &'a dyn PixelIntegrator,
+        settings: &'a RenderSettings,
+    ) -> Eye<'a> {
+        Eye { scene, camera, integrator, settings, lights: LightChoice::new(scene) }
+    }
+
+    /// The camera ray of a sample, and what its integrator works with.
+    #[inline]
+    pub(crate) fn sample<'t>(
+        &'t self,
+        tracer: &'t mut Tracer<'a>,
+        x: u32,
+        y: u32,
+        index: u32,
+    ) -> (Ray, Task<'t, 'a>) {
+        let mut sampler = PixelSampler::new(self.settings.seed, x, y, index);
+        let camera_sample = self.camera_sample(&mut sampler, x, y, index);
+        let task = Task {
+            tracer,
+            sampler,
+            max_depth: self.settings.max_depth,
+            camera: self.camera,
+            lights: &self.lights,
+            events: None,
+        };
+        (self.camera.ray(&camera_sample), task)
+    }
+
+    /// Where on film and lens, and when. What the integrator gives no extent takes the pixel's regular
+    /// pattern, the middle of the lens and the middle of the time that the shutter is open.
+    fn camera_sample(&self, sampler: &mut PixelSampler, x: u32, y: u32, index: u32) -> CameraSample {
+        let (spread, settings) = (self.integrator.camera_spread(), self.settings);
+        let u_pixel = sampler.next_2d();
+        let offset = match spread.pixel {
+            0.0 => settings.filter.sample(regular_pattern(index)),
+            extent => settings.filter.sample(u_pixel) * extent,
+        };
+        let anchor = match settings.pixel_anchor {
+            PixelAnchor::Centre => 0.5,
+            PixelAnchor::Corner => 0.0,
+        };
+        let lens = match spread.lens {
+            0.0 => Vec2::ZERO,
+            extent => warp::sample_disc(sampler.next_2d()) * extent,
+        };
+        let [opens, closes] = self.scene.shutter();
+        let middle = opens + (closes - opens) * 0.5;
+        let time = match spread.shutter {
+            0.0 => middle,
+            extent => middle + (closes - opens) * (sampler.next_1d() - 0.5) * extent,
+        };
+        let film = Vec2::new(
+            (x as f32 + (anchor + offset.x)) / settings.width as f32,
+            (y as f32 + (anchor + offset.y)) / settings.height as f32,
+        );
+        CameraSample { film, lens, time: time.clamp(opens.min(closes), opens.max(closes)) }
+    }
+}

@@ -1,0 +1,172 @@
+//! Points of the unit square: Sobol' sequences, scrambled by hashes. [Burley 2020]
+//!
+//! A point is a pure function of seed, pixel, sample index and dimension; nothing is remembered from one sample
+//! to the next. Each pair of dimensions is the (0, 2)-sequence of Sobol' in an order and with a scrambling of
+//! its own, so that any first 2ⁿ samples of a pixel are spread evenly over the square.
+
+use bilux_math::Vec2;
+use bilux_math::hash::{hash_words, mix64, unit_f32};
+
+/// The random numbers of one sample of one pixel, in order.
+///
+/// They come in streams: [`PixelSampler::enter`] begins one for each vertex of a path (or node of a tree of
+/// rays), so that what is drawn at one vertex never shifts what is drawn at the next.
+#[derive(Clone, Debug)]
+pub struct PixelSampler {
+    pixel: u64,
+    index: u32,
+    stream: u64,
+    dimension: u32,
+}
+
+impl PixelSampler {
+    /// The numbers of one sample.
+    pub fn new(seed: u64, x: u32, y: u32, index: u32) -> PixelSampler {
+        let pixel = hash_words([seed, u64::from(x) << 32 | u64::from(y)]);
+        PixelSampler { pixel, index, stream: pixel, dimension: 0 }
+    }
+
+    /// Begins the stream of this number; that of a new sampler is another one.
+    pub fn enter(&mut self, stream: u64) {
+        self.stream = mix64(self.pixel ^ mix64(stream.wrapping_add(0x9e37_79b9_7f4a_7c15)));
+        self.dimension = 0;
+    }
+
+    /// The next number, `[0, 1)`.
+    #[inline]
+    pub fn next_1d(&mut self) -> f32 {
+        let key = self.key();
+        let index = owen_scramble(self.index, key as u32);
+        unit_f32(owen_scramble(sobol_0(index), (key >> 32) as u32))
+    }
+
+    /// The next point, `[0, 1)²`.
+    #[inline]
+    pub fn next_2d(&mut self) -> Vec2 {
+        let key = self.key();
+        let index = owen_scramble(self.index, key as u32);
+        let scramble = mix64(key);
+        Vec2::new(
+            unit_f32(owen_scramble(sobol_0(index), scramble as u32)),
+            unit_f32(owen_scramble(sobol_1(index), (scramble >> 32) as u32)),
+        )
+    }
+
+    fn key(&mut self) -> u64 {
+        self.dimension += 1;
+        mix64(self.stream.wrapping_add(u64::from(self.dimension).wrapping_mul(0x9e37_79b9_7f4a_7c15)))
+    }
+}
+
+/// A regular pattern over the pixel, for integrators that draw no random numbers: multiples of the inverse
+/// powers of the plastic number. The first point is the middle. [Roberts 2018]
+pub fn regular_pattern(index: u32) -> Vec2 {
+    const STEP: [u32; 2] = [3_242_174_889, 2_447_445_414];
+    let at = |step: u32| unit_f32(0x8000_0000u32.wrapping_add(index.wrapping_mul(step)));
+    Vec2::new(at(STEP[0]), at(STEP[1]))
+}
+
+/// First dimension of the sequence: the bits of the index turned around. [Sobol 1967]
+fn sobol_0(index: u32) -> u32 {
+    index.reverse_bits()
+}
+
+/// Second dimension: the index times Pascal's triangle modulo 2, here in five steps rather than 32.
+fn sobol_1(index: u32) -> u32 {
+    let mut x = index;
+    x ^= x >> 16;
+    x ^= (x & 0xff00_ff00) >> 8;
+    x ^= (x & 0xf0f0_f0f0) >> 4;
+    x ^= (x & 0xcccc_cccc) >> 2;
+    x ^= (x & 0xaaaa_aaaa) >> 1;
+    x.reverse_bits()
+}
+
+/// A nested uniform scrambling: each bit is flipped by a hash of those above it. [Burley 2020, listing 3;
+/// constants of Vegdahl 2021]
+#[inline]
+fn owen_scramble(x: u32, seed: u32) -> u32 {
+    let mut x = x.reverse_bits();
+    x ^= x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul(seed >> 16 | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^= x.wrapping_mul(0x53a2_2864);
+    x.reverse_bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The second dimension by its direction numbers, one for each bit.
+    fn sobol_1_by_definition(mut index: u32) -> u32 {
+        let (mut direction, mut x) = (1u32 << 31, 0);
+        while index != 0 {
+            if index & 1 == 1 {
+                x ^= direction;
+            }
+            index >>= 1;
+            direction ^= direction >> 1;
+        }
+        x
+    }
+
+    #[test]
+    fn the_second_dimension_is_that_of_sobol() {
+        for i in 0..10_000u32 {
+            let index = i.wrapping_mul(2_654_435_769);
+            assert_eq!(sobol_1(index), sobol_1_by_definition(index), "index {index}");
+        }
+    }
+
+    /// True when each cell of every 2^a × 2^b grid with a + b = m holds one of 2^m points.
+    fn fills_elementary_intervals(points: &[Vec2], m: u32) -> bool {
+        (0..=m).all(|a| {
+            let mut cells = vec![0; points.len()];
+            for p in points {
+                let column = (p.x * (1u32 << a) as f32) as usize;
+                let row = (p.y * (1u32 << (m - a)) as f32) as usize;
+                cells[(row << a) + column] += 1;
+            }
+            cells.iter().all(|&n| n == 1)
+        })
+    }
+
+    fn points(m: u32, enter: u64, draw: impl Fn(&mut PixelSampler) -> Vec2) -> Vec<Vec2> {
+        let point = |i| {
+            let mut sampler = PixelSampler::new(1, 17, 4, i);
+            sampler.enter(enter);
+            sampler.next_2d();
+            draw(&mut sampler)
+        };
+        (0..1 << m).map(point).collect()
+    }
+
+    #[test]
+    fn every_pair_is_a_net() {
+        for stream in 0..20 {
+            for m in [0, 3, 8] {
+                assert!(fills_elementary_intervals(&points(m, stream, PixelSampler::next_2d), m));
+            }
+        }
+    }
+
+    #[test]
+    fn two_single_dimensions_are_no_net() {
+        // The twin of the test above: what is not a net has to be told from one.
+        let singles = |s: &mut PixelSampler| Vec2::new(s.next_1d(), s.next_1d());
+        assert!(!fills_elementary_intervals(&points(8, 3, singles), 8));
+    }
+
+    #[test]
+    fn the_regular_pattern_begins_in_the_middle_and_fills_the_pixel() {
+        assert_eq!(regular_pattern(0), Vec2::splat(0.5));
+        let mut cells = [0; 16];
+        for i in 0..256 {
+            let p = regular_pattern(i);
+            cells[(p.y * 4.0) as usize * 4 + (p.x * 4.0) as usize] += 1;
+        }
+        assert!(cells.iter().all(|n| (13..=19).contains(n)), "{cells:?}");
+    }
+}

@@ -1,0 +1,198 @@
+//! Rectangles of pixels, and which samples of them a film holds.
+
+use std::fmt;
+use std::ops::Range;
+
+/// A rectangle of pixels, in the coordinates of the whole film.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Window {
+    /// First column.
+    pub x: u32,
+    /// First row, downwards.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl fmt::Display for Window {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{},{},{}", self.x, self.y, self.width, self.height)
+    }
+}
+
+impl Window {
+    /// A whole film.
+    pub const fn whole(width: u32, height: u32) -> Window {
+        Window { x: 0, y: 0, width, height }
+    }
+
+    /// How many pixels it has.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    /// True when it has no pixel.
+    pub fn is_empty(&self) -> bool {
+        self.width == 0 || self.height == 0
+    }
+
+    fn right(&self) -> u64 {
+        u64::from(self.x) + u64::from(self.width)
+    }
+
+    fn bottom(&self) -> u64 {
+        u64::from(self.y) + u64::from(self.height)
+    }
+
+    /// True when all of `other` is within.
+    pub fn contains(&self, other: &Window) -> bool {
+        let starts = other.x >= self.x && other.y >= self.y;
+        starts && other.right() <= self.right() && other.bottom() <= self.bottom()
+    }
+
+    /// What both have; empty where they are apart.
+    pub fn intersection(&self, other: &Window) -> Window {
+        let (x, y) = (self.x.max(other.x), self.y.max(other.y));
+        let width = self.right().min(other.right()).saturating_sub(u64::from(x)) as u32;
+        let height = self.bottom().min(other.bottom()).saturating_sub(u64::from(y)) as u32;
+        Window { x, y, width, height }
+    }
+
+    /// The smallest rectangle around both.
+    pub fn union(&self, other: &Window) -> Window {
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        let width = (self.right().max(other.right()) - u64::from(x)) as u32;
+        let height = (self.bottom().max(other.bottom()) - u64::from(y)) as u32;
+        Window { x, y, width, height }
+    }
+
+    /// The place of a pixel, row by row; `None` where it is not within.
+    #[inline]
+    pub fn index(&self, x: u32, y: u32) -> Option<usize> {
+        let (column, row) = (x.wrapping_sub(self.x), y.wrapping_sub(self.y));
+        (column < self.width && row < self.height)
+            .then(|| row as usize * self.width as usize + column as usize)
+    }
+
+    /// The pixel at a place: column and row.
+    pub fn position(&self, index: usize) -> (u32, u32) {
+        let width = self.width as usize;
+        (self.x + (index % width) as u32, self.y + (index / width) as u32)
+    }
+
+    /// Square tiles of this side that cover the window, row by row.
+    pub fn tiles(&self, side: u32) -> Vec<Window> {
+        let steps = |length: u32| (0..length.div_ceil(side)).map(move |i| i * side);
+        let tile = |dx: u32, dy: u32| Window {
+            x: self.x + dx,
+            y: self.y + dy,
+            width: side.min(self.width - dx),
+            height: side.min(self.height - dy),
+        };
+        steps(self.height).flat_map(|dy| steps(self.width).map(move |dx| tile(dx, dy))).collect()
+    }
+}
+
+/// Which samples of which pixels a film holds: windows with ranges, none of which overlap.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coverage {
+    pieces: Vec<(Window, Range<u32>)>,
+}
+
+impl Coverage {
+    /// The pieces, in no order that means anything.
+    pub fn pieces(&self) -> &[(Window, Range<u32>)] {
+        &self.pieces
+    }
+
+    /// Adds a piece, joined to one that it continues.
+    pub fn insert(&mut self, window: Window, samples: Range<u32>) {
+        if window.is_empty() || samples.is_empty() {
+            return;
+        }
+        let mut piece = (window, samples);
+        while let Some(at) = self.pieces.iter().position(|other| joined(other, &piece).is_some()) {
+            let other = self.pieces.swap_remove(at);
+            if let Some(both) = joined(&other, &piece) {
+                piece = both;
+            }
+        }
+        self.pieces.push(piece);
+    }
+
+    /// Adds all pieces of another.
+    pub fn extend(&mut self, other: &Coverage) {
+        for (window, samples) in &other.pieces {
+            self.insert(*window, samples.clone());
+        }
+    }
+
+    /// Samples that both hold, if there are any.
+    pub fn overlap(&self, other: &Coverage) -> Option<(Window, Range<u32>)> {
+        self.pieces.iter().find_map(|a| other.pieces.iter().find_map(|b| shared(a, b)))
+    }
+}
+
+type Piece = (Window, Range<u32>);
+
+fn shared(a: &Piece, b: &Piece) -> Option<Piece> {
+    let window = a.0.intersection(&b.0);
+    let samples = a.1.start.max(b.1.start)..a.1.end.min(b.1.end);
+    (!window.is_empty() && !samples.is_empty()).then_some((window, samples))
+}
+
+/// Both pieces as one, where they fit together.
+fn joined(a: &Piece, b: &Piece) -> Option<Piece> {
+    if a.0 == b.0 && (a.1.end == b.1.start || b.1.end == a.1.start) {
+        return Some((a.0, a.1.start.min(b.1.start)..a.1.end.max(b.1.end)));
+    }
+    let beside = |a: &Window, b: &Window| {
+        let same_rows = (a.y, a.height) == (b.y, b.height);
+        let same_columns = (a.x, a.width) == (b.x, b.width);
+        same_rows && a.right() == u64::from(b.x) || same_columns && a.bottom() == u64::from(b.y)
+    };
+    (a.1 == b.1 && (beside(&a.0, &b.0) || beside(&b.0, &a.0))).then(|| (a.0.union(&b.0), a.1.clone()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        let window = Window { x: 3, y: 5, width: 37, height: 18 };
+        let mut seen = vec![0; window.pixels()];
+        for tile in window.tiles(16) {
+            for i in 0..tile.pixels() {
+                let (x, y) = tile.position(i);
+                seen[window.index(x, y).unwrap()] += 1;
+            }
+        }
+        assert!(seen.iter().all(|&n| n == 1));
+    }
+
+    #[test]
+    fn pieces_that_fit_become_one() {
+        let whole = Window::whole(40, 33);
+        let mut coverage = Coverage::default();
+        for tile in whole.tiles(8) {
+            coverage.insert(tile, 0..2);
+        }
+        coverage.insert(whole, 5..9);
+        coverage.insert(whole, 2..5);
+        assert_eq!(coverage.pieces(), &[(whole, 0..9)]);
+    }
+
+    #[test]
+    fn overlaps_are_found() {
+        let [mut a, mut b] = [Coverage::default(), Coverage::default()];
+        a.insert(Window { x: 0, y: 0, width: 5, height: 5 }, 0..4);
+        b.insert(Window { x: 5, y: 0, width: 5, height: 5 }, 0..4);
+        b.insert(Window { x: 0, y: 0, width: 5, height: 5 }, 4..8);
+        assert_eq!(a.overlap(&b), None);
+        b.insert(Window { x: 4, y: 4, width: 1, height: 3 }, 3..9);
+        assert_eq!(a.overlap(&b), Some((Window { x: 4, y: 4, width: 1, height: 1 }, 3..4)));
+    }
+}
