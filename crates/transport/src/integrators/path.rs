@@ -89,7 +89,7 @@ impl PixelIntegrator for Path {
         let mut sum = Rgb::BLACK;
         loop {
             let Some(surface) = task.tracer.closest(&walk.ray) else {
-                return sum + walk.beta * self.from_infinity(task, &walk);
+                return sum + walk.beta * self.background(task, &walk);
             };
             let direction = Vec3::from(walk.ray.direction);
             let material = task.scene().material(&surface);
@@ -102,7 +102,7 @@ impl PixelIntegrator for Path {
             }
             task.sampler.enter(u64::from(walk.depth) + 1);
             let bsdf = material.bsdf(&surface);
-            sum += walk.beta * self.from_lights(task, &surface, &bsdf, -direction, sigma_a);
+            sum += walk.beta * self.direct(task, &surface, &bsdf, -direction, sigma_a);
             let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
             let Some(sample) = bsdf.sample(-direction, u_choice, u, TransportMode::Radiance) else {
                 task.note(walk.depth, || format!("is absorbed at {}", surface.p));
@@ -123,7 +123,7 @@ impl PixelIntegrator for Path {
 
 impl Path {
     /// Light from infinity that the ray meets, weighted against having sampled it.
-    fn from_infinity(&self, task: &mut Task, walk: &Walk) -> Rgb {
+    fn background(&self, task: &mut Task, walk: &Walk) -> Rgb {
         let direction = Vec3::from(walk.ray.direction);
         task.note(walk.depth, || format!("leaves the scene towards {direction}"));
         let mut sum = Rgb::BLACK;
@@ -164,7 +164,7 @@ impl Path {
     }
 
     /// One light, sampled from a surface: what it sends along `wo`.
-    fn from_lights(&self, task: &mut Task, surface: &Surface, bsdf: &Bsdf, wo: Vec3, sigma_a: Rgb) -> Rgb {
+    fn direct(&self, task: &mut Task, surface: &Surface, bsdf: &Bsdf, wo: Vec3, sigma_a: Rgb) -> Rgb {
         let (u_light, u) = (task.sampler.next_1d(), task.sampler.next_2d());
         if bsdf.is_delta() {
             return Rgb::BLACK;
