@@ -17,6 +17,7 @@ pub mod lights;
 pub mod materials;
 pub mod mesh;
 pub mod parameters;
+pub mod presets;
 pub mod scene;
 pub mod surface;
 pub mod texture;

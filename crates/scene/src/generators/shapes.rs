@@ -23,6 +23,21 @@ pub fn floor(middle: Vec3, side: f32) -> Mesh {
     Mesh { name: "floor".to_owned(), ..quad(middle, Vec3::Z * side, Vec3::X * side) }
 }
 
+/// A level disc around a point, seen from above, of `around` (at least 3) triangles.
+pub fn disc(middle: Vec3, radius: f32, around: u32) -> Mesh {
+    let around = around.max(3);
+    let rim = (0..around).map(|i| {
+        let (sin, cos) = sin_cos_f64(TAU * f64::from(i) / f64::from(around));
+        middle + DVec3::new(cos, 0.0, -sin).as_vec3() * radius
+    });
+    Mesh {
+        name: "disc".to_owned(),
+        positions: std::iter::once(middle).chain(rim).collect(),
+        triangles: (0..around).map(|i| [0, 1 + i, 1 + (i + 1) % around]).collect(),
+        ..Mesh::default()
+    }
+}
+
 /// A level chessboard of `count * count` squares around a point: those of one colour, then those of the other.
 pub fn chessboard(middle: Vec3, side: f32, count: u32) -> [Mesh; 2] {
     let square = side / count.max(1) as f32;

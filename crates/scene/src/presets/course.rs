@@ -1,0 +1,142 @@
+//! `course`: as the renderer of the course drew them that `.asc` files come from.
+//!
+//! A camera of the left-handed kind, a model matrix, lights fixed to the camera, one material, pixels sampled
+//! at their corners, bytes in proportion to light.
+
+use super::{PresetEntry, affine, move_all, set_all};
+use crate::builder::SceneBuilder;
+use crate::cameras::CameraSpec;
+use crate::error::SceneError;
+use crate::parameters::{Spec, Value};
+use bilux_math::registry::Entry;
+use bilux_math::{DMat3, DVec3, Rgb, Transform, Vec3};
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+pub(super) const ENTRY: PresetEntry = PresetEntry {
+    entry: Entry {
+        name: "course",
+        summary: "as the course renderer that .asc files come from: its camera, lights, material, pixels, bytes",
+        source: "",
+        parameters: &[],
+    },
+    apply: |scene| apply(scene, &FIRST_VIEW),
+};
+
+pub(super) const SECOND: PresetEntry = PresetEntry {
+    entry: Entry {
+        name: "course-2",
+        summary: "as course, through the second camera of that renderer",
+        source: "",
+        parameters: &[],
+    },
+    apply: |scene| apply(scene, &SECOND_VIEW),
+};
+
+/// A camera of the course, angles in degrees.
+pub(super) struct View {
+    position: Vec3,
+    look_at: Vec3,
+    up: Vec3,
+    fov: f32,
+}
+
+pub(super) const FIRST_VIEW: View =
+    View { position: Vec3::new(-10.0, 5.0, -10.0), look_at: Vec3::ZERO, up: Vec3::Y, fov: 35.0 };
+
+const SECOND_VIEW: View = View {
+    position: Vec3::new(13.2, -8.7, -14.8),
+    look_at: Vec3::new(0.8, 0.7, 4.5),
+    up: Vec3::new(-0.2, 1.0, 0.0),
+    fov: 53.7,
+};
+
+impl View {
+    /// The camera's x, y and z axes in the world, as columns. Left-handed means that x = y × z points to the
+    /// right of the picture while z goes into it.
+    pub(super) fn axes(&self) -> DMat3 {
+        let z = (self.look_at - self.position).as_dvec3().normalize();
+        let up = self.up.as_dvec3();
+        let y = (up - z * up.dot(z)).normalize();
+        DMat3::from_cols(y.cross(z), y, z)
+    }
+}
+
+/// The course's rotations about y and x, one after the other (x first), to as many digits as it had.
+pub(super) fn turn() -> DMat3 {
+    let about_y = DMat3::from_cols_array_2d(&[[0.866, 0.0, 0.5], [0.0, 1.0, 0.0], [-0.5, 0.0, 0.866]]);
+    let about_x =
+        DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 0.7071, -0.7071], [0.0, 0.7071, 0.7071]]);
+    about_y * about_x
+}
+
+/// Turned, 3.25 times as large, shifted.
+fn model() -> Transform {
+    affine(turn() * 3.25, DVec3::new(0.0, -3.25, 3.5))
+}
+
+/// Lights in camera space: the direction towards each, its colour.
+const LIGHTS: [(Vec3, Rgb); 3] = [
+    (Vec3::new(-0.7071, 0.7071, 0.0), Rgb::new(0.5, 0.5, 0.9)),
+    (Vec3::new(0.0, -0.7071, -0.7071), Rgb::new(0.9, 0.2, 0.3)),
+    (Vec3::new(0.7071, 0.0, -0.7071), Rgb::new(0.2, 0.7, 0.3)),
+];
+
+const BACKGROUND: [u8; 3] = [128, 112, 96];
+
+fn apply(scene: &mut SceneBuilder, view: &View) -> Result<(), SceneError> {
+    move_all(scene, &model())?;
+    let plastic = Spec::new("course", "phong")
+        .with("ka", 0.1f32)
+        .with("kd", 0.7f32)
+        .with("ks", 0.3f32)
+        .with("exponent", 32.0f32)
+        .with("reflectivity", 0.0f32);
+    scene.materials = vec![plastic];
+    scene.textures.clear();
+    for object in &mut scene.objects {
+        object.material = 0;
+        if !(object.mesh.vertex_kd.is_empty() && object.mesh.vertex_ks.is_empty()) {
+            let mesh = Arc::make_mut(&mut object.mesh);
+            mesh.vertex_kd.clear();
+            mesh.vertex_ks.clear();
+        }
+    }
+    scene.lights = lights(&view.axes());
+    let camera = Spec::new("course", "perspective")
+        .with("position", view.position)
+        .with("look_at", view.look_at)
+        .with("up", view.up)
+        .with("fov", view.fov)
+        .with("mirrored", true);
+    scene.cameras = vec![CameraSpec { spec: camera, keyframes: Vec::new() }];
+    let settings = [
+        ("integrator", Value::from("cast")),
+        ("size", Value::from("256x256")),
+        ("spp", Value::Integer(1)),
+        ("pixel_anchor", Value::from("corner")),
+        ("transfer", Value::from("linear")),
+        ("viewer", Value::from("infinite")),
+        ("specular", Value::from("reflect")),
+        ("shadows", Value::Bool(false)),
+    ];
+    set_all(scene, &settings);
+    Ok(())
+}
+
+/// The lights of the course, turned with the camera into the world, its ambient light and its background.
+pub(super) fn lights(camera: &DMat3) -> Vec<Spec> {
+    let suns = LIGHTS.iter().zip(["left", "below", "right"]).map(|((towards, colour), name)| {
+        let direction = -(*camera * towards.as_dvec3()).as_vec3();
+        Spec::new(name, "directional")
+            .with("direction", direction)
+            .with("irradiance", *colour * PI)
+            .with("classic", *colour)
+    });
+    let background = Rgb::from_array(BACKGROUND.map(|byte| f32::from(byte) / 255.0));
+    let rest = [
+        Spec::new("ambient", "ambient").with("colour", 0.3f32),
+        Spec::new("background", "environment").with("radiance", background).with("backdrop", true),
+    ];
+    suns.chain(rest).collect()
+}

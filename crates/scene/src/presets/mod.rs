@@ -1,0 +1,65 @@
+//! Ways to look at a scene that does not say how. One preset a file; the table is [`PRESETS`].
+//!
+//! [`apply`] puts a preset's camera, lights and settings in place of the scene's own; [`complete`] only adds
+//! what a scene lacks to be seen at all.
+
+mod course;
+mod paper;
+mod studio;
+
+pub use studio::complete;
+
+use crate::builder::SceneBuilder;
+use crate::error::SceneError;
+use crate::parameters::{Span, Value};
+use bilux_math::registry::Entry;
+use bilux_math::{DMat3, DMat4, DVec3, Transform};
+
+/// A row of [`PRESETS`].
+#[derive(Clone, Copy, Debug)]
+pub struct PresetEntry {
+    /// Name, summary, source; presets have no parameters.
+    pub entry: Entry,
+    /// Changes a scene.
+    pub apply: fn(&mut SceneBuilder) -> Result<(), SceneError>,
+}
+
+/// Every preset that there is.
+pub const PRESETS: &[PresetEntry] = &[studio::ENTRY, course::ENTRY, course::SECOND, paper::ENTRY];
+
+/// Applies the preset of this name.
+///
+/// # Errors
+/// When there is none, or it cannot be applied to the scene.
+pub fn apply(name: &str, scene: &mut SceneBuilder) -> Result<(), SceneError> {
+    let names = PRESETS.iter().map(|row| row.entry.name);
+    let row = PRESETS
+        .iter()
+        .find(|row| row.entry.name == name)
+        .ok_or_else(|| SceneError::unknown("preset", name, names, &Span::default()))?;
+    (row.apply)(scene)
+}
+
+/// Moves all objects. What moves along keys cannot be stretched unevenly: presets only turn, scale and shift.
+fn move_all(scene: &mut SceneBuilder, by: &Transform) -> Result<(), SceneError> {
+    for object in &mut scene.objects {
+        object.motion = object.motion.then(by).ok_or_else(|| {
+            let message = format!("the moving object '{}' cannot be moved by this preset", object.name);
+            SceneError::invalid(message, &Span::default())
+        })?;
+    }
+    Ok(())
+}
+
+/// The affine map `p ↦ linear · p + translation`.
+fn affine(linear: DMat3, translation: DVec3) -> Transform {
+    let mut matrix = DMat4::from_mat3(linear);
+    matrix.w_axis = translation.extend(1.0);
+    Transform::from_matrix(matrix).unwrap_or_default()
+}
+
+fn set_all(scene: &mut SceneBuilder, settings: &[(&str, Value)]) {
+    for (key, value) in settings {
+        scene.settings.set(key, value.clone());
+    }
+}

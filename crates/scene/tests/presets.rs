@@ -1,0 +1,170 @@
+//! Presets: what is framed is seen, what is missing is made up for, what is there is kept.
+
+use bilux_math::motion::Motion;
+use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
+use bilux_scene::cameras::{self, CameraSpec};
+use bilux_scene::generators::teapot::Teapot;
+use bilux_scene::presets::{PRESETS, apply, complete};
+use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, SceneBuilder, Spec, Value};
+use std::sync::Arc;
+
+fn scene_of(mesh: Mesh) -> SceneBuilder {
+    let mut scene = SceneBuilder::default();
+    let material = scene.add_material(Spec::new("", "diffuse"));
+    scene.objects.push(Object::new("it", Arc::new(mesh), material));
+    scene
+}
+
+fn points(positions: &[[f32; 3]]) -> SceneBuilder {
+    let positions: Vec<Vec3> = positions.iter().map(|&p| Vec3::from(p)).collect();
+    let triangles = (0..positions.len() as u32).map(|i| [i, i, i]).collect();
+    scene_of(Mesh { positions, triangles, ..Mesh::default() })
+}
+
+fn teapot() -> SceneBuilder {
+    scene_of(Teapot::default().mesh())
+}
+
+/// Where the scene's camera sees a point, -1..=1 within a square picture; found from the camera's own rays.
+fn seen_at(scene: &SceneBuilder, p: Vec3) -> Option<Vec2> {
+    let camera = cameras::build(&scene.cameras[0], 1.0).unwrap();
+    let ray = |x: f32, y: f32| {
+        let ray = camera.ray(&CameraSample { film: Vec2::new(x, y), lens: Vec2::ZERO, time: 0.0 });
+        (Vec3::from(ray.origin).as_dvec3(), Vec3::from(ray.direction).as_dvec3())
+    };
+    let (eye, forward) = ray(0.5, 0.5);
+    let on_film = |(_, d): (DVec3, DVec3)| d / d.dot(forward) - forward;
+    let (right, up) = (on_film(ray(1.0, 0.5)), on_film(ray(0.5, 0.0)));
+    let to = p.as_dvec3() - eye;
+    let depth = to.dot(forward);
+    let at = to / depth;
+    (depth > 0.0).then(|| {
+        DVec3::new(at.dot(right) / right.length_squared(), at.dot(up) / up.length_squared(), 0.0)
+            .truncate()
+            .as_vec2()
+    })
+}
+
+/// The farthest from the middle, on either axis, that any vertex is seen.
+fn reach(scene: &SceneBuilder) -> f32 {
+    let vertices = scene.objects.iter().flat_map(|o| {
+        let to_world = o.motion.at(0.0);
+        o.mesh.positions.iter().map(move |&p| to_world.point(p))
+    });
+    let seen = vertices.map(|p| seen_at(scene, p).map_or(f32::INFINITY, |q| q.abs().max_element()));
+    seen.fold(0.0, f32::max)
+}
+
+fn builds(scene: &SceneBuilder) {
+    let built = scene.build(&AccelChoice::default(), [0.0, 0.0], 1.0);
+    assert!(built.is_ok(), "{:?}", built.err());
+}
+
+#[test]
+fn a_bare_model_is_framed_whole_and_fills_the_picture() {
+    let mut scene = teapot();
+    complete(&mut scene);
+    builds(&scene);
+    let reach = reach(&scene);
+    assert!((0.85..0.9).contains(&reach), "{reach}");
+}
+
+#[test]
+fn framing_stands_whatever_a_file_holds() {
+    let cases: [&[[f32; 3]]; 10] = [
+        &[],
+        &[[0.0; 3]],
+        &[[5.0, -3.0, 1e6]],
+        &[[0.0; 3], [0.0, 1.0, 0.0]],
+        &[[-1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]],
+        &[[0.0, -1.0, -1.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0]],
+        &[[1e-20, 0.0, 0.0], [0.0, 2e-20, 0.0], [0.0, 0.0, -1e-20]],
+        &[[1e15, 0.0, 0.0], [0.0, -1e15, 3e14], [0.0, 0.0, 1e15]],
+        &[[1e6, 1e6, 1e6], [1e6, 1e6 + 100.0, 1e6]],
+        &[[f32::NAN, 0.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.0, f32::INFINITY]],
+    ];
+    for case in cases {
+        let mut scene = points(case);
+        complete(&mut scene);
+        builds(&scene);
+        if case.iter().flatten().all(|c| c.is_finite()) {
+            let reach = reach(&scene);
+            assert!(reach <= 0.9, "{case:?}: {reach}");
+        }
+    }
+    for far in [1e30, 3e38] {
+        let mut scene = points(&[[far, 0.0, 0.0], [-far, far, 0.0]]);
+        complete(&mut scene);
+        builds(&scene);
+    }
+}
+
+#[test]
+fn only_what_is_missing_is_added() {
+    let mut lit = teapot();
+    lit.lights.push(Spec::new("mine", "point"));
+    complete(&mut lit);
+    assert_eq!((lit.lights.len(), lit.cameras.len(), lit.objects.len()), (1, 1, 1));
+
+    let mut luminous = teapot();
+    luminous.materials[0].parameters.set("emission", 1.0f32);
+    complete(&mut luminous);
+    assert_eq!((luminous.lights.len(), luminous.cameras.len()), (0, 1));
+    let mut dark = teapot();
+    dark.materials[0].parameters.set("emission", Value::triple([0.0; 3]));
+    complete(&mut dark);
+    assert_eq!((dark.lights.len(), dark.cameras.len()), (3, 1));
+
+    let mut seen = teapot();
+    let mine = CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() };
+    seen.cameras.push(mine.clone());
+    complete(&mut seen);
+    assert_eq!((seen.cameras, seen.lights.len()), (vec![mine], 3));
+}
+
+#[test]
+fn every_preset_gives_a_scene_that_builds() {
+    for row in PRESETS {
+        for mut scene in [teapot(), points(&[]), points(&[[1.0; 3]])] {
+            apply(row.entry.name, &mut scene).unwrap();
+            builds(&scene);
+        }
+        let mut moving = teapot();
+        let key = |time_seconds: f32| bilux_math::MotionKey {
+            time_seconds,
+            translation: Vec3::X * time_seconds,
+            rotation: bilux_math::Quat::IDENTITY,
+            scale: Vec3::ONE,
+        };
+        moving.objects[0].motion = Motion::from_keys(vec![key(0.0), key(1.0)]).unwrap();
+        apply(row.entry.name, &mut moving).unwrap();
+        builds(&moving);
+    }
+    let error = apply("curse", &mut teapot()).err().unwrap().to_string();
+    assert!(error.contains("did you mean 'course'?"), "{error}");
+}
+
+#[test]
+fn the_course_camera_is_left_handed() {
+    let mut scene = teapot();
+    apply("course", &mut scene).unwrap();
+    // From (-10, 5, -10) towards the origin, y × z points along (1, 0, -1).
+    assert!(seen_at(&scene, Vec3::new(0.5, 0.0, -0.5)).unwrap().x > 0.0);
+    assert!(seen_at(&scene, Vec3::Y * 0.5).unwrap().y > 0.0);
+    // The foot of the teapot, by hand: the origin goes to (0, -3.25, 3.5).
+    assert_eq!(scene.objects[0].motion.at(0.0).point(Vec3::ZERO), Vec3::new(0.0, -3.25, 3.5));
+}
+
+#[test]
+fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
+    let mut scene = teapot();
+    let wide = Transform::from_matrix(DMat4::from_scale(DVec3::new(1.0, 3.0, 1.0))).unwrap();
+    scene.objects[0].motion = Motion::still(wide);
+    apply("paper", &mut scene).unwrap();
+    for corner in [Vec2::ONE, Vec2::NEG_ONE, Vec2::new(1.0, -1.0)] {
+        let on_screen = seen_at(&scene, corner.extend(0.0)).unwrap();
+        assert!(on_screen.distance(corner) < 1e-5, "{on_screen} for {corner}");
+    }
+    assert!(reach(&scene) < 1.0);
+    assert!(scene.bounds(0.0).min.z > -0.6, "{:?}", scene.bounds(0.0));
+}
