@@ -3,3 +3,4 @@
 
 pub mod bsdf_contract;
 pub mod chi_square;
+pub mod course_oracle;

@@ -3,6 +3,8 @@
 //! A camera of the left-handed kind, a model matrix, lights fixed to the camera, one material, pixels sampled
 //! at their corners, bytes in proportion to light.
 
+#![allow(clippy::approx_constant, reason = "0.7071 is what that renderer has, not the square root of a half")]
+
 use super::{PresetEntry, affine, move_all, set_all};
 use crate::builder::SceneBuilder;
 use crate::cameras::CameraSpec;
