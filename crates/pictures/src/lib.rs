@@ -1,8 +1,11 @@
 //! Pictures with named channels: PNG, EXR, HDR, PFM, PPM, tone mapping and error metrics.
 
 mod error;
+mod font;
 pub mod formats;
 mod limits;
+pub mod metrics;
+mod panels;
 mod picture;
 pub mod tonemap;
 
@@ -12,5 +15,7 @@ pub use formats::{
     read, read_bytes, read_with, write, write_atomically, write_bytes,
 };
 pub use limits::Limits;
+pub use metrics::{METRICS, MetricEntry, Report, compare};
+pub use panels::{downscaled, label, side_by_side, stacked};
 pub use picture::{Alpha, Channel, ColourSpace, IntegerPlane, NonFinite, Picture};
 pub use tonemap::{TONEMAPS, ToneMapEntry, to_display, tone_map};

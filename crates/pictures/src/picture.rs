@@ -237,6 +237,14 @@ impl Picture {
         layers
     }
 
+    /// The main picture without its layers and texts: `R`, `G`, `B` and `Y` as far as there are any, and `A`.
+    pub fn main(&self) -> Picture {
+        let mut picture = self.like();
+        let main = self.channels.iter().filter(|c| MAIN.contains(&&c.name[..]));
+        picture.channels.extend(main.cloned());
+        picture
+    }
+
     /// One layer as a picture of its own, without its name in front; `None` where there is none.
     pub fn layer(&self, layer: &str) -> Option<Picture> {
         let prefix = qualified(layer, "");
@@ -339,6 +347,9 @@ impl ColourSpace {
         }
     }
 }
+
+/// The channels that are no layer's.
+const MAIN: [&str; 5] = ["R", "G", "B", "Y", "A"];
 
 /// Holds a sample within 0 and `most`; what is not a number becomes 0, which `clamp` would leave.
 pub(crate) fn hold_within(sample: f32, most: f32) -> f32 {

@@ -37,17 +37,12 @@ pub fn tone_map(name: &str) -> Result<&'static ToneMapEntry, PictureError> {
 /// not multiplied in. Layers are left out. A picture that is encoded already, and is neither to be
 /// exposed nor mapped, stays as it is. Errors where the picture has no colour.
 pub fn to_display(picture: &Picture, exposure: f32, curve: &ToneMapEntry) -> Result<Picture, PictureError> {
-    let names: Vec<&str> =
-        ["R", "G", "B", "Y", "A"].into_iter().filter(|&name| picture.channel(name).is_some()).collect();
     if picture.rgb_planes().is_none() {
         let what =
             "a picture for a display needs the channels R, G and B, or Y; choose a layer that has them";
         return Err(PictureError::Malformed(what.to_owned()));
     }
-    let mut shown = picture.like();
-    for name in names {
-        shown.push_channel(name, picture.channel(name).unwrap_or_default().to_vec())?;
-    }
+    let shown = picture.main();
     if exposure == 0.0 && curve.entry.name == none::ENTRY.entry.name {
         return Ok(shown.into_srgb());
     }

@@ -1,0 +1,58 @@
+//! Where two pictures differ, as a picture.
+
+use super::{Pair, flip};
+use crate::{ColourSpace, Picture, PictureError};
+use bilux_math::Rgb;
+
+/// What a heat map shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HeatMap {
+    /// The FLIP error, 0..=1.
+    #[default]
+    Flip,
+    /// The greatest absolute difference of the channels of light, relative to that of the whole picture.
+    Absolute,
+}
+
+/// The error of every pixel as a colour of [`ramp`], ready for a display.
+pub fn heat_map(pair: &Pair, kind: HeatMap) -> Result<Picture, PictureError> {
+    let errors = match kind {
+        HeatMap::Flip => flip::map(pair),
+        HeatMap::Absolute => absolute(pair),
+    };
+    let colours = errors.into_iter().map(ramp).collect();
+    let mut picture = Picture::from_rgb(pair.width, pair.height, colours)?;
+    picture.colour_space = ColourSpace::Srgb;
+    Ok(picture)
+}
+
+/// What is not a number is an error as great as there is.
+fn absolute(pair: &Pair) -> Vec<f32> {
+    let [a, b] = &pair.light;
+    let differences = a.iter().zip(b).map(|(a, b)| (*a - *b).map(f32::abs));
+    let errors: Vec<f32> =
+        differences.map(|d| if d.is_finite() { d.max_channel() } else { f32::INFINITY }).collect();
+    let most = errors.iter().copied().filter(|e| e.is_finite()).fold(0.0, f32::max);
+    let relative = |error: f32| if error == 0.0 { 0.0 } else { (error / most).min(1.0) };
+    errors.into_iter().map(relative).collect()
+}
+
+/// Black through violet, red and orange to pale yellow, ever lighter: sRGB-encoded, for an error of 0..=1.
+pub fn ramp(error: f32) -> Rgb {
+    const STOPS: [[u8; 3]; 9] = [
+        [0, 0, 4],
+        [28, 16, 68],
+        [79, 18, 123],
+        [129, 37, 129],
+        [181, 54, 122],
+        [229, 80, 100],
+        [251, 135, 97],
+        [254, 194, 135],
+        [252, 253, 191],
+    ];
+    let place = crate::picture::hold_within(error, 1.0) * (STOPS.len() - 1) as f32;
+    let stop = (place as usize).min(STOPS.len() - 2);
+    let [low, high] =
+        [STOPS[stop], STOPS[stop + 1]].map(|s| Rgb::from_array(s.map(|c| f32::from(c) / 255.0)));
+    low.lerp(high, place - stop as f32)
+}
