@@ -24,9 +24,9 @@ fn gradient(x: i64, y: i64, channel: i64) -> i64 {
 }
 
 fn hash(x: i64, y: i64, channel: i64) -> i64 {
-    let mixed = (x * 73_856_093 ^ y * 19_349_663 ^ channel * 83_492_791) & 0xffff_ffff;
-    let mixed = ((mixed ^ mixed >> 15) * 0x2c1b_3c6d) & 0xffff_ffff;
-    (mixed ^ mixed >> 12) & 255
+    let mixed = ((x * 73_856_093) ^ (y * 19_349_663) ^ (channel * 83_492_791)) & 0xffff_ffff;
+    let mixed = ((mixed ^ (mixed >> 15)) * 0x2c1b_3c6d) & 0xffff_ffff;
+    (mixed ^ (mixed >> 12)) & 255
 }
 
 fn noisy(x: i64, y: i64, channel: i64) -> i64 {
