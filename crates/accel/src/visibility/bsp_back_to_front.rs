@@ -1,0 +1,52 @@
+//! A tree of the polygons' own planes, painted from far to near [Fuchs 1980].
+
+use super::canvas::Canvas;
+use super::partition::{Start, Stop, Tree, draw_piece};
+use super::screen::Screen;
+use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use crate::mesh::TriangleMesh;
+use bilux_math::registry::Entry;
+use std::time::Instant;
+
+/// Row of [`super::VISIBILITY`].
+pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+    entry: Entry {
+        name: "bsp-back-to-front",
+        summary: "a tree of the polygons' own planes gives their order: painted from far to near",
+        source: "Fuchs 1980",
+        parameters: &[],
+    },
+    exact: true,
+    run,
+};
+
+fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> VisibilityResult {
+    let screen = Screen::new(view, mesh);
+    let mut canvas = Canvas::new(view, mesh, options);
+    let begun = Instant::now();
+    let tree = Tree::of_own_planes(mesh, &screen.slack, &mut canvas.counts);
+    let build_seconds = begun.elapsed().as_secs_f64();
+    tree.walk(screen.eye, Start::Farthest, |stop| {
+        match stop {
+            Stop::Enter(_) => canvas.counts.sort_comparisons += 1,
+            Stop::On(node) => paint(&tree, node, &screen, &mut canvas),
+            Stop::Leaf(_) => {}
+        }
+        true
+    });
+    canvas.finish(build_seconds)
+}
+
+/// Paints what lies on one plane over everything behind; only hits on the same plane meet on equal terms.
+fn paint(tree: &Tree, node: u32, screen: &Screen, canvas: &mut Canvas) {
+    for piece in tree.pieces_on(node) {
+        draw_piece(
+            tree,
+            piece,
+            screen,
+            canvas,
+            |_, _| true,
+            |canvas, hit| canvas.put_first_or_nearer(hit, node),
+        );
+    }
+}

@@ -1,0 +1,127 @@
+//! The picture being made: the one place where triangles meet pixels.
+
+use super::VisibilityOptions;
+use super::result::{BACKGROUND, VisibilityCounts, VisibilityResult};
+use super::screen::Rect;
+use super::view::View;
+use crate::mesh::TriangleMesh;
+use crate::ray::Culling;
+use crate::triangle::PreparedRay;
+use bilux_math::DVec3;
+
+/// Nobody owns a pixel yet.
+pub(super) const NOBODY: u32 = u32::MAX;
+
+/// What each pixel holds, and the work so far.
+#[derive(Debug)]
+pub(super) struct Canvas<'a> {
+    pub(super) view: &'a View,
+    pub(super) counts: VisibilityCounts,
+    triangles: &'a [[[f32; 3]; 3]],
+    culling: Culling,
+    rays: Vec<Option<PreparedRay>>,
+    ids: Vec<u32>,
+    t: Vec<f32>,
+    owner: Vec<u32>,
+}
+
+/// A triangle found at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PixelHit {
+    pub(super) pixel: usize,
+    pub(super) triangle: u32,
+    pub(super) t: f32,
+}
+
+impl<'a> Canvas<'a> {
+    pub(super) fn new(view: &'a View, mesh: &'a TriangleMesh, options: &VisibilityOptions) -> Canvas<'a> {
+        let rays = view.prepared_rays();
+        let pixels = rays.len();
+        Canvas {
+            view,
+            counts: VisibilityCounts::default(),
+            triangles: mesh.triangles(),
+            culling: options.culling,
+            rays,
+            ids: vec![BACKGROUND; pixels],
+            t: vec![f32::INFINITY; pixels],
+            owner: vec![NOBODY; pixels],
+        }
+    }
+
+    /// Asks the ray test for a triangle at one pixel.
+    #[inline]
+    pub(super) fn hit(&mut self, pixel: usize, triangle: u32) -> Option<PixelHit> {
+        let ray = self.rays[pixel].as_ref()?;
+        self.counts.triangle_tests += 1;
+        let crossing = ray.cross(&self.triangles[triangle as usize])?;
+        let counts = crossing.t >= ray.ray.t_min && !(crossing.back && self.culling == Culling::Back);
+        counts.then_some(PixelHit { pixel, triangle, t: crossing.t })
+    }
+
+    /// Does something with each pixel of a rectangle.
+    #[inline]
+    pub(super) fn each_pixel(&mut self, rect: Rect, mut act: impl FnMut(&mut Self, usize)) {
+        let width = self.view.width();
+        for y in rect.y.0..rect.y.1 {
+            for x in rect.x.0..rect.x.1 {
+                act(self, y * width + x);
+            }
+        }
+    }
+
+    /// Whoever wrote the pixel last, or [`NOBODY`].
+    #[inline]
+    pub(super) fn owner(&self, pixel: usize) -> u32 {
+        self.owner[pixel]
+    }
+
+    /// Writes a pixel, whatever was there.
+    #[inline]
+    pub(super) fn put(&mut self, hit: PixelHit, owner: u32) {
+        let PixelHit { pixel, triangle, t } = hit;
+        self.counts.overdraw += u64::from(self.owner[pixel] != NOBODY);
+        self.ids[pixel] = triangle;
+        self.t[pixel] = t;
+        self.owner[pixel] = owner;
+    }
+
+    /// Writes a pixel if this hit beats what is there by depth, ties to the lowest triangle.
+    #[inline]
+    pub(super) fn put_if_nearer(&mut self, hit: PixelHit, owner: u32) {
+        self.counts.depth_comparisons += 1;
+        let (t, id) = (self.t[hit.pixel], self.ids[hit.pixel]);
+        if self.owner[hit.pixel] == NOBODY || hit.t < t || (hit.t == t && hit.triangle < id) {
+            self.put(hit, owner);
+        }
+    }
+
+    /// The direction through a pixel centre.
+    #[inline]
+    pub(super) fn direction(&self, pixel: usize) -> DVec3 {
+        self.view.direction(pixel)
+    }
+
+    /// Writes a pixel if its owner is another, or else if this hit is nearer.
+    #[inline]
+    pub(super) fn put_first_or_nearer(&mut self, hit: PixelHit, owner: u32) {
+        if self.owner[hit.pixel] == owner {
+            self.put_if_nearer(hit, owner);
+        } else {
+            self.put(hit, owner);
+        }
+    }
+
+    /// Writes a triangle that is known to be seen in a whole rectangle, without asking the ray test.
+    pub(super) fn fill(&mut self, rect: Rect, triangle: u32) {
+        self.each_pixel(rect, |canvas, pixel| {
+            if canvas.rays[pixel].is_some() {
+                canvas.put(PixelHit { pixel, triangle, t: f32::INFINITY }, triangle);
+            }
+        });
+    }
+
+    pub(super) fn finish(self, build_seconds: f64) -> VisibilityResult {
+        VisibilityResult { ids: self.ids, counts: self.counts, build_seconds }
+    }
+}

@@ -1,0 +1,114 @@
+//! Seeing without rays: what the eye sees at every pixel centre, found by each of the ways that were known
+//! before rays were affordable.
+//!
+//! All of them answer one question, with one signature: which triangle is nearest along the ray through
+//! the centre of each pixel of a [`View`]. Those in [`VISIBILITY`] that are `exact` give the picture of
+//! [`View::cast`], pixel by pixel, whatever touches, crosses, overlaps in a cycle or coincides.
+//!
+//! ```
+//! use bilux_accel::TriangleMesh;
+//! use bilux_accel::visibility::{View, VisibilityOptions, visibility};
+//!
+//! let mesh = TriangleMesh::new(
+//!     vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+//!     vec![[0, 1, 2]],
+//! )?;
+//! let view = View::pinhole([0.0, 0.0, 3.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0, 32, 32)?;
+//! let seen = visibility("newell", &view, &mesh, &VisibilityOptions::default())?;
+//! assert_eq!(seen.ids[16 * 32 + 16], 0);
+//! assert_eq!(seen.ids[0], u32::MAX);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Why an order of pieces can be exact
+//! Coverage and depth are those of the shared ray test on the original triangles. Pieces never cover a
+//! pixel by themselves: a pixel belongs to the piece in whose cell the *hit point* of the original lies.
+//! Along one ray the distance to a plane is a monotone function of `t`, rounding included, so cells are
+//! met in the order of their hits. Planes have the thickness of the ray test's own error; what falls
+//! inside, and only that, is settled by comparing depths. `docs/adr/0005-visibility.md` has the argument.
+
+mod bsp_back_to_front;
+mod bsp_front_to_back;
+mod canvas;
+mod coverage;
+mod newell;
+mod painter;
+mod partition;
+mod polygon;
+mod result;
+mod schumacker;
+mod screen;
+mod view;
+mod warnock;
+mod z_buffer;
+
+pub use result::{BACKGROUND, VisibilityCounts, VisibilityResult, wrong_pixels};
+pub use view::{View, ViewError};
+
+use crate::mesh::TriangleMesh;
+use crate::ray::Culling;
+use bilux_math::registry::Entry;
+
+/// Every algorithm that there is.
+pub const VISIBILITY: &[VisibilityEntry] = &[
+    painter::ENTRY,
+    newell::ENTRY,
+    warnock::ENTRY,
+    z_buffer::ENTRY,
+    bsp_back_to_front::ENTRY,
+    bsp_front_to_back::ENTRY,
+    schumacker::ENTRY,
+];
+
+/// One algorithm.
+#[derive(Clone, Copy, Debug)]
+pub struct VisibilityEntry {
+    /// Name, summary, source and parameters.
+    pub entry: Entry,
+    /// True when its picture is that of [`View::cast`] for any triangles.
+    pub exact: bool,
+    /// Runs it.
+    pub run: VisibilityFn,
+}
+
+/// How an algorithm is run.
+pub type VisibilityFn = fn(&View, &TriangleMesh, &VisibilityOptions) -> VisibilityResult;
+
+/// What is asked of an algorithm. The switches below `culling` change how much work an answer takes, never
+/// the answer; algorithms without such a step do not look at them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct VisibilityOptions {
+    /// Which side of triangles can be seen. Part of the question.
+    pub culling: Culling,
+    /// With [`Culling::Back`], reject back faces by the eye's side of their partition plane (on by default).
+    pub cull_by_partition: bool,
+    /// Leave out subtrees whose projected bound is covered already (on by default).
+    pub skip_covered: bool,
+}
+
+impl Default for VisibilityOptions {
+    fn default() -> VisibilityOptions {
+        VisibilityOptions { culling: Culling::None, cull_by_partition: true, skip_covered: true }
+    }
+}
+
+/// No algorithm has this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no visibility algorithm '{0}'")]
+pub struct UnknownAlgorithm(pub String);
+
+/// Runs the algorithm of this name.
+///
+/// # Errors
+/// When no algorithm has this name.
+pub fn visibility(
+    name: &str,
+    view: &View,
+    mesh: &TriangleMesh,
+    options: &VisibilityOptions,
+) -> Result<VisibilityResult, UnknownAlgorithm> {
+    match VISIBILITY.iter().find(|row| row.entry.name == name) {
+        Some(row) => Ok((row.run)(view, mesh, options)),
+        None => Err(UnknownAlgorithm(name.to_owned())),
+    }
+}

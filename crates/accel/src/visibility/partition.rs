@@ -1,0 +1,383 @@
+//! Trees of planes that put polygons in order, after Fuchs, Kedem and Naylor [Fuchs 1980].
+//!
+//! Each plane is as thick as the ray test is uncertain, so space falls into three: in front of it, on it,
+//! behind it. Polygons go, cut, to wherever they may have hits; a hit belongs to one of the three by the
+//! computed distance of its point, and to none else.
+
+use super::canvas::{Canvas, PixelHit};
+use super::polygon::{Plane, clip, corners};
+use super::result::VisibilityCounts;
+use super::screen::{Screen, Slack};
+use crate::mesh::TriangleMesh;
+use bilux_math::{DVec3, hash};
+
+/// The tree.
+#[derive(Debug, Default)]
+pub(super) struct Tree {
+    pub(super) root: Option<Child>,
+    pub(super) nodes: Vec<Node>,
+    pieces: Vec<Piece>,
+    tests: Vec<Test>,
+}
+
+/// A thick plane with what lies on it.
+#[derive(Debug)]
+pub(super) struct Node {
+    pub(super) plane: Plane,
+    /// Half the thickness: no hit of a polygon in the plane is farther from it.
+    pub(super) half: f64,
+    /// Pieces with hits on the plane; a range of [`Tree::pieces`].
+    on: std::ops::Range<u32>,
+    pub(super) front: Option<Child>,
+    pub(super) back: Option<Child>,
+    /// Least and greatest corner of the box around everything from here on.
+    bounds: [DVec3; 2],
+}
+
+/// What stands below a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Child {
+    /// A plane.
+    Node(u32),
+    /// Something of the tree's maker that needs no more planes.
+    Leaf(u32),
+}
+
+/// Part of a triangle: a hull for its hits in some cell, and the tests that tell whether a hit is there.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) triangle: u32,
+    pub(super) polygon: Vec<DVec3>,
+    tests: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Test {
+    node: u32,
+    region: Region,
+    before: Option<u32>,
+}
+
+/// Where a point is, as a thick plane sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Region {
+    /// Beyond half the thickness, where the normal points.
+    Front,
+    /// Within the thickness.
+    On,
+    /// Beyond half the thickness on the other side.
+    Back,
+}
+
+/// Where one is on a walk through the tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stop {
+    /// About to go below this child; answer false to leave it out.
+    Enter(Child),
+    /// At the pieces on a node's plane.
+    On(u32),
+    /// At a leaf.
+    Leaf(u32),
+}
+
+/// Which end of the order a walk begins at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Start {
+    /// What nothing can hide.
+    Nearest,
+    /// What can hide nothing.
+    Farthest,
+}
+
+/// What a plane makes of a set of pieces.
+#[derive(Debug, Default)]
+pub(super) struct Sides {
+    pub(super) front: Vec<Piece>,
+    pub(super) back: Vec<Piece>,
+}
+
+impl Node {
+    #[inline]
+    pub(super) fn region(&self, distance: f64) -> Region {
+        // Neither comparison holds for a distance that is no number: everything is on such a plane.
+        if distance > self.half {
+            Region::Front
+        } else if distance < -self.half {
+            Region::Back
+        } else {
+            Region::On
+        }
+    }
+}
+
+/// All finite triangles of a mesh, whole.
+pub(super) fn whole_pieces(mesh: &TriangleMesh) -> Vec<Piece> {
+    let triangles = mesh.triangles().iter().enumerate();
+    triangles
+        .filter_map(|(index, triangle)| {
+            Some(Piece { triangle: index as u32, polygon: corners(triangle)?.to_vec(), tests: None })
+        })
+        .collect()
+}
+
+impl Tree {
+    /// A tree of the polygons' own planes; of a few candidates, the one that cuts fewest [Fuchs 1983].
+    pub(super) fn of_own_planes(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Tree {
+        let mut tree = Tree::default();
+        let mut waiting = vec![(Place::Root, whole_pieces(mesh))];
+        while let Some((place, pieces)) = waiting.pop() {
+            if pieces.is_empty() {
+                continue;
+            }
+            let candidates = candidates(pieces.len(), tree.nodes.len());
+            let (plane, thickness) = fewest_splits(&pieces, &candidates, mesh, slack);
+            let node = tree.add(place, plane, thickness, slack);
+            let sides = tree.deal(pieces, slack, counts);
+            waiting.push((Place::Front(node), sides.front));
+            waiting.push((Place::Back(node), sides.back));
+        }
+        tree.bound();
+        counts.pieces += tree.pieces.len() as u64;
+        tree
+    }
+
+    /// Hangs a child where it belongs.
+    pub(super) fn attach(&mut self, place: Place, child: Child) {
+        match place {
+            Place::Root => self.root = Some(child),
+            Place::Front(node) => self.nodes[node as usize].front = Some(child),
+            Place::Back(node) => self.nodes[node as usize].back = Some(child),
+        }
+    }
+
+    /// Adds a node with nothing on it. `thickness` is how far the polygons that the plane was made from
+    /// stray from it.
+    pub(super) fn add(&mut self, place: Place, plane: Plane, thickness: f64, slack: &Slack) -> u32 {
+        let index = self.nodes.len() as u32;
+        self.attach(place, Child::Node(index));
+        let on = self.pieces.len() as u32..self.pieces.len() as u32;
+        let (half, bounds) = (thickness + 2.0 * slack.radius, [DVec3::INFINITY, DVec3::NEG_INFINITY]);
+        self.nodes.push(Node { plane, half, on, front: None, back: None, bounds });
+        index
+    }
+
+    /// Deals pieces out to the three regions of the last node.
+    pub(super) fn deal(&mut self, pieces: Vec<Piece>, slack: &Slack, counts: &mut VisibilityCounts) -> Sides {
+        let index = self.nodes.len() as u32 - 1;
+        let Node { plane, half, .. } = self.nodes[index as usize];
+        // A hit is at most a radius away from its polygon.
+        let (inner, outer) = (half - slack.radius, half + slack.radius);
+        let mut sides = Sides::default();
+        for piece in pieces {
+            let range = plane.range(&piece.polygon);
+            counts.splits += u64::from(range.0 < -half && range.1 > half);
+            let mut part = |region, polygon| Piece {
+                triangle: piece.triangle,
+                polygon,
+                tests: self.test_if_needed(&piece, index, region, range, (half, slack.radius)),
+            };
+            if range.1 > inner {
+                sides.front.push(part(Region::Front, clip(&piece.polygon, &plane, inner)));
+            }
+            if range.0 < -inner {
+                sides.back.push(part(Region::Back, clip(&piece.polygon, &plane.flipped(), inner)));
+            }
+            if !(range.0 > outer || range.1 < -outer) {
+                let above = clip(&piece.polygon, &plane, -outer);
+                let within = part(Region::On, clip(&above, &plane.flipped(), -outer));
+                self.pieces.push(within);
+            }
+        }
+        self.nodes[index as usize].on.end = self.pieces.len() as u32;
+        sides
+    }
+
+    /// The chain of tests for a part of `piece`: one more than the piece's own, unless the whole piece is so
+    /// clear of the other regions that its hits are too.
+    fn test_if_needed(
+        &mut self,
+        piece: &Piece,
+        node: u32,
+        region: Region,
+        (low, high): (f64, f64),
+        (half, radius): (f64, f64),
+    ) -> Option<u32> {
+        let clear = match region {
+            Region::Front => low > half + radius,
+            Region::On => low >= radius - half && high <= half - radius,
+            Region::Back => high < -half - radius,
+        };
+        if clear {
+            return piece.tests;
+        }
+        self.tests.push(Test { node, region, before: piece.tests });
+        Some(self.tests.len() as u32 - 1)
+    }
+
+    /// Computes every node's bound, from below.
+    fn bound(&mut self) {
+        for index in (0..self.nodes.len()).rev() {
+            let node = &self.nodes[index];
+            let points = self.pieces_on(index as u32).iter().flat_map(|piece| &piece.polygon);
+            let own = points.fold(node.bounds, |[low, high], &p| [low.min(p), high.max(p)]);
+            let below = [node.front, node.back].into_iter().flatten();
+            let bounds = below.fold(own, |[low, high], child| match child {
+                Child::Node(below) => {
+                    let [least, most] = self.nodes[below as usize].bounds;
+                    [low.min(least), high.max(most)]
+                }
+                Child::Leaf(_) => [low, high],
+            });
+            self.nodes[index].bounds = bounds;
+        }
+    }
+
+    /// The corners of the box around everything below a child; `None` for leaves.
+    pub(super) fn hull(&self, child: Child) -> Option<[DVec3; 8]> {
+        let Child::Node(node) = child else { return None };
+        let bounds = self.nodes[node as usize].bounds;
+        let pick = |i: usize, bit: usize| bounds[i >> bit & 1];
+        Some(std::array::from_fn(|i| DVec3::new(pick(i, 0).x, pick(i, 1).y, pick(i, 2).z)))
+    }
+
+    /// How many pieces lie on all planes.
+    pub(super) fn pieces_on_planes(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// The pieces on a node's plane.
+    pub(super) fn pieces_on(&self, node: u32) -> &[Piece] {
+        let on = &self.nodes[node as usize].on;
+        &self.pieces[on.start as usize..on.end as usize]
+    }
+
+    /// True when a hit is in the piece's own cell. Along a ray the distance from each plane is monotone in
+    /// `t`, as computed, so that every hit is in exactly one cell, and nearer hits are in nearer cells.
+    #[inline]
+    pub(super) fn owns(&self, piece: &Piece, hit: &PixelHit, canvas: &mut Canvas, eye: DVec3) -> bool {
+        let mut next = piece.tests;
+        if next.is_none() {
+            return true;
+        }
+        let (direction, t) = (canvas.direction(hit.pixel), f64::from(hit.t));
+        while let Some(test) = next {
+            let Test { node, region, before } = self.tests[test as usize];
+            let node = &self.nodes[node as usize];
+            canvas.counts.side_tests += 1;
+            if node.region(node.plane.side(eye) + t * node.plane.normal.dot(direction)) != region {
+                return false;
+            }
+            next = before;
+        }
+        true
+    }
+
+    /// Goes through the tree in the order that the eye gives it.
+    pub(super) fn walk(&self, eye: DVec3, start: Start, mut visit: impl FnMut(Stop) -> bool) {
+        let mut waiting: Vec<Stop> = self.root.map(Stop::Enter).into_iter().collect();
+        while let Some(stop) = waiting.pop() {
+            if !visit(stop) {
+                continue;
+            }
+            match stop {
+                Stop::Enter(Child::Node(index)) => {
+                    let node = &self.nodes[index as usize];
+                    let (front, on, back) =
+                        (node.front.map(Stop::Enter), Some(Stop::On(index)), node.back.map(Stop::Enter));
+                    let mut order = match node.region(node.plane.side(eye)) {
+                        Region::Front => [front, on, back],
+                        Region::Back => [back, on, front],
+                        // From within the plane, each ray leaves it to one side at most.
+                        Region::On => [on, front, back],
+                    };
+                    // What is pushed last comes first.
+                    if start == Start::Nearest {
+                        order.reverse();
+                    }
+                    waiting.extend(order.into_iter().flatten());
+                }
+                Stop::Enter(Child::Leaf(leaf)) => waiting.push(Stop::Leaf(leaf)),
+                Stop::On(_) | Stop::Leaf(_) => {}
+            }
+        }
+    }
+}
+
+/// Where a subtree hangs.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place {
+    /// Nowhere: it is the tree.
+    Root,
+    /// In front of a node.
+    Front(u32),
+    /// Behind a node.
+    Back(u32),
+}
+
+/// Candidates that a plane is chosen from, and polygons that it is judged by.
+const CANDIDATES: usize = 5;
+const JUDGES: usize = 64;
+/// What one cut polygon weighs against one polygon of imbalance among the judges.
+const SPLIT_WEIGHT: usize = 4;
+
+/// A few of so many pieces, by a hash so that no order of the triangles is the worst one.
+pub(super) fn candidates(pieces: usize, salt: usize) -> Vec<usize> {
+    (0..CANDIDATES.min(pieces))
+        .map(|k| (hash::mix64((salt * CANDIDATES + k) as u64) % pieces as u64) as usize)
+        .collect()
+}
+
+/// Of the planes of some candidates, the one that cuts fewest pieces and balances the rest, with how far its own
+/// triangle strays from it.
+pub(super) fn fewest_splits(
+    pieces: &[Piece],
+    candidates: &[usize],
+    mesh: &TriangleMesh,
+    slack: &Slack,
+) -> (Plane, f64) {
+    let stride = pieces.len().div_ceil(JUDGES).max(1);
+    let plane_of = |&candidate: &usize| {
+        let triangle = &mesh.triangles()[pieces[candidate].triangle as usize];
+        let corners = corners(triangle).unwrap_or([DVec3::ZERO; 3]);
+        let plane = Plane::of_triangle(&corners);
+        let (low, high) = plane.range(&corners);
+        (plane, high.max(-low))
+    };
+    let cost = |(plane, thickness): &(Plane, f64)| {
+        let half = thickness + 2.0 * slack.radius;
+        let (mut cut, mut front, mut back) = (0, 0usize, 0usize);
+        for judge in pieces.iter().step_by(stride) {
+            let (low, high) = plane.range(&judge.polygon);
+            match (low < -half, high > half) {
+                (true, true) => cut += 1,
+                (false, true) => front += 1,
+                (true, false) => back += 1,
+                (false, false) => {}
+            }
+        }
+        SPLIT_WEIGHT * cut + front.abs_diff(back)
+    };
+    let best = candidates.iter().map(plane_of).min_by_key(cost);
+    best.unwrap_or_else(|| (Plane::through(DVec3::ZERO, DVec3::X), 0.0))
+}
+
+/// Draws a piece's hits in its cell, wherever `wants` the pixel.
+#[inline]
+pub(super) fn draw_piece(
+    tree: &Tree,
+    piece: &Piece,
+    screen: &Screen,
+    canvas: &mut Canvas,
+    wants: impl Fn(&Canvas, usize) -> bool,
+    mut write: impl FnMut(&mut Canvas, PixelHit),
+) {
+    canvas.each_pixel(screen.rect(&piece.polygon), |canvas, pixel| {
+        if !wants(canvas, pixel) {
+            return;
+        }
+        let Some(hit) = canvas.hit(pixel, piece.triangle) else { return };
+        if tree.owns(piece, &hit, canvas, screen.eye) {
+            write(canvas, hit);
+        }
+    });
+}

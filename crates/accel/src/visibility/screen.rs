@@ -1,0 +1,226 @@
+//! Where polygons lie on the screen, never too small.
+
+use super::polygon::{Plane, clip, corners};
+use super::view::View;
+use crate::mesh::TriangleMesh;
+use crate::ray::Ray;
+use crate::triangle::PreparedRay;
+use bilux_math::DVec3;
+
+/// How far the ray test may be from the triangles that it is given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slack {
+    /// Every hit, and every vertex as the test sees it, lies within a ball of this radius around a point of
+    /// the triangle: the lemma of [`crate::triangle`] on every axis, hence √3 of its bound and less than two.
+    pub(super) radius: f64,
+    /// No vertex is farther from the eye.
+    pub(super) reach: f64,
+}
+
+/// A view, for triangles of a mesh.
+#[derive(Debug)]
+pub(super) struct Screen<'a> {
+    pub(super) view: &'a View,
+    pub(super) eye: DVec3,
+    pub(super) slack: Slack,
+    /// What is in front of the eye and within the rectangle of pixel centres.
+    frustum: [Plane; 5],
+}
+
+/// Pixels from a first column and row to, without them, an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Rect {
+    pub(super) x: (usize, usize),
+    pub(super) y: (usize, usize),
+}
+
+impl Rect {
+    pub(super) const EMPTY: Rect = Rect { x: (0, 0), y: (0, 0) };
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.x.0 >= self.x.1 || self.y.0 >= self.y.1
+    }
+
+    pub(super) fn is_pixel(&self) -> bool {
+        self.x.1 - self.x.0 == 1 && self.y.1 - self.y.0 == 1
+    }
+
+    pub(super) fn intersection(&self, other: &Rect) -> Rect {
+        let common = |a: (usize, usize), b: (usize, usize)| (a.0.max(b.0), a.1.min(b.1));
+        Rect { x: common(self.x, other.x), y: common(self.y, other.y) }
+    }
+
+    /// Its four parts, two where it is one pixel wide or high.
+    pub(super) fn quarters(&self) -> impl Iterator<Item = Rect> {
+        let halves = |(first, end): (usize, usize)| {
+            let middle = first + (end - first) / 2;
+            [(first, middle), (middle, end)]
+        };
+        let (columns, rows) = (halves(self.x), halves(self.y));
+        let parts = rows.into_iter().flat_map(move |y| columns.map(|x| Rect { x, y }));
+        parts.filter(|part| !part.is_empty())
+    }
+
+    pub(super) fn overlaps(&self, other: &Rect) -> bool {
+        self.x.0 < other.x.1 && other.x.0 < self.x.1 && self.y.0 < other.y.1 && other.y.0 < self.y.1
+    }
+}
+
+/// A polygon on the screen.
+#[derive(Clone, Debug)]
+pub(super) struct Footprint {
+    /// The pixels whose rays may hit it.
+    pub(super) rect: Rect,
+    /// Least and greatest depth along the view's axis, of the part that can be seen.
+    pub(super) depth: (f64, f64),
+    /// Its corners on the screen one unit in front of the eye; `None` when it comes too near to the eye.
+    pub(super) outline: Option<Outline>,
+}
+
+/// Corners on the screen; every hit is within `blur` of their hull.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    corners: Vec<[f64; 2]>,
+    blur: f64,
+}
+
+impl<'a> Screen<'a> {
+    pub(super) fn new(view: &'a View, mesh: &TriangleMesh) -> Screen<'a> {
+        let toward = Ray::new(view.eye(), [0.0, 0.0, 1.0]);
+        let pad = PreparedRay::new(&toward).map_or(f32::INFINITY, |ray| ray.pad(&mesh.bounds()));
+        let eye = view.eye_point();
+        let reach = mesh.triangles().iter().filter_map(corners).flatten();
+        let reach = reach.map(|corner| corner.distance_squared(eye)).fold(0.0, f64::max).sqrt();
+        let [right, down, forward] = view.axes;
+        let ((left, far_right), (top, bottom)) = (view.columns.whole(), view.rows.whole());
+        let normals = [
+            right - forward * left,
+            forward * far_right - right,
+            down - forward * top,
+            forward * bottom - down,
+            forward,
+        ];
+        let frustum = normals.map(|n| Plane::through(eye, n.try_normalize().unwrap_or(forward)));
+        Screen { view, eye, slack: Slack { radius: 2.0 * f64::from(pad), reach }, frustum }
+    }
+
+    /// The pixels whose rays may hit a convex polygon; empty when it cannot be seen.
+    pub(super) fn rect(&self, polygon: &[DVec3]) -> Rect {
+        match self.visible(polygon) {
+            Some(part) => self.rect_of_visible(&part),
+            None => Rect::EMPTY,
+        }
+    }
+
+    /// The pixels whose rays may hit anything within the hull of some points.
+    pub(super) fn rect_of_hull(&self, points: &[DVec3]) -> Rect {
+        if self.frustum.iter().any(|plane| plane.range(points).1 < -self.slack.radius) {
+            return Rect::EMPTY;
+        }
+        self.rect_of_visible(points)
+    }
+
+    /// All about a convex polygon on the screen; `None` when it cannot be seen.
+    pub(super) fn footprint(&self, polygon: &[DVec3]) -> Option<Footprint> {
+        let part = self.visible(polygon)?;
+        let rect = self.rect_of_visible(&part);
+        if rect.is_empty() {
+            return None;
+        }
+        let depth = self.depth(&part);
+        Some(Footprint { rect, depth, outline: self.outline(&part, depth.0) })
+    }
+
+    /// The pixels of the whole view.
+    pub(super) fn whole(&self) -> Rect {
+        Rect { x: (0, self.view.width()), y: (0, self.view.height()) }
+    }
+
+    /// The part of a polygon that rays of the view may hit.
+    pub(super) fn visible<'p>(&self, polygon: &'p [DVec3]) -> Option<std::borrow::Cow<'p, [DVec3]>> {
+        let mut part = std::borrow::Cow::Borrowed(polygon);
+        for plane in &self.frustum {
+            let (low, high) = plane.range(&part);
+            if high < -self.slack.radius {
+                return None;
+            }
+            if low < -self.slack.radius {
+                part = clip(&part, plane, -self.slack.radius).into();
+            }
+        }
+        (!part.is_empty()).then_some(part)
+    }
+
+    /// Least and greatest depth along the view's axis.
+    pub(super) fn depth(&self, polygon: &[DVec3]) -> (f64, f64) {
+        self.frustum[4].range(polygon)
+    }
+
+    /// Bounds of what balls around the corners cover. The hull of the balls holds every hit, and
+    /// projection keeps hulls, so long as no ball reaches the eye's plane.
+    fn rect_of_visible(&self, part: &[DVec3]) -> Rect {
+        let radius = self.slack.radius;
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for &corner in part {
+            let [x, y, z] = self.to_camera(corner);
+            if !(z > 2.0 * radius) {
+                return self.whole();
+            }
+            let (near, far) = ((z - radius).recip(), (z + radius).recip());
+            for (axis, position) in [x, y].into_iter().enumerate() {
+                let (least, most) = (position - radius, position + radius);
+                low[axis] = low[axis].min(least * if least < 0.0 { near } else { far });
+                high[axis] = high[axis].max(most * if most > 0.0 { near } else { far });
+            }
+        }
+        let (columns, rows) = (&self.view.columns, &self.view.rows);
+        Rect { x: columns.between(low[0], high[0]), y: rows.between(low[1], high[1]) }
+    }
+
+    fn outline(&self, part: &[DVec3], nearest: f64) -> Option<Outline> {
+        let radius = self.slack.radius;
+        if !(nearest > 2.0 * radius) {
+            return None;
+        }
+        let corners: Vec<[f64; 2]> = part
+            .iter()
+            .map(|&corner| {
+                let [x, y, z] = self.to_camera(corner);
+                [x / z, y / z]
+            })
+            .collect();
+        // A ball of radius r at depth z and slope s projects within r (1 + |s|) / (z − r) of its centre.
+        let steepest = corners.iter().map(|[x, y]| x.abs() + y.abs()).fold(0.0, f64::max);
+        Some(Outline { corners, blur: 2.0 * radius * (1.0 + steepest) / (nearest - radius) })
+    }
+
+    fn to_camera(&self, point: DVec3) -> [f64; 3] {
+        self.view.axes.map(|axis| axis.dot(point - self.eye))
+    }
+}
+
+impl Outline {
+    /// True when no ray can hit both: some edge of one has all of the other beyond it.
+    pub(super) fn is_apart_from(&self, other: &Outline) -> bool {
+        self.has_edge_against(other) || other.has_edge_against(self)
+    }
+
+    fn has_edge_against(&self, other: &Outline) -> bool {
+        let Some(&last) = self.corners.last() else { return false };
+        let mut from = last;
+        self.corners.iter().any(|&to| {
+            let (nx, ny) = (from[1] - to[1], to[0] - from[0]);
+            from = to;
+            let along = |[x, y]: [f64; 2]| nx * x + ny * y;
+            let extent = |corners: &[[f64; 2]]| {
+                corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &corner| {
+                    (low.min(along(corner)), high.max(along(corner)))
+                })
+            };
+            let ((low, high), (other_low, other_high)) = (extent(&self.corners), extent(&other.corners));
+            let blur = (self.blur + other.blur) * (nx.abs() + ny.abs());
+            other_low - high > blur || low - other_high > blur
+        })
+    }
+}

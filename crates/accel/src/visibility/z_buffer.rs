@@ -1,0 +1,36 @@
+//! A depth for every pixel, and a comparison for every hit.
+
+use super::canvas::Canvas;
+use super::polygon::corners;
+use super::screen::Screen;
+use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
+use crate::mesh::TriangleMesh;
+use bilux_math::registry::Entry;
+
+/// Row of [`super::VISIBILITY`].
+pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
+    entry: Entry {
+        name: "z-buffer",
+        summary: "triangles in the order given, one depth comparison for each pixel of each",
+        source: "Catmull 1974",
+        parameters: &[],
+    },
+    exact: true,
+    run,
+};
+
+fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> VisibilityResult {
+    let screen = Screen::new(view, mesh);
+    let mut canvas = Canvas::new(view, mesh, options);
+    for (index, triangle) in mesh.triangles().iter().enumerate() {
+        let Some(polygon) = corners(triangle) else { continue };
+        let index = index as u32;
+        canvas.counts.pieces += 1;
+        canvas.each_pixel(screen.rect(&polygon), |canvas, pixel| {
+            if let Some(hit) = canvas.hit(pixel, index) {
+                canvas.put_if_nearer(hit, index);
+            }
+        });
+    }
+    canvas.finish(0.0)
+}
