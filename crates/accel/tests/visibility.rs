@@ -123,6 +123,81 @@ fn random_triangles() {
     }
 }
 
+/// Corners on a grid, so that edges run through pixel centres, surfaces fold onto themselves and planes through the
+/// eye; sizes and places of every kind.
+fn nasty(seed: u64) -> (Option<View>, Vec<Triangle>) {
+    let mut numbers = Numbers(seed << 20);
+    let mut pick = |choices: &[f32]| {
+        let index = (numbers.next() + 1.0) * 0.5 * choices.len() as f32;
+        (choices[index as usize], numbers.point(1.0), numbers.point(1.0))
+    };
+    let grid = pick(&[1e9, 4.0, 8.0, 16.0]).0;
+    let snap = |x: f32| (x * grid).round() / grid;
+    let size = pick(&[0.1, 0.4, 1.5]).0;
+    let mut triangles: Vec<Triangle> = if pick(&[0.0, 1.0]).0 == 0.0 {
+        let count = pick(&[5.0, 30.0, 80.0]).0 as usize;
+        soup(count, size, seed).into_iter().map(|t| t.map(|p| p.map(snap))).collect()
+    } else {
+        let heights: Vec<[f32; 3]> = (0..49).map(|_| pick(&[0.0]).1).collect();
+        let point = |i: usize, j: usize| {
+            let [x, y, z] = heights[i * 7 + j];
+            [snap(i as f32 / 3.0 - 1.0 + 0.3 * x), snap(j as f32 / 3.0 - 1.0 + 0.3 * y), snap(0.5 * size * z)]
+        };
+        let cells = (0..36).map(|k| (k / 6, k % 6));
+        cells
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect()
+    };
+    if pick(&[0.0, 1.0]).0 == 0.0 {
+        let turned: Vec<Triangle> = triangles.iter().step_by(5).map(|t| [t[1], t[0], t[2]]).collect();
+        triangles.extend(turned);
+    }
+    let (choice, near, far) = pick(&[0.0, 1.0, 2.0, 3.0]);
+    let [a, b, c] = triangles[0];
+    let eye = match choice as u32 {
+        0 => [0.0, 0.0, 4.0],
+        1 => near.map(snap),
+        2 => [4.0 * near[0], 4.0 * near[1], 4.0],
+        _ => std::array::from_fn(|k| a[k] + 3.0 * near[0] * (b[k] - a[k]) + 3.0 * near[1] * (c[k] - a[k])),
+    };
+    let target = if choice == 0.0 { [0.0; 3] } else { far.map(snap) };
+    let (scale, shift) = (pick(&[1.0, 1.0, 1e-4, 1e6]).0, pick(&[0.0, 0.0, 100.0]).0);
+    let fov = pick(&[90.0, 28.072_487, 53.130_1]).0;
+    let place = |p: [f32; 3]| p.map(|c| (c + shift) * scale);
+    let view = View::pinhole(place(eye), place(target), [0.0, 1.0, 0.0], fov, 32, 32);
+    (view.ok(), triangles.into_iter().map(|t| t.map(place)).collect())
+}
+
+#[test]
+fn nasty_scenes() {
+    let mut seen = 0;
+    for seed in 0..400 {
+        if let (Some(view), triangles) = nasty(seed) {
+            let culling = if seed % 2 == 0 { Culling::None } else { Culling::Back };
+            let middle = triangles.len() as u32 / 2;
+            let end = triangles.len() as u32;
+            let grouped = mesh(triangles).with_groups(vec![0..middle, middle..end]).unwrap();
+            let options = VisibilityOptions { culling, ..VisibilityOptions::default() };
+            seen += check_with(&format!("nasty {seed}"), &view, &grouped, &options);
+        }
+    }
+    assert!(seen > 50_000, "the scenes must be seen: {seen}");
+}
+
+/// Long runs of the above: `cargo test --release -p bilux-accel --test visibility -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn nasty_scenes_at_length() {
+    for seed in 400..20_000 {
+        if let (Some(view), triangles) = nasty(seed) {
+            check(&format!("nasty {seed}"), &view, triangles);
+        }
+    }
+}
+
 #[test]
 fn crossing_triangles() {
     let fan = |k: usize| {
@@ -273,6 +348,25 @@ fn order_spares_depth_comparisons() {
     let culled = VisibilityOptions { culling: Culling::Back, ..VisibilityOptions::default() };
     let culled = visibility("bsp-front-to-back", &view, &mesh, &culled).unwrap().counts;
     assert!(culled.culled_back_faces > 0 && culled.triangle_tests < seen.triangle_tests);
+}
+
+#[test]
+fn too_many_pieces_are_left_to_depth() {
+    // Each of these crosses most of the others, each of those touches all others' planes.
+    let crossing = mesh(soup(700, 1.5, 6));
+    let rim = |k: usize| {
+        let a = k as f32 / 4000.0 * TAU;
+        [transcendental::cos(a), transcendental::sin(a), 0.3 * transcendental::sin(7.0 * a)]
+    };
+    let fan = mesh((0..4000).map(|k| [[0.0, 0.0, 0.5], rim(k), rim(k + 1)]).collect());
+    let view = view_from([0.3, 0.4, 4.0], 24);
+    for mesh in [crossing, fan] {
+        check_with("too many pieces", &view, &mesh, &VisibilityOptions::default());
+        for row in VISIBILITY {
+            let pieces = (row.run)(&view, &mesh, &VisibilityOptions::default()).counts.pieces;
+            assert!(pieces < 700_000, "{}: {pieces}", row.entry.name);
+        }
+    }
 }
 
 #[test]

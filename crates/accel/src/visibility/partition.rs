@@ -12,13 +12,25 @@ use crate::mesh::TriangleMesh;
 use bilux_math::{DVec3, hash};
 
 /// The tree.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Tree {
     pub(super) root: Option<Child>,
     pub(super) nodes: Vec<Node>,
     pieces: Vec<Piece>,
     tests: Vec<Test>,
+    /// Triangles that it was made for.
+    triangles: usize,
+    splits: usize,
+    dealt: usize,
 }
+
+/// How much work a triangle may take (and a small scene altogether) before planes get a thickness without
+/// end, so that depth orders the rest: pieces, tests on their outlines, and pieces dealt out. All grow
+/// with the square of the triangles where all cross each other, share a corner, or form a ball.
+const MOST_PIECES: usize = 16;
+const MOST_TESTS: usize = 128;
+const MOST_DEALT: usize = 1 << 14;
+const ALWAYS: usize = 1 << 19;
 
 /// A thick plane with what lies on it.
 #[derive(Debug)]
@@ -121,9 +133,21 @@ pub(super) fn whole_pieces(mesh: &TriangleMesh) -> Vec<Piece> {
 }
 
 impl Tree {
+    /// Nothing yet.
+    pub(super) fn new(mesh: &TriangleMesh) -> Tree {
+        let (nodes, pieces, tests) = (Vec::new(), Vec::new(), Vec::new());
+        Tree { root: None, nodes, pieces, tests, triangles: mesh.len(), splits: 0, dealt: 0 }
+    }
+
+    fn is_spent(&self) -> bool {
+        self.pieces.len() + self.splits > MOST_PIECES * self.triangles + ALWAYS
+            || self.tests.len() > MOST_TESTS * self.triangles + ALWAYS
+            || self.dealt > MOST_DEALT * self.triangles + ALWAYS
+    }
+
     /// A tree of the polygons' own planes; of a few candidates, the one that cuts fewest [Fuchs 1983].
     pub(super) fn of_own_planes(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Tree {
-        let mut tree = Tree::default();
+        let mut tree = Tree::new(mesh);
         let mut waiting = vec![(Place::Root, whole_pieces(mesh))];
         while let Some((place, pieces)) = waiting.pop() {
             if pieces.is_empty() {
@@ -156,6 +180,7 @@ impl Tree {
         let index = self.nodes.len() as u32;
         self.attach(place, Child::Node(index));
         let on = self.pieces.len() as u32..self.pieces.len() as u32;
+        let thickness = if self.is_spent() { f64::INFINITY } else { thickness };
         let (half, bounds) = (thickness + 2.0 * slack.radius, [DVec3::INFINITY, DVec3::NEG_INFINITY]);
         self.nodes.push(Node { plane, half, on, front: None, back: None, bounds });
         index
@@ -168,9 +193,20 @@ impl Tree {
         // A hit is at most a radius away from its polygon.
         let (inner, outer) = (half - slack.radius, half + slack.radius);
         let mut sides = Sides::default();
+        self.dealt += pieces.len();
         for piece in pieces {
             let range = plane.range(&piece.polygon);
-            counts.splits += u64::from(range.0 < -half && range.1 > half);
+            if range.0 > outer {
+                sides.front.push(piece);
+                continue;
+            }
+            if range.1 < -outer {
+                sides.back.push(piece);
+                continue;
+            }
+            let is_cut = range.0 < -half && range.1 > half;
+            self.splits += usize::from(is_cut);
+            counts.splits += u64::from(is_cut);
             let mut part = |region, polygon| Piece {
                 triangle: piece.triangle,
                 polygon,
@@ -182,11 +218,9 @@ impl Tree {
             if range.0 < -inner {
                 sides.back.push(part(Region::Back, clip(&piece.polygon, &plane.flipped(), inner)));
             }
-            if !(range.0 > outer || range.1 < -outer) {
-                let above = clip(&piece.polygon, &plane, -outer);
-                let within = part(Region::On, clip(&above, &plane.flipped(), -outer));
-                self.pieces.push(within);
-            }
+            let above = clip(&piece.polygon, &plane, -outer);
+            let within = part(Region::On, clip(&above, &plane.flipped(), -outer));
+            self.pieces.push(within);
         }
         self.nodes[index as usize].on.end = self.pieces.len() as u32;
         sides

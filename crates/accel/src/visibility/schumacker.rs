@@ -83,7 +83,7 @@ struct Face {
 
 impl Clusters {
     fn new(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Clusters {
-        let mut scene = Clusters { tree: Tree::default(), clusters: Vec::new() };
+        let mut scene = Clusters { tree: Tree::new(mesh), clusters: Vec::new() };
         let mut waiting = vec![(Place::Root, by_group(mesh))];
         while let Some((place, mut sets)) = waiting.pop() {
             sets.retain(|set| !set.is_empty());
