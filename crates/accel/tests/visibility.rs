@@ -364,6 +364,7 @@ fn too_many_pieces_are_left_to_depth() {
 }
 
 #[test]
+#[allow(clippy::print_stderr)]
 fn the_teapot() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes/asc/teapot_lf.asc");
     let Ok(text) = std::fs::read_to_string(path) else {

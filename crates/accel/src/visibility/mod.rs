@@ -38,6 +38,7 @@ mod polygon;
 mod result;
 mod schumacker;
 mod screen;
+mod splitter;
 mod view;
 mod warnock;
 mod z_buffer;

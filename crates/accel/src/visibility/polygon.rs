@@ -59,10 +59,11 @@ pub(super) fn clip(polygon: &[DVec3], plane: &Plane, least: f64) -> Vec<DVec3> {
     let (mut from, mut from_side) = (last, plane.side(last) - least);
     for &to in polygon {
         let to_side = plane.side(to) - least;
-        if (from_side < 0.0) != (to_side < 0.0) {
+        let (was_behind, is_behind) = (from_side < 0.0, to_side < 0.0);
+        if was_behind != is_behind {
             kept.push(from + (to - from) * (from_side / (from_side - to_side)));
         }
-        if !(to_side < 0.0) {
+        if !is_behind {
             kept.push(to);
         }
         (from, from_side) = (to, to_side);

@@ -6,12 +6,11 @@
 //! plane of a face in the cycle, which also cuts what crosses.
 
 use super::canvas::{Canvas, NOBODY};
-use super::partition::{
-    Child, Piece, Place, Start, Stop, Tree, candidates, draw_piece, fewest_splits, whole_pieces,
-};
+use super::partition::{Child, Piece, Place, Start, Stop, Tree, draw_piece, whole_pieces};
 use super::polygon::{Plane, corners};
 use super::result::VisibilityCounts;
 use super::screen::{Screen, Slack};
+use super::splitter::{candidates, fewest_splits};
 use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
 use crate::mesh::TriangleMesh;
 use bilux_math::{DVec3, registry::Entry};

@@ -164,7 +164,8 @@ impl<'a> Screen<'a> {
         let mut high = [f64::NEG_INFINITY; 2];
         for &corner in part {
             let [x, y, z] = self.to_camera(corner);
-            if !(z > 2.0 * radius) {
+            let is_ahead = z > 2.0 * radius;
+            if !is_ahead {
                 return self.whole();
             }
             let (near, far) = ((z - radius).recip(), (z + radius).recip());
@@ -180,7 +181,8 @@ impl<'a> Screen<'a> {
 
     fn outline(&self, part: &[DVec3], nearest: f64) -> Option<Outline> {
         let radius = self.slack.radius;
-        if !(nearest > 2.0 * radius) {
+        let is_ahead = nearest > 2.0 * radius;
+        if !is_ahead {
             return None;
         }
         let corners: Vec<[f64; 2]> = part

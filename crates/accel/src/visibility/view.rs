@@ -88,7 +88,8 @@ impl View {
         let mut deepest = 0f64;
         for (pixel, direction) in usable(&directions) {
             let z = direction.dot(forward);
-            if !(z > direction.length() * LEAST_COSINE) {
+            let is_ahead = z > direction.length() * LEAST_COSINE;
+            if !is_ahead {
                 return Err(ViewError::TooWide);
             }
             deepest = deepest.max(z);
@@ -227,7 +228,7 @@ impl Lanes {
     /// The lanes that may have a pixel centre between two positions; all that may, when they are no numbers.
     pub(super) fn between(&self, low: f64, high: f64) -> (usize, usize) {
         let first = self.high.partition_point(|&h| h < low);
-        let end = self.low.partition_point(|&l| !(l > high));
+        let end = self.low.partition_point(|&l| l <= high || high.is_nan());
         (first, end.max(first))
     }
 

@@ -126,13 +126,13 @@ fn edges(local: &[DVec3; 3], volume: f64, screen: &Screen) -> Option<[Edge; 3]> 
     let normals = [(b, c), (c, a), (a, b)];
     let faces: f64 = normals.iter().map(|(p, q)| p.cross(*q).length()).sum();
     let volume_doubt = radius * (faces + radius * (a.length() + b.length() + c.length() + radius));
-    if !(volume.abs() > volume_doubt) {
+    let is_sure = volume.abs() > volume_doubt;
+    if !is_sure {
         return None;
     }
     let [right, down, forward] = screen.view.axes;
     let ((left, far_right), (top, bottom)) = (screen.view.columns.whole(), screen.view.rows.whole());
-    let longest =
-        (1.0 + left.abs().max(far_right.abs()).powi(2) + top.abs().max(bottom.abs()).powi(2)).sqrt();
+    let longest = DVec3::new(1.0, left.abs().max(far_right.abs()), top.abs().max(bottom.abs())).length();
     Some(normals.map(|(p, q)| {
         let normal = p.cross(q) * volume.signum();
         Edge {
@@ -218,7 +218,8 @@ impl Window {
         let candidate = &candidates[nearest as usize];
         let eye = candidate.plane.side(screen.eye);
         // From within the thickness of a plane nothing is surely behind it.
-        if !(eye.abs() > candidate.half) {
+        let is_sided = eye.abs() > candidate.half;
+        if !is_sided {
             return;
         }
         let plane = if eye > 0.0 { candidate.plane } else { candidate.plane.flipped() };
