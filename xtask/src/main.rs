@@ -2,6 +2,9 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
 
+mod cpu_levels;
+mod dist;
+mod docs;
 mod licences;
 mod process;
 mod test;
@@ -22,6 +25,13 @@ const CHORES: &[Chore] = &[
     Chore { name: "test", summary: "everything that has to hold before a change lands", run: test::run },
     Chore { name: "tidy", summary: "the repository's own rules", run: tidy::run },
     Chore { name: "licences", summary: "every package that we build on is permissive", run: licences::run },
+    Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
+    Chore { name: "dist", summary: "the binary as it is released, with its checksum", run: dist::run },
+    Chore {
+        name: "cpu-levels",
+        summary: "the same pictures at every CPU level (minutes)",
+        run: cpu_levels::run,
+    },
 ];
 
 fn main() -> ExitCode {

@@ -77,8 +77,7 @@ fn tests(totals: &mut Totals) -> Result<()> {
 }
 
 fn doc(_: &mut Totals) -> Result<()> {
-    let mut command = cargo(&["doc", "--locked", "--workspace", "--no-deps", "--quiet"]);
-    crate::process::run(command.env("RUSTDOCFLAGS", "--deny warnings"))
+    crate::docs::library()
 }
 
 fn run_step(arguments: &[&str]) -> Result<()> {

@@ -1,0 +1,161 @@
+//! `cargo xtask dist`: the binary as it is released, static where that can be had, in an archive with its
+//! notices, completions and man pages, and the archive's SHA-256 beside it.
+//!
+//! The archive is a function of the sources and the toolchain: no time, owner or path of the machine that
+//! builds it gets in.
+
+mod elf;
+
+use crate::licences::PAGE as NOTICES;
+use crate::process::{cargo, output, root, run as run_process};
+use anyhow::{Context, Result, bail};
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What goes along with the binary.
+const PAGES: &[&str] = &["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICES];
+
+const SHELLS: &[&str] = &["bash", "zsh", "fish", "powershell", "elvish"];
+
+/// Builds the archive, and says how large everything is.
+pub(crate) fn run(_: &[String]) -> Result<()> {
+    let target = Target::best()?;
+    let binary = build(&target)?;
+    let name = format!("bilux-{}-{}", version()?, target.triple);
+    let folder = root().join("dist").join(&name);
+    assemble(&folder, &binary)?;
+    if target.is_static {
+        elf::require_static(&fs::read(folder.join("bilux"))?).context("the binary is not static")?;
+    }
+    let archive = pack(&folder, &name)?;
+    let sum = format!("{}  {name}.tar.gz\n", sha256(&archive)?);
+    fs::write(root().join("dist/SHA256SUMS"), &sum).context("cannot write SHA256SUMS")?;
+    let kind = if target.is_static { "static" } else { "dynamic" };
+    println!("{} bytes  {name}/bilux ({kind})", fs::metadata(folder.join("bilux"))?.len());
+    println!("{} bytes  dist/{name}.tar.gz", fs::metadata(&archive)?.len());
+    print!("{sum}");
+    Ok(())
+}
+
+/// What the binary is built for.
+struct Target {
+    triple: String,
+    is_static: bool,
+}
+
+impl Target {
+    /// On Linux a static binary with musl, whose licence lets it be linked in (glibc's asks for more); anywhere
+    /// else, or where musl cannot be had, a binary for this machine's system.
+    fn best() -> Result<Target> {
+        let about = output(Command::new(rustc()).arg("-vV"))?;
+        let host = about.lines().find_map(|line| line.strip_prefix("host: "));
+        let host = host.context("rustc does not say what it runs on")?.to_owned();
+        let musl = host.replace("-linux-gnu", "-linux-musl");
+        if musl.ends_with("-linux-musl") && (is_installed(&musl)? || install(&musl)) {
+            return Ok(Target { triple: musl, is_static: true });
+        }
+        println!("no musl for {host}: the binary will need the system's libraries");
+        Ok(Target { triple: host, is_static: false })
+    }
+}
+
+fn rustc() -> std::ffi::OsString {
+    std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())
+}
+
+fn is_installed(triple: &str) -> Result<bool> {
+    let folder = output(Command::new(rustc()).args(["--print", "target-libdir", "--target", triple]))?;
+    Ok(Path::new(folder.trim()).is_dir())
+}
+
+fn install(triple: &str) -> bool {
+    run_process(Command::new("rustup").args(["target", "add", triple])).is_ok()
+}
+
+/// Builds the binary, and returns its path.
+fn build(target: &Target) -> Result<PathBuf> {
+    let triple = target.triple.as_str();
+    let mut command =
+        cargo(&["build", "--locked", "--release", "--package", "bilux-cli", "--target", triple]);
+    let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
+    command.env(variable, flags()).env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
+    run_process(&mut command)?;
+    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    Ok(folder.join(triple).join("release").join("bilux"))
+}
+
+/// Messages of panics name source files: from the root of the repository and of cargo's home, not of this
+/// machine's disk.
+fn flags() -> String {
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
+    let remap = |from: PathBuf, to: &str| format!("--remap-path-prefix={}={to}", from.display());
+    let mut flags = vec!["-Ctarget-feature=+crt-static".to_owned(), remap(root(), "bilux")];
+    flags.extend(home.map(|home| remap(home, "cargo")));
+    flags.join(" ")
+}
+
+fn version() -> Result<String> {
+    let packages = crate::workspace::packages()?;
+    let binary = packages.into_iter().find(|package| package.name == "bilux-cli");
+    binary.map(|package| package.version).context("the workspace has no bilux-cli")
+}
+
+/// Fills the folder that is packed.
+fn assemble(folder: &Path, binary: &Path) -> Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("cannot remove {}", folder.display()))?;
+    }
+    let completions = folder.join("completions");
+    fs::create_dir_all(&completions).with_context(|| format!("cannot make {}", folder.display()))?;
+    fs::copy(binary, folder.join("bilux")).with_context(|| format!("cannot copy {}", binary.display()))?;
+    for page in PAGES {
+        fs::copy(root().join(page), folder.join(page)).with_context(|| format!("cannot copy {page}"))?;
+    }
+    for shell in SHELLS {
+        let text = output(Command::new(folder.join("bilux")).args(["completions", shell]))?;
+        fs::write(completions.join(format!("bilux.{shell}")), text)?;
+    }
+    run_process(Command::new(folder.join("bilux")).arg("man").arg(folder.join("man")))
+}
+
+/// Packs the folder, the same way every time.
+fn pack(folder: &Path, name: &str) -> Result<PathBuf> {
+    let parent = folder.parent().context("the folder has no parent")?;
+    let archive = parent.join(format!("{name}.tar.gz"));
+    let mut tar = Command::new("tar");
+    tar.current_dir(parent).args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner"]);
+    tar.args(["--mtime=@0", "--mode=u+rw,go=rX", "--use-compress-program=gzip -n9", "--create", "--file"]);
+    run_process(tar.arg(&archive).arg(name))?;
+    if !archive.is_file() {
+        bail!("tar made no {}", archive.display());
+    }
+    Ok(archive)
+}
+
+fn sha256(path: &Path) -> Result<String> {
+    let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_the_standard() {
+        let path = std::env::temp_dir().join(format!("bilux-sum-{}", std::process::id()));
+        fs::write(&path, "abc").expect("a file for the test");
+        let sum = sha256(&path);
+        fs::remove_file(&path).expect("the file of the test goes away");
+        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(sum.expect("the file can be read"), expected);
+    }
+
+    #[test]
+    fn the_folder_of_the_repository_is_renamed() {
+        assert!(flags().contains(&format!("--remap-path-prefix={}=bilux", root().display())));
+    }
+}
