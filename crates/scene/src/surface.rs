@@ -37,7 +37,12 @@ impl Surface {
     /// bound, on the side that it goes to, and leaves out the triangle itself.
     pub fn spawn(&self, direction: Vec3) -> Ray {
         let origin = offset_origin(self.p, self.p_error, self.n_geom, direction);
-        Ray { time: self.time, exclude: self.primitive, ..Ray::new(origin.to_array(), direction.to_array()) }
+        Ray {
+            time: self.time,
+            exclude: self.primitive,
+            t_min: AWAY,
+            ..Ray::new(origin.to_array(), direction.to_array())
+        }
     }
 
     /// A ray from here to where a light was sampled, as far as nothing of the light itself can be in its way.

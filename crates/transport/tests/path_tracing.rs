@@ -1,0 +1,265 @@
+//! `path` against closed forms, and its ways of finding light against each other.
+
+mod common;
+
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Ray, Scene, SceneBuilder, Spec};
+use bilux_transport::{PixelIntegrator, RenderSettings, Task, integrators};
+use common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+fn path(sampling: &str) -> Box<dyn PixelIntegrator> {
+    integrators::build(&Spec::new("", "path").with("sampling", sampling)).unwrap()
+}
+
+/// The means of eight pictures with different seeds, each over all of its pixels.
+fn means(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSettings) -> Vec<Rgb> {
+    let mean = |seed| {
+        let film = shoot(scene, integrator, &RenderSettings { seed, ..settings.clone() }).film;
+        let pixels = film.to_rgb();
+        pixels.iter().copied().sum::<Rgb>() / pixels.len() as f32
+    };
+    (0..8).map(mean).collect()
+}
+
+/// Mean and standard error.
+fn estimate(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+    (mean, (variance / n).sqrt())
+}
+
+fn channel(values: &[Rgb], channel: usize) -> Vec<f64> {
+    values.iter().map(|v| f64::from(v[channel])).collect()
+}
+
+/// Probability that two sets of values with one mean differ by as much as these. [Welch 1947]
+fn welch(a: &[f64], b: &[f64]) -> f64 {
+    let ((mean_a, error_a), (mean_b, error_b)) = (estimate(a), estimate(b));
+    let (va, vb) = (error_a * error_a, error_b * error_b);
+    if va + vb == 0.0 {
+        return f64::from(u8::from(mean_a == mean_b));
+    }
+    let freedom =
+        (va + vb) * (va + vb) / (va * va / (a.len() as f64 - 1.0) + vb * vb / (b.len() as f64 - 1.0));
+    let t = (mean_a - mean_b).abs() / (va + vb).sqrt();
+    2.0 * StudentsT::new(0.0, 1.0, freedom).unwrap().sf(t)
+}
+
+/// Every mean within this of the truth, relatively, or within five standard errors.
+fn assert_mean(found: &[Rgb], wanted: f64) {
+    for c in 0..3 {
+        let (mean, error) = estimate(&channel(found, c));
+        assert!(
+            (mean - wanted).abs() < 5.0 * error + 1e-5 * wanted,
+            "channel {c}: {mean} ± {error}, not {wanted}"
+        );
+    }
+}
+
+fn sky(builder: &mut SceneBuilder, radiance: f32) {
+    builder.lights.push(Spec::new("", "environment").with("radiance", radiance));
+}
+
+#[test]
+fn a_convex_matt_body_under_an_even_sky_shows_its_albedo() {
+    for sampling in ["mis", "lights", "scattering"] {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 16, false), diffuse(0.6f32));
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::Z * 10.0, Vec3::ZERO, 8.0);
+        let scene = built(&builder);
+        assert_mean(&means(&scene, &*path(sampling), &RenderSettings::new(8, 8, 64)), 0.6);
+    }
+}
+
+#[test]
+fn inside_a_glowing_shell_light_adds_up_to_the_geometric_series() {
+    for albedo in [0.0f32, 0.5, 0.8] {
+        let mut builder = SceneBuilder::default();
+        let glowing = diffuse(albedo).with("emission", 1.0f32);
+        put(&mut builder, "shell", ball(Vec3::ZERO, 1.0, 8, false), glowing);
+        look(&mut builder, Vec3::ZERO, Vec3::new(0.3, 0.4, -1.0), 60.0);
+        let settings = RenderSettings { max_depth: 1000, ..RenderSettings::new(8, 8, 32) };
+        let found = means(&built(&builder), &*path("mis"), &settings);
+        assert_mean(&found, 1.0 / (1.0 - f64::from(albedo)));
+        // With an end to paths, the series ends too.
+        let settings = RenderSettings { max_depth: 2, ..settings };
+        let found = means(&built(&builder), &*path("mis"), &settings);
+        assert_mean(&found, f64::from(1.0 + albedo + albedo * albedo));
+    }
+}
+
+#[test]
+fn clear_glass_in_a_white_furnace_cannot_be_seen() {
+    for (camera, thin) in [(10.0, false), (0.2, false), (10.0, true)] {
+        let mut builder = SceneBuilder::default();
+        let glass = Spec::new("", "dielectric").with("thin", thin);
+        put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 12, false), glass);
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::Z * camera, Vec3::ZERO, 8.0);
+        let path = integrators::build(
+            &Spec::new("", "path").with("roulette_depth", bilux_scene::Value::Integer(1000)),
+        );
+        let settings = RenderSettings { max_depth: 1000, ..RenderSettings::new(16, 16, 16) };
+        let film = shoot(&built(&builder), &*path.unwrap(), &settings).film;
+        // Radiance within glass is η² times that outside, and comes back to what it was on the way out.
+        let wanted = if camera < 1.0 { 1.5 * 1.5 } else { 1.0 };
+        for pixel in film.to_rgb() {
+            assert!((pixel.g - wanted).abs() < 2e-4 * wanted, "{pixel:?} from {camera}, thin: {thin}");
+        }
+    }
+}
+
+/// Matt, glossy and mirror surfaces under two panels, a lamp and a sky: each way of finding light is best
+/// somewhere.
+fn mixed() -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    let satin = Spec::new("", "phong").with("kd", 0.2f32).with("ks", 0.6f32).with("exponent", 30.0f32);
+    put(
+        &mut builder,
+        "satin",
+        ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true),
+        satin.with("reflectivity", 0.2f32),
+    );
+    put(&mut builder, "mirror", ball(Vec3::new(0.9, 0.6, -0.3), 0.6, 10, false), Spec::new("", "mirror"));
+    for (x, size) in [(-1.5, 1.5), (1.8, 0.3)] {
+        let panel = Spec::new("", "rect").with("position", Vec3::new(x, 3.0, 0.5)).with("intensity", 12.0f32);
+        builder.lights.push(panel.with("edge_u", Vec3::X * size).with("edge_v", Vec3::new(0.0, 0.3, size)));
+    }
+    builder
+        .lights
+        .push(Spec::new("", "point").with("position", Vec3::new(0.0, 2.0, 3.0)).with("intensity", 2.0f32));
+    sky(&mut builder, 0.3);
+    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
+    builder
+}
+
+/// Block means (2 × 2 blocks, three channels) of pictures with different seeds: `[block][picture]`.
+fn blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) -> Vec<Vec<f64>> {
+    let mut blocks = vec![Vec::new(); 12];
+    for seed in first_seed..first_seed + 12 {
+        let settings = RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 16, 32) };
+        let film = shoot(scene, integrator, &settings).film;
+        let mut sums = vec![0.0; 12];
+        for (i, pixel) in film.to_rgb().into_iter().enumerate() {
+            let block = (i / 16 / 8) * 2 + i % 16 / 8;
+            (0..3).for_each(|c| sums[block * 3 + c] += f64::from(pixel[c]));
+        }
+        blocks.iter_mut().zip(sums).for_each(|(block, sum)| block.push(sum));
+    }
+    blocks
+}
+
+/// The least p-value over all blocks, corrected for their number. [Šidák 1967]
+fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let least = a.iter().zip(b).map(|(a, b)| welch(a, b)).fold(1.0, f64::min);
+    1.0 - bilux_math::transcendental::powf_f64(1.0 - least, a.len() as f64)
+}
+
+/// A path tracer with a bug.
+struct Wrong(Box<dyn PixelIntegrator>, f32);
+
+impl PixelIntegrator for Wrong {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        self.0.radiance(ray, task) * self.1
+    }
+}
+
+#[test]
+fn all_ways_of_finding_light_agree() {
+    let scene = built(&mixed());
+    let mis = blocks(&scene, &*path("mis"), 0);
+    for (sampling, seed) in [("lights", 100), ("scattering", 200)] {
+        let p = agreement(&mis, &blocks(&scene, &*path(sampling), seed));
+        assert!(p > 1e-4, "mis and {sampling}: p = {p}");
+    }
+    // The twin: light that is five hundredths too bright is found out.
+    let p = agreement(&mis, &blocks(&scene, &Wrong(path("lights"), 1.05), 300));
+    assert!(p < 1e-4, "a wrong density passes: p = {p}");
+}
+
+#[test]
+fn a_backdrop_is_seen_and_lights_nothing() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
+    put(
+        &mut builder,
+        "mirror",
+        quad(Vec3::new(0.0, 0.0, -1.0), Vec3::X, Vec3::Y),
+        Spec::new("", "mirror").with("reflectance", 1.0f32),
+    );
+    let backdrop =
+        Spec::new("", "environment").with("radiance", Rgb::new(0.1, 0.2, 0.3)).with("backdrop", true);
+    builder.lights.push(backdrop);
+    let seen = |from: Vec3, at: Vec3| {
+        let mut builder = builder.clone();
+        look(&mut builder, from, at, 0.02);
+        shoot(&built(&builder), &*path("mis"), &RenderSettings::new(1, 1, 64)).film.pixel(0, 0)
+    };
+    let colour = Rgb::new(0.1, 0.2, 0.3);
+    let near = |a: Rgb, b: Rgb| (a - b).map(f32::abs).max_channel() < 1e-5;
+    let mirror = Vec3::new(0.5, 0.9, -1.0);
+    let [above, below] = [4.0, 0.1].map(|y| Vec3::new(0.5, y, 4.0));
+    assert!(near(seen(above, Vec3::new(-3.0, 5.0, -1.0)), colour), "it is seen");
+    assert!(near(seen(above, Vec3::ZERO), Rgb::BLACK), "it lights no floor");
+    assert!(near(seen(above, mirror), Rgb::BLACK), "nor the floor in the mirror");
+    assert!(near(seen(below, mirror), colour), "it is seen in the mirror");
+}
+
+#[test]
+fn glass_absorbs_along_the_way_and_also_what_it_holds() {
+    // A black ball with a glowing core in a block of glass is dimmed by what glass is before it.
+    let sigma = Rgb::new(0.2, 0.6, 1.2);
+    let mut builder = SceneBuilder::default();
+    let glass = Spec::new("", "dielectric").with("eta", 1.0f32).with("absorption", sigma);
+    put(&mut builder, "glass", ball(Vec3::ZERO, 2.0, 16, false), glass);
+    put(
+        &mut builder,
+        "core",
+        quad(Vec3::new(-0.5, -0.5, 0.5), Vec3::X, Vec3::Y),
+        diffuse(0.0f32).with("emission", 1.0f32),
+    );
+    look(&mut builder, Vec3::Z * 5.0, Vec3::ZERO, 0.02);
+    let scene = built(&builder);
+    let camera = bilux_scene::CameraSample {
+        film: bilux_math::Vec2::splat(0.5),
+        lens: bilux_math::Vec2::ZERO,
+        time: 0.0,
+    };
+    let enters =
+        bilux_scene::Tracer::new(&scene, false).closest(&scene.cameras()[0].1.ray(&camera)).unwrap().p.z;
+    let wanted = sigma.map(|s| bilux_math::transcendental::exp(-s * (enters - 0.5)));
+    for name in ["path", "whitted"] {
+        let found = shoot(&scene, &*integrator(name), &RenderSettings::new(1, 1, 4)).film.pixel(0, 0);
+        assert!((found - wanted).map(f32::abs).max_channel() < 1e-4, "{name}: {found:?}, not {wanted:?}");
+    }
+}
+
+/// Red over green of a patch of floor, at this distance in front of a red body. (The paper, section 4.4.)
+fn red_over_green(integrator_name: &str, distance: f32) -> f32 {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 20.0), diffuse(Rgb::new(0.2, 0.6, 0.2)));
+    put(&mut builder, "pot", ball(Vec3::Y, 1.0, 16, true), diffuse(Rgb::new(0.8, 0.05, 0.05)));
+    let panel = Spec::new("", "rect").with("position", Vec3::new(0.0, 2.0, 7.0)).with("intensity", 100.0f32);
+    builder.lights.push(panel.with("edge_u", Vec3::X * 2.0).with("edge_v", Vec3::Y * 2.0));
+    let patch = Vec3::new(0.0, 0.0, 1.0 + distance);
+    look(&mut builder, patch + Vec3::new(0.0, 3.0, 2.0), patch, 2.0);
+    let film = shoot(&built(&builder), &*integrator(integrator_name), &RenderSettings::new(8, 8, 64)).film;
+    let sum: Rgb = film.to_rgb().into_iter().sum();
+    sum.r / sum.g
+}
+
+#[test]
+fn the_pot_colours_the_floor_near_it_in_path_and_not_in_whitted() {
+    let floor = 0.2 / 0.6;
+    for distance in [0.2, 6.0] {
+        let whitted = red_over_green("whitted", distance);
+        assert!((whitted - floor).abs() < 1e-3, "whitted at {distance}: {whitted}");
+    }
+    let (near, far) = (red_over_green("path", 0.2), red_over_green("path", 6.0));
+    assert!(near > 1.15 * floor, "path near the pot: {near}");
+    assert!((far - floor).abs() < 0.02 * floor, "path far from it: {far}");
+}
