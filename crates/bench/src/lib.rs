@@ -1,1 +1,90 @@
-//! What 'bilux bench' runs.
+//! What `bilux bench` runs. One benchmark a file; each gives a [`Report`] that prints as a table or as JSON.
+//!
+//! A speed is a ratio taken in one run: rivals take turns, and medians count.
+
+pub mod build;
+pub mod frames;
+pub mod paper;
+pub mod teapots;
+pub mod visibility;
+
+use bilux::Error;
+use bilux::pictures::Picture;
+use serde_json::{Value, json};
+use std::time::Instant;
+
+/// Called with a line about what is being measured.
+pub type Tell<'a> = &'a dyn Fn(&str);
+
+/// What a benchmark found.
+pub struct Report {
+    /// One object for every row.
+    pub rows: Vec<Value>,
+    /// The same for people.
+    pub text: String,
+    /// A picture of what was rendered, where there is one.
+    pub picture: Option<Picture>,
+}
+
+impl Report {
+    /// `{"rows": […]}`.
+    pub fn json(&self) -> Value {
+        json!({ "rows": self.rows })
+    }
+}
+
+/// What all benchmarks can be told.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Numbers of teapots; empty for the benchmark's own.
+    pub counts: Vec<u32>,
+    /// Accelerators; empty for the benchmark's own.
+    pub accels: Vec<String>,
+    /// Width and height of pictures.
+    pub size: (u32, u32),
+    /// Repeats, of which the median counts.
+    pub repeats: u32,
+    /// `paper`: at its fixed offset, seen by its camera; `coverage`: covering equally much of the picture.
+    pub layout: String,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            counts: Vec::new(),
+            accels: Vec::new(),
+            size: (512, 512),
+            repeats: 3,
+            layout: "paper".to_owned(),
+        }
+    }
+}
+
+/// Seconds that `work` takes, with what it gives.
+fn timed<T>(work: impl FnOnce() -> Result<T, Error>) -> Result<(f64, T), Error> {
+    let begun = Instant::now();
+    let result = work()?;
+    Ok((begun.elapsed().as_secs_f64(), result))
+}
+
+/// The middle value; of an even number the lower of the two.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// A table with right-aligned columns under a title.
+fn table(title: &str, header: &[&str], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.chain([header[column].chars().count()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..header.len()).map(width).collect();
+    let line = |cells: &[String]| {
+        let padded: Vec<String> = cells.iter().zip(&widths).map(|(cell, &w)| format!("{cell:>w$}")).collect();
+        padded.join("  ")
+    };
+    let header: Vec<String> = header.iter().map(ToString::to_string).collect();
+    let body: Vec<String> = rows.iter().map(|row| line(row)).collect();
+    format!("{title}\n{}\n{}\n", line(&header), body.join("\n"))
+}

@@ -1,1 +1,61 @@
-//! Physically right pictures on plain CPUs: the library that joins all of Bilux.
+//! Physically right pictures on plain CPUs: everything that Bilux can do, behind one name.
+//!
+//! ```
+//! use bilux::prelude::*;
+//!
+//! let scene = bilux::generate(&Spec::new("", "cornell"))?;
+//! let mut settings = Parameters::default();
+//! settings.set("size", "16x16");
+//! settings.set("spp", Value::Integer(1));
+//! let picture = bilux::Job::new(&scene, &settings)?.render(&Quiet)?.picture()?;
+//! assert_eq!((picture.width(), picture.height()), (16, 16));
+//! # Ok::<(), bilux::Error>(())
+//! ```
+//!
+//! A scene is read or made ([`load`], [`generate`]), settings join what its file wishes with what the user
+//! says ([`settings`]), and a [`Job`] renders it.
+
+pub mod error;
+pub mod fingerprint;
+pub mod job;
+pub mod presets;
+pub mod settings;
+
+pub use bilux_accel as accel;
+pub use bilux_formats as formats;
+pub use bilux_math as math;
+pub use bilux_pictures as pictures;
+pub use bilux_scene as scene;
+pub use bilux_transport as transport;
+
+pub use bilux_transport::Silent as Quiet;
+pub use error::Error;
+pub use job::{Job, Outcome};
+pub use settings::Settings;
+
+use bilux_scene::{SceneBuilder, Spec};
+use std::path::Path;
+
+/// What most programs need.
+pub mod prelude {
+    pub use crate::{Error, Job, Outcome, Quiet, Settings};
+    pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
+    pub use bilux_pictures::Picture;
+    pub use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
+}
+
+/// Reads a scene file of any known format.
+///
+/// # Errors
+/// When the file cannot be read, or what it says is wrong; the message has the place.
+pub fn load(path: &Path, options: &bilux_formats::ReadOptions) -> Result<SceneBuilder, Error> {
+    Ok(bilux_formats::read(path, options)?)
+}
+
+/// Makes one of the scenes that we ship: `kind` is its name.
+///
+/// # Errors
+/// When no generator has this name, or a parameter is wrong.
+pub fn generate(spec: &Spec) -> Result<SceneBuilder, Error> {
+    Ok(bilux_scene::generators::generate(spec)?)
+}

@@ -1,2 +1,44 @@
-//! The command line: bilux.
-fn main() {}
+//! `bilux`, the command line. It reads arguments, shows progress and writes files; whatever is rendered is
+//! rendered by the library.
+
+// A program's modules are all its own: `pub` here means: for the modules beside.
+#![allow(unreachable_pub)]
+
+mod arguments;
+mod commands;
+mod interrupt;
+mod output;
+mod progress;
+mod settings_from;
+mod version;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// The work failed.
+const FAILED: u8 = 1;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match arguments.command {
+        Command::Render(ref render) => commands::render::run(render, &arguments.common),
+        Command::Info(ref info) => commands::info::run(info, &arguments.common),
+        Command::Convert(ref convert) => commands::convert::run(convert, &arguments.common),
+        Command::Compare(ref compare) => commands::compare::run(compare),
+        Command::Generate(ref generate) => commands::generate::run(generate, &arguments.common),
+        Command::Merge(ref merge) => commands::merge::run(merge, &arguments.common),
+        Command::Bench(ref bench) => commands::bench::run(bench, &arguments.common),
+        Command::List(ref list) => commands::list::run(list),
+        Command::Completions { shell } => commands::manual::completions(shell),
+        Command::Man { ref folder } => commands::manual::pages(folder.as_deref()),
+        Command::Licenses => commands::manual::licenses(),
+    };
+    match result {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            output::error(&error);
+            ExitCode::from(FAILED)
+        }
+    }
+}

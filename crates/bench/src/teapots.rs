@@ -1,0 +1,162 @@
+//! The paper's Figure 2 anew: two to five teapots, with and without a tree.
+
+use crate::{Options, Report, Tell, median, table, timed};
+use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
+use bilux::{Error, Job, Outcome, Quiet};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+/// Seconds in the paper's Figure 2: teapots, without and with its tree.
+const PAPER: [(u32, f64, f64); 4] =
+    [(2, 31.62, 29.64), (3, 47.43, 42.89), (4, 65.78, 56.12), (5, 86.95, 71.33)];
+
+/// What one accelerator took for one number of teapots.
+struct Row {
+    count: u32,
+    accel: String,
+    triangles: usize,
+    seconds: f64,
+    speedup: Option<f64>,
+    build_seconds: f64,
+    bytes_per_triangle: f64,
+    outcome_counters: bilux::scene::Counters,
+    picture: String,
+}
+
+/// Renders every number of teapots by every accelerator, on one thread, by `whitted` to depth 5.
+///
+/// # Errors
+/// When an accelerator or a layout is not known.
+pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+    let counts = if options.counts.is_empty() { vec![2, 3, 4, 5] } else { options.counts.clone() };
+    let mut accels = options.accels.clone();
+    if accels.is_empty() {
+        accels = ["brute", "bsp", "bsp-sah", "kd", "bvh"].map(str::to_owned).to_vec();
+    }
+    if accels.iter().any(|a| a == "brute") && !accels.iter().any(|a| a == "brute-simd") {
+        accels.insert(1, "brute-simd".to_owned());
+    }
+    let mut rows: Vec<Row> = Vec::new();
+    for &count in &counts {
+        let scene = scene(count, &options.layout)?;
+        let first = rows.len();
+        for accel in &accels {
+            tell(&format!("{count} teapots by {accel}"));
+            rows.push(measure(&scene, count, accel, options)?);
+        }
+        let brute = rows[first..].iter().find(|r| r.accel == "brute").map(|r| r.seconds);
+        for row in &mut rows[first..] {
+            row.speedup = brute.map(|seconds| seconds / row.seconds);
+        }
+    }
+    Ok(Report { rows: rows.iter().map(as_json).collect(), text: text(&rows, options), picture: None })
+}
+
+/// The teapots of the paper, or N of them.
+pub fn scene(count: u32, layout: &str) -> Result<SceneBuilder, Error> {
+    let spec = Spec::new("", "teapots")
+        .with("count", Setting::Integer(i64::from(count)))
+        .with("layout", if layout == "coverage" { "equal-coverage" } else { layout });
+    bilux::generate(&spec)
+}
+
+/// Settings of the benchmark: `whitted`, depth 5, one thread.
+fn settings(accel: &str, size: (u32, u32)) -> Parameters {
+    let mut settings = Parameters::default();
+    settings.set("integrator", "whitted");
+    settings.set("max_depth", Setting::Integer(5));
+    settings.set("threads", Setting::Integer(1));
+    settings.set("spp", Setting::Integer(1));
+    settings.set("accel", accel);
+    settings.set("size", Setting::Text(format!("{}x{}", size.0, size.1)));
+    settings
+}
+
+fn measure(scene: &SceneBuilder, count: u32, accel: &str, options: &Options) -> Result<Row, Error> {
+    let (build_seconds, mut job) = timed(|| Job::new(scene, &settings(accel, options.size)))?;
+    // A loop over all triangles counts them once a ray, which costs nothing: it is timed once, counting.
+    let is_loop = accel.starts_with("brute");
+    let repeats = if is_loop { 0 } else { options.repeats.max(1) };
+    let seconds: Vec<f64> =
+        (0..repeats).map(|_| Ok(timed(|| job.render(&Quiet))?.0)).collect::<Result<_, Error>>()?;
+    job.count_work();
+    let (counted_seconds, outcome) = timed(|| job.render(&Quiet))?;
+    let trees = job.scene().geometry().instances();
+    let bytes: usize = trees.iter().map(|tree| tree.accelerator.memory_bytes()).sum();
+    let triangles: usize = scene.objects.iter().map(|o| o.mesh.triangles.len()).sum();
+    Ok(Row {
+        count,
+        accel: accel.to_owned(),
+        triangles,
+        seconds: if is_loop { counted_seconds } else { median(seconds) },
+        speedup: None,
+        build_seconds,
+        bytes_per_triangle: bytes as f64 / triangles as f64,
+        outcome_counters: outcome.counters,
+        picture: hash(&outcome)?,
+    })
+}
+
+/// A hash of the picture's samples, bit for bit.
+fn hash(outcome: &Outcome) -> Result<String, Error> {
+    let picture = outcome.picture()?;
+    let mut hash = Sha256::new();
+    for channel in picture.channels() {
+        channel.samples.iter().for_each(|sample| hash.update(sample.to_le_bytes()));
+    }
+    Ok(hash.finalize().iter().take(12).map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn as_json(row: &Row) -> Value {
+    json!({
+        "count": row.count, "accel": row.accel, "triangles": row.triangles, "seconds": row.seconds,
+        "speedup": row.speedup, "build_seconds": row.build_seconds,
+        "bytes_per_triangle": row.bytes_per_triangle, "rays": row.outcome_counters.rays,
+        "node_visits": row.outcome_counters.nodes, "triangle_tests": row.outcome_counters.triangles,
+        "early_outs": row.outcome_counters.early_outs, "picture": row.picture,
+    })
+}
+
+/// The paper's Figure 2 with our columns beside it.
+fn text(rows: &[Row], options: &Options) -> String {
+    let header = [
+        "teapots",
+        "paper off",
+        "paper BSP",
+        "accel",
+        "seconds",
+        "vs brute",
+        "build s",
+        "bytes/tri",
+        "nodes/ray",
+        "tests/ray",
+        "picture",
+    ];
+    let cells: Vec<Vec<String>> = rows
+        .iter()
+        .map(|row| {
+            let paper = PAPER.iter().find(|p| p.0 == row.count);
+            let seconds = |s: Option<f64>| s.map_or("–".to_owned(), |s| format!("{s:.2}"));
+            let rays = row.outcome_counters.rays.max(1) as f64;
+            vec![
+                row.count.to_string(),
+                seconds(paper.map(|p| p.1)),
+                seconds(paper.map(|p| p.2)),
+                row.accel.clone(),
+                format!("{:.4}", row.seconds),
+                row.speedup.map_or("–".to_owned(), |s| format!("{s:.2}×")),
+                format!("{:.3}", row.build_seconds),
+                format!("{:.0}", row.bytes_per_triangle),
+                format!("{:.1}", row.outcome_counters.nodes as f64 / rays),
+                format!("{:.1}", row.outcome_counters.triangles as f64 / rays),
+                row.picture[..8].to_owned(),
+            ]
+        })
+        .collect();
+    let (w, h) = options.size;
+    table(
+        &format!("Figure 2 anew: {w}x{h}, whitted, depth 5, one thread, layout '{}'", options.layout),
+        &header,
+        &cells,
+    )
+}

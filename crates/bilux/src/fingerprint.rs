@@ -1,0 +1,79 @@
+//! What identifies a picture before it is rendered: partial films join only where this agrees.
+
+use crate::settings::Settings;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::SceneBuilder;
+use sha2::{Digest, Sha256};
+
+/// A hash of a scene and of every setting that its samples depend on, in hexadecimal. What changes no sample
+/// (threads, accelerator, number of samples, crop, display) is left out.
+pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
+    let mut hash = Sha256::new();
+    for object in &scene.objects {
+        let mesh = &*object.mesh;
+        points(&mut hash, &mesh.positions);
+        points(&mut hash, &mesh.normals);
+        floats(&mut hash, mesh.uvs.iter().flat_map(|v: &Vec2| v.to_array()));
+        floats(&mut hash, mesh.vertex_kd.iter().chain(&mesh.vertex_ks).flat_map(|c: &Rgb| c.to_array()));
+        hash.update((mesh.triangles.len() as u64).to_le_bytes());
+        for index in mesh.triangles.iter().flatten() {
+            hash.update(index.to_le_bytes());
+        }
+        hash.update(format!("{} {:?}", object.material, object.motion));
+    }
+    for texture in &scene.textures {
+        hash.update(format!("{} {}", texture.width, texture.height));
+        floats(&mut hash, texture.texels.iter().flat_map(|c| c.to_array()));
+    }
+    for spec in scene.materials.iter().chain(&scene.lights) {
+        hash_spec(&mut hash, spec);
+    }
+    for camera in &scene.cameras {
+        hash_spec(&mut hash, &camera.spec);
+        for (time, changes) in &camera.keyframes {
+            hash.update(time.to_le_bytes());
+            hash_parameters(&mut hash, changes);
+        }
+    }
+    hash_spec(&mut hash, &settings.integrator_parameters);
+    let s = settings;
+    hash.update(format!(
+        "{} {} {} {} {} {} {} {} {} {:?}",
+        s.width,
+        s.height,
+        s.seed,
+        s.max_depth,
+        s.camera,
+        s.time,
+        s.shutter,
+        s.filter,
+        s.corner_anchor,
+        s.accel.query.culling
+    ));
+    hash.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn points(hash: &mut Sha256, points: &[Vec3]) {
+    floats(hash, points.iter().flat_map(|p| p.to_array()));
+}
+
+fn floats(hash: &mut Sha256, values: impl Iterator<Item = f32>) {
+    let mut count = 0u64;
+    for value in values {
+        hash.update(value.to_le_bytes());
+        count += 1;
+    }
+    hash.update(count.to_le_bytes());
+}
+
+fn hash_spec(hash: &mut Sha256, spec: &bilux_scene::Spec) {
+    hash.update(format!("{} {}", spec.name, spec.kind));
+    hash_parameters(hash, &spec.parameters);
+}
+
+/// Where a value was written does not matter.
+fn hash_parameters(hash: &mut Sha256, parameters: &bilux_scene::Parameters) {
+    for (key, value, _) in &parameters.0 {
+        hash.update(format!("{key}={value:?};"));
+    }
+}

@@ -1,0 +1,218 @@
+//! Everything that can be said about a render, from a scene file's `[render]`, a preset or the command line:
+//! all of it the same keys of one table.
+
+use crate::Error;
+use bilux_accel::registry::{BspGroup, BspSplit};
+use bilux_accel::{Culling, Query};
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Spec};
+use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+
+/// The integrator that `auto` stands for.
+pub const AUTO_INTEGRATOR: &str = "path";
+
+/// What `[render]` and `--set` understand, beside the parameters of the integrator.
+pub const RENDER: Entry = Entry {
+    name: "render",
+    summary: "how the picture is made",
+    source: "",
+    parameters: &[
+        text("integrator", "how light is followed", "auto"),
+        text("accel", "what finds the triangles that rays hit", "auto"),
+        text("size", "width and height of the picture, as WxH", "512x512"),
+        integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"),
+        integer("seed", "another number gives other noise", 0, i64::MAX, "0"),
+        integer("max_depth", "scattering events after the camera; 0 is emission only", 0, 10_000, "16"),
+        integer("threads", "threads at work; 0 for all cores", 0, 4096, "0"),
+        text("camera", "name or number of the camera", "0"),
+        number("time", "when the picture is taken", "s", -1e9, 1e9, "0"),
+        number("shutter", "how long light is let in", "s", 0.0, 1e9, "0"),
+        number("fps", "frames a second, for --frames", "1/s", 1e-6, 1e6, "24"),
+        text("filter", "how samples are spread over a pixel", "box"),
+        choice("pixel_anchor", "where pixel (0, 0) is sampled", &["centre", "corner"], "centre"),
+        number("exposure", "brightens by powers of two, in pictures for a display", "EV", -64.0, 64.0, "0"),
+        text("tonemap", "the curve for pictures for a display", "none"),
+        choice("transfer", "how light becomes bytes", &["srgb", "linear"], "srgb"),
+        choice("culling", "back faces of closed, opaque meshes", &["none", "back"], "none"),
+        choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"),
+        choice("bsp_group", "what bsp keeps together", &["polygons", "objects"], "polygons"),
+        switch("early_out", "end a search at the first hit that nothing nearer can beat"),
+        switch("cull_by_partition", "reject back faces by the side of their partition plane"),
+    ],
+};
+
+const fn text(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Text, default }
+}
+
+const fn switch(name: &'static str, summary: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }
+}
+
+const fn choice(
+    name: &'static str,
+    summary: &'static str,
+    words: &'static [&'static str],
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
+}
+
+const fn integer(
+    name: &'static str,
+    summary: &'static str,
+    min: i64,
+    max: i64,
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Integer { min, max }, default }
+}
+
+const fn number(
+    name: &'static str,
+    summary: &'static str,
+    unit: &'static str,
+    min: f64,
+    max: f64,
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit, kind: ParameterKind::Number { min, max }, default }
+}
+
+/// Settings, checked.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The row of the integrator.
+    pub integrator: &'static IntegratorEntry,
+    /// Its parameters.
+    pub integrator_parameters: Spec,
+    /// Which structure answers the rays.
+    pub accel: AccelChoice,
+    /// Columns of the picture.
+    pub width: u32,
+    /// Rows of the picture.
+    pub height: u32,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Seed.
+    pub seed: u64,
+    /// Scattering events after the camera.
+    pub max_depth: u32,
+    /// Threads; 0 for all cores.
+    pub threads: usize,
+    /// Name or number of the camera.
+    pub camera: String,
+    /// When, in seconds.
+    pub time: f32,
+    /// How long light is let in, in seconds.
+    pub shutter: f32,
+    /// Frames a second.
+    pub fps: f32,
+    /// Name of the pixel filter.
+    pub filter: String,
+    /// Pixels are sampled from their corner, not from their middle.
+    pub corner_anchor: bool,
+    /// Stops by which display pictures are brightened.
+    pub exposure: f32,
+    /// Name of the tone curve.
+    pub tonemap: String,
+    /// Bytes are proportional to light.
+    pub linear_transfer: bool,
+}
+
+impl Settings {
+    /// Checks what a file, a preset and the command line say together.
+    ///
+    /// # Errors
+    /// An unknown key (with the nearest), a value out of range, an unknown integrator or accelerator.
+    pub fn resolve(all: &Parameters) -> Result<Settings, Error> {
+        let is_render_key = |key: &str| RENDER.parameters.iter().any(|p| p.name == key);
+        let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
+        let spec = Spec { parameters: Parameters(own), ..Spec::new("", "render") };
+        let reader = Reader::new(&spec, &RENDER)?;
+        let integrator = find_integrator(&reader)?;
+        let integrator_parameters = integrator_parameters(integrator, rest)?;
+        let (width, height) = parse_size(&reader.text("size"))
+            .ok_or_else(|| SceneError::invalid("a size is written as 640x480", reader.span("size")))?;
+        let spp = match reader.integer("spp") {
+            0 => integrator.default_spp,
+            n => u32::try_from(n).unwrap_or(u32::MAX),
+        };
+        Ok(Settings {
+            integrator,
+            integrator_parameters,
+            accel: accel_choice(&reader)?,
+            width,
+            height,
+            spp,
+            seed: reader.integer("seed") as u64,
+            max_depth: reader.integer("max_depth") as u32,
+            threads: reader.integer("threads") as usize,
+            camera: match reader.text("camera") {
+                name if name.is_empty() => "0".to_owned(),
+                name => name,
+            },
+            time: reader.number("time"),
+            shutter: reader.number("shutter"),
+            fps: reader.number("fps"),
+            filter: reader.text("filter"),
+            corner_anchor: reader.text("pixel_anchor") == "corner",
+            exposure: reader.number("exposure"),
+            tonemap: reader.text("tonemap"),
+            linear_transfer: reader.text("transfer") == "linear",
+        })
+    }
+}
+
+/// `640x480` as two numbers that are not zero.
+pub fn parse_size(text: &str) -> Option<(u32, u32)> {
+    let (w, h) = text.split_once(['x', 'X', '×'])?;
+    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|&n| n > 0);
+    Some((side(w)?, side(h)?))
+}
+
+fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {
+    let name = reader.text("integrator");
+    let wanted = if name == "auto" { AUTO_INTEGRATOR } else { &name };
+    let names = INTEGRATORS.iter().map(|row| row.entry.name).chain(["auto"]);
+    let found = INTEGRATORS.iter().find(|row| row.entry.name == wanted);
+    Ok(found.ok_or_else(|| SceneError::unknown("integrator", &name, names, reader.span("integrator")))?)
+}
+
+/// Keys that belong to the chosen integrator; those of others are left out, so that a file can speak to several.
+fn integrator_parameters(
+    chosen: &'static IntegratorEntry,
+    rest: Vec<(String, bilux_scene::Value, bilux_scene::Span)>,
+) -> Result<Spec, Error> {
+    let knows = |row: &IntegratorEntry, key: &str| row.entry.parameters.iter().any(|p| p.name == key);
+    let mut spec = Spec::new("", chosen.entry.name);
+    for (key, value, span) in rest {
+        if knows(chosen, &key) {
+            spec.parameters.set_at(&key, value, span);
+        } else if !INTEGRATORS.iter().any(|row| knows(row, &key)) {
+            let rows = INTEGRATORS.iter().map(|row| &row.entry).chain([&RENDER]);
+            let names = rows.flat_map(|entry| entry.parameters.iter().map(|p| p.name));
+            return Err(SceneError::unknown("render setting", &key, names, &span).into());
+        }
+    }
+    Ok(spec)
+}
+
+fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
+    let name = reader.text("accel");
+    let names = || bilux_accel::ACCELERATORS.iter().map(|row| row.entry.name).chain(["auto"]);
+    if !names().any(|n| n == name) {
+        return Err(SceneError::unknown("accelerator", &name, names(), reader.span("accel")).into());
+    }
+    let mut choice = AccelChoice { name, ..AccelChoice::default() };
+    choice.options.bsp_split =
+        if reader.text("bsp_split") == "fuchs" { BspSplit::Fuchs } else { BspSplit::Mean };
+    choice.options.bsp_group =
+        if reader.text("bsp_group") == "objects" { BspGroup::Objects } else { BspGroup::Polygons };
+    choice.query = Query {
+        culling: if reader.text("culling") == "back" { Culling::Back } else { Culling::None },
+        early_out: reader.bool("early_out"),
+        cull_by_partition: reader.bool("cull_by_partition"),
+    };
+    Ok(choice)
+}

@@ -1,0 +1,370 @@
+//! Everything that can be typed. Help, completions and the man page are made from this one description.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Physically right pictures of 3D scenes on plain CPUs, with light traced from both ends.
+#[derive(Parser)]
+#[command(name = "bilux", version = crate::version::text(), about, long_about = None, max_term_width = 100)]
+#[command(after_help = "Examples:\n  \
+    bilux generate trio -o trio.toml             a scene that we ship\n  \
+    bilux render trio.toml -o trio.png           its picture\n  \
+    bilux render model.obj -o model.png          a bare model, framed and lit\n  \
+    bilux render pot.asc --preset course -i cast -o pot.ppm\n  \
+    bilux list integrators")]
+pub struct Arguments {
+    #[command(flatten)]
+    pub common: Common,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What every command understands.
+#[derive(Args)]
+pub struct Common {
+    /// Say nothing but errors
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Say more
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+    /// Progress: a bar on a terminal, lines elsewhere
+    #[arg(long, global = true, value_enum, default_value = "auto", value_name = "HOW")]
+    pub progress: ProgressStyle,
+    /// Most memory that reading a file may take
+    #[arg(long, global = true, default_value = "8G", value_name = "SIZE", value_parser = parse_bytes)]
+    pub max_memory: u64,
+    /// Turn warnings into errors
+    #[arg(long, global = true)]
+    pub strict: bool,
+    /// Let scene files name files outside of their own folder
+    #[arg(long, global = true)]
+    pub allow_outside: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ProgressStyle {
+    Auto,
+    Bar,
+    Lines,
+    None,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Make pictures from scenes
+    Render(Box<Render>),
+    /// Say what is in a scene
+    Info(Info),
+    /// Turn a scene or a picture into another format
+    Convert(Convert),
+    /// Say how far picture A is from the reference B
+    Compare(Compare),
+    /// Make one of the scenes that we ship
+    Generate(Generate),
+    /// Join partial films into one picture
+    Merge(Merge),
+    /// Measure
+    Bench(Bench),
+    /// List what there is: integrators, accels, materials, …
+    List(List),
+    /// Print completions for a shell
+    Completions {
+        /// For which shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the man page, or write the pages of all commands into a folder
+    Man {
+        /// Folder for the pages of all commands
+        folder: Option<PathBuf>,
+    },
+    /// Print the licences of Bilux and of what it is built from
+    Licenses,
+}
+
+/// Make pictures from scenes.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    bilux render scene.toml -o scene.png\n  \
+    bilux render *.obj -o '{stem}.png'\n  \
+    bilux render walk.toml --frames 0-47 -o 'walk-{frame}.png'\n  \
+    bilux render scene.toml --samples 0..64 -o a.exr    one half here,\n  \
+    bilux render scene.toml --samples 64..128 -o b.exr  the other there:\n  \
+    bilux merge a.exr b.exr -o scene.png")]
+pub struct Render {
+    /// Scene files; `-` reads standard input (with --input-format)
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// The picture; `{stem}` and `{frame}` are filled in, `-` writes PNG to standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Format of a scene on standard input
+    #[arg(long, value_name = "NAME")]
+    pub input_format: Option<String>,
+    /// How light is followed (`bilux list integrators`)
+    #[arg(short, long, value_name = "NAME")]
+    pub integrator: Option<String>,
+    /// What finds the triangles that rays hit (`bilux list accels`)
+    #[arg(long, value_name = "NAME")]
+    pub accel: Option<String>,
+    /// Width and height
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<String>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N")]
+    pub spp: Option<u32>,
+    /// Another number gives other noise
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Threads; 0 for all cores
+    #[arg(long, value_name = "N")]
+    pub threads: Option<u32>,
+    /// Scattering events after the camera; 0 is emission only
+    #[arg(long, value_name = "N")]
+    pub max_depth: Option<u32>,
+    /// Which camera
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub camera: Option<String>,
+    /// When, in moving scenes
+    #[arg(long, value_name = "SECONDS")]
+    pub at: Option<f32>,
+    /// Frames A to B, both included; needs {frame} in OUT
+    #[arg(long, value_name = "A-B", value_parser = parse_frames)]
+    pub frames: Option<(u32, u32)>,
+    /// Only samples A up to (not including) B of each pixel: a partial film, in an .exr
+    #[arg(long, value_name = "A..B", value_parser = parse_samples)]
+    pub samples: Option<(u32, u32)>,
+    /// Only a window of the picture
+    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
+    pub crop: Option<[u32; 4]>,
+    /// Brighten by powers of two
+    #[arg(long, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure: Option<f32>,
+    /// Tone curve (`bilux list tonemaps`)
+    #[arg(long, value_name = "NAME")]
+    pub tonemap: Option<String>,
+    /// Bits per sample of PNG and PPM
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = ["8", "16"])]
+    pub bits: String,
+    /// How a bare file is seen (`bilux list presets`)
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// The highlight of `cast` and `whitted`: Eq. 1's halfway vector, or section 3.1's reflected one
+    #[arg(long, value_name = "halfway|reflect")]
+    pub specular: Option<String>,
+    /// Local light in `whitted`: off where every light is blocked (paper), or light by light
+    #[arg(long, value_name = "paper|per-light")]
+    pub shadow_rule: Option<String>,
+    /// How `bsp` chooses its planes
+    #[arg(long, value_name = "mean|fuchs")]
+    pub bsp_split: Option<String>,
+    /// What `bsp` keeps together
+    #[arg(long, value_name = "polygons|objects")]
+    pub bsp_group: Option<String>,
+    /// Any other setting (`bilux list settings`)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Write what it took as JSON; counts every node and triangle test, which is slower
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    /// Follow one sample again and say what happened to it
+    #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
+    pub replay: Option<[u32; 3]>,
+}
+
+/// Say what is in a scene.
+#[derive(Args)]
+pub struct Info {
+    /// The scene file
+    pub scene: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Turn a scene or a picture into another format.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  bilux convert pot.asc -o pot.obj\n  bilux convert sky.hdr -o sky.exr")]
+pub struct Convert {
+    /// What to turn
+    pub input: PathBuf,
+    /// Into what, by its extension
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Text in place of binary, where the format has both
+    #[arg(long)]
+    pub ascii: bool,
+}
+
+/// Say how far picture A is from the reference B.
+#[derive(Args)]
+#[command(after_help = "Exit status: 0 within the bounds, 1 beyond them, 2 trouble.\n\n\
+    Example:\n  bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png")]
+pub struct Compare {
+    /// The picture
+    pub picture: PathBuf,
+    /// The reference
+    pub reference: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Most mean FLIP error
+    #[arg(long, value_name = "X")]
+    pub max_flip: Option<f64>,
+    /// Most root mean square error
+    #[arg(long, value_name = "X")]
+    pub max_rmse: Option<f64>,
+    /// Most relative mean square error
+    #[arg(long, value_name = "X")]
+    pub max_relmse: Option<f64>,
+    /// Most error of any sample
+    #[arg(long, value_name = "X")]
+    pub max_error: Option<f64>,
+    /// Least structural similarity
+    #[arg(long, value_name = "X")]
+    pub min_ssim: Option<f64>,
+    /// Least peak signal-to-noise ratio, in dB
+    #[arg(long, value_name = "X")]
+    pub min_psnr: Option<f64>,
+    /// Write a picture of where they differ
+    #[arg(long, value_name = "FILE")]
+    pub heat_map: Option<PathBuf>,
+}
+
+/// Make one of the scenes that we ship.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  bilux generate teapots --set count=5 -o five.toml\n  \
+    bilux generate teapots --from pot.asc --count 3 --offset 4,0,0 -o three.asc")]
+pub struct Generate {
+    /// Which (`bilux list generators`)
+    pub name: String,
+    /// Where to, by its extension
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// How many
+    #[arg(long, value_name = "N")]
+    pub count: Option<u32>,
+    /// From each to the next
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_vector)]
+    pub offset: Option<[f32; 3]>,
+    /// Copies of this file's model in place of our own
+    #[arg(long, value_name = "FILE")]
+    pub from: Option<PathBuf>,
+    /// Any other parameter (`bilux list generators`)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// Join partial films into one picture.
+#[derive(Args)]
+pub struct Merge {
+    /// Partial films, in any order
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// The picture, or with `.exr` a film that can be joined further
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+}
+
+/// List what there is.
+#[derive(Args)]
+pub struct List {
+    /// What: integrators, accels, materials, lights, cameras, formats, …
+    pub what: String,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Measure.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  \
+    bilux bench teapots --counts 2,3,4,5 --accel brute,bsp,bsp-sah,kd,bvh\n  \
+    bilux bench visibility --json\n  \
+    bilux bench paper -o figures.png")]
+pub struct Bench {
+    /// What to measure
+    #[arg(value_enum)]
+    pub kind: BenchKind,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Numbers of teapots
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',')]
+    pub counts: Vec<u32>,
+    /// Accelerators
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub accel: Vec<String>,
+    /// Width and height
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<String>,
+    /// Repeats, of which the median counts
+    #[arg(long, value_name = "N")]
+    pub repeats: Option<u32>,
+    /// The teapots' places: at the paper's fixed offset, or covering equally much of the picture
+    #[arg(long, value_name = "paper|coverage")]
+    pub layout: Option<String>,
+    /// A picture of what was rendered, where there is one
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BenchKind {
+    /// The paper's Figure 1 and section 4.2 anew
+    Paper,
+    /// The paper's Figure 2 anew: teapots by accelerator
+    Teapots,
+    /// Moving scenes: what rebuilding only what moved saves
+    Frames,
+    /// Seeing without rays: painter's, Warnock's, z-buffer, BSP
+    Visibility,
+    /// How fast trees are built, and how large they are
+    Build,
+}
+
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let factor = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" | "B" => 1,
+        "K" | "KB" | "KIB" => 1 << 10,
+        "M" | "MB" | "MIB" => 1 << 20,
+        "G" | "GB" | "GIB" => 1u64 << 30,
+        "T" | "TB" | "TIB" => 1 << 40,
+        other => return Err(format!("'{other}' is no unit of memory: write 512M or 8G")),
+    };
+    let number: f64 = digits.parse().map_err(|_| format!("'{text}' is no size: write 512M or 8G"))?;
+    if number > 0.0 { Ok((number * factor as f64) as u64) } else { Err("has to be more than 0".to_owned()) }
+}
+
+fn parse_frames(text: &str) -> Result<(u32, u32), String> {
+    let (a, b) = text.split_once('-').unwrap_or((text, text));
+    match (a.trim().parse(), b.trim().parse()) {
+        (Ok(a), Ok(b)) if a <= b => Ok((a, b)),
+        _ => Err("frames are written as 0-47, the first before the last".to_owned()),
+    }
+}
+
+fn parse_samples(text: &str) -> Result<(u32, u32), String> {
+    match text.split_once("..").map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
+        Some((Ok(a), Ok(b))) if a < b => Ok((a, b)),
+        _ => Err("samples are written as 0..64, the end not included".to_owned()),
+    }
+}
+
+fn numbers<T: std::str::FromStr, const N: usize>(text: &str, example: &str) -> Result<[T; N], String> {
+    let parsed: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    parsed.and_then(|n| n.try_into().ok()).ok_or_else(|| format!("is written as {example}"))
+}
+
+fn parse_crop(text: &str) -> Result<[u32; 4], String> {
+    numbers(text, "X,Y,WIDTH,HEIGHT")
+}
+
+fn parse_replay(text: &str) -> Result<[u32; 3], String> {
+    numbers(text, "X,Y,SAMPLE")
+}
+
+fn parse_vector(text: &str) -> Result<[f32; 3], String> {
+    numbers(text, "X,Y,Z")
+}

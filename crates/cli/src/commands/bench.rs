@@ -1,0 +1,48 @@
+//! `bilux bench`: measurements.
+
+use super::{DONE, check_folder};
+use crate::arguments::{Bench, BenchKind, Common};
+use crate::output;
+use anyhow::Context;
+use bilux::settings::parse_size;
+use bilux_bench::Options;
+
+pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
+    let defaults = Options::default();
+    let size = match &arguments.size {
+        Some(text) => parse_size(text).context("a size is written as 640x480")?,
+        None => defaults.size,
+    };
+    let options = Options {
+        counts: arguments.counts.clone(),
+        accels: arguments.accel.clone(),
+        size,
+        repeats: arguments.repeats.unwrap_or(defaults.repeats),
+        layout: arguments.layout.clone().unwrap_or(defaults.layout),
+    };
+    if let Some(path) = &arguments.output {
+        check_folder(path)?;
+    }
+    let tell = |what: &str| {
+        if !common.quiet {
+            output::say(format_args!("measuring {what}"));
+        }
+    };
+    let report = match arguments.kind {
+        BenchKind::Paper => bilux_bench::paper::run(&options, &tell)?,
+        BenchKind::Teapots => bilux_bench::teapots::run(&options, &tell)?,
+        BenchKind::Frames => bilux_bench::frames::run(&options, &tell)?,
+        BenchKind::Visibility => bilux_bench::visibility::run(&options, &tell)?,
+        BenchKind::Build => bilux_bench::build::run(&options, &tell)?,
+    };
+    if arguments.json {
+        output::print(serde_json::to_string_pretty(&report.json())?);
+    } else {
+        output::print(report.text.trim_end());
+    }
+    if let Some(path) = &arguments.output {
+        let picture = report.picture.context("this benchmark makes no picture: leave out -o")?;
+        bilux::pictures::write(path, &picture, &Default::default())?;
+    }
+    Ok(DONE)
+}

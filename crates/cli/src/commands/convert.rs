@@ -1,0 +1,34 @@
+//! `bilux convert`: between scene formats, and between picture formats.
+
+use super::{DONE, check_folder, read_options, tell_warnings};
+use crate::arguments::{Common, Convert};
+use anyhow::bail;
+use bilux::formats::WriteOptions;
+use bilux::pictures::Limits;
+use bilux::pictures::formats::format_of_path;
+
+pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
+    let (input, output) = (&arguments.input, &arguments.output);
+    check_folder(output)?;
+    let is_picture = |path| format_of_path(path).is_ok();
+    match (is_picture(input), is_picture(output)) {
+        (true, true) => {
+            let picture = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
+            bilux::pictures::write(output, &picture, &Default::default())?;
+        }
+        (false, false) => {
+            let scene = bilux::load(input, &read_options(common))?;
+            tell_warnings(&scene.warnings, common)?;
+            let options = WriteOptions { ascii: arguments.ascii };
+            let lost = bilux::formats::write(output, &scene, &options)?;
+            tell_warnings(&lost, common)?;
+        }
+        (false, true) => bail!(
+            "{} is a scene and {} a picture: that is what `bilux render` does",
+            input.display(),
+            output.display()
+        ),
+        (true, false) => bail!("{} is a picture, {} a scene", input.display(), output.display()),
+    }
+    Ok(DONE)
+}

@@ -1,0 +1,40 @@
+//! `bilux generate`: the scenes that we ship, made by formula.
+
+use super::{DONE, check_folder, read_options, tell_warnings};
+use crate::arguments::{Common, Generate};
+use crate::settings_from::{assignment_of, from_flag};
+use bilux::formats::WriteOptions;
+use bilux::math::Vec3;
+use bilux::scene::{Spec, Value};
+
+pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
+    check_folder(&arguments.output)?;
+    let scene = match &arguments.from {
+        Some(file) => {
+            let model = bilux::load(file, &read_options(common))?;
+            let offset = arguments.offset.map_or(Vec3::X, Vec3::from);
+            bilux::scene::generators::copies(&model, arguments.count.unwrap_or(1), offset)
+        }
+        None => bilux::generate(&spec(arguments)?)?,
+    };
+    tell_warnings(&scene.warnings, common)?;
+    let lost = bilux::formats::write(&arguments.output, &scene, &WriteOptions::default())?;
+    tell_warnings(&lost, common)?;
+    Ok(DONE)
+}
+
+fn spec(arguments: &Generate) -> anyhow::Result<Spec> {
+    let mut spec = Spec::new("", &arguments.name);
+    spec.span = from_flag("generate");
+    if let Some(count) = arguments.count {
+        spec.parameters.set_at("count", Value::Integer(i64::from(count)), from_flag("--count"));
+    }
+    if let Some(offset) = arguments.offset {
+        spec.parameters.set_at("offset", Value::triple(offset), from_flag("--offset"));
+    }
+    for assignment in &arguments.set {
+        let (key, value) = assignment_of(assignment)?;
+        spec.parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
+    }
+    Ok(spec)
+}

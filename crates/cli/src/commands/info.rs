@@ -1,0 +1,93 @@
+//! `bilux info`: what is in a scene.
+
+use super::{DONE, read_options, tell_warnings};
+use crate::arguments::{Common, Info};
+use crate::output;
+use bilux::scene::SceneBuilder;
+use serde_json::json;
+
+pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
+    let scene = bilux::load(&arguments.scene, &read_options(common))?;
+    if arguments.json {
+        output::print(serde_json::to_string_pretty(&as_json(&scene))?);
+    } else {
+        output::print(as_text(&scene));
+        tell_warnings(&scene.warnings, common)?;
+    }
+    Ok(DONE)
+}
+
+/// Meshes that several objects share are counted once.
+fn meshes(scene: &SceneBuilder) -> Vec<&bilux::scene::Mesh> {
+    let mut seen: Vec<*const bilux::scene::Mesh> = Vec::new();
+    let new = |mesh: &std::sync::Arc<bilux::scene::Mesh>| {
+        let pointer = std::sync::Arc::as_ptr(mesh);
+        let is_new = !seen.contains(&pointer);
+        seen.push(pointer);
+        is_new
+    };
+    let mut new = new;
+    scene.objects.iter().map(|o| &o.mesh).filter(|mesh| new(mesh)).map(|mesh| &**mesh).collect()
+}
+
+fn as_json(scene: &SceneBuilder) -> serde_json::Value {
+    let bounds = scene.bounds(0.0);
+    let own = meshes(scene);
+    json!({
+        "meshes": own.len(),
+        "vertices": own.iter().map(|m| m.positions.len()).sum::<usize>(),
+        "triangles": scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
+        "instances": scene.objects.iter().filter(|o| o.instanced).count(),
+        "moving": scene.objects.iter().filter(|o| !o.motion.is_still()).count(),
+        "bounds": if bounds.is_empty() { json!(null) } else {
+            json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })
+        },
+        "objects": scene.objects.iter().map(|o| json!({
+            "name": o.name, "triangles": o.mesh.triangles.len(), "material": o.material,
+            "normals": !o.mesh.normals.is_empty(), "uvs": !o.mesh.uvs.is_empty(),
+            "vertex_colours": !o.mesh.vertex_kd.is_empty(),
+        })).collect::<Vec<_>>(),
+        "materials": scene.materials.iter().map(|m| json!({ "name": m.name, "kind": m.kind })).collect::<Vec<_>>(),
+        "textures": scene.textures.iter().map(|t| json!({
+            "name": t.name, "width": t.width, "height": t.height,
+        })).collect::<Vec<_>>(),
+        "lights": scene.lights.iter().map(|l| json!({ "name": l.name, "kind": l.kind })).collect::<Vec<_>>(),
+        "cameras": scene.cameras.iter().map(|c| json!({
+            "name": c.spec.name, "kind": c.spec.kind, "keyframes": c.keyframes.len(),
+        })).collect::<Vec<_>>(),
+        "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    })
+}
+
+fn as_text(scene: &SceneBuilder) -> String {
+    let bounds = scene.bounds(0.0);
+    let own = meshes(scene);
+    let names = |names: Vec<String>| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let spec = |s: &bilux::scene::Spec| {
+        if s.name.is_empty() { s.kind.clone() } else { format!("{} ({})", s.name, s.kind) }
+    };
+    let size = bounds.extent();
+    format!(
+        "triangles  {} in {} objects ({} meshes with {} vertices; {} instanced, {} moving)\n\
+         bounds     {:?} to {:?}, {} x {} x {} m\n\
+         materials  {}\n\
+         textures   {}\n\
+         lights     {}\n\
+         cameras    {}",
+        scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
+        scene.objects.len(),
+        own.len(),
+        own.iter().map(|m| m.positions.len()).sum::<usize>(),
+        scene.objects.iter().filter(|o| o.instanced).count(),
+        scene.objects.iter().filter(|o| !o.motion.is_still()).count(),
+        bounds.min.to_array(),
+        bounds.max.to_array(),
+        size.x,
+        size.y,
+        size.z,
+        names(scene.materials.iter().map(spec).collect()),
+        names(scene.textures.iter().map(|t| format!("{} ({}x{})", t.name, t.width, t.height)).collect()),
+        names(scene.lights.iter().map(spec).collect()),
+        names(scene.cameras.iter().map(|c| spec(&c.spec)).collect()),
+    )
+}

@@ -1,0 +1,140 @@
+//! `bilux list`: every table, as people or programs read it.
+
+use super::DONE;
+use crate::arguments::List;
+use crate::output;
+use anyhow::bail;
+use bilux::math::registry::{Entry, Parameter, ParameterKind};
+use serde_json::json;
+
+/// A table: what people call it, what it holds, and its rows.
+struct Table {
+    name: &'static str,
+    summary: &'static str,
+    rows: fn() -> Vec<Entry>,
+}
+
+macro_rules! rows {
+    ($table:expr) => {
+        || $table.iter().map(|row| row.entry).collect()
+    };
+}
+
+/// Every table that there is.
+const TABLES: &[Table] = &[
+    Table {
+        name: "integrators",
+        summary: "how light is followed",
+        rows: rows!(bilux::transport::integrators::INTEGRATORS),
+    },
+    Table {
+        name: "accels",
+        summary: "what finds the triangles that rays hit",
+        rows: rows!(bilux::accel::ACCELERATORS),
+    },
+    Table {
+        name: "visibility",
+        summary: "seeing without rays",
+        rows: rows!(bilux::accel::visibility::VISIBILITY),
+    },
+    Table {
+        name: "materials",
+        summary: "what surfaces are made of",
+        rows: rows!(bilux::scene::materials::MATERIALS),
+    },
+    Table { name: "bsdfs", summary: "how surfaces scatter light", rows: rows!(bilux::scene::bsdf::BSDFS) },
+    Table { name: "lights", summary: "where light comes from", rows: rows!(bilux::scene::lights::LIGHTS) },
+    Table {
+        name: "cameras",
+        summary: "where pictures are seen from",
+        rows: rows!(bilux::scene::cameras::CAMERAS),
+    },
+    Table {
+        name: "generators",
+        summary: "scenes that we ship",
+        rows: rows!(bilux::scene::generators::GENERATORS),
+    },
+    Table { name: "presets", summary: "how bare files are seen", rows: rows!(bilux::presets::PRESETS) },
+    Table { name: "formats", summary: "scene files", rows: rows!(bilux::formats::SCENE_FORMATS) },
+    Table {
+        name: "picture-formats",
+        summary: "picture files",
+        rows: rows!(bilux::pictures::formats::PICTURE_FORMATS),
+    },
+    Table {
+        name: "tonemaps",
+        summary: "curves for pictures for a display",
+        rows: rows!(bilux::pictures::tonemap::TONEMAPS),
+    },
+    Table {
+        name: "filters",
+        summary: "how samples are spread over a pixel",
+        rows: rows!(bilux::transport::filters::FILTERS),
+    },
+    Table {
+        name: "metrics",
+        summary: "how pictures are compared",
+        rows: rows!(bilux::pictures::metrics::METRICS),
+    },
+    Table {
+        name: "settings",
+        summary: "what [render] and --set understand",
+        rows: || vec![bilux::settings::RENDER],
+    },
+];
+
+pub fn run(arguments: &List) -> anyhow::Result<u8> {
+    let Some(table) = TABLES.iter().find(|table| table.name == arguments.what) else {
+        let names: Vec<String> = TABLES.iter().map(|table| table.name.to_owned()).collect();
+        let hint = match bilux::scene::error::nearest_name(&arguments.what, &names) {
+            Some(name) => format!("did you mean '{name}'?"),
+            None => format!("there are: {}", names.join(", ")),
+        };
+        bail!("there is no list '{}'; {hint}", arguments.what);
+    };
+    let rows = (table.rows)();
+    if arguments.json {
+        let rows: Vec<_> = rows.iter().map(row_json).collect();
+        output::print(serde_json::to_string_pretty(&json!({ table.name: rows }))?);
+    } else {
+        output::print(format_args!("{}: {}\n", table.name, table.summary));
+        rows.iter().for_each(|row| output::print(row_text(row)));
+    }
+    Ok(DONE)
+}
+
+fn row_text(row: &Entry) -> String {
+    let source = if row.source.is_empty() { String::new() } else { format!(" [{}]", row.source) };
+    let mut text = format!("  {:<14} {}{source}", row.name, row.summary);
+    for p in row.parameters {
+        let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
+        let default = if p.default.is_empty() { "needed".to_owned() } else { format!("= {}", p.default) };
+        text += &format!("\n      {:<18} {} ({}{unit}) {default}", p.name, p.summary, kind_text(p.kind));
+    }
+    text
+}
+
+fn kind_text(kind: ParameterKind) -> String {
+    match kind {
+        ParameterKind::Bool => "true or false".to_owned(),
+        ParameterKind::Integer { min, max } => format!("{min}..={max}"),
+        ParameterKind::Number { min, max } => format!("{min}..={max}"),
+        ParameterKind::Colour { min, max } => format!("colour {min}..={max}"),
+        ParameterKind::ColourTexture { min, max } => format!("colour {min}..={max}, or a texture"),
+        ParameterKind::Vector => "x, y, z".to_owned(),
+        ParameterKind::Choice(words) => words.join("|"),
+        ParameterKind::Text => "text".to_owned(),
+    }
+}
+
+fn row_json(row: &Entry) -> serde_json::Value {
+    let parameters: Vec<_> = row.parameters.iter().map(parameter_json).collect();
+    json!({ "name": row.name, "summary": row.summary, "source": row.source, "parameters": parameters })
+}
+
+fn parameter_json(p: &Parameter) -> serde_json::Value {
+    json!({
+        "name": p.name, "summary": p.summary, "unit": p.unit,
+        "values": kind_text(p.kind), "default": p.default,
+    })
+}

@@ -1,0 +1,230 @@
+//! `bilux render`: pictures from scenes.
+
+use super::{DONE, check_folder, read_options, tell_warnings};
+use crate::arguments::{Common, Render};
+use crate::interrupt::Interrupt;
+use crate::progress::Report;
+use crate::{output, settings_from};
+use anyhow::{Context, bail};
+use bilux::pictures::formats::{BitDepth, format_of_path};
+use bilux::scene::{Parameters, SceneBuilder};
+use bilux::transport::Window;
+use bilux::{Job, Outcome};
+use serde_json::json;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
+    let interrupt = Interrupt::listen()?;
+    let user = settings_from::render(arguments)?;
+    let targets = targets(arguments)?;
+    for (scene, output) in &targets {
+        let status = render_one(scene, output, &user, arguments, common, &interrupt)
+            .with_context(|| scene.display().to_string())?;
+        if status != DONE {
+            return Ok(status);
+        }
+    }
+    Ok(DONE)
+}
+
+/// Every scene with its picture's name, found wrong before anything is rendered.
+fn targets(arguments: &Render) -> anyhow::Result<Vec<(PathBuf, PathBuf)>> {
+    let pattern = arguments.output.to_string_lossy();
+    if arguments.scenes.len() > 1 && !pattern.contains("{stem}") {
+        bail!("one picture for {} scenes: write -o '{{stem}}.png'", arguments.scenes.len());
+    }
+    let mut targets = Vec::new();
+    for scene in &arguments.scenes {
+        let stem = scene.file_stem().map_or("stdin".into(), |s| s.to_string_lossy());
+        let output = PathBuf::from(pattern.replace("{stem}", &stem));
+        if !is_stdout(&output) {
+            check_folder(&output)?;
+            let format = format_of_path(&output)?;
+            if format.write.is_none() {
+                bail!("{}: {} pictures can be read, but not written", output.display(), format.entry.name);
+            }
+            if arguments.samples.is_some() && format.entry.name != "exr" {
+                bail!("{}: a part of the samples needs an .exr, which can hold exact sums", output.display());
+            }
+        }
+        if targets.iter().any(|(_, other)| *other == output) && !is_stdout(&output) {
+            bail!("{}: two scenes would be written there", output.display());
+        }
+        targets.push((scene.clone(), output));
+    }
+    Ok(targets)
+}
+
+fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+fn read_scene(path: &Path, arguments: &Render, common: &Common) -> anyhow::Result<SceneBuilder> {
+    let options = read_options(common);
+    let mut scene = if is_stdout(path) {
+        let format = arguments
+            .input_format
+            .as_deref()
+            .context("say what comes from standard input: --input-format toml (see `bilux list formats`)")?;
+        let mut bytes = Vec::new();
+        std::io::stdin().take(common.max_memory).read_to_end(&mut bytes)?;
+        bilux::formats::read_bytes(&bytes, format, Some(Path::new(".")), "standard input", &options)?
+    } else {
+        bilux::load(path, &options)?
+    };
+    if let Some(preset) = &arguments.preset {
+        bilux::presets::apply(preset, &mut scene)?;
+    }
+    Ok(scene)
+}
+
+fn render_one(
+    path: &Path,
+    output: &Path,
+    user: &Parameters,
+    arguments: &Render,
+    common: &Common,
+    interrupt: &Interrupt,
+) -> anyhow::Result<u8> {
+    let scene = read_scene(path, arguments, common)?;
+    tell_warnings(&scene.warnings, common)?;
+    let begun = Instant::now();
+    let mut job = Job::new(&scene, user)?;
+    let build_seconds = begun.elapsed().as_secs_f64();
+    if let Some((from, to)) = arguments.samples {
+        job.samples(from..to);
+    }
+    if let Some([x, y, width, height]) = arguments.crop {
+        job.crop(Window { x, y, width, height });
+    }
+    if arguments.stats.is_some() {
+        job.count_work();
+    }
+    if let Some([x, y, sample]) = arguments.replay {
+        output::print(job.replay(x, y, sample)?);
+        return Ok(DONE);
+    }
+    let Some((first, last)) = arguments.frames else {
+        return finish(&job, output, path, build_seconds, arguments, common, interrupt);
+    };
+    for frame in first..=last {
+        job.at_time(frame as f32 / job.settings().fps);
+        let output = frame_path(output, frame);
+        let status = finish(&job, &output, path, build_seconds, arguments, common, interrupt)?;
+        if status != DONE {
+            return Ok(status);
+        }
+    }
+    Ok(DONE)
+}
+
+/// `{frame}` filled in with four digits; put before the extension where it is missing.
+fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
+    let text = pattern.to_string_lossy();
+    if text.contains("{frame}") {
+        return PathBuf::from(text.replace("{frame}", &format!("{frame:04}")));
+    }
+    let stem = pattern.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = pattern.extension().unwrap_or_default().to_string_lossy();
+    pattern.with_file_name(format!("{stem}-{frame:04}.{extension}"))
+}
+
+fn finish(
+    job: &Job,
+    output: &Path,
+    scene: &Path,
+    build_seconds: f64,
+    arguments: &Render,
+    common: &Common,
+    interrupt: &Interrupt,
+) -> anyhow::Result<u8> {
+    let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
+    let report = Report::new(&label, job.sample_count(), common, interrupt.clone());
+    let outcome = job.render(&report)?;
+    let seconds = report.finish();
+    write(job, &outcome, output, arguments)?;
+    tell_odd_samples(&outcome);
+    if let Some(path) = &arguments.stats {
+        let stats = stats(job, &outcome, scene, build_seconds, seconds);
+        let text = serde_json::to_string_pretty(&stats)?;
+        bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
+    }
+    if !common.quiet {
+        let s = job.settings();
+        output::say(format_args!(
+            "{}: {}x{}, {} by {}, {:.2} s after {build_seconds:.2} s of building, {:.2} Mrays/s{}",
+            output.display(),
+            s.width,
+            s.height,
+            s.integrator.entry.name,
+            s.accel.name,
+            seconds,
+            outcome.counters.rays as f64 / seconds.max(1e-9) / 1e6,
+            if outcome.cancelled { "; interrupted: this is what there is" } else { "" },
+        ));
+    }
+    Ok(if outcome.cancelled { interrupt.exit_status() } else { DONE })
+}
+
+/// A part of a picture goes into an `.exr` with its exact sums; anything else is the picture.
+fn write(job: &Job, outcome: &Outcome, output: &Path, arguments: &Render) -> anyhow::Result<()> {
+    let mut options = job.write_options()?;
+    if arguments.bits == "16" {
+        options.bit_depth = BitDepth::Sixteen;
+    }
+    if is_stdout(output) {
+        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &outcome.picture()?, &options)?);
+        return Ok(());
+    }
+    let is_part = arguments.samples.is_some() || arguments.crop.is_some() || outcome.cancelled;
+    let is_exr = format_of_path(output)?.entry.name == "exr";
+    let picture = if is_part && is_exr { job.partial(outcome)? } else { outcome.picture()? };
+    Ok(bilux::pictures::write(output, &picture, &options)?)
+}
+
+/// Samples that are no number are counted and located, never hidden.
+fn tell_odd_samples(outcome: &Outcome) {
+    let trouble = outcome.film.trouble();
+    if let Some(first) = trouble.first_non_finite {
+        output::warning(format_args!(
+            "{} samples were not finite and are left out; see the first with --replay {},{},{}",
+            trouble.non_finite, first.x, first.y, first.sample
+        ));
+    }
+    if let Some(first) = trouble.first_overflowed {
+        output::warning(format_args!(
+            "{} samples were brighter than the film can hold; see the first with --replay {},{},{}",
+            trouble.overflowed, first.x, first.y, first.sample
+        ));
+    }
+}
+
+fn stats(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds: f64) -> serde_json::Value {
+    let (s, c) = (job.settings(), &outcome.counters);
+    let trees: Vec<_> = job
+        .scene()
+        .geometry()
+        .instances()
+        .iter()
+        .take(1)
+        .map(|instance| {
+            let shape = instance.accelerator.shape();
+            json!({
+                "nodes": shape.nodes, "leaves": shape.leaves, "references": shape.references,
+                "depth": shape.depth, "imbalance": shape.imbalance(), "leaf_sizes": shape.leaf_sizes,
+                "memory_bytes": instance.accelerator.memory_bytes(),
+            })
+        })
+        .collect();
+    json!({
+        "scene": scene.to_string_lossy(), "integrator": s.integrator.entry.name, "accel": s.accel.name,
+        "width": s.width, "height": s.height, "spp": s.spp, "seed": s.seed,
+        "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
+        "triangle_tests": c.triangles, "early_outs": c.early_outs,
+        "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
+        "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
+        "tree": trees.first(),
+    })
+}

@@ -1,0 +1,43 @@
+//! What is said: results on standard output, everything else on standard error.
+
+use std::fmt::Display;
+use std::io::{IsTerminal, Write};
+
+/// Prints a result and a line's end. A reader that has gone away ends the program quietly.
+pub fn print(text: impl Display) {
+    if writeln!(std::io::stdout(), "{text}").is_err() {
+        std::process::exit(0);
+    }
+}
+
+/// Writes bytes to standard output, under the same rule.
+pub fn print_bytes(bytes: &[u8]) {
+    let mut stdout = std::io::stdout().lock();
+    if stdout.write_all(bytes).and_then(|()| stdout.flush()).is_err() {
+        std::process::exit(0);
+    }
+}
+
+/// Says something on standard error.
+pub fn say(text: impl Display) {
+    // Where standard error is closed there is nobody to tell.
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Says what is odd, but does not stop the work.
+pub fn warning(text: impl Display) {
+    say(format_args!("{}: {text}", painted("warning", "33")));
+}
+
+/// Says why the work failed.
+pub fn error(error: &anyhow::Error) {
+    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+    say(format_args!("{}: {}", painted("error", "31"), causes.join(": ")));
+}
+
+/// Bold and coloured on a terminal, unless `NO_COLOR` is set.
+fn painted(word: &str, colour: &str) -> String {
+    let plain =
+        std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty()) || !std::io::stderr().is_terminal();
+    if plain { word.to_owned() } else { format!("\x1b[1;{colour}m{word}\x1b[0m") }
+}

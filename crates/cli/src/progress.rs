@@ -1,0 +1,104 @@
+//! How far the work is: a bar on a terminal, a line every few seconds elsewhere.
+
+use crate::arguments::{Common, ProgressStyle};
+use crate::interrupt::Interrupt;
+use crate::output;
+use bilux::transport::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle as BarStyle};
+use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Shows samples done, rays a second and the time left.
+pub struct Report {
+    interrupt: Interrupt,
+    bar: Option<ProgressBar>,
+    lines: bool,
+    label: String,
+    total: u64,
+    samples: AtomicU64,
+    rays: AtomicU64,
+    begun: Instant,
+    last_line: Mutex<Instant>,
+}
+
+/// Between two lines where there is no terminal.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+impl Report {
+    /// A report on `total` samples of what `label` names.
+    pub fn new(label: &str, total: u64, common: &Common, interrupt: Interrupt) -> Report {
+        let terminal = std::io::stderr().is_terminal();
+        let style = match common.progress {
+            _ if common.quiet => ProgressStyle::None,
+            ProgressStyle::Auto if terminal => ProgressStyle::Bar,
+            ProgressStyle::Auto => ProgressStyle::Lines,
+            chosen => chosen,
+        };
+        let bar = (style == ProgressStyle::Bar).then(|| {
+            let template = "{prefix} [{bar:32}] {percent:>3}%  {msg}  {eta} left";
+            let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
+            bar.set_style(BarStyle::with_template(template).unwrap_or_else(|_| BarStyle::default_bar()));
+            bar.set_prefix(label.to_owned());
+            bar
+        });
+        let now = Instant::now();
+        Report {
+            interrupt,
+            bar,
+            lines: style == ProgressStyle::Lines,
+            label: label.to_owned(),
+            total,
+            samples: AtomicU64::new(0),
+            rays: AtomicU64::new(0),
+            begun: now,
+            last_line: Mutex::new(now),
+        }
+    }
+
+    /// Takes the bar away and gives the seconds that went by.
+    pub fn finish(&self) -> f64 {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+        self.begun.elapsed().as_secs_f64()
+    }
+
+    fn rate(&self) -> f64 {
+        self.rays.load(Ordering::Relaxed) as f64 / self.begun.elapsed().as_secs_f64().max(1e-9)
+    }
+
+    fn line(&self, samples: u64) {
+        let Ok(mut last) = self.last_line.try_lock() else { return };
+        if last.elapsed() < LINE_EVERY {
+            return;
+        }
+        *last = Instant::now();
+        let share = samples as f64 / self.total.max(1) as f64;
+        let left = self.begun.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-9);
+        output::say(format_args!(
+            "{}: {:.0}%, {:.2} Mrays/s, {left:.0} s left",
+            self.label,
+            share * 100.0,
+            self.rate() / 1e6
+        ));
+    }
+}
+
+impl Progress for Report {
+    fn advance(&self, samples: u64, rays: u64) {
+        let samples = self.samples.fetch_add(samples, Ordering::Relaxed) + samples;
+        self.rays.fetch_add(rays, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            bar.set_position(samples);
+            bar.set_message(format!("{:.2} Mrays/s", self.rate() / 1e6));
+        } else if self.lines {
+            self.line(samples);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.interrupt.is_requested()
+    }
+}

@@ -1,0 +1,84 @@
+//! Flags and `--set KEY=VALUE` as the parameters that scene files use too.
+
+use crate::arguments::Render;
+use anyhow::{Context, bail};
+use bilux::scene::{Parameters, Span, Value};
+
+/// What the command line says about a render.
+pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
+    let a = arguments;
+    let text = |t: &Option<String>| t.clone().map(Value::Text);
+    let whole = |n: Option<u64>| n.map(|n| Value::Integer(i64::try_from(n).unwrap_or(i64::MAX)));
+    let number = |n: Option<f32>| n.map(Value::from);
+    let flags = [
+        ("integrator", "--integrator", text(&a.integrator)),
+        ("accel", "--accel", text(&a.accel)),
+        ("size", "--size", text(&a.size)),
+        ("spp", "--spp", whole(a.spp.map(u64::from))),
+        ("seed", "--seed", whole(a.seed)),
+        ("threads", "--threads", whole(a.threads.map(u64::from))),
+        ("max_depth", "--max-depth", whole(a.max_depth.map(u64::from))),
+        ("camera", "--camera", text(&a.camera)),
+        ("time", "--at", number(a.at)),
+        ("exposure", "--exposure", number(a.exposure)),
+        ("tonemap", "--tonemap", text(&a.tonemap)),
+        ("specular", "--specular", text(&a.specular)),
+        ("shadow_rule", "--shadow-rule", text(&a.shadow_rule)),
+        ("bsp_split", "--bsp-split", text(&a.bsp_split)),
+        ("bsp_group", "--bsp-group", text(&a.bsp_group)),
+    ];
+    let mut parameters = Parameters::default();
+    for (key, flag, value) in flags {
+        if let Some(value) = value {
+            parameters.set_at(key, value, from_flag(flag));
+        }
+    }
+    for assignment in &a.set {
+        let (key, value) = assignment_of(assignment)?;
+        parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
+    }
+    if a.spp == Some(0) {
+        bail!("--spp has to be at least 1");
+    }
+    Ok(parameters)
+}
+
+/// `KEY=VALUE` with the value as scene files would have it: true, 3, 0.5, `1,2,3` or text.
+pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
+    let (key, value) = assignment
+        .split_once('=')
+        .with_context(|| format!("'{assignment}' is to be written as KEY=VALUE"))?;
+    let parts: Vec<&str> = value.trim_matches(['[', ']']).split(',').map(str::trim).collect();
+    let value = match parts.as_slice() {
+        [one] => scalar(one),
+        many => {
+            let values: Vec<Value> = many.iter().map(|part| scalar(part)).collect();
+            if values.iter().any(|v| matches!(v, Value::Text(_))) {
+                Value::Text(value.to_owned())
+            } else {
+                Value::List(values)
+            }
+        }
+    };
+    Ok((key.trim().to_owned(), value))
+}
+
+fn scalar(text: &str) -> Value {
+    match text {
+        "true" => return Value::Bool(true),
+        "false" => return Value::Bool(false),
+        _ => {}
+    }
+    if let Ok(i) = text.parse() {
+        return Value::Integer(i);
+    }
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() => Value::Number(x),
+        _ => Value::Text(text.to_owned()),
+    }
+}
+
+/// Where a value came from, as messages name it.
+pub fn from_flag(flag: &str) -> Span {
+    Span { file: flag.into(), line: 0, column: 0 }
+}
