@@ -1,4 +1,28 @@
 //! Pictures with named channels: PNG, EXR, HDR, PFM, PPM, tone mapping and error metrics.
+//!
+//! ```
+//! use bilux_math::Rgb;
+//! use bilux_pictures::{Picture, WriteOptions, compare, read, tone_map, write};
+//!
+//! # fn main() -> Result<(), bilux_pictures::PictureError> {
+//! # let folder = tempfile::tempdir().unwrap();
+//! # let path = |name: &str| folder.path().join(name);
+//! let mut picture = Picture::from_rgb(2, 1, vec![Rgb::new(4.0, 1.0, 0.25), Rgb::grey(0.5)])?;
+//! picture.push_channel("depth.Z", vec![3.5, 7.0])?;
+//! write(path("light.exr"), &picture, &WriteOptions::default())?;
+//! let shown = WriteOptions { exposure: -1.0, tone_map: tone_map("aces")?, ..WriteOptions::default() };
+//! write(path("seen.png"), &picture, &shown)?;
+//!
+//! let again = read(path("light.exr"))?;
+//! assert_eq!(again.channel("depth.Z"), Some(&[3.5, 7.0][..]));
+//! assert_eq!(compare(&again, &picture)?.value("rmse"), Some(0.0));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Readers keep samples as they are in the file and say what they mean; [`Picture::into_linear`] gives
+//! light. Files come from strangers: readers allocate within [`Limits`] and answer any bytes with a
+//! picture or an error. The same picture and options always give the same bytes.
 
 mod error;
 mod font;

@@ -1,6 +1,7 @@
 //! OpenEXR: any number of named planes of halves, floats or integers, and texts. [OpenEXR]
 
 use super::guard::guarded;
+use super::primaries::to_rec709;
 use super::{PictureFormatEntry, exr_write};
 use crate::limits::zeroed;
 use crate::{Limits, Picture, PictureError};
@@ -38,6 +39,7 @@ const MOST_CHANNELS: usize = 4096;
 
 /// The picture is what the display window shows: beyond a part's data window it is zero. Where there are
 /// several parts, their names go in front of their channels', but for the first one with plain colours.
+/// Colours of other primaries are taken to Rec. 709; all other samples stay as they are.
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(explain)?;
     let mut frame = Frame::new(reader.meta_data(), limits)?;
@@ -92,7 +94,8 @@ impl Frame {
             return Err(unsupported(format!("a picture of {channels} channels"), "save fewer of them"));
         }
         let pixels = limits.check(FORMAT, width, height, 4 * channels as u64)?;
-        meta.headers.iter().try_for_each(|header| check_header(header, limits))?;
+        let left = Limits::new(limits.max_bytes - 4 * (pixels * channels) as u64);
+        meta.headers.iter().try_for_each(|header| check_header(header, &left))?;
         let main = meta.headers.iter().position(|header| {
             let plain = |name: &str| {
                 header.channels.list.iter().any(|channel| channel.name.as_slice() == name.as_bytes())
@@ -174,6 +177,11 @@ impl Frame {
                 }
                 Samples::Integers(samples) => picture.push_integer_plane(plane.name, samples)?,
             }
+        }
+        let colours = meta.headers.iter().find_map(|header| header.shared_attributes.chromaticities);
+        if let Some(c) = colours {
+            let primaries = [c.red, c.green, c.blue, c.white].map(|Vec2(x, y)| [x, y].map(f64::from));
+            to_rec709(&mut picture, primaries);
         }
         for header in &meta.headers {
             for (name, value) in header.all_named_attributes() {

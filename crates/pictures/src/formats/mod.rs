@@ -9,6 +9,7 @@ mod jpeg;
 mod pfm;
 mod png;
 mod pnm;
+mod primaries;
 mod tokens;
 
 pub use disk::write_atomically;

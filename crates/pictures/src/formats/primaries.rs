@@ -1,0 +1,127 @@
+//! Linear colours of other primaries (an EXR's `chromaticities`) taken to Rec. 709.
+
+use crate::Picture;
+use crate::picture::qualified;
+
+/// Chromaticities x, y of red, green, blue and white.
+pub(super) type Primaries = [[f64; 2]; 4];
+
+/// Rec. 709 with D65: what a file without chromaticities means.
+const REC709: Primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
+
+/// Differences below this are roundings of the same primaries.
+const SAME: f64 = 1e-3;
+
+type Matrix = [[f64; 3]; 3];
+
+/// Converts the colours of the main picture and of all layers. Primaries on one line, which span no
+/// colours, leave the picture as it is.
+pub(super) fn to_rec709(picture: &mut Picture, from: Primaries) {
+    let differs = from.iter().zip(REC709).any(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > SAME);
+    let Some(matrix) = matrix_to_rec709(from).filter(|_| differs) else { return };
+    let layers: Vec<String> =
+        picture.layers().into_iter().map(str::to_owned).chain([String::new()]).collect();
+    for layer in layers {
+        let names = ["R", "G", "B"].map(|component| qualified(&layer, component));
+        let Some([r, g, b]) = planes(picture, &names) else { continue };
+        for (name, row) in names.iter().zip(matrix) {
+            let samples = picture.channel_mut(name).unwrap_or_default();
+            for (i, sample) in samples.iter_mut().enumerate() {
+                let [r, g, b] = [r[i], g[i], b[i]].map(f64::from);
+                *sample = (row[0] * r + row[1] * g + row[2] * b) as f32;
+            }
+        }
+    }
+}
+
+fn planes(picture: &Picture, names: &[String; 3]) -> Option<[Vec<f32>; 3]> {
+    let [r, g, b] = names.each_ref().map(|name| picture.channel(name).map(<[f32]>::to_vec));
+    Some([r?, g?, b?])
+}
+
+/// From linear colours of these primaries to linear Rec. 709, white to white. [Lindbloom RGB]
+fn matrix_to_rec709(from: Primaries) -> Option<Matrix> {
+    let to_xyz = xyz_from_rgb(from)?;
+    let adapted = multiply(&adaptation(from[3], REC709[3])?, &to_xyz);
+    let matrix = multiply(&inverse(&xyz_from_rgb(REC709)?)?, &adapted);
+    matrix.as_flattened().iter().all(|m| m.is_finite()).then_some(matrix)
+}
+
+fn xyz([x, y]: [f64; 2]) -> [f64; 3] {
+    [x / y, 1.0, (1.0 - x - y) / y]
+}
+
+/// The columns are the primaries, scaled so that they sum up to white.
+fn xyz_from_rgb(primaries: Primaries) -> Option<Matrix> {
+    let [r, g, b, white] = primaries.map(xyz);
+    let columns = [0, 1, 2].map(|row: usize| [r[row], g[row], b[row]]);
+    let scales = apply(&inverse(&columns)?, white);
+    Some(columns.map(|row| [row[0] * scales[0], row[1] * scales[1], row[2] * scales[2]]))
+}
+
+/// Responses of the cones, sharpened: Bradford's matrix. [Lindbloom RGB]
+const BRADFORD: Matrix = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+
+/// What XYZ under one white becomes under another.
+fn adaptation(from: [f64; 2], to: [f64; 2]) -> Option<Matrix> {
+    let [from, to] = [from, to].map(|white| apply(&BRADFORD, xyz(white)));
+    let scaled = [0, 1, 2].map(|row: usize| BRADFORD[row].map(|m| m * to[row] / from[row]));
+    Some(multiply(&inverse(&BRADFORD)?, &scaled))
+}
+
+fn apply(matrix: &Matrix, v: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+}
+
+fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
+    a.map(|row| [0, 1, 2].map(|column: usize| (0..3).map(|k| row[k] * b[k][column]).sum()))
+}
+
+/// By cofactors; `None` where there is none.
+fn inverse(m: &Matrix) -> Option<Matrix> {
+    let cofactor = |row: usize, column: usize| {
+        let at = |i: usize, j: usize| m[(row + i) % 3][(column + j) % 3];
+        at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)
+    };
+    let determinant: f64 = (0..3).map(|column| m[0][column] * cofactor(0, column)).sum();
+    let regular = determinant.is_normal();
+    regular.then(|| [0, 1, 2].map(|row| [0, 1, 2].map(|column| cofactor(column, row) / determinant)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::Rgb;
+
+    const ACES_CG: Primaries = [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044], [0.32168, 0.33767]];
+
+    /// The matrix that the ACES documents give for ACEScg to Rec. 709 with Bradford's adaptation.
+    #[test]
+    fn acescg_has_its_published_matrix() {
+        let published =
+            [[1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297]];
+        let matrix = matrix_to_rec709(ACES_CG).unwrap();
+        for (ours, theirs) in matrix.as_flattened().iter().zip(published.as_flattened()) {
+            assert!((ours - theirs).abs() < 2e-5, "{matrix:?}");
+        }
+    }
+
+    #[test]
+    fn white_stays_white_in_every_layer() {
+        let mut picture = Picture::from_rgb(1, 1, vec![Rgb::WHITE]).unwrap();
+        picture.push_rgb("albedo", &[Rgb::new(0.5, 0.25, 0.125)]).unwrap();
+        to_rec709(&mut picture, ACES_CG);
+        assert!((0..3).all(|c| (picture.rgb(0, 0)[c] - 1.0).abs() < 1e-6));
+        assert!((picture.channel("albedo.R").unwrap()[0] - 0.68667).abs() < 1e-4);
+    }
+
+    #[test]
+    fn nonsense_changes_nothing() {
+        let picture = Picture::from_rgb(1, 1, vec![Rgb::new(0.1, 0.2, 0.3)]).unwrap();
+        for primaries in [[[0.0; 2]; 4], [[0.3, 0.3]; 4], [[f64::NAN; 2]; 4], REC709] {
+            let mut changed = picture.clone();
+            to_rec709(&mut changed, primaries);
+            assert_eq!(changed, picture);
+        }
+    }
+}
