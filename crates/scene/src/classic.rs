@@ -60,4 +60,6 @@ pub struct ClassicLight {
     pub position: Option<Vec3>,
     /// Factor on the light's colour, 0..=1: a spot's cone.
     pub strength: f32,
+    /// As [`crate::LightSample::clearance`].
+    pub clearance: f32,
 }

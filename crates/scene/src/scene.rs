@@ -212,8 +212,11 @@ impl<'s> Tracer<'s> {
     /// True when something that gives no light itself is between a ray's ends: in the classic modes the
     /// surface of a lamp does not shade.
     pub fn blocked(&mut self, ray: &Ray) -> bool {
+        if !self.occluded(ray) {
+            return false;
+        }
         if !self.scene.has_luminous_surfaces() {
-            return self.occluded(ray);
+            return true;
         }
         let mut rest = *ray;
         while let Some(surface) = self.closest(&rest) {

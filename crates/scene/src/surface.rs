@@ -1,5 +1,6 @@
 //! A point on a surface, as materials, lights and integrators see it.
 
+use crate::classic::ClassicLight;
 use crate::lights::LightSample;
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -50,6 +51,14 @@ impl Surface {
         match sample.point {
             Some(point) => Ray { t_max: 1.0 - sample.clearance, ..self.spawn_to(point) },
             None => self.spawn(sample.wi),
+        }
+    }
+
+    /// The same for a light of the classic modes.
+    pub fn spawn_to_classic_light(&self, light: &ClassicLight) -> Ray {
+        match light.position {
+            Some(position) => Ray { t_max: 1.0 - light.clearance, ..self.spawn_to(position) },
+            None => self.spawn(light.wi),
         }
     }
 

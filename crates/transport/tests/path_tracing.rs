@@ -112,6 +112,20 @@ fn clear_glass_in_a_white_furnace_cannot_be_seen() {
     }
 }
 
+#[test]
+fn a_mirror_ball_loses_no_light_at_its_silhouette() {
+    // There the interpolated normal would send light into the triangle.
+    let mut builder = SceneBuilder::default();
+    let mirror = Spec::new("", "mirror").with("reflectance", 1.0f32);
+    put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 8, true), mirror);
+    sky(&mut builder, 1.0);
+    look(&mut builder, Vec3::Z * 10.0, Vec3::ZERO, 12.0);
+    let film = shoot(&built(&builder), &*path("mis"), &RenderSettings::new(64, 64, 4)).film;
+    for pixel in film.to_rgb() {
+        assert!((pixel.g - 1.0).abs() < 1e-5, "{pixel:?}");
+    }
+}
+
 /// Matt, glossy and mirror surfaces under two panels, a lamp and a sky: each way of finding light is best
 /// somewhere.
 fn mixed() -> SceneBuilder {

@@ -153,19 +153,42 @@ impl Bsdf {
         let (index, u_choice) = self.choose(u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
         let share = chosen.strength() / self.total_strength;
-        let local_wo = self.frame.to_local(wo);
-        let mut sample = chosen.sample(local_wo, u_choice, u, mode)?;
-        let local_wi = sample.wi;
-        sample.wi = self.frame.to_world(local_wi).normalize();
-        if sample.is_delta {
+        if chosen.is_delta() {
+            let mut sample = self.sample_delta(chosen, wo, u_choice, u, mode)?;
             sample.weight = sample.weight / share;
             sample.pdf_solid_angle *= share;
-        } else {
-            sample.pdf_solid_angle = self.pdf_solid_angle(wo, sample.wi);
-            sample.weight = self.eval(wo, sample.wi, mode) / sample.pdf_solid_angle;
+            return (sample.pdf_solid_angle > 0.0).then_some(sample);
         }
-        let on_its_side = (wo.dot(self.n_geom) * sample.wi.dot(self.n_geom) < 0.0) == sample.transmits;
-        (on_its_side && sample.pdf_solid_angle > 0.0).then_some(sample)
+        let mut sample = chosen.sample(self.frame.to_local(wo), u_choice, u, mode)?;
+        sample.wi = self.frame.to_world(sample.wi).normalize();
+        sample.pdf_solid_angle = self.pdf_solid_angle(wo, sample.wi);
+        sample.weight = self.eval(wo, sample.wi, mode) / sample.pdf_solid_angle;
+        (self.keeps_side(wo, &sample) && sample.pdf_solid_angle > 0.0).then_some(sample)
+    }
+
+    /// A direction of a lobe without width. Where the interpolated normal would send it through the triangle,
+    /// or sees `wo` on the wrong side, the triangle's own normal is taken, so that no light is lost.
+    fn sample_delta(
+        &self,
+        lobe: &Lobe,
+        wo: Vec3,
+        u_choice: f32,
+        u: Vec2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        let about = |frame: &Frame| {
+            let mut sample = lobe.sample(frame.to_local(wo), u_choice, u, mode)?;
+            sample.wi = frame.to_world(sample.wi).normalize();
+            self.keeps_side(wo, &sample).then_some(sample)
+        };
+        let sees_outside_as_such = wo.dot(self.frame.n) * wo.dot(self.n_geom) > 0.0;
+        let shaded = if sees_outside_as_such { about(&self.frame) } else { None };
+        shaded.or_else(|| about(&Frame::from_normal(self.n_geom)))
+    }
+
+    /// True when what is reflected stays on its side of the triangle, and what is transmitted does not.
+    fn keeps_side(&self, wo: Vec3, sample: &BsdfSample) -> bool {
+        (wo.dot(self.n_geom) * sample.wi.dot(self.n_geom) < 0.0) == sample.transmits
     }
 
     /// A lobe by its share of the strength, and what is left of the random number.

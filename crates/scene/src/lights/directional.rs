@@ -61,7 +61,7 @@ impl Light for Directional {
     }
 
     fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
-        Some(ClassicLight { wi: self.towards, position: None, strength: 1.0 })
+        Some(ClassicLight { wi: self.towards, position: None, strength: 1.0, clearance: 0.0 })
     }
 
     fn classic_colour(&self, _bounds: &Aabb) -> Rgb {

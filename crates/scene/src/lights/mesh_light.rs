@@ -140,10 +140,11 @@ impl Light for MeshLight {
 
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let middle = self.middle(time);
-        let (point, ..) = self.sample_point(time, u);
+        let (point, normal, _, corners) = self.sample_point(time, u);
         let position = middle + (point - middle) * extent;
         let wi = (position - from).try_normalize()?;
-        Some(ClassicLight { wi, position: Some(position), strength: 1.0 })
+        let clearance = clearance(from, position, &corners, normal.dot(wi).abs());
+        Some(ClassicLight { wi, position: Some(position), strength: 1.0, clearance })
     }
 
     fn classic_colour(&self, bounds: &Aabb) -> Rgb {

@@ -62,7 +62,7 @@ impl Light for Point {
 
     fn classic(&self, from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         let wi = (self.position - from).try_normalize()?;
-        Some(ClassicLight { wi, position: Some(self.position), strength: 1.0 })
+        Some(ClassicLight { wi, position: Some(self.position), strength: 1.0, clearance: 0.0 })
     }
 
     fn classic_colour(&self, bounds: &Aabb) -> Rgb {

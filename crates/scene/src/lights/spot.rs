@@ -99,7 +99,12 @@ impl Light for Spot {
     fn classic(&self, from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
         let wi = (self.position - from).try_normalize()?;
         let strength = self.falloff(wi);
-        (strength > 0.0).then_some(ClassicLight { wi, position: Some(self.position), strength })
+        (strength > 0.0).then_some(ClassicLight {
+            wi,
+            position: Some(self.position),
+            strength,
+            clearance: 0.0,
+        })
     }
 
     fn classic_colour(&self, bounds: &Aabb) -> Rgb {

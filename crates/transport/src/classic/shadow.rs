@@ -25,10 +25,7 @@ impl Shadows {
         if self == Shadows::Off {
             return Rgb::WHITE;
         }
-        let ray = match light.position {
-            Some(position) => surface.spawn_to(position),
-            None => surface.spawn(light.wi),
-        };
+        let ray = surface.spawn_to_classic_light(light);
         match self {
             Shadows::Tinted => through_glass(task, ray),
             _ if task.tracer.blocked(&ray) => Rgb::BLACK,
