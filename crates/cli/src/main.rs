@@ -10,6 +10,7 @@ mod interrupt;
 mod output;
 mod progress;
 mod settings_from;
+mod usage;
 mod version;
 
 use arguments::{Arguments, Command};
@@ -18,6 +19,8 @@ use std::process::ExitCode;
 
 /// The work failed.
 const FAILED: u8 = 1;
+/// The command line was wrong.
+const WRONG_COMMAND_LINE: u8 = 2;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -38,7 +41,8 @@ fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             output::error(&error);
-            ExitCode::from(FAILED)
+            let wrong = usage::is_command_line(&error);
+            ExitCode::from(if wrong { WRONG_COMMAND_LINE } else { FAILED })
         }
     }
 }

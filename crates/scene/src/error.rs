@@ -68,6 +68,16 @@ impl SceneError {
         }
     }
 
+    /// Where the fault was written.
+    pub fn at(&self) -> &Span {
+        match self {
+            SceneError::Unknown { at, .. }
+            | SceneError::BadValue { at, .. }
+            | SceneError::Missing { at, .. }
+            | SceneError::Invalid { at, .. } => at,
+        }
+    }
+
     /// Anything else.
     pub fn invalid(message: impl Into<String>, at: &Span) -> SceneError {
         SceneError::Invalid { message: message.into(), at: at.clone() }

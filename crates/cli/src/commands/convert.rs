@@ -2,6 +2,7 @@
 
 use super::{DONE, check_folder, read_options, tell_warnings};
 use crate::arguments::{Common, Convert};
+use crate::usage;
 use anyhow::bail;
 use bilux::formats::WriteOptions;
 use bilux::pictures::Limits;
@@ -9,7 +10,7 @@ use bilux::pictures::formats::format_of_path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
-    check_folder(output)?;
+    check_folder(output).map_err(usage::wrong)?;
     let is_picture = |path| format_of_path(path).is_ok();
     match (is_picture(input), is_picture(output)) {
         (true, true) => {

@@ -3,12 +3,13 @@
 use super::{DONE, check_folder, read_options, tell_warnings};
 use crate::arguments::{Common, Generate};
 use crate::settings_from::{assignment_of, from_flag};
+use crate::usage;
 use bilux::formats::WriteOptions;
 use bilux::math::Vec3;
 use bilux::scene::{Spec, Value};
 
 pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
-    check_folder(&arguments.output)?;
+    check_folder(&arguments.output).map_err(usage::wrong)?;
     let scene = match &arguments.from {
         Some(file) => {
             let model = bilux::load(file, &read_options(common))?;

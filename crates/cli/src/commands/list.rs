@@ -2,8 +2,8 @@
 
 use super::DONE;
 use crate::arguments::List;
-use crate::output;
-use anyhow::bail;
+use crate::{output, usage};
+use anyhow::anyhow;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};
 use serde_json::json;
 
@@ -90,7 +90,7 @@ pub fn run(arguments: &List) -> anyhow::Result<u8> {
             Some(name) => format!("did you mean '{name}'?"),
             None => format!("there are: {}", names.join(", ")),
         };
-        bail!("there is no list '{}'; {hint}", arguments.what);
+        return Err(usage::wrong(anyhow!("there is no list '{}'; {hint}", arguments.what)));
     };
     let rows = (table.rows)();
     if arguments.json {

@@ -3,6 +3,7 @@
 use super::{DONE, check_folder};
 use crate::arguments::{Common, Merge};
 use crate::output;
+use crate::usage;
 use anyhow::Context;
 use bilux::pictures::Limits;
 use bilux::pictures::formats::format_of_path;
@@ -10,7 +11,7 @@ use bilux::transport::Film;
 use std::path::Path;
 
 pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
-    check_folder(&arguments.output)?;
+    check_folder(&arguments.output).map_err(usage::wrong)?;
     let format = format_of_path(&arguments.output)?;
     let mut films = arguments.parts.iter().map(|part| read(part, common));
     let mut film = films.next().context("nothing to merge")??;

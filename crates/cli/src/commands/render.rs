@@ -4,7 +4,7 @@ use super::{DONE, check_folder, read_options, tell_warnings};
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
-use crate::{output, settings_from};
+use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder};
@@ -17,8 +17,8 @@ use std::time::Instant;
 
 pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let interrupt = Interrupt::listen()?;
-    let user = settings_from::render(arguments)?;
-    let targets = targets(arguments)?;
+    let user = settings_from::render(arguments).map_err(usage::wrong)?;
+    let targets = targets(arguments).map_err(usage::wrong)?;
     for (scene, output) in &targets {
         let status = render_one(scene, output, &user, arguments, common, &interrupt)
             .with_context(|| scene.display().to_string())?;
@@ -75,7 +75,7 @@ fn read_scene(path: &Path, arguments: &Render, common: &Common) -> anyhow::Resul
         bilux::load(path, &options)?
     };
     if let Some(preset) = &arguments.preset {
-        bilux::presets::apply(preset, &mut scene)?;
+        bilux::presets::apply(preset, &mut scene).map_err(usage::wrong)?;
     }
     Ok(scene)
 }

@@ -1,0 +1,36 @@
+//! Telling a wrong command line (exit status 2) from work that failed (1).
+
+use std::fmt;
+
+/// An error that the command line is to blame for.
+struct WrongCommandLine(anyhow::Error);
+
+impl fmt::Display for WrongCommandLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#}", self.0)
+    }
+}
+
+impl fmt::Debug for WrongCommandLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl std::error::Error for WrongCommandLine {}
+
+/// Blames the command line for an error.
+pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
+    anyhow::Error::new(WrongCommandLine(error.into()))
+}
+
+/// True for errors that the command line is to blame for: said so, or about a value that a flag gave.
+pub fn is_command_line(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        let scene = match cause.downcast_ref::<bilux::Error>() {
+            Some(bilux::Error::Scene(scene)) => Some(scene),
+            _ => cause.downcast_ref::<bilux::scene::SceneError>(),
+        };
+        cause.is::<WrongCommandLine>() || scene.is_some_and(|s| s.at().file.starts_with("--"))
+    })
+}

@@ -1,0 +1,182 @@
+//! The command line as users meet it: exit statuses, messages, and the same bytes whatever is done to them.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+fn bilux(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("bilux").expect("the binary is built with its tests");
+    command.current_dir(folder).arg("--quiet");
+    command
+}
+
+/// A folder with two teapots in it.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let generate = ["generate", "teapots", "--count", "2", "--set", "tessellation=3", "-o", "pots.asc"];
+    bilux(folder.path()).args(generate).assert().success().stdout("");
+    folder
+}
+
+fn render(folder: &Path, output: &str, more: &[&str]) -> Vec<u8> {
+    let always = ["render", "pots.asc", "--size", "48x32", "-o", output];
+    bilux(folder).args(always).args(more).assert().success().stdout("");
+    std::fs::read(folder.join(output)).unwrap()
+}
+
+#[test]
+fn one_picture_for_any_threads_and_any_accelerator() {
+    let folder = folder();
+    for integrator in ["cast", "whitted", "cook", "path"] {
+        let base = ["-i", integrator, "--spp", "2", "--max-depth", "4"];
+        let with = |more: &[&str]| render(folder.path(), "picture.pfm", &[&base, more].concat());
+        let reference = with(&["--threads", "1"]);
+        for threads in ["2", "7"] {
+            assert!(with(&["--threads", threads]) == reference, "{integrator}, {threads} threads");
+        }
+        for row in bilux::accel::ACCELERATORS {
+            assert!(with(&["--accel", row.entry.name]) == reference, "{integrator}, {}", row.entry.name);
+        }
+        for option in ["bsp_split=fuchs", "bsp_group=objects", "early_out=false"] {
+            let more = ["--accel", "bsp", "--set", option];
+            assert!(with(&more) == reference, "{integrator}, {option}");
+        }
+    }
+}
+
+#[test]
+fn pieces_in_any_order_are_the_whole() {
+    let folder = folder();
+    let path = folder.path();
+    let settings = ["-i", "path", "--spp", "6"];
+    let with = |output: &str, more: &[&str]| render(path, output, &[&settings, more].concat());
+    with("a.exr", &["--samples", "0..1"]);
+    with("b.exr", &["--samples", "1..4", "--crop", "0,0,20,32"]);
+    with("c.exr", &["--samples", "1..4", "--crop", "20,0,28,32"]);
+    with("d.exr", &["--samples", "4..6"]);
+    let whole = with("whole.pfm", &[]);
+    for order in [["a.exr", "b.exr", "c.exr", "d.exr"], ["c.exr", "d.exr", "a.exr", "b.exr"]] {
+        bilux(path).arg("merge").args(order).args(["-o", "joined.pfm"]).assert().success();
+        assert!(std::fs::read(path.join("joined.pfm")).unwrap() == whole, "{order:?}");
+    }
+    // The same samples twice would count double.
+    let twice = bilux(path).args(["merge", "a.exr", "a.exr", "-o", "twice.pfm"]).assert().code(1);
+    assert!(!path.join("twice.pfm").exists() && !twice.get_output().stderr.is_empty());
+    // Another seed is another picture.
+    with("other.exr", &["--samples", "0..1", "--seed", "9"]);
+    bilux(path).args(["merge", "other.exr", "d.exr", "-o", "mixed.pfm"]).assert().code(1);
+}
+
+/// Runs what must fail and gives what it says.
+fn failing(folder: &Path, code: i32, arguments: &[&str]) -> String {
+    let assert = bilux(folder).args(arguments).assert().code(code).stdout("");
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+#[test]
+fn wrong_command_lines_exit_with_2_and_help() {
+    let folder = folder();
+    let say = |arguments: &[&str]| failing(folder.path(), 2, arguments);
+    assert!(say(&["render", "pots.asc", "-i", "whited", "-o", "a.png"]).contains("did you mean 'whitted'?"));
+    assert!(say(&["render", "pots.asc", "--accel", "bhv", "-o", "a.png"]).contains("did you mean 'bvh'?"));
+    assert!(say(&["render", "pots.asc", "--set", "max_dept=3", "-o", "a.png"]).contains("'max_depth'"));
+    assert!(say(&["render", "pots.asc", "--preset", "cours", "-o", "a.png"]).contains("'course'"));
+    assert!(say(&["render", "pots.asc", "-o", "nowhere/a.png"]).contains("no folder"));
+    assert!(say(&["render", "pots.asc", "-o", "a.pgn"]).contains("png"));
+    assert!(say(&["render", "pots.asc", "--size", "0x5", "-o", "a.png"]).contains("640x480"));
+    assert!(say(&["render", "pots.asc", "--samples", "0..1", "-o", "a.png"]).contains(".exr"));
+    assert!(say(&["list", "material"]).contains("did you mean 'materials'?"));
+    assert!(say(&["rendr", "pots.asc"]).contains("render"));
+}
+
+#[test]
+fn work_that_fails_exits_with_1_and_leaves_no_file() {
+    let folder = folder();
+    let path = folder.path();
+    assert!(failing(path, 1, &["render", "none.asc", "-o", "a.png"]).contains("none.asc"));
+    std::fs::write(path.join("broken.asc"), "triangle\n0 0 0 0 0 1 0 0\n1 0 zero").unwrap();
+    assert!(failing(path, 1, &["render", "broken.asc", "-o", "a.png"]).contains("broken.asc:3"));
+    std::fs::write(path.join("empty.obj"), "").unwrap();
+    failing(path, 1, &["render", "empty.obj", "-o", "a.png"]);
+    failing(path, 1, &["render", "pots.asc", "--crop", "40,0,20,10", "--size", "48x32", "-o", "a.png"]);
+    assert!(!path.join("a.png").exists());
+}
+
+#[test]
+fn compare_tells_by_its_exit_status() {
+    let folder = folder();
+    let path = folder.path();
+    render(path, "a.png", &["-i", "whitted"]);
+    render(path, "b.png", &["-i", "cast"]);
+    let same = bilux(path).args(["compare", "a.png", "a.png", "--json", "--max-flip", "0"]).assert().code(0);
+    let json: serde_json::Value = serde_json::from_slice(&same.get_output().stdout).unwrap();
+    assert_eq!((json["rmse"].as_f64(), json["flip"].as_f64()), (Some(0.0), Some(0.0)));
+    assert!(json["psnr"].is_null());
+    let differ = ["compare", "a.png", "b.png", "--max-flip", "0", "--heat-map", "heat.png"];
+    bilux(path).args(differ).assert().code(1);
+    assert!(path.join("heat.png").exists());
+    bilux(path).args(["compare", "a.png", "none.png"]).assert().code(2);
+}
+
+#[test]
+fn an_interrupt_saves_what_there_is() {
+    let folder = folder();
+    let path = folder.path();
+    let binary = assert_cmd::cargo::cargo_bin("bilux");
+    for (signal, status) in [("-INT", 130), ("-TERM", 143)] {
+        let mut child = std::process::Command::new(&binary)
+            .current_dir(path)
+            .args(["render", "pots.asc", "--spp", "100000", "--quiet", "-o", "cut.png"])
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let id = child.id().to_string();
+        assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(status));
+        assert!(bilux::pictures::read(path.join("cut.png")).is_ok(), "{signal}");
+        std::fs::remove_file(path.join("cut.png")).unwrap();
+    }
+}
+
+#[test]
+fn everything_that_can_be_listed_is_listed() {
+    let folder = folder();
+    let lists = "integrators accels visibility materials bsdfs lights cameras generators presets formats \
+                 picture-formats tonemaps filters metrics settings";
+    for what in lists.split_whitespace() {
+        let assert = bilux(folder.path()).args(["list", what, "--json"]).assert().success();
+        let json: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+        let rows = json[what].as_array().unwrap();
+        assert!(!rows.is_empty() && rows.iter().all(|row| !row["summary"].as_str().unwrap().is_empty()));
+    }
+}
+
+#[test]
+fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
+    let folder = folder();
+    let path: PathBuf = folder.path().to_owned();
+    let run = |arguments: &[&str]| bilux(&path).args(arguments).assert().success();
+    std::fs::write(path.join("one.asc"), "triangle\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n")
+        .unwrap();
+    run(&[
+        "generate",
+        "teapots",
+        "--from",
+        "one.asc",
+        "--count",
+        "3",
+        "--offset",
+        "4,0,-0.1",
+        "-o",
+        "three.asc",
+    ]);
+    let info = run(&["info", "three.asc", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&info.get_output().stdout).unwrap();
+    assert_eq!(json["triangles"], 3);
+    assert_eq!(json["bounds"]["max"][0], 9.0);
+    run(&["convert", "three.asc", "-o", "three.obj"]);
+    run(&["convert", "three.obj", "-o", "again.asc"]);
+    run(&["convert", "again.asc", "-o", "again.obj"]);
+    let read = |name: &str| std::fs::read(path.join(name)).unwrap();
+    assert!(read("again.obj") == read("three.obj"));
+}
