@@ -21,9 +21,11 @@
 
 pub mod accelerator;
 pub mod brute_force;
+pub mod brute_simd;
 pub mod bsp;
 pub mod bvh;
 pub mod counters;
+pub mod cpu_level;
 pub mod instancing;
 pub mod mesh;
 pub mod ray;
@@ -35,6 +37,7 @@ pub mod visibility;
 pub use accelerator::{Accelerator, Traverse, TreeShape};
 pub use bvh::Bvh;
 pub use counters::Counters;
+pub use cpu_level::CpuLevel;
 pub use instancing::{Instance, TopLevel, TwoLevel};
 pub use mesh::{MeshError, TriangleMesh};
 pub use ray::{Culling, Hit, Primitive, Query, Ray};

@@ -1,14 +1,20 @@
 //! The table of structures. To add one: a file with its `ENTRY`, and a line here.
 
 use crate::accelerator::Accelerator;
+use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
-use crate::{brute_force, bsp, bvh};
+use crate::{brute_force, brute_simd, bsp, bvh};
 use bilux_math::registry::Entry;
 use std::sync::Arc;
 
 /// Every structure that there is.
-pub const ACCELERATORS: &[AcceleratorEntry] =
-    &[brute_force::ENTRY, bsp::paper::ENTRY, bsp::sah::ENTRY, bvh::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] = &[
+    brute_force::ENTRY,
+    brute_simd::ENTRY,
+    bsp::paper::ENTRY,
+    bsp::sah::ENTRY,
+    bvh::ENTRY,
+];
 
 /// The structure that `auto` stands for: the fastest.
 pub const AUTO: &str = "bvh";
@@ -46,6 +52,8 @@ pub struct BuildOptions {
     pub bsp_group: BspGroup,
     /// How much time a builder may take for a better structure.
     pub quality: Quality,
+    /// Which instructions kernels may use; the best that the machine has, unless told otherwise.
+    pub cpu_level: CpuLevel,
 }
 
 /// How much time a builder may take for a better structure.

@@ -26,11 +26,10 @@ use bilux_math::Aabb;
 pub struct PreparedRay {
     /// The ray itself.
     pub ray: Ray,
-    kx: usize,
-    ky: usize,
-    kz: usize,
-    shear_x: f32,
-    shear_y: f32,
+    /// Which axes of space are x, y and z of sheared space; z is the greatest of the direction.
+    pub(crate) axes: [usize; 3],
+    /// How far x and y lean along z.
+    pub(crate) shear: [f32; 2],
 }
 
 /// An accepted triangle, whatever its distance.
@@ -64,7 +63,7 @@ impl PreparedRay {
         };
         let (kx, ky) = ((kz + 1) % 3, (kz + 2) % 3);
         let d = ray.direction;
-        Some(PreparedRay { ray: *ray, kx, ky, kz, shear_x: d[kx] / d[kz], shear_y: d[ky] / d[kz] })
+        Some(PreparedRay { ray: *ray, axes: [kx, ky, kz], shear: [d[kx] / d[kz], d[ky] / d[kz]] })
     }
 
     /// How far every box and plane must be moved outwards so that nothing which the triangle test would
@@ -98,13 +97,10 @@ impl PreparedRay {
     /// A vertex relative to the ray: x and y sheared, z not yet divided by the direction.
     #[inline(always)]
     fn shear(&self, vertex: &[f32; 3]) -> [f32; 3] {
+        let ([kx, ky, kz], [shear_x, shear_y]) = (self.axes, self.shear);
         let o = &self.ray.origin;
-        let z = vertex[self.kz] - o[self.kz];
-        [
-            (vertex[self.kx] - o[self.kx]) - self.shear_x * z,
-            (vertex[self.ky] - o[self.ky]) - self.shear_y * z,
-            z,
-        ]
+        let z = vertex[kz] - o[kz];
+        [(vertex[kx] - o[kx]) - shear_x * z, (vertex[ky] - o[ky]) - shear_y * z, z]
     }
 
     #[inline]
@@ -123,7 +119,7 @@ impl PreparedRay {
         if !(det.abs() > 0.0 && det.is_finite()) {
             return None;
         }
-        let dz = f64::from(self.ray.direction[self.kz]);
+        let dz = f64::from(self.ray.direction[self.axes[2]]);
         let t = (u * az + v * bz + w * cz) / (det * dz);
         Some(Crossing {
             t: t as f32,

@@ -1,0 +1,146 @@
+//! What the tests of all structures share: nasty meshes, nasty rays, and the comparison.
+#![allow(dead_code, unreachable_pub)] // Each test uses a part.
+
+pub mod closed;
+pub mod meshes;
+pub mod rays;
+
+use bilux_accel::registry::{BspGroup, BspSplit};
+use bilux_accel::{
+    ACCELERATORS, Accelerator, BuildOptions, Counters, CpuLevel, Culling, Hit, Primitive, Query, Ray,
+    TriangleMesh, build,
+};
+use bilux_math::hash::{hash_words, unit_f32};
+use std::sync::Arc;
+
+/// Random numbers that depend on their index only.
+pub struct Numbers(u64, u64);
+
+impl Numbers {
+    pub fn new(seed: u64) -> Numbers {
+        Numbers(seed, 0)
+    }
+    pub fn word(&mut self) -> u64 {
+        self.1 += 1;
+        hash_words([self.0, self.1])
+    }
+    pub fn below(&mut self, end: usize) -> usize {
+        (self.word() % end.max(1) as u64) as usize
+    }
+    /// In `0..1`.
+    pub fn unit(&mut self) -> f32 {
+        unit_f32(self.word() as u32)
+    }
+    /// In `-1..1`, each component.
+    pub fn vector(&mut self) -> [f32; 3] {
+        std::array::from_fn(|_| self.unit() * 2.0 - 1.0)
+    }
+}
+
+/// Every structure in every way that it can be built, with a name for messages. A structure that joins the
+/// table is tested without a line here; one with options gets a line of its own.
+pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
+    let plain = BuildOptions::default();
+    let mut all = Vec::new();
+    for row in ACCELERATORS {
+        let name = row.entry.name;
+        let options: Vec<(&str, BuildOptions)> = match name {
+            "bsp" => vec![
+                (" mean", plain.clone()),
+                (" fuchs", BuildOptions { bsp_split: BspSplit::Fuchs, ..plain.clone() }),
+                (" objects", BuildOptions { bsp_group: BspGroup::Objects, ..plain.clone() }),
+            ],
+            "brute-simd" => CpuLevel::ALL
+                .iter()
+                .filter(|&&level| level <= CpuLevel::detect())
+                .map(|&cpu_level| (cpu_level.name(), BuildOptions { cpu_level, ..plain.clone() }))
+                .collect(),
+            _ => vec![("", plain.clone())],
+        };
+        all.extend(options.into_iter().map(|(suffix, options)| (format!("{name} {suffix}"), name, options)));
+    }
+    all
+}
+
+pub fn build_variant(name: &str, options: &BuildOptions, mesh: &Arc<TriangleMesh>) -> Arc<dyn Accelerator> {
+    Arc::from(build(name, Arc::clone(mesh), options).expect("a registered structure builds"))
+}
+
+/// A ray for which two structures do not agree.
+#[derive(Debug)]
+pub struct Difference {
+    pub ray: Ray,
+    pub query: Query,
+    pub truth: Option<Hit>,
+    pub answer: Option<Hit>,
+}
+
+fn bits(hit: Option<Hit>) -> Option<[u32; 5]> {
+    hit.map(|h| [h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.primitive, h.instance])
+}
+
+/// The questions asked for each ray.
+fn queries() -> [Query; 4] {
+    let plain = Query::default();
+    [
+        plain,
+        Query { culling: Culling::Back, ..plain },
+        Query { early_out: false, ..plain },
+        Query { culling: Culling::Back, cull_by_partition: false, ..plain },
+    ]
+}
+
+/// Rays that begin, end, or are blinded exactly where a ray hits.
+fn sharpened(ray: &Ray, hit: &Hit) -> [Ray; 5] {
+    [
+        Ray { t_max: hit.t, ..*ray },
+        Ray { t_max: hit.t.next_down(), ..*ray },
+        Ray { t_min: hit.t, ..*ray },
+        Ray { t_min: hit.t.next_up(), ..*ray },
+        Ray { exclude: Primitive { instance: hit.instance, index: hit.primitive }, ..*ray },
+    ]
+}
+
+/// Answers of the truth, for [`differences`].
+pub struct Truth {
+    cases: Vec<(Ray, Query, Option<Hit>)>,
+}
+
+impl Truth {
+    pub fn new(truth: &dyn Accelerator, rays: &[Ray]) -> Truth {
+        let mut cases = Vec::new();
+        for ray in rays {
+            let first = truth.closest_hit(ray, &Query::default());
+            for query in queries() {
+                cases.push((*ray, query, truth.closest_hit(ray, &query)));
+            }
+            for sharp in first.iter().flat_map(|hit| sharpened(ray, hit)) {
+                let query = Query::default();
+                cases.push((sharp, query, truth.closest_hit(&sharp, &query)));
+            }
+        }
+        Truth { cases }
+    }
+
+    pub fn hits(&self) -> usize {
+        self.cases.iter().filter(|(.., hit)| hit.is_some()).count()
+    }
+
+    /// Where a structure does not agree: on the nearest hit, on whether there is any, or with counting on.
+    pub fn differences(&self, other: &dyn Accelerator) -> Vec<Difference> {
+        let mut found = Vec::new();
+        for (ray, query, truth) in &self.cases {
+            let mut counters = Counters::default();
+            let answer = other.closest_hit(ray, query);
+            let same = bits(answer) == bits(*truth)
+                && other.any_hit(ray, query) == truth.is_some()
+                && bits(other.closest_hit_counted(ray, query, &mut counters)) == bits(*truth)
+                && other.any_hit_counted(ray, query, &mut counters) == truth.is_some()
+                && counters.rays == 2;
+            if !same {
+                found.push(Difference { ray: *ray, query: *query, truth: *truth, answer });
+            }
+        }
+        found
+    }
+}
