@@ -73,7 +73,12 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Label, name and options of each; the first that is there is what the others are compared with.
 fn structures() -> Vec<(&'static str, &'static str, BuildOptions)> {
-    let with = |bsp_split, bsp_group, quality| BuildOptions { bsp_split, bsp_group, quality };
+    let with = |bsp_split, bsp_group, quality| BuildOptions {
+        bsp_split,
+        bsp_group,
+        quality,
+        ..BuildOptions::default()
+    };
     let (mean, fuchs) = (BspSplit::Mean, BspSplit::Fuchs);
     let (polygons, objects) = (BspGroup::Polygons, BspGroup::Objects);
     vec![

@@ -8,13 +8,8 @@ use bilux_math::registry::Entry;
 use std::sync::Arc;
 
 /// Every structure that there is.
-pub const ACCELERATORS: &[AcceleratorEntry] = &[
-    brute_force::ENTRY,
-    brute_simd::ENTRY,
-    bsp::paper::ENTRY,
-    bsp::sah::ENTRY,
-    bvh::ENTRY,
-];
+pub const ACCELERATORS: &[AcceleratorEntry] =
+    &[brute_force::ENTRY, brute_simd::ENTRY, bsp::paper::ENTRY, bsp::sah::ENTRY, bvh::ENTRY];
 
 /// The structure that `auto` stands for: the fastest.
 pub const AUTO: &str = "bvh";

@@ -2,21 +2,25 @@
 
 mod support;
 
-use bilux_accel::{ACCELERATORS, BuildOptions, Query};
+use bilux_accel::{ACCELERATORS, BuildOptions, Bvh, Query, TriangleMesh};
+use rayon::prelude::*;
 use std::sync::Arc;
 use support::{Truth, build_variant, meshes, rays, variants};
+
+/// Rays for each mesh; each is asked in eight ways or so.
+const RAYS: usize = 400;
 
 #[test]
 fn every_structure_gives_the_hits_of_brute() {
     for (seed, (mesh_name, mesh)) in meshes::all().into_iter().enumerate() {
         let mesh = Arc::new(mesh);
         let brute = build_variant("brute", &BuildOptions::default(), &mesh);
-        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, 2000, seed as u64));
-        assert!(mesh.is_empty() || truth.hits() > 500, "{mesh_name}: only {} hits", truth.hits());
-        for (name, accelerator, options) in variants() {
-            let found = truth.differences(build_variant(accelerator, &options, &mesh).as_ref());
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, RAYS, seed as u64));
+        assert!(mesh.is_empty() || truth.hits() > RAYS / 4, "{mesh_name}: only {} hits", truth.hits());
+        variants().par_iter().for_each(|(name, accelerator, options)| {
+            let found = truth.differences(build_variant(accelerator, options, &mesh).as_ref());
             assert!(found.is_empty(), "{name} on {mesh_name}: {} differ, first {:#?}", found.len(), found[0]);
-        }
+        });
     }
 }
 
@@ -30,6 +34,25 @@ fn senseless_rays_hit_nothing_anywhere() {
                 assert_eq!(structure.closest_hit(&ray, &Query::default()), None);
                 assert!(!structure.any_hit(&ray, &Query::default()));
             }
+        }
+    }
+}
+
+#[test]
+fn a_refitted_tree_gives_the_hits_of_the_moved_mesh() {
+    for (seed, (name, mesh)) in meshes::all().into_iter().enumerate() {
+        let bend = |p: [f32; 3]| [p[0] * 0.6 + p[1] * 0.3, p[1] * 0.7, p[2] * 0.8 - p[0] * 0.2];
+        let moved = mesh.triangles().iter().map(|triangle| triangle.map(bend)).collect();
+        let moved = Arc::new(TriangleMesh::from_corners(moved).expect("as many triangles as before"));
+        let mut tree = Bvh::new(&mesh);
+        assert!(tree.refit(&moved), "{name}");
+        let brute = build_variant("brute", &BuildOptions::default(), &moved);
+        let truth = Truth::new(brute.as_ref(), &rays::nasty(&moved, RAYS / 4, seed as u64));
+        let found = truth.differences(&tree);
+        assert!(found.is_empty(), "{name}: {} differ, first {:#?}", found.len(), found[0]);
+        if name == "not numbers" {
+            let finite = vec![[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; mesh.len()];
+            assert!(!tree.refit(&TriangleMesh::from_corners(finite).expect("few triangles")));
         }
     }
 }

@@ -41,12 +41,14 @@ impl Closed {
         let mut closed = Closed { name, positions, indices, inside: Vec::new() };
         let bounds = closed.mesh().bounds();
         let mut numbers = Numbers::new(77);
+        // 160 units of f32 rounding of its size: what the triangle test's shear moves a vertex by is below 7.
+        let margin = f64::from(bounds.extent().max_element()) * 1e-5;
+        let count = closed.positions.len();
         while closed.inside.len() < 24 {
-            let at = numbers.vector();
-            let p = on_grid(std::array::from_fn(|k| {
-                f64::from(bounds.centre()[k]) + f64::from(at[k]) * f64::from(bounds.extent()[k]) * 0.5
-            }));
-            if closed.is_inside(p) && closed.is_clear(p, f64::from(bounds.extent().min_element()) * 1e-3) {
+            let [a, b] = [0; 2].map(|_| closed.positions[numbers.below(count)].map(f64::from));
+            let x = f64::from(numbers.unit());
+            let p = on_grid(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * x));
+            if closed.is_inside(p) && closed.is_clear(p, margin) {
                 closed.inside.push(p);
             }
         }

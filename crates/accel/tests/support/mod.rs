@@ -5,7 +5,7 @@ pub mod closed;
 pub mod meshes;
 pub mod rays;
 
-use bilux_accel::registry::{BspGroup, BspSplit};
+use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{
     ACCELERATORS, Accelerator, BuildOptions, Counters, CpuLevel, Culling, Hit, Primitive, Query, Ray,
     TriangleMesh, build,
@@ -46,10 +46,13 @@ pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
         let name = row.entry.name;
         let options: Vec<(&str, BuildOptions)> = match name {
             "bsp" => vec![
-                (" mean", plain.clone()),
-                (" fuchs", BuildOptions { bsp_split: BspSplit::Fuchs, ..plain.clone() }),
-                (" objects", BuildOptions { bsp_group: BspGroup::Objects, ..plain.clone() }),
+                ("mean", plain.clone()),
+                ("fuchs", BuildOptions { bsp_split: BspSplit::Fuchs, ..plain.clone() }),
+                ("objects", BuildOptions { bsp_group: BspGroup::Objects, ..plain.clone() }),
             ],
+            "bsp-sah" => [Quality::Fast, Quality::Balanced, Quality::Best]
+                .map(|quality| ("quality", BuildOptions { quality, ..plain.clone() }))
+                .to_vec(),
             "brute-simd" => CpuLevel::ALL
                 .iter()
                 .filter(|&&level| level <= CpuLevel::detect())
