@@ -171,10 +171,12 @@ fn nasty(seed: u64) -> (Option<View>, Vec<Triangle>) {
     (view.ok(), triangles.into_iter().map(|t| t.map(place)).collect())
 }
 
+/// The long run is `BILUX_LONG=1 cargo test --release -p bilux-accel --test visibility`: minutes.
 #[test]
 fn nasty_scenes() {
+    let long = std::env::var_os("BILUX_LONG").is_some();
     let mut seen = 0;
-    for seed in 0..400 {
+    for seed in 0..if long { 4_000 } else { 400 } {
         if let (Some(view), triangles) = nasty(seed) {
             let culling = if seed % 2 == 0 { Culling::None } else { Culling::Back };
             let middle = triangles.len() as u32 / 2;
@@ -185,17 +187,6 @@ fn nasty_scenes() {
         }
     }
     assert!(seen > 50_000, "the scenes must be seen: {seen}");
-}
-
-/// Long runs of the above: `cargo test --release -p bilux-accel --test visibility -- --ignored`.
-#[test]
-#[ignore = "takes minutes"]
-fn nasty_scenes_at_length() {
-    for seed in 400..4_000 {
-        if let (Some(view), triangles) = nasty(seed) {
-            check(&format!("nasty {seed}"), &view, triangles);
-        }
-    }
 }
 
 #[test]

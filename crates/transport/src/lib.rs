@@ -1,6 +1,6 @@
 //! How light gets to the film: samplers, the film, tiles, and one file per integrator.
 //!
-//! An integrator ([`INTEGRATORS`]) answers what radiance comes along a ray; [`render`] asks it for every sample
+//! An integrator ([`INTEGRATORS`]) answers what radiance comes along a ray; [`render()`] asks it for every sample
 //! of every pixel and adds up the [`Film`]. At a fixed number of samples the film is a pure function of scene,
 //! settings and seed: the same bytes for any number of threads, any crop, and any split into ranges of samples.
 

@@ -24,7 +24,7 @@ pub struct Replay {
     pub rays: u64,
 }
 
-/// Takes one sample of one pixel again, exactly as [`crate::render`] takes it.
+/// Takes one sample of one pixel again, exactly as [`crate::render()`] takes it.
 ///
 /// # Errors
 /// When the pixel is not on the film.

@@ -6,9 +6,9 @@
 //! is cut. Where the rule's does not, the plane through the mean position, perpendicular to the axis along which
 //! positions vary most, is taken (whatever it cuts), and a leaf where that leaves more than nine
 //! tenths on a side. Growth also ends
-//! - at few enough polygons ([`LEAF`]), or one object;
-//! - below [`MAX_DEPTH`] planes;
-//! - by [`GROWTH`]: a polygon that a plane cuts is referred to from both sides. No way down the tree may
+//! - at few enough polygons (`LEAF`), or one object;
+//! - below `MAX_DEPTH` planes;
+//! - by `GROWTH`: a polygon that a plane cuts is referred to from both sides. No way down the tree may
 //!   multiply references by more than this, so there are never more than this many per polygon.
 //!
 //! With [`BspSplit::Fuchs`] the polygons within a plane stay with it, as in a drawing tree, and are seen

@@ -2,7 +2,7 @@
 //!
 //! It is 3.15 high where nothing else is said, stands on the plane y = 0, and its spout points to +x. As
 //! Newell left it, the surface is open: the lid lies loosely in the rim, the spout is a tube without an end,
-//! and spout and handle go through the wall. [`super::vessel`] makes a closed one of it, for glass.
+//! and spout and handle go through the wall. `vessel` makes a closed one of it, for glass.
 
 use super::{GeneratorEntry, integer, length, switch};
 use crate::builder::{Object, SceneBuilder};

@@ -10,7 +10,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::{Ray, Reader, SceneError, Spec};
 
-/// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render`].
+/// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render()`].
 pub trait PixelIntegrator: Send + Sync {
     /// Radiance (in the classic modes: intensity) that comes along a camera ray.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
