@@ -1,6 +1,7 @@
 //! Objects as formats hold them that know neither transforms nor motion.
 
 use crate::normals::unit_face_normal;
+use crate::reading::plain_material;
 use crate::writing::Writing;
 use bilux_math::Vec3;
 use bilux_scene::{Mesh, Object, SceneBuilder};
@@ -55,5 +56,20 @@ pub(crate) fn warn_of_scene(scene: &SceneBuilder, format: &str, writing: &mut Wr
     ];
     for (what, count) in parts.into_iter().filter(|&(_, count)| count > 0) {
         writing.warn(format!("{format} files hold no {what}: {count} left out"));
+    }
+}
+
+/// Warns of materials where a format holds none: all but the plain ones.
+pub(crate) fn warn_of_materials(scene: &SceneBuilder, format: &str, writing: &mut Writing) {
+    let is_plain = |object: &Object| {
+        let (kd, ks) = (!object.mesh.vertex_kd.is_empty(), !object.mesh.vertex_ks.is_empty());
+        let spec = scene.materials.get(object.material);
+        spec.is_none_or(|spec| {
+            let plain = plain_material(kd, ks);
+            (&spec.kind, &spec.parameters) == (&plain.kind, &plain.parameters)
+        })
+    };
+    if !scene.objects.iter().all(is_plain) {
+        writing.warn(format!("{format} files hold no materials: left out"));
     }
 }

@@ -3,7 +3,7 @@
 use crate::reading::{Reading, Source};
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
-use crate::{FormatError, ReadOptions, WriteOptions, asc, obj};
+use crate::{FormatError, ReadOptions, WriteOptions, asc, obj, ply, stl};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, Warning};
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Every format that there is.
-pub const SCENE_FORMATS: &[SceneFormatEntry] = &[asc::ENTRY, obj::ENTRY];
+pub const SCENE_FORMATS: &[SceneFormatEntry] = &[asc::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY];
 
 /// A row of [`SCENE_FORMATS`].
 #[derive(Clone, Copy, Debug)]

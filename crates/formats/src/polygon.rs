@@ -28,19 +28,24 @@ impl Triangulator {
         self.points.clear();
         self.points.extend(points);
         let count = self.points.len() as u32;
-        let mut fan = || (2..count).for_each(|i| triangle([0, i - 1, i]));
+        let mut fan = |first: u32| {
+            (2..count).for_each(|i| triangle([first, i - 1 + first, i + first].map(|c| c % count)))
+        };
         if count <= 3 || !self.flatten() || self.is_convex() {
-            fan();
+            fan(0);
+            return Some(());
+        }
+        if count == 4 {
+            // Both triangles of a hollow quadrilateral share the corner that turns right.
+            fan((0..4).find(|&i| self.turns_right(i as usize)).unwrap_or(0));
             return Some(());
         }
         if count as usize > MOST_EARS {
-            fan();
+            fan(0);
             return None;
         }
-        self.ears.clear();
-        self.earcut.earcut(self.flat.iter().map(|p| p.to_array()), &[], &mut self.ears);
-        if self.ears.is_empty() {
-            fan();
+        if !self.cut_ears() {
+            fan(0);
         }
         for ear in self.ears.chunks_exact(3) {
             let [a, b, c] = [ear[0], ear[1], ear[2]].map(|i| self.flat[i as usize]);
@@ -48,6 +53,26 @@ impl Triangulator {
             triangle(if turned { [ear[0], ear[2], ear[1]] } else { [ear[0], ear[1], ear[2]] });
         }
         Some(())
+    }
+
+    /// Cuts; leaves nothing, and says so, where the outline crosses itself so that ears would miss a part.
+    fn cut_ears(&mut self) -> bool {
+        self.ears.clear();
+        self.earcut.earcut(self.flat.iter().map(|p| p.to_array()), &[], &mut self.ears);
+        let doubled = |a: usize, b: usize, c: usize| {
+            (self.flat[b] - self.flat[a]).perp_dot(self.flat[c] - self.flat[a])
+        };
+        let cut: f64 = self
+            .ears
+            .chunks_exact(3)
+            .map(|e| doubled(e[0] as usize, e[1] as usize, e[2] as usize).abs())
+            .sum();
+        let whole: f64 = (2..self.flat.len()).map(|i| doubled(0, i - 1, i)).sum();
+        let covers = (cut - whole).abs() <= 1e-6 * whole;
+        if !covers {
+            self.ears.clear();
+        }
+        covers
     }
 
     /// Looks at the polygon along its normal, so that it runs counter-clockwise; false where it has none.
@@ -68,11 +93,18 @@ impl Triangulator {
         true
     }
 
+    /// True when the outline turns right at a corner.
+    fn turns_right(&self, corner: usize) -> bool {
+        let n = self.flat.len();
+        let [before, at, after] = [corner + n - 1, corner, corner + 1].map(|i| self.flat[i % n]);
+        (at - before).perp_dot(after - at) < 0.0
+    }
+
     /// True when the polygon turns left at every corner, and once around in all.
     fn is_convex(&self) -> bool {
         let n = self.flat.len();
         let at = |i: usize| self.flat[i % n];
-        let turns_left = (0..n).all(|i| (at(i + 1) - at(i)).perp_dot(at(i + 2) - at(i + 1)) >= 0.0);
+        let turns_left = (0..n).all(|i| !self.turns_right(i));
         // A star turns left everywhere too, but goes up and down more than once.
         let rises = |i: usize| at(i + 1).y > at(i).y || (at(i + 1).y == at(i).y && at(i + 1).x > at(i).x);
         let changes = (0..n).filter(|&i| rises(i) != rises(i + 1)).count();
@@ -115,6 +147,18 @@ mod tests {
             assert!((area(&points, &triangles) - whole).length() < 1e-6);
             let with_it = |t: &[u32; 3]| newell(t.iter().map(|&i| points[i as usize])).dot(whole) > 0.0;
             assert!(triangles.iter().all(with_it), "{triangles:?}");
+        }
+    }
+
+    #[test]
+    fn a_hollow_quadrilateral_is_cut_at_its_dent() {
+        let dart = [[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
+        for turn in 0..4 {
+            let mut points = dart;
+            points.rotate_left(turn);
+            let triangles = cut(&points);
+            let positive = |t: &[u32; 3]| newell(t.iter().map(|&i| points[i as usize])).z > 0.0;
+            assert!(triangles.len() == 2 && triangles.iter().all(positive), "{triangles:?}");
         }
     }
 

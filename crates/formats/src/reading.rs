@@ -137,6 +137,17 @@ pub(crate) fn default_material() -> Spec {
     Spec::new("default", "phong")
 }
 
+/// The same where vertices bring kd or ks: these are the constants themselves, so that the material's own
+/// factors are 1.
+pub(crate) fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
+    let mut spec = default_material();
+    for (key, _) in [("kd", vertex_kd), ("ks", vertex_ks)].iter().filter(|(_, given)| *given) {
+        "vertices".clone_into(&mut spec.name);
+        spec.parameters.set(key, 1.0);
+    }
+    spec
+}
+
 /// Counts odd things by kind, so that a file with a million of them gives one warning.
 #[derive(Debug, Default)]
 pub(crate) struct Oddities {

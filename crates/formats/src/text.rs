@@ -9,6 +9,8 @@ use std::sync::Arc;
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     pos: usize,
+    /// Whether a backslash at a line's end continues it.
+    joins_lines: bool,
 }
 
 const fn is_blank(byte: u8) -> bool {
@@ -21,13 +23,23 @@ const fn is_newline(byte: u8) -> bool {
 
 impl<'a> Cursor<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Cursor<'a> {
-        Cursor { bytes, pos: 0 }
+        Cursor { bytes, pos: 0, joins_lines: false }
+    }
+
+    /// The same for formats in which a backslash at a line's end continues it.
+    pub(crate) fn joining_lines(bytes: &'a [u8]) -> Cursor<'a> {
+        Cursor { joins_lines: true, ..Cursor::new(bytes) }
     }
 
     /// How many bytes have been passed.
     #[inline]
     pub(crate) fn offset(&self) -> usize {
         self.pos
+    }
+
+    /// Goes to an offset.
+    pub(crate) fn go_to(&mut self, offset: usize) {
+        self.pos = offset.min(self.bytes.len());
     }
 
     pub(crate) fn is_done(&self) -> bool {
@@ -40,7 +52,7 @@ impl<'a> Cursor<'a> {
         while let Some(&byte) = self.bytes.get(self.pos) {
             match byte {
                 b if is_blank(b) => self.pos += 1,
-                b'\\' => match &self.bytes[self.pos + 1..] {
+                b'\\' if self.joins_lines => match &self.bytes[self.pos + 1..] {
                     [b'\r', b'\n', ..] => self.pos += 3,
                     [b'\r' | b'\n', ..] => self.pos += 2,
                     _ => break,
@@ -56,7 +68,10 @@ impl<'a> Cursor<'a> {
         self.skip_blanks();
         let rest = &self.bytes[self.pos..];
         let length = rest.iter().position(|&b| is_blank(b) || is_newline(b)).unwrap_or(rest.len());
-        let continued = length < rest.len() && is_newline(rest[length]) && rest[..length].ends_with(b"\\");
+        let continued = self.joins_lines
+            && length < rest.len()
+            && is_newline(rest[length])
+            && rest[..length].ends_with(b"\\");
         let length = length - usize::from(continued);
         self.pos += length;
         &rest[..length]
@@ -88,7 +103,7 @@ impl<'a> Cursor<'a> {
                 self.pos = self.bytes.len();
                 return;
             };
-            let continued = rest[..length].ends_with(b"\\");
+            let continued = self.joins_lines && rest[..length].ends_with(b"\\");
             self.pos += length + if rest[length..].starts_with(b"\r\n") { 2 } else { 1 };
             if !continued {
                 return;
@@ -170,7 +185,7 @@ mod tests {
     fn words_and_lines_for_every_line_end() {
         for end in ["\n", "\r", "\r\n"] {
             let text = format!("a  b{end}{end}\t c \\{end} d{end}e");
-            let mut cursor = Cursor::new(text.as_bytes());
+            let mut cursor = Cursor::joining_lines(text.as_bytes());
             let mut lines = Vec::new();
             while !cursor.is_done() {
                 let mut words = Vec::new();

@@ -7,7 +7,6 @@ use std::path::Path;
 
 /// The files of a scene while they are made.
 pub(crate) struct Writing<'o> {
-    #[allow(dead_code, reason = "for formats that have both text and binary")]
     pub(crate) options: &'o WriteOptions,
     /// The main file's name without folder and extension.
     pub(crate) stem: String,

@@ -2,7 +2,7 @@
 
 use crate::FormatError;
 use crate::float::parse_f32;
-use crate::reading::{Oddities, Reading, Source, default_material};
+use crate::reading::{Oddities, Reading, Source, plain_material};
 use crate::text::{Cursor, Places, name_of, quoted};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
@@ -291,14 +291,9 @@ impl Asc<'_, '_, '_> {
         Ok(())
     }
 
-    /// The material of a group. Where vertices bring kd and ks, these are the constants themselves, so that
-    /// the material's own factors are 1 unless the file says otherwise.
+    /// The material of a group.
     fn material(&mut self, config: Option<Spec>, coloured: bool) -> usize {
-        let spec = match (config, coloured) {
-            (Some(spec), _) => spec,
-            (None, true) => Spec::new("vertices", "phong").with("kd", 1.0).with("ks", 1.0),
-            (None, false) => default_material(),
-        };
+        let spec = config.unwrap_or_else(|| plain_material(coloured, coloured));
         let key = format!("{:?}", spec.parameters.0.iter().map(|(_, value, _)| value).collect::<Vec<_>>());
         let scene = &mut self.scene;
         *self.materials.entry(key).or_insert_with(|| scene.add_material(spec))

@@ -1,6 +1,5 @@
 //! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
 
-mod assemble;
 mod mtl;
 mod mtl_write;
 mod read;

@@ -19,7 +19,7 @@ pub(super) fn read_library(
     let mut library = Library {
         reading,
         source,
-        cursor: Cursor::new(source.bytes),
+        cursor: Cursor::joining_lines(source.bytes),
         places: Places::new(source.name, source.bytes),
         oddities: Oddities::default(),
     };

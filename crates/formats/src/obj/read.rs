@@ -1,53 +1,21 @@
 //! Reading the statements of an OBJ file.
 
-use super::assemble::assemble;
 use super::mtl::read_library;
 use crate::FormatError;
 use crate::float::parse_f32;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source};
+use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::{Cursor, Places, name_of, quoted};
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Object, SceneBuilder, Spec};
+use bilux_scene::{Object, SceneBuilder};
 use std::collections::HashMap;
-
-/// An index that is not given.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// Position, texture coordinates and normal of a corner, as indices from 0; or [`NONE`].
-pub(super) type Corner = [u32; 3];
-
-/// Everything of an OBJ file, before it is cut into objects.
-#[derive(Default)]
-pub(super) struct Soup {
-    pub(super) positions: Vec<Vec3>,
-    /// As many as positions, or none.
-    pub(super) colours: Vec<Rgb>,
-    pub(super) uvs: Vec<Vec2>,
-    pub(super) normals: Vec<Vec3>,
-    pub(super) corners: Vec<Corner>,
-    /// Where each face's corners end.
-    pub(super) ends: Vec<u32>,
-    /// Where in the file each face stands.
-    pub(super) offsets: Vec<usize>,
-    pub(super) smoothing: Vec<Smoothing>,
-    pub(super) runs: Vec<Run>,
-}
-
-/// Faces one after another that have the same name and material.
-#[derive(Clone, Debug)]
-pub(super) struct Run {
-    pub(super) first_face: usize,
-    pub(super) name: String,
-    /// The material's name and where it is asked for; none before the first `usemtl`.
-    pub(super) material: Option<(String, usize)>,
-}
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut reader = Obj {
         reading,
         source,
-        cursor: Cursor::new(source.bytes),
+        cursor: Cursor::joining_lines(source.bytes),
         places: Places::new(source.name, source.bytes),
         soup: Soup::default(),
         scene: SceneBuilder::default(),
@@ -228,7 +196,7 @@ impl Obj<'_, '_, '_> {
         self.in_run = true;
         let first_face = self.soup.ends.len();
         let run = Run { first_face, name: self.name.clone(), material: self.material.clone() };
-        let same = |last: &Run| last.name == run.name && material_name(last) == material_name(&run);
+        let same = |last: &Run| last.name == run.name && last.material_name() == run.material_name();
         if self.soup.runs.last().is_some_and(same) {
             return Ok(());
         }
@@ -358,10 +326,6 @@ impl Obj<'_, '_, '_> {
     }
 }
 
-pub(super) fn material_name(run: &Run) -> Option<&str> {
-    run.material.as_ref().map(|(name, _)| name.as_str())
-}
-
 /// Names with blanks between; a backslash keeps a blank in a name.
 fn split_names(line: &str) -> Vec<String> {
     let mut names = vec![String::new()];
@@ -402,15 +366,6 @@ fn index(text: &[u8], count: usize) -> Option<u32> {
     let from_zero = if negative { (count as u64).checked_sub(number)? } else { number.checked_sub(1)? };
     (number > 0).then_some(())?;
     u32::try_from(from_zero).ok().filter(|&i| i != NONE)
-}
-
-/// The material of faces before the first `usemtl`, or of a name that no library has.
-pub(super) fn plain_material(name: Option<&str>) -> Spec {
-    let spec = crate::reading::default_material();
-    match name {
-        Some(name) => Spec { name: name.to_owned(), ..spec },
-        None => spec,
-    }
 }
 
 #[cfg(test)]

@@ -4,8 +4,11 @@
 
 mod asc;
 mod obj;
+mod oracles;
+mod ply;
 mod round_trips;
 mod shared_files;
+mod stl;
 
 use bilux_formats::{FormatError, ReadOptions, read_bytes};
 use bilux_scene::SceneBuilder;

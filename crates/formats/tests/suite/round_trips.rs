@@ -69,3 +69,42 @@ fn obj_comes_back_from_obj() {
         assert_eq!(names(&original), names(&back));
     }
 }
+
+#[test]
+fn ply_and_stl_come_back_as_text_and_as_binary() {
+    let Some(root) = scenes() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        ("ply/trimesh/suzanne.ply", "out.ply"),
+        ("ply/trimesh/fuze.ply", "out.ply"),
+        ("ply/assimp/float-color.ply", "out.ply"),
+        ("stl/assimp/Spider_ascii.stl", "out.stl"),
+        ("stl/trimesh/featuretype.STL", "out.stl"),
+    ];
+    for (name, out) in cases {
+        let original = read(&root.join(name), &ReadOptions::default()).unwrap();
+        for ascii in [false, true] {
+            let path = folder.path().join(out);
+            let warnings = write(&path, &original, &WriteOptions { ascii }).unwrap();
+            assert!(warnings.is_empty() || name.contains("Spider"), "{name}: {warnings:?}");
+            let back = read(&path, &ReadOptions::default()).unwrap();
+            if name.contains("Spider") && !ascii {
+                continue;
+            }
+            assert_same(&original, &back, name);
+        }
+    }
+}
+
+#[test]
+fn specular_colours_come_back_from_ply() {
+    let mut text = "triangle\n".to_owned();
+    for corner in ["0 0 0", "1 0 0", "0 1 0"] {
+        text.push_str(&format!("{corner} 0 0 1 0 0 .1 .2 .3 .4 .5 .6\n"));
+    }
+    let original = crate::read_text("asc", text).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let as_ply = there(&original, &folder.path().join("a.ply"));
+    assert_same(&original, &there(&as_ply, &folder.path().join("a.asc")), "ks");
+    assert_eq!(original.objects[0].mesh.vertex_ks, as_ply.objects[0].mesh.vertex_ks);
+}

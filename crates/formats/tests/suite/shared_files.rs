@@ -8,12 +8,15 @@ const REFUSED: &[(&str, &str)] = &[
     ("asc/teapot.bpt", "no scene format"),
     ("obj/tinyobj/line-prim.obj", "only points or lines"),
     ("obj/tinyobj/points-prim.obj", "only points or lines"),
+    ("ply/assimp/points.ply", "a cloud of points"),
+    ("ply/trimesh/points_ascii.ply", "a cloud of points"),
+    ("ply/trimesh/points_bin.ply", "a cloud of points"),
 ];
 
 /// Files that belong to others.
 const COMPANIONS: &[&str] = &["mtl", "png", "jpg"];
 
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(crate) fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> =
         std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
     entries.sort();
@@ -36,7 +39,7 @@ pub(crate) fn scenes() -> Option<PathBuf> {
 fn every_file_reads_or_is_refused_for_its_reason() {
     let Some(root) = scenes() else { return };
     let mut all = Vec::new();
-    for kind in ["asc", "obj"] {
+    for kind in ["asc", "obj", "ply", "stl"] {
         files(&root.join(kind), &mut all);
     }
     let mut read_count = 0;
@@ -59,7 +62,7 @@ fn every_file_reads_or_is_refused_for_its_reason() {
             (Err(error), None) => panic!("{name} was refused: {error}"),
         }
     }
-    assert!(read_count >= 40, "only {read_count} files were found");
+    assert!(read_count >= 65, "only {read_count} files were found");
 }
 
 #[test]

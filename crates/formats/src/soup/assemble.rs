@@ -1,10 +1,10 @@
 //! Faces over separate lists of positions, uvs and normals, into meshes.
 
-use super::read::{Corner, NONE, Run, Soup, plain_material};
+use super::{Corner, NONE, Run, Soup};
 use crate::FormatError;
 use crate::normals::{FLAT, Faces};
 use crate::polygon::Triangulator;
-use crate::reading::{Oddities, Reading, Source};
+use crate::reading::{Oddities, Reading, Source, plain_material};
 use crate::text::Places;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Makes an object of every run.
-pub(super) fn assemble(
+pub(crate) fn assemble(
     reading: &mut Reading,
     source: &Source,
     places: &Places,
@@ -40,7 +40,7 @@ pub(super) fn assemble(
             }
         }
         piece.note_gaps(run, places, &soup, oddities);
-        let material = material_of(run, &mut materials, places, scene, oddities);
+        let material = material_of(run, &soup, &mut materials, places, scene, oddities);
         let mut mesh = piece.mesh;
         let name = if run.name.is_empty() { &stem } else { &run.name };
         mesh.name.clone_from(name);
@@ -106,6 +106,7 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
 
 fn material_of(
     run: &Run,
+    soup: &Soup,
     materials: &mut HashMap<String, usize>,
     places: &Places,
     scene: &mut SceneBuilder,
@@ -123,7 +124,11 @@ fn material_of(
         let what = "a material is in no library that was read; a plain one stands in its place";
         oddities.note(what, || places.at(offset));
     }
-    let index = scene.add_material(plain_material(offset.map(|_| name)));
+    let mut spec = plain_material(!soup.colours.is_empty(), !soup.specular.is_empty());
+    if offset.is_some() {
+        name.clone_into(&mut spec.name);
+    }
+    let index = scene.add_material(spec);
     materials.insert(name.to_owned(), index);
     index
 }
@@ -222,6 +227,9 @@ impl<'s> Piece<'s> {
         }
         if !soup.colours.is_empty() {
             mesh.vertex_kd.push(soup.colours.get(position as usize).copied().unwrap_or(Rgb::WHITE));
+        }
+        if !soup.specular.is_empty() {
+            mesh.vertex_ks.push(soup.specular.get(position as usize).copied().unwrap_or(Rgb::WHITE));
         }
     }
 

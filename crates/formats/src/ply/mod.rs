@@ -1,0 +1,23 @@
+//! PLY, text and binary of both byte orders. See `docs/formats/ply.md`.
+
+mod body;
+mod header;
+mod read;
+mod write;
+
+use crate::formats::SceneFormatEntry;
+use bilux_math::registry::Entry;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "ply",
+        summary: "PLY, the Stanford triangle format, text or binary",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["ply"],
+    capabilities: &["polygons", "normals", "uv", "vertex-kd", "vertex-ks"],
+    sniff: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply "),
+    read: Some(read::read),
+    write: Some(write::write),
+};

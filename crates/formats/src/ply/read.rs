@@ -1,0 +1,368 @@
+//! Reading PLY.
+
+use super::body::Body;
+use super::header::{Element, Property, Scalar, read_header};
+use crate::FormatError;
+use crate::normals::BY_ANGLE;
+use crate::reading::{Oddities, Reading, Source, plain_material};
+use crate::soup::{Corner, NONE, Run, Soup, assemble};
+use crate::text::Places;
+use bilux_math::colour::srgb_decode;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{SceneBuilder, Value};
+use std::collections::HashMap;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let places = Places::new(source.name, source.bytes);
+    let header = read_header(source, &places)?;
+    let mut reader = Ply {
+        reading,
+        source,
+        places: &places,
+        body: Body::new(source, &places, header.encoding, header.body),
+        soup: Soup::default(),
+        vertices: Slots::default(),
+        wedge_uvs: Vec::new(),
+        wedges: HashMap::new(),
+        oddities: Oddities::default(),
+    };
+    for element in &header.elements {
+        reader.element(element)?;
+    }
+    let (texture, scene) = (header.texture, SceneBuilder::default());
+    reader.finish(texture, scene)
+}
+
+struct Ply<'a, 'o, 'r> {
+    reading: &'r mut Reading<'o>,
+    source: &'a Source<'a>,
+    places: &'a Places<'a>,
+    body: Body<'a>,
+    soup: Soup,
+    vertices: Slots,
+    /// Texture coordinates of corners rather than vertices, each value once.
+    wedge_uvs: Vec<Vec2>,
+    /// Index of each of these, by its bits.
+    wedges: HashMap<[u32; 2], u32>,
+    oddities: Oddities,
+}
+
+/// What the numbers of a vertex can mean, by the names that programs give them.
+const MEANINGS: [&[&str]; 14] = [
+    &["x"],
+    &["y"],
+    &["z"],
+    &["nx", "normal_x"],
+    &["ny", "normal_y"],
+    &["nz", "normal_z"],
+    &["u", "s", "texture_u", "texture_s"],
+    &["v", "t", "texture_v", "texture_t"],
+    &["red", "r", "diffuse_red"],
+    &["green", "g", "diffuse_green"],
+    &["blue", "b", "diffuse_blue"],
+    &["specular_red"],
+    &["specular_green"],
+    &["specular_blue"],
+];
+
+/// Which meanings the vertices of a file have.
+#[derive(Default)]
+struct Slots {
+    /// The meaning of each property.
+    meaning: Vec<Option<usize>>,
+    /// Types of colours.
+    colour: [Option<f32>; 2],
+    normals: bool,
+    uvs: bool,
+    kd: bool,
+    ks: bool,
+}
+
+impl Slots {
+    fn new(element: &Element) -> Slots {
+        let meaning_of = |p: &Property| {
+            let known = |names: &&[&str]| names.contains(&p.name.as_str());
+            MEANINGS.iter().position(|names| known(names)).filter(|_| p.count.is_none())
+        };
+        let meaning: Vec<Option<usize>> = element.properties.iter().map(meaning_of).collect();
+        let all = |slots: std::ops::Range<usize>| slots.into_iter().all(|slot| meaning.contains(&Some(slot)));
+        let scale = |slot| {
+            let property = meaning.iter().position(|&m| m == Some(slot));
+            property.and_then(|p| element.properties[p].scalar.colour_scale())
+        };
+        let (normals, uvs, kd, ks) = (all(3..6), all(6..8), all(8..11), all(11..14));
+        Slots { colour: [scale(8), scale(11)], normals, uvs, kd, ks, meaning }
+    }
+}
+
+impl Ply<'_, '_, '_> {
+    fn element(&mut self, element: &Element) -> Result<(), FormatError> {
+        if element.properties.is_empty() {
+            // Its rows take no bytes, however many they are.
+            return Ok(());
+        }
+        self.body.check_claim(element)?;
+        match element.name.as_str() {
+            "vertex" => self.vertices(element),
+            "face" => self.faces(element, false),
+            "tristrips" => self.faces(element, true),
+            _ => self.skip_element(element),
+        }
+    }
+
+    fn skip_element(&mut self, element: &Element) -> Result<(), FormatError> {
+        for _ in 0..element.count {
+            for property in &element.properties {
+                self.skip(property)?;
+            }
+            self.body.end_row();
+        }
+        Ok(())
+    }
+
+    fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
+        let count = match property.count {
+            Some(scalar) => self.body.integer(scalar)?,
+            None => 1,
+        };
+        self.body.skip(property.scalar, count)
+    }
+
+    fn vertices(&mut self, element: &Element) -> Result<(), FormatError> {
+        let slots = Slots::new(element);
+        if !(0..3).all(|slot| slots.meaning.contains(&Some(slot))) {
+            let message = "the element 'vertex' has no properties x, y and z";
+            return Err(FormatError::malformed(message, self.places.at(element.offset)));
+        }
+        if element.count >= u64::from(NONE) {
+            let message = "there are more than 4 billion vertices: cut the file into several";
+            return Err(FormatError::malformed(message, self.places.at(element.offset)));
+        }
+        for _ in 0..element.count {
+            self.reading.budget.take::<[f32; MEANINGS.len()]>(1, self.source.name)?;
+            let start = self.body.offset();
+            let mut values = [0f32; MEANINGS.len()];
+            for (property, meaning) in element.properties.iter().zip(&slots.meaning) {
+                match meaning {
+                    Some(slot) => values[*slot] = self.body.number(property.scalar)?,
+                    None => self.skip(property)?,
+                }
+            }
+            self.end_row(start);
+            self.push_vertex(&values, &slots, start);
+        }
+        self.vertices = slots;
+        Ok(())
+    }
+
+    fn end_row(&mut self, start: usize) {
+        if self.body.end_row() {
+            let places = self.places;
+            self.oddities.note("a line has more words than the header says", || places.at(start));
+        }
+    }
+
+    fn push_vertex(&mut self, values: &[f32; MEANINGS.len()], slots: &Slots, start: usize) {
+        let soup = &mut self.soup;
+        soup.positions.push(Vec3::from_slice(&values[0..3]));
+        if slots.normals {
+            soup.normals.push(Vec3::from_slice(&values[3..6]));
+        }
+        if slots.uvs {
+            soup.uvs.push(Vec2::from_slice(&values[6..8]));
+        }
+        let colour = |first: usize, scale: Option<f32>| {
+            let stored = Rgb::new(values[first], values[first + 1], values[first + 2]);
+            scale.map_or(stored, |one| stored.map(|c| srgb_decode(c / one)))
+        };
+        if slots.kd {
+            soup.colours.push(colour(8, slots.colour[0]));
+        }
+        if slots.ks {
+            soup.specular.push(colour(11, slots.colour[1]));
+        }
+        if values.iter().any(|x| !x.is_finite()) {
+            let places = self.places;
+            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            self.oddities.note(what, || places.at(start));
+        }
+    }
+
+    fn faces(&mut self, element: &Element, strips: bool) -> Result<(), FormatError> {
+        let is = |p: &Property, names: &[&str]| p.count.is_some() && names.contains(&p.name.as_str());
+        if !element.properties.iter().any(|p| is(p, &["vertex_indices", "vertex_index"])) {
+            let message = format!("the element '{}' has no list 'vertex_indices'", element.name);
+            return Err(FormatError::malformed(message, self.places.at(element.offset)));
+        }
+        for _ in 0..element.count {
+            let start = self.body.offset();
+            let first = self.soup.corners.len();
+            let mut wedges = None;
+            for property in &element.properties {
+                if is(property, &["vertex_indices", "vertex_index"]) {
+                    self.indices(property, strips, start)?;
+                } else if is(property, &["texcoord"]) && !strips {
+                    wedges = Some(self.wedges(property)?);
+                } else {
+                    self.skip(property)?;
+                }
+            }
+            if let Some(uvs) = wedges {
+                self.set_wedges(first, uvs, start);
+            }
+            self.end_row(start);
+        }
+        Ok(())
+    }
+
+    /// The corners of one face, or of a strip of triangles, in which -1 begins anew.
+    fn indices(&mut self, property: &Property, strips: bool, start: usize) -> Result<(), FormatError> {
+        let count = self.body.integer(property.count.unwrap_or(property.scalar))?;
+        let first = self.soup.corners.len();
+        let mut strip: [u32; 2] = [NONE; 2];
+        let mut turned = false;
+        for _ in 0..count {
+            let index = self.body.integer(property.scalar)?;
+            let vertex = u32::try_from(index).ok().filter(|&i| i != NONE);
+            match vertex {
+                None if strips && index == -1 => (strip, turned) = ([NONE; 2], false),
+                None => {
+                    let message = format!("this face names vertex {index}: vertices are counted from 0");
+                    return Err(FormatError::malformed(message, self.places.at(start)));
+                }
+                Some(vertex) if strips => {
+                    let [a, b] = strip;
+                    if a != NONE {
+                        let triangle = if turned { [b, a, vertex] } else { [a, b, vertex] };
+                        triangle.iter().for_each(|&v| self.push_corner(v));
+                        self.end_face(start)?;
+                        turned = !turned;
+                    }
+                    strip = [b, vertex];
+                }
+                Some(vertex) => self.push_corner(vertex),
+            }
+        }
+        if strips {
+            return Ok(());
+        }
+        if self.soup.corners.len() - first < 3 {
+            self.soup.corners.truncate(first);
+            let places = self.places;
+            let what = "a face has fewer than 3 corners and is left out";
+            self.oddities.note(what, || places.at(start));
+            return Ok(());
+        }
+        self.end_face(start)
+    }
+
+    /// Vertices that come later in the file bring their normals and uvs too, which are looked at in the end.
+    fn push_corner(&mut self, vertex: u32) {
+        self.soup.corners.push([vertex, NONE, NONE]);
+    }
+
+    fn end_face(&mut self, start: usize) -> Result<(), FormatError> {
+        let soup = &mut self.soup;
+        let corners = soup.corners.len() - soup.ends.last().map_or(0, |&end| end as usize);
+        self.reading.budget.take::<Corner>(corners, self.source.name)?;
+        self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
+        if soup.corners.len() as u64 >= u64::from(NONE) {
+            let message = "there are more than 4 billion corners: cut the file into several";
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        }
+        soup.ends.push(soup.corners.len() as u32);
+        soup.offsets.push(start);
+        soup.smoothing.push(BY_ANGLE);
+        Ok(())
+    }
+
+    /// Texture coordinates of each corner of a face, one after another.
+    fn wedges(&mut self, property: &Property) -> Result<Vec<Vec2>, FormatError> {
+        let count = self.body.integer(property.count.unwrap_or(Scalar::U8))?;
+        let mut uvs = Vec::new();
+        for _ in 0..count / 2 {
+            self.reading.budget.take::<[Vec2; 4]>(1, self.source.name)?;
+            uvs.push(Vec2::new(self.body.number(property.scalar)?, self.body.number(property.scalar)?));
+        }
+        self.body.skip(property.scalar, count % 2)?;
+        Ok(uvs)
+    }
+
+    fn set_wedges(&mut self, first: usize, uvs: Vec<Vec2>, start: usize) {
+        let corners = &mut self.soup.corners[first..];
+        if uvs.len() != corners.len() {
+            if !uvs.is_empty() && !corners.is_empty() {
+                let places = self.places;
+                let what = "a face has other numbers of corners and of texture coordinates";
+                self.oddities.note(what, || places.at(start));
+            }
+            return;
+        }
+        for (corner, uv) in corners.iter_mut().zip(uvs) {
+            let all = &mut self.wedge_uvs;
+            let next = all.len() as u32;
+            corner[1] = *self.wedges.entry(uv.to_array().map(f32::to_bits)).or_insert(next);
+            if corner[1] == next {
+                all.push(uv);
+            }
+        }
+    }
+
+    fn finish(
+        mut self,
+        texture: Option<(String, usize)>,
+        mut scene: SceneBuilder,
+    ) -> Result<SceneBuilder, FormatError> {
+        if self.soup.ends.is_empty() {
+            let message = if self.soup.positions.is_empty() {
+                "there is no face in it"
+            } else {
+                "there is no face in it: this is a cloud of points; make a surface of it with another program first"
+            };
+            return Err(FormatError::malformed(message, self.places.whole()));
+        }
+        let (normals, uvs) = (self.vertices.normals, self.vertices.uvs);
+        let wedges = std::mem::take(&mut self.wedge_uvs);
+        let uvs = uvs && wedges.is_empty();
+        if !wedges.is_empty() {
+            self.soup.uvs = wedges;
+        }
+        for corner in &mut self.soup.corners {
+            let of_vertex = |given: bool| if given { corner[0] } else { NONE };
+            *corner =
+                [corner[0], if corner[1] == NONE { of_vertex(uvs) } else { corner[1] }, of_vertex(normals)];
+        }
+        self.soup.runs.push(Run { first_face: 0, name: self.source.stem(), material: None });
+        let mut materials = HashMap::new();
+        if let Some((file, offset)) = texture {
+            self.texture(&file, offset, &mut scene, &mut materials)?;
+        }
+        let Ply { reading, source, places, soup, mut oddities, .. } = self;
+        assemble(reading, source, places, soup, materials, &mut scene, &mut oddities)?;
+        oddities.into_warnings(&mut scene);
+        Ok(scene)
+    }
+
+    /// The texture of the whole mesh, as MeshLab names it in a comment.
+    fn texture(
+        &mut self,
+        file: &str,
+        offset: usize,
+        scene: &mut SceneBuilder,
+        materials: &mut HashMap<String, usize>,
+    ) -> Result<(), FormatError> {
+        let at = self.places.at(offset);
+        match self.reading.texture(self.source.folder, file, &at) {
+            Ok(texture) => {
+                let mut spec = plain_material(false, !self.soup.specular.is_empty());
+                spec.parameters.set_at("kd", Value::Texture(scene.textures.len()), at);
+                scene.textures.push(texture);
+                let index = scene.add_material(spec);
+                materials.insert(String::new(), index);
+            }
+            Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+            Err(error) => scene.warn(format!("a texture is missing, and left out: {error}"), at),
+        }
+        Ok(())
+    }
+}

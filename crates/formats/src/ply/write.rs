@@ -1,0 +1,168 @@
+//! Writing PLY.
+
+use crate::FormatError;
+use crate::bake::{in_place, warn_of_materials, warn_of_scene};
+use crate::float::push_f32s;
+use crate::text::whole_file;
+use crate::writing::Writing;
+use bilux_math::colour::{srgb_decode, srgb_encode};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{Mesh, SceneBuilder};
+use std::borrow::Cow;
+
+pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+    warn_of_scene(scene, "PLY", writing);
+    warn_of_materials(scene, "PLY", writing);
+    if scene.objects.len() > 1 {
+        writing.warn("PLY files hold one object: all are joined");
+    }
+    let meshes: Vec<Cow<Mesh>> = scene.objects.iter().map(|object| in_place(object, writing)).collect();
+    let meshes: Vec<&Mesh> = meshes.iter().map(|mesh| &**mesh).collect();
+    let ascii = writing.options.ascii;
+    match encode(&meshes, ascii) {
+        Some(bytes) => writing.main = bytes,
+        None => {
+            let message = "a PLY file holds at most 2,147,483,647 vertices: write several";
+            return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
+        }
+    }
+    Ok(())
+}
+
+/// The bytes of a file with meshes joined; `None` where there are too many vertices.
+pub(crate) fn encode(meshes: &[&Mesh], ascii: bool) -> Option<Vec<u8>> {
+    let columns = Columns::of(meshes);
+    let vertices: usize = meshes.iter().map(|m| m.positions.len()).sum();
+    let triangles: usize = meshes.iter().map(|m| m.triangles.len()).sum();
+    i32::try_from(vertices).ok()?;
+    let mut out = columns.header(ascii, vertices, triangles).into_bytes();
+    for mesh in meshes {
+        for i in 0..mesh.positions.len() {
+            columns.push_vertex(mesh, i, ascii, &mut out);
+        }
+    }
+    let mut first = 0u32;
+    for mesh in meshes {
+        for triangle in &mesh.triangles {
+            let indices = triangle.map(|i| i + first);
+            if ascii {
+                out.extend_from_slice(format!("3 {} {} {}\n", indices[0], indices[1], indices[2]).as_bytes());
+            } else {
+                out.push(3);
+                out.extend(indices.into_iter().flat_map(u32::to_le_bytes));
+            }
+        }
+        first += mesh.positions.len() as u32;
+    }
+    Some(out)
+}
+
+/// What is written of each vertex. Where one mesh has it, all do.
+struct Columns {
+    normals: bool,
+    uvs: bool,
+    kd: Option<Colours>,
+    ks: Option<Colours>,
+}
+
+/// Colours that bytes hold exactly are written as bytes, as other programs want them.
+#[derive(Clone, Copy, PartialEq)]
+enum Colours {
+    Bytes,
+    Floats,
+}
+
+fn as_bytes(colour: Rgb) -> Option<[u8; 3]> {
+    let byte = |c: f32| {
+        let byte = (srgb_encode(c.clamp(0.0, 1.0)) * 255.0).round() as u8;
+        (srgb_decode(f32::from(byte) / 255.0) == c).then_some(byte)
+    };
+    Some([byte(colour.r)?, byte(colour.g)?, byte(colour.b)?])
+}
+
+impl Columns {
+    fn of(meshes: &[&Mesh]) -> Columns {
+        let colours = |of: fn(&Mesh) -> &Vec<Rgb>| {
+            let any = meshes.iter().any(|m| !of(m).is_empty());
+            let exact = meshes.iter().all(|m| of(m).iter().all(|&c| as_bytes(c).is_some()));
+            any.then_some(if exact { Colours::Bytes } else { Colours::Floats })
+        };
+        Columns {
+            normals: meshes.iter().any(|m| !m.normals.is_empty()),
+            uvs: meshes.iter().any(|m| !m.uvs.is_empty()),
+            kd: colours(|m| &m.vertex_kd),
+            ks: colours(|m| &m.vertex_ks),
+        }
+    }
+
+    fn header(&self, ascii: bool, vertices: usize, triangles: usize) -> String {
+        let format = if ascii { "ascii" } else { "binary_little_endian" };
+        let mut header = format!("ply\nformat {format} 1.0\nelement vertex {vertices}\n");
+        let mut properties = |scalar: &str, names: &[&str]| {
+            names.iter().for_each(|name| header.push_str(&format!("property {scalar} {name}\n")));
+        };
+        properties("float", &["x", "y", "z"]);
+        if self.normals {
+            properties("float", &["nx", "ny", "nz"]);
+        }
+        if self.uvs {
+            properties("float", &["u", "v"]);
+        }
+        let scalar = |colours: Colours| if colours == Colours::Bytes { "uchar" } else { "float" };
+        if let Some(colours) = self.kd {
+            properties(scalar(colours), &["red", "green", "blue"]);
+        }
+        if let Some(colours) = self.ks {
+            properties(scalar(colours), &["specular_red", "specular_green", "specular_blue"]);
+        }
+        header.push_str(&format!(
+            "element face {triangles}\nproperty list uchar int vertex_indices\nend_header\n"
+        ));
+        header
+    }
+
+    fn push_vertex(&self, mesh: &Mesh, i: usize, ascii: bool, out: &mut Vec<u8>) {
+        let mut floats = |values: &[f32]| {
+            if ascii {
+                push_f32s(out, values);
+                out.push(b' ');
+            } else {
+                out.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+            }
+        };
+        floats(&mesh.positions[i].to_array());
+        if self.normals {
+            // Zero stands for none.
+            floats(&mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).to_array());
+        }
+        if self.uvs {
+            floats(&mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO).to_array());
+        }
+        for (colours, values) in [(self.kd, &mesh.vertex_kd), (self.ks, &mesh.vertex_ks)] {
+            let value = values.get(i).copied().unwrap_or(Rgb::WHITE);
+            match colours {
+                None => {}
+                Some(Colours::Floats) => {
+                    if ascii {
+                        push_f32s(out, &value.to_array());
+                        out.push(b' ');
+                    } else {
+                        out.extend(value.to_array().iter().flat_map(|v| v.to_le_bytes()));
+                    }
+                }
+                Some(Colours::Bytes) => {
+                    let bytes = as_bytes(value).unwrap_or([255; 3]);
+                    if ascii {
+                        out.extend_from_slice(format!("{} {} {} ", bytes[0], bytes[1], bytes[2]).as_bytes());
+                    } else {
+                        out.extend(bytes);
+                    }
+                }
+            }
+        }
+        if ascii {
+            out.pop();
+            out.push(b'\n');
+        }
+    }
+}
