@@ -3,7 +3,7 @@
 use crate::normals::unit_face_normal;
 use crate::reading::plain_material;
 use crate::writing::Writing;
-use bilux_math::Vec3;
+use bilux_math::{Transform, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::borrow::Cow;
 
@@ -16,7 +16,12 @@ pub(crate) fn in_place<'a>(object: &'a Object, writing: &mut Writing) -> Cow<'a,
     if transform.is_identity() {
         return Cow::Borrowed(&object.mesh);
     }
-    let mut mesh = (*object.mesh).clone();
+    Cow::Owned(transformed(&object.mesh, &transform))
+}
+
+/// A mesh with its vertices moved.
+pub(crate) fn transformed(mesh: &Mesh, transform: &Transform) -> Mesh {
+    let mut mesh = mesh.clone();
     for p in &mut mesh.positions {
         *p = transform.point(*p);
     }
@@ -28,7 +33,7 @@ pub(crate) fn in_place<'a>(object: &'a Object, writing: &mut Writing) -> Cow<'a,
             triangle.swap(1, 2);
         }
     }
-    Cow::Owned(mesh)
+    mesh
 }
 
 /// The name of an object, or else of its mesh.

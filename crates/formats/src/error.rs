@@ -83,6 +83,19 @@ pub enum FormatError {
 }
 
 impl FormatError {
+    /// The message without the place in front, for warnings, which have their own.
+    pub(crate) fn without_place(&self) -> String {
+        let text = self.to_string();
+        match self {
+            FormatError::Malformed { at, .. }
+            | FormatError::MissingFile { at, .. }
+            | FormatError::Outside { at, .. } => {
+                text.strip_prefix(&format!("{at}: ")).map(str::to_owned).unwrap_or(text)
+            }
+            _ => text,
+        }
+    }
+
     pub(crate) fn malformed(message: impl Into<String>, at: Span) -> FormatError {
         FormatError::Malformed { message: message.into(), at }
     }

@@ -3,7 +3,7 @@
 use crate::reading::{Reading, Source};
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
-use crate::{FormatError, ReadOptions, WriteOptions, asc, obj, ply, stl};
+use crate::{FormatError, ReadOptions, WriteOptions, asc, native, obj, ply, stl};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, Warning};
@@ -11,7 +11,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Every format that there is.
-pub const SCENE_FORMATS: &[SceneFormatEntry] = &[asc::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY];
+pub const SCENE_FORMATS: &[SceneFormatEntry] =
+    &[asc::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY, native::ENTRY];
 
 /// A row of [`SCENE_FORMATS`].
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +74,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
         None => sniffed(&bytes).ok_or_else(|| unknown(path, "read", SceneFormatEntry::reads))?,
     };
     let name = path.display().to_string().into();
+    reading.open.extend(std::fs::canonicalize(path));
     read_source(row, &mut reading, &Source { bytes: &bytes, name: &name, folder })
 }
 

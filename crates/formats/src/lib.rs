@@ -11,6 +11,7 @@ mod budget;
 mod error;
 mod float;
 mod formats;
+mod native;
 mod normals;
 mod obj;
 mod options;
@@ -25,4 +26,5 @@ mod writing;
 
 pub use error::FormatError;
 pub use formats::{SCENE_FORMATS, SceneFormatEntry, format_named, format_of_path, read, read_bytes, write};
+pub use native::{SHAPES, ShapeEntry, toml_schema};
 pub use options::{ReadOptions, WriteOptions};

@@ -36,12 +36,41 @@ pub(crate) struct Reading<'o> {
     /// Nothing outside this folder is opened.
     root: Option<PathBuf>,
     textures: HashMap<PathBuf, Arc<Texture>>,
+    /// Scenes put into other scenes, each read once.
+    pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
+    /// The chain of scenes put into each other, from the first to the one that is read.
+    pub(crate) open: Vec<PathBuf>,
 }
+
+/// Longer chains of scenes put into each other are refused: each takes a part of the stack.
+const LONGEST_CHAIN: usize = 16;
 
 impl<'o> Reading<'o> {
     pub(crate) fn new(options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
         let root = folder.and_then(|folder| fs::canonicalize(non_empty(folder)).ok());
-        Reading { options, budget: Budget::new(options.max_memory), root, textures: HashMap::new() }
+        Reading {
+            options,
+            budget: Budget::new(options.max_memory),
+            root,
+            textures: HashMap::new(),
+            models: HashMap::new(),
+            open: Vec::new(),
+        }
+    }
+
+    /// Begins to read a scene that is put into another.
+    pub(crate) fn enter(&mut self, path: &Path, at: &Span) -> Result<(), FormatError> {
+        if self.open.len() >= LONGEST_CHAIN {
+            let message = format!("scenes are put into each other more than {LONGEST_CHAIN} deep");
+            return Err(FormatError::malformed(message, at.clone()));
+        }
+        self.open.push(path.to_owned());
+        Ok(())
+    }
+
+    /// Ends what [`Reading::enter`] began.
+    pub(crate) fn leave(&mut self) {
+        self.open.pop();
     }
 
     /// The file that a file names, if it is there and may be opened.

@@ -104,6 +104,20 @@ impl Motion {
         Some(Motion { course: Course::Keys(moved.collect()) })
     }
 
+    /// The keys, in order of time, rotations of unit length; none where there were none or only one.
+    pub fn keys(&self) -> Vec<MotionKey> {
+        let key = |pose: &Pose| MotionKey {
+            time_seconds: pose.time as f32,
+            translation: pose.translation.as_vec3(),
+            rotation: pose.rotation.as_quat(),
+            scale: pose.scale.as_vec3(),
+        };
+        match &self.course {
+            Course::Still(_) => Vec::new(),
+            Course::Keys(poses) => poses.iter().map(key).collect(),
+        }
+    }
+
     /// True when it never moves.
     pub fn is_still(&self) -> bool {
         match &self.course {
@@ -332,6 +346,7 @@ mod tests {
         assert_eq!(motion.at(9.0), motion.at(3.0));
         assert_eq!(motion.at(f32::NAN), motion.at(1.0));
         assert!(motion.at(0.0).is_identity());
+        assert_eq!(Motion::from_keys(motion.keys()), Some(motion.clone()));
         assert!(!motion.is_still() && motion.is_still_over([-1.0, 0.5]) && !motion.is_still_over([0.0, 1.5]));
     }
 

@@ -228,15 +228,9 @@ impl Library<'_, '_, '_> {
         match self.reading.texture(self.source.folder, file, at) {
             Ok(texture) => Ok(Some(texture)),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
-            Err(FormatError::Malformed { message, at }) => {
-                scene.warn(format!("{message}; its colour stands in its place"), at);
-                Ok(None)
-            }
             Err(error) => {
-                scene.warn(
-                    format!("a texture is missing and its colour stands in its place: {error}"),
-                    at.clone(),
-                );
+                let reason = error.without_place();
+                scene.warn(format!("a colour stands in place of a texture: {reason}"), at.clone());
                 Ok(None)
             }
         }

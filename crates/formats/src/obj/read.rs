@@ -272,7 +272,7 @@ impl Obj<'_, '_, '_> {
                 Ok(loaded) => loaded,
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
-                    self.scene.warn(format!("materials are missing: {error}"), at.clone());
+                    self.scene.warn(format!("materials are missing: {}", error.without_place()), at.clone());
                     continue;
                 }
             };

@@ -97,6 +97,8 @@ pub(super) struct Header {
     pub(super) elements: Vec<Element>,
     /// The file of a `comment TextureFile` line, and where it stands.
     pub(super) texture: Option<(String, usize)>,
+    /// Whether a comment says that faces without normals are flat.
+    pub(super) is_flat: bool,
     /// Where the body begins.
     pub(super) body: usize,
 }
@@ -113,18 +115,19 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
     cursor.end_line();
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
-    let (mut texture, mut properties) = (None, 0);
+    let (mut texture, mut is_flat, mut properties) = (None, false, 0);
     while !cursor.is_done() {
         cursor.skip_blanks();
         let start = cursor.offset();
         match cursor.word() {
             b"format" => encoding = Some(read_encoding(&mut cursor, places)?),
-            b"comment" | b"obj_info" => {
-                if cursor.word() == b"TextureFile" {
-                    texture = Some((name_of(cursor.rest_of_line()), start));
+            b"comment" | b"obj_info" => match cursor.word() {
+                b"TextureFile" => texture = Some((name_of(cursor.rest_of_line()), start)),
+                b"shading" => is_flat |= cursor.rest_of_line() == b"flat",
+                _ => {
+                    cursor.rest_of_line();
                 }
-                cursor.rest_of_line();
-            }
+            },
             b"element" => elements.push(read_element(&mut cursor, places, start)?),
             b"property" => {
                 properties += 1;
@@ -141,7 +144,7 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
                 let Some(encoding) = encoding else {
                     return fail("the header has no 'format' line".to_owned(), start);
                 };
-                return Ok(Header { encoding, elements, texture, body: cursor.offset() });
+                return Ok(Header { encoding, elements, texture, is_flat, body: cursor.offset() });
             }
             b"" => {}
             word => {

@@ -5,6 +5,8 @@ mod header;
 mod read;
 mod write;
 
+pub(crate) use write::encode;
+
 use crate::formats::SceneFormatEntry;
 use bilux_math::registry::Entry;
 

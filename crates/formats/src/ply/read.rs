@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::header::{Element, Property, Scalar, read_header};
 use crate::FormatError;
-use crate::normals::BY_ANGLE;
+use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source, plain_material};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
@@ -24,6 +24,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         vertices: Slots::default(),
         wedge_uvs: Vec::new(),
         wedges: HashMap::new(),
+        smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
         oddities: Oddities::default(),
     };
     for element in &header.elements {
@@ -44,6 +45,8 @@ struct Ply<'a, 'o, 'r> {
     wedge_uvs: Vec<Vec2>,
     /// Index of each of these, by its bits.
     wedges: HashMap<[u32; 2], u32>,
+    /// How faces without normals look.
+    smoothing: Smoothing,
     oddities: Oddities,
 }
 
@@ -81,8 +84,7 @@ struct Slots {
 impl Slots {
     fn new(element: &Element) -> Slots {
         let meaning_of = |p: &Property| {
-            let known = |names: &&[&str]| names.contains(&p.name.as_str());
-            MEANINGS.iter().position(|names| known(names)).filter(|_| p.count.is_none())
+            MEANINGS.iter().position(|names| names.contains(&p.name.as_str())).filter(|_| p.count.is_none())
         };
         let meaning: Vec<Option<usize>> = element.properties.iter().map(meaning_of).collect();
         let all = |slots: std::ops::Range<usize>| slots.into_iter().all(|slot| meaning.contains(&Some(slot)));
@@ -272,7 +274,7 @@ impl Ply<'_, '_, '_> {
         }
         soup.ends.push(soup.corners.len() as u32);
         soup.offsets.push(start);
-        soup.smoothing.push(BY_ANGLE);
+        soup.smoothing.push(self.smoothing);
         Ok(())
     }
 
@@ -361,7 +363,7 @@ impl Ply<'_, '_, '_> {
                 materials.insert(String::new(), index);
             }
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-            Err(error) => scene.warn(format!("a texture is missing, and left out: {error}"), at),
+            Err(error) => scene.warn(format!("a texture is left out: {}", error.without_place()), at),
         }
         Ok(())
     }

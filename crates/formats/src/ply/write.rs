@@ -97,7 +97,9 @@ impl Columns {
 
     fn header(&self, ascii: bool, vertices: usize, triangles: usize) -> String {
         let format = if ascii { "ascii" } else { "binary_little_endian" };
-        let mut header = format!("ply\nformat {format} 1.0\nelement vertex {vertices}\n");
+        // Without this our reader smooths what was flat.
+        let shading = if self.normals { "" } else { "comment shading flat\n" };
+        let mut header = format!("ply\nformat {format} 1.0\n{shading}element vertex {vertices}\n");
         let mut properties = |scalar: &str, names: &[&str]| {
             names.iter().for_each(|name| header.push_str(&format!("property {scalar} {name}\n")));
         };

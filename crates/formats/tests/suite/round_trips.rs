@@ -6,7 +6,7 @@ use bilux_scene::{Mesh, SceneBuilder};
 use std::path::Path;
 
 /// Every corner of every triangle, in order, as bits: what a picture depends on.
-fn corners(mesh: &Mesh) -> Vec<Vec<u32>> {
+pub(crate) fn corners(mesh: &Mesh) -> Vec<Vec<u32>> {
     let bits = |i: usize| {
         let mut all = mesh.positions[i].to_array().to_vec();
         all.extend(mesh.normals.get(i).into_iter().flat_map(|n| n.to_array()));

@@ -1,0 +1,196 @@
+//! TOML with the place of every key and value.
+
+use crate::FormatError;
+use crate::text::{Places, whole_file};
+use bilux_scene::{SceneError, Span};
+use std::sync::Arc;
+use toml::de::{DeTable, DeValue};
+
+/// A value in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Node {
+    Bool(bool),
+    Integer(i64),
+    Number(f64),
+    Text(String),
+    List(Vec<Item>),
+    Table(Table),
+}
+
+/// A value with its place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Item {
+    pub(super) node: Node,
+    pub(super) at: Span,
+}
+
+/// Keys in the order written, each with its own place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Table {
+    pub(super) entries: Vec<(String, Span, Item)>,
+    pub(super) at: Span,
+}
+
+/// Bytes that a parsed byte takes at most: a number of one digit in a list.
+pub(super) const BYTES_PER_BYTE: u64 = 160;
+
+/// Parses a file.
+pub(super) fn parse(bytes: &[u8], name: &Arc<str>) -> Result<Table, FormatError> {
+    let places = Places::new(name, bytes);
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        FormatError::malformed(
+            "a TOML file is UTF-8 text, and here are other bytes",
+            places.at(e.valid_up_to()),
+        )
+    })?;
+    let document = DeTable::parse(text).map_err(|e| {
+        let at = e.span().map_or_else(|| whole_file(name), |span| places.at(span.start));
+        FormatError::malformed(format!("this is no TOML: {}", e.message()), at)
+    })?;
+    table(document.get_ref(), Span { line: 1, column: 1, ..whole_file(name) }, &places)
+}
+
+fn table(source: &DeTable, at: Span, places: &Places) -> Result<Table, FormatError> {
+    let mut rows: Vec<_> = source.iter().collect();
+    rows.sort_by_key(|(key, _)| key.span().start);
+    let mut entries = Vec::with_capacity(rows.len());
+    for (key, value) in rows {
+        let key_at = places.at(key.span().start);
+        // Tables of tables have no place of their own that means much; the key has.
+        let value_at = if value.span().is_empty() { key_at.clone() } else { places.at(value.span().start) };
+        entries.push((key.get_ref().to_string(), key_at, item(value.get_ref(), value_at, places)?));
+    }
+    Ok(Table { entries, at })
+}
+
+fn item(value: &DeValue, at: Span, places: &Places) -> Result<Item, FormatError> {
+    let refuse = |message: &str| Err(FormatError::malformed(message, at.clone()));
+    let node = match value {
+        DeValue::Boolean(b) => Node::Bool(*b),
+        DeValue::String(text) => Node::Text(text.to_string()),
+        DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
+            Ok(i) => Node::Integer(i),
+            Err(_) => return refuse("this number is too large"),
+        },
+        DeValue::Float(x) => match x.as_str().parse() {
+            Ok(x) => Node::Number(x),
+            Err(_) => return refuse("this is no number"),
+        },
+        DeValue::Datetime(_) => return refuse("a scene has no dates: write text in quotes, or seconds"),
+        DeValue::Array(array) => {
+            let items = array.iter().map(|v| item(v.get_ref(), places.at(v.span().start), places));
+            Node::List(items.collect::<Result<_, _>>()?)
+        }
+        DeValue::Table(inner) => Node::Table(table(inner, at.clone(), places)?),
+    };
+    Ok(Item { node, at })
+}
+
+impl Table {
+    pub(super) fn find(&self, key: &str) -> Option<&Item> {
+        self.entries.iter().find(|(k, ..)| k == key).map(|(.., item)| item)
+    }
+
+    /// Refuses keys that are not among the known ones.
+    pub(super) fn check_keys<'k>(
+        &self,
+        what: &str,
+        known: impl Iterator<Item = &'k str> + Clone,
+    ) -> Result<(), FormatError> {
+        match self.entries.iter().find(|(key, ..)| !known.clone().any(|k| k == key)) {
+            Some((key, at, _)) => Err(SceneError::unknown(format!("key of {what}"), key, known, at).into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Text under a key, if it is there.
+    pub(super) fn text(&self, key: &str) -> Result<Option<&str>, FormatError> {
+        self.find(key).map(|item| item.text(key)).transpose()
+    }
+
+    /// A switch under a key; false if it is not there.
+    pub(super) fn switch(&self, key: &str) -> Result<bool, FormatError> {
+        match self.find(key) {
+            None => Ok(false),
+            Some(Item { node: Node::Bool(b), .. }) => Ok(*b),
+            Some(item) => Err(item.wrong(key, "true or false")),
+        }
+    }
+
+    /// Tables under a key: one, or a list of them.
+    pub(super) fn tables(&self, key: &str) -> Result<Vec<&Table>, FormatError> {
+        let as_table = |item: &Item| match &item.node {
+            Node::Table(_) => Ok(()),
+            _ => Err(item.wrong(key, &format!("a table: begin it with [[{key}]]"))),
+        };
+        let items: &[Item] = match self.find(key) {
+            None => &[],
+            Some(Item { node: Node::List(items), .. }) => items,
+            Some(item) => std::slice::from_ref(item),
+        };
+        let table = |item| match item {
+            &Item { node: Node::Table(ref table), .. } => Some(table),
+            _ => None,
+        };
+        items.iter().try_for_each(as_table)?;
+        Ok(items.iter().filter_map(table).collect())
+    }
+}
+
+impl Item {
+    /// The refusal of a value of the wrong kind.
+    pub(super) fn wrong(&self, key: &str, wanted: &str) -> FormatError {
+        SceneError::BadValue {
+            what: key.to_owned(),
+            wanted: wanted.to_owned(),
+            found: self.node.describe(),
+            at: self.at.clone(),
+        }
+        .into()
+    }
+
+    pub(super) fn text(&self, key: &str) -> Result<&str, FormatError> {
+        match &self.node {
+            Node::Text(text) => Ok(text),
+            _ => Err(self.wrong(key, "text in quotes")),
+        }
+    }
+
+    pub(super) fn number(&self, key: &str) -> Result<f64, FormatError> {
+        match self.node {
+            Node::Integer(i) => Ok(i as f64),
+            Node::Number(x) => Ok(x),
+            _ => Err(self.wrong(key, "a number")),
+        }
+    }
+
+    pub(super) fn list(&self, key: &str, wanted: &str) -> Result<&[Item], FormatError> {
+        match &self.node {
+            Node::List(items) => Ok(items),
+            _ => Err(self.wrong(key, wanted)),
+        }
+    }
+
+    /// Numbers in a list of a certain length.
+    pub(super) fn numbers<const N: usize>(&self, key: &str, wanted: &str) -> Result<[f64; N], FormatError> {
+        let items: &[Item; N] = self.list(key, wanted)?.try_into().map_err(|_| self.wrong(key, wanted))?;
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(items) {
+            *number = item.number(key)?;
+        }
+        Ok(numbers)
+    }
+}
+
+impl Node {
+    fn describe(&self) -> String {
+        match self {
+            Node::Bool(b) => b.to_string(),
+            Node::Integer(i) => i.to_string(),
+            Node::Number(x) => x.to_string(),
+            Node::Text(text) => format!("\"{text}\""),
+            Node::List(items) => format!("a list of {}", items.len()),
+            Node::Table(_) => "a table".to_owned(),
+        }
+    }
+}

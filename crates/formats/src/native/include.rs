@@ -1,0 +1,77 @@
+//! A file together with those that it includes.
+
+use super::document::{BYTES_PER_BYTE, Table, parse};
+use crate::FormatError;
+use crate::reading::{Reading, Source};
+use bilux_scene::Span;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A parsed file.
+pub(super) struct Part {
+    pub(super) root: Table,
+    pub(super) folder: Option<PathBuf>,
+}
+
+/// The parts of a scene: what is included before what includes it, each file once.
+pub(super) fn gather(reading: &mut Reading, source: &Source) -> Result<Vec<Part>, FormatError> {
+    let mut gathering = Gathering { reading, parts: Vec::new(), seen: HashSet::new(), open: Vec::new() };
+    gathering.add(source.bytes, source.name, source.folder)?;
+    Ok(gathering.parts)
+}
+
+struct Gathering<'o, 'r> {
+    reading: &'r mut Reading<'o>,
+    parts: Vec<Part>,
+    seen: HashSet<PathBuf>,
+    /// The chain of files from the first to the one that is read.
+    open: Vec<PathBuf>,
+}
+
+/// Longer chains of includes are refused: each takes a part of the stack.
+const LONGEST_CHAIN: usize = 32;
+
+impl Gathering<'_, '_> {
+    fn add(&mut self, bytes: &[u8], name: &Arc<str>, folder: Option<&Path>) -> Result<(), FormatError> {
+        self.reading.budget.take_bytes(bytes.len() as u64 * BYTES_PER_BYTE, name)?;
+        let root = parse(bytes, name)?;
+        let own = folder.zip(Path::new(&**name).file_name());
+        let own = own.and_then(|(folder, file)| std::fs::canonicalize(folder.join(file)).ok());
+        self.open.push(own.unwrap_or_default());
+        if let Some(list) = root.find("include") {
+            for item in list.list("include", "a list of files, as in include = [\"lights.toml\"]")? {
+                self.include(item.text("include")?, &item.at, name, folder)?;
+            }
+        }
+        self.open.pop();
+        self.parts.push(Part { root, folder: folder.map(Path::to_owned) });
+        Ok(())
+    }
+
+    fn include(
+        &mut self,
+        file: &str,
+        at: &Span,
+        from: &Arc<str>,
+        folder: Option<&Path>,
+    ) -> Result<(), FormatError> {
+        let path = self.reading.locate(folder, file, at)?;
+        if self.open.contains(&path) {
+            let message = format!("'{file}' includes itself, directly or through others: take it out here");
+            return Err(FormatError::malformed(message, at.clone()));
+        }
+        if self.open.len() >= LONGEST_CHAIN {
+            let message = format!("files include each other more than {LONGEST_CHAIN} deep");
+            return Err(FormatError::malformed(message, at.clone()));
+        }
+        if !self.seen.insert(path.clone()) {
+            return Ok(());
+        }
+        let bytes = self.reading.load(&path)?;
+        let shown = Path::new(&**from).with_file_name(file).display().to_string();
+        self.add(&bytes, &shown.into(), path.parent())?;
+        self.reading.release(bytes);
+        Ok(())
+    }
+}

@@ -1,0 +1,60 @@
+//! One scene put into another.
+
+use super::scene::Native;
+use crate::FormatError;
+use crate::bake::transformed;
+use bilux_math::Motion;
+use bilux_scene::{Object, SceneBuilder, SceneError, Span, Spec, Value};
+use std::sync::Arc;
+
+impl Native<'_, '_> {
+    /// Adds a scene's textures and materials; gives the index that its first material has now.
+    pub(super) fn bring_materials(&mut self, model: &SceneBuilder) -> usize {
+        let first = self.scene.materials.len();
+        for spec in &model.materials {
+            let spec = self.moved_textures(spec);
+            self.scene.materials.push(spec);
+        }
+        self.scene.textures.extend(model.textures.iter().cloned());
+        first
+    }
+
+    /// A spec of a scene whose textures come after ours.
+    fn moved_textures(&self, spec: &Spec) -> Spec {
+        let mut spec = spec.clone();
+        for (_, value, _) in &mut spec.parameters.0 {
+            if let Value::Texture(index) = value {
+                *index += self.scene.textures.len();
+            }
+        }
+        spec
+    }
+}
+
+/// An object moved by the model that it belongs to.
+pub(super) fn moved(object: &Object, by: &Motion, at: &Span) -> Result<Object, FormatError> {
+    let is_unmoved = |motion: &Motion| motion.is_still() && motion.at(0.0).is_identity();
+    let object = object.clone();
+    if is_unmoved(by) {
+        return Ok(object);
+    }
+    if is_unmoved(&object.motion) {
+        return Ok(Object { motion: by.clone(), ..object });
+    }
+    match (object.motion.is_still(), by.is_still()) {
+        (true, true) => {
+            let motion = Motion::still(object.motion.at(0.0).then(&by.at(0.0)));
+            Ok(Object { motion, ..object })
+        }
+        (true, false) => {
+            let mesh = Arc::new(transformed(&object.mesh, &object.motion.at(0.0)));
+            Ok(Object { mesh, motion: by.clone(), ..object })
+        }
+        _ => {
+            let name = &object.name;
+            let message =
+                format!("'{name}' in this model moves by itself, so that the model must not be placed too");
+            Err(SceneError::invalid(message, at).into())
+        }
+    }
+}

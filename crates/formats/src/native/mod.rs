@@ -1,0 +1,52 @@
+//! The native scene file, in TOML. See `docs/formats/scene-toml.md`.
+//!
+//! A file and its includes are parsed first; then settings, materials and models are taken from each in turn,
+//! so that their order in the files does not matter.
+
+mod document;
+mod include;
+mod merge;
+mod model;
+mod place;
+mod scene;
+mod schema;
+mod shapes;
+mod specs;
+mod write;
+
+pub use schema::toml_schema;
+pub use shapes::{SHAPES, ShapeEntry};
+
+use crate::formats::SceneFormatEntry;
+use bilux_math::registry::Entry;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "toml",
+        summary: "the native scene file: models, materials, lights, cameras, motion and settings",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["toml"],
+    capabilities: &[
+        "models",
+        "instances",
+        "transforms",
+        "motion",
+        "materials",
+        "textures",
+        "lights",
+        "cameras",
+        "settings",
+    ],
+    sniff,
+    read: Some(scene::read),
+    write: Some(write::write),
+};
+
+/// A line with one of the tables that only scenes have.
+fn sniff(bytes: &[u8]) -> bool {
+    let tables = ["[[model]]", "[[material]]", "[[light]]", "[camera]", "[[camera]]", "[render]"];
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
+    start.lines().any(|line| tables.contains(&line.trim()))
+}

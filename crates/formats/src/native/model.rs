@@ -1,0 +1,217 @@
+//! `[[model]]`: meshes from a file, a shape or a generator, placed in the scene.
+
+use super::document::{Item, Node, Table};
+use super::include::Part;
+use super::merge::moved;
+use super::place::{self, motion};
+use super::scene::Native;
+use super::shapes::SHAPES;
+use super::specs::{missing, plain_value};
+use crate::FormatError;
+use crate::formats::{format_named, read_source, unknown};
+use crate::reading::Source;
+use bilux_math::registry::{Entry, ParameterKind};
+use bilux_scene::generators::GENERATORS;
+use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Keys of every model, beside those that place it; what it is made of must be one of the first three.
+pub(super) const KEYS: [&str; 8] =
+    ["file", "shape", "generate", "name", "material", "materials", "instance", "with"];
+
+impl Native<'_, '_> {
+    pub(super) fn model(&mut self, table: &Table, part: &Part) -> Result<(), FormatError> {
+        let sources: Vec<(&str, &Item)> =
+            KEYS[..3].iter().filter_map(|key| Some((*key, table.find(key)?))).collect();
+        let (model, origin) = match sources.as_slice() {
+            [("file", item)] => {
+                let path = self.path_of_model(table, item, part)?;
+                (self.file_model(&path, table, item)?, Some(path))
+            }
+            [("shape", item)] => (self.shape_model(table, item)?, None),
+            [("generate", item)] => (self.generated_model(table, item)?, None),
+            _ => return Err(missing("one of file, shape and generate (what the model is made of)", table)),
+        };
+        self.place(table, &model, origin)?;
+        self.bring_with(table, &model)
+    }
+
+    /// Adds the objects of a model. Without materials of its own it gets the plain one.
+    fn place(
+        &mut self,
+        table: &Table,
+        model: &SceneBuilder,
+        origin: Option<PathBuf>,
+    ) -> Result<(), FormatError> {
+        let motion = motion(table)?;
+        let instanced = table.switch("instance")?;
+        let name = table.text("name")?;
+        let given = table.find("material").map(|item| self.material_named(item)).transpose()?;
+        let renamed = self.renamed_materials(table, model)?;
+        // Where the model's own materials begin here, once one of them is needed.
+        let mut first = origin.as_ref().and_then(|path| self.brought.get(path).copied());
+        for object in &model.objects {
+            self.reading.budget.take::<[Object; 2]>(1, &table.at.file)?;
+            let mut placed = moved(object, &motion, &table.at)?;
+            if !Arc::ptr_eq(&placed.mesh, &object.mesh) {
+                self.charge_mesh(&placed.mesh, table)?;
+            }
+            placed.instanced |= instanced;
+            placed.material = match (renamed.get(object.material).copied().flatten(), given) {
+                (Some(index), _) | (None, Some(index)) => index,
+                (None, None) if model.materials.is_empty() => self.default_material(),
+                (None, None) => *first.get_or_insert_with(|| self.bring_materials(model)) + object.material,
+            };
+            if let Some(name) = name {
+                let part = &placed.name;
+                let several = model.objects.len() > 1 && !part.is_empty();
+                placed.name = if several { format!("{name}/{part}") } else { name.to_owned() };
+            }
+            self.scene.objects.push(placed);
+        }
+        self.brought.extend(origin.zip(first));
+        Ok(())
+    }
+
+    /// `materials = { NAME_IN_THE_FILE = "NAME_HERE" }`: for each of the model's materials ours, if it is replaced.
+    fn renamed_materials(
+        &self,
+        table: &Table,
+        model: &SceneBuilder,
+    ) -> Result<Vec<Option<usize>>, FormatError> {
+        let mut renamed = vec![None; model.materials.len()];
+        let Some(item) = table.find("materials") else { return Ok(renamed) };
+        let Node::Table(names) = &item.node else {
+            return Err(item.wrong("materials", "a table, as in { paint = \"gold\" }"));
+        };
+        for (theirs, at, ours) in &names.entries {
+            let index = self.material_named(ours)?;
+            let same = |spec: &Spec| spec.name == *theirs;
+            if !model.materials.iter().any(same) {
+                let known = model.materials.iter().map(|spec| spec.name.as_str());
+                return Err(SceneError::unknown("material of this model", theirs, known, at).into());
+            }
+            for (slot, _) in renamed.iter_mut().zip(&model.materials).filter(|(_, spec)| same(spec)) {
+                *slot = Some(index);
+            }
+        }
+        Ok(renamed)
+    }
+
+    fn path_of_model(&self, table: &Table, item: &Item, part: &Part) -> Result<PathBuf, FormatError> {
+        table.check_keys("a model", KEYS.into_iter().chain(place::KEYS))?;
+        let name = item.text("file")?;
+        let path = self.reading.locate(part.folder.as_deref(), name, &item.at)?;
+        if self.reading.open.contains(&path) {
+            let message =
+                format!("'{name}' is put into itself, directly or through others: take it out here");
+            return Err(FormatError::malformed(message, item.at.clone()));
+        }
+        Ok(path)
+    }
+
+    /// A file's scene; read once.
+    fn file_model(
+        &mut self,
+        path: &Path,
+        table: &Table,
+        item: &Item,
+    ) -> Result<Arc<SceneBuilder>, FormatError> {
+        if let Some(model) = self.reading.models.get(path) {
+            return Ok(model.clone());
+        }
+        let name = item.text("file")?;
+        let extension =
+            Path::new(name).extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
+        let Some(row) = format_named(&extension).filter(|row| row.reads()) else {
+            return Err(unknown(Path::new(name), "read", |row| row.reads()));
+        };
+        let bytes = self.reading.load(path)?;
+        self.reading.enter(path, &item.at)?;
+        let shown = Path::new(&*table.at.file).with_file_name(name).display().to_string();
+        let source = Source { bytes: &bytes, name: &shown.into(), folder: path.parent() };
+        let mut model = read_source(row, self.reading, &source)?;
+        self.reading.leave();
+        self.reading.release(bytes);
+        self.scene.warnings.append(&mut model.warnings);
+        let model = Arc::new(model);
+        self.reading.models.insert(path.to_owned(), model.clone());
+        Ok(model)
+    }
+
+    fn shape_model(&mut self, table: &Table, item: &Item) -> Result<Arc<SceneBuilder>, FormatError> {
+        let kind = item.text("shape")?;
+        let Some(row) = SHAPES.iter().find(|row| row.entry.name == kind) else {
+            let names = SHAPES.iter().map(|row| row.entry.name);
+            return Err(SceneError::unknown("shape", kind, names, &item.at).into());
+        };
+        let spec = self.parameters(table, kind, &row.entry)?;
+        let reader = Reader::new(&spec, &row.entry)?;
+        let pieces = row.entry.parameters.iter().filter(|p| matches!(p.kind, ParameterKind::Integer { .. }));
+        let vertices: i64 = pieces.map(|p| reader.integer(p.name)).product();
+        self.reading.budget.take_bytes(vertices as u64 * 64, &table.at.file)?;
+        let mesh = (row.build)(&reader);
+        let mut model = SceneBuilder::default();
+        model.objects.push(Object::new(kind, Arc::new(mesh), 0));
+        Ok(Arc::new(model))
+    }
+
+    fn generated_model(&mut self, table: &Table, item: &Item) -> Result<Arc<SceneBuilder>, FormatError> {
+        let kind = item.text("generate")?;
+        let Some(row) = GENERATORS.iter().find(|row| row.entry.name == kind) else {
+            let names = GENERATORS.iter().map(|row| row.entry.name);
+            return Err(SceneError::unknown("scene to generate", kind, names, &item.at).into());
+        };
+        let spec = self.parameters(table, kind, &row.entry)?;
+        let model = (row.generate)(&Reader::new(&spec, &row.entry)?)?;
+        let mut last: Option<&Arc<Mesh>> = None;
+        for object in &model.objects {
+            if !last.is_some_and(|mesh| Arc::ptr_eq(mesh, &object.mesh)) {
+                self.charge_mesh(&object.mesh, table)?;
+            }
+            last = Some(&object.mesh);
+        }
+        Ok(Arc::new(model))
+    }
+
+    /// The keys of a model that are parameters of its shape or generator.
+    fn parameters(&self, table: &Table, kind: &str, entry: &Entry) -> Result<Spec, FormatError> {
+        let structural = || KEYS.into_iter().chain(place::KEYS);
+        let names = entry.parameters.iter().map(|p| p.name);
+        table.check_keys(&format!("a model made of '{kind}'"), structural().chain(names))?;
+        let mut spec = Spec { span: table.at.clone(), ..Spec::new("", kind) };
+        for (key, at, item) in table.entries.iter().filter(|(key, ..)| !structural().any(|k| k == key)) {
+            spec.parameters.set_at(key, plain_value(key, item)?, at.clone());
+        }
+        Ok(spec)
+    }
+
+    fn charge_mesh(&mut self, mesh: &Mesh, table: &Table) -> Result<(), FormatError> {
+        let floats = 3 * (mesh.positions.len() + mesh.normals.len() + mesh.triangles.len())
+            + 2 * mesh.uvs.len()
+            + 3 * (mesh.vertex_kd.len() + mesh.vertex_ks.len());
+        self.reading.budget.take_bytes(4 * floats as u64, &table.at.file)
+    }
+
+    /// `with = ["lights", "cameras"]`: what else of a model's scene is wanted.
+    fn bring_with(&mut self, table: &Table, model: &SceneBuilder) -> Result<(), FormatError> {
+        let Some(item) = table.find("with") else { return Ok(()) };
+        if place::KEYS.iter().any(|key| table.find(key).is_some()) {
+            let message =
+                "lights and cameras stay where they are, so that 'with' and a place do not go together";
+            return Err(SceneError::invalid(message, &item.at).into());
+        }
+        for word in item.list("with", "a list of \"lights\" and \"cameras\"")? {
+            match word.text("with")? {
+                "lights" => self.scene.lights.extend(model.lights.iter().cloned()),
+                "cameras" => self.scene.cameras.extend(model.cameras.iter().cloned()),
+                other => {
+                    let known = ["lights", "cameras"];
+                    return Err(SceneError::unknown("part of a scene", other, known, &word.at).into());
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,111 @@
+//! The top level of a scene file.
+
+use super::document::{Item, Table};
+use super::include::{Part, gather};
+use super::specs;
+use crate::FormatError;
+use crate::reading::{Reading, Source, default_material};
+use crate::text::whole_file;
+use bilux_scene::{SceneBuilder, SceneError, Span};
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// Keys of the top level.
+pub(super) const KEYS: [&str; 6] = ["include", "render", "camera", "light", "material", "model"];
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let parts = gather(reading, source)?;
+    let mut native = Native {
+        reading,
+        scene: SceneBuilder::default(),
+        materials: HashMap::new(),
+        default_material: None,
+        brought: HashMap::new(),
+    };
+    for part in &parts {
+        part.root.check_keys("a scene", KEYS.into_iter())?;
+        native.settings(&part.root)?;
+        native.materials(part)?;
+    }
+    for part in &parts {
+        native.lights_and_cameras(part)?;
+        for table in part.root.tables("model")? {
+            native.model(table, part)?;
+        }
+    }
+    let mut scene = native.scene;
+    if scene.objects.is_empty() && scene.lights.is_empty() {
+        scene.warn("there is no [[model]] in it, so that nothing can be seen", whole_file(source.name));
+    }
+    Ok(scene)
+}
+
+/// A scene file on its way to a scene.
+pub(super) struct Native<'o, 'r> {
+    pub(super) reading: &'r mut Reading<'o>,
+    pub(super) scene: SceneBuilder,
+    /// Index and place of each named material.
+    materials: HashMap<String, (usize, Span)>,
+    default_material: Option<usize>,
+    /// Where the materials begin that each model file brought.
+    pub(super) brought: HashMap<PathBuf, usize>,
+}
+
+impl Native<'_, '_> {
+    /// `[render]`: handed on as they are.
+    fn settings(&mut self, root: &Table) -> Result<(), FormatError> {
+        for table in root.tables("render")? {
+            for (key, at, item) in &table.entries {
+                let value = specs::plain_value(key, item)?;
+                self.scene.settings.set_at(key, value, at.clone());
+            }
+        }
+        Ok(())
+    }
+
+    fn materials(&mut self, part: &Part) -> Result<(), FormatError> {
+        for table in part.root.tables("material")? {
+            let spec = self.material(table, part)?;
+            let (name, at) = (spec.name.clone(), spec.span.clone());
+            if name.is_empty() {
+                let what = "name (what models call the material)".to_owned();
+                return Err(SceneError::Missing { what, at }.into());
+            }
+            let index = self.scene.add_material(spec);
+            if let Some((_, first)) = self.materials.insert(name.clone(), (index, at.clone())) {
+                let message =
+                    format!("there is a material '{name}' already, at {first}: give this one another name");
+                return Err(SceneError::invalid(message, &at).into());
+            }
+        }
+        Ok(())
+    }
+
+    fn lights_and_cameras(&mut self, part: &Part) -> Result<(), FormatError> {
+        for table in part.root.tables("light")? {
+            let light = self.light(table, part)?;
+            self.scene.lights.push(light);
+        }
+        for table in part.root.tables("camera")? {
+            let camera = self.camera(table, part)?;
+            self.scene.cameras.push(camera);
+        }
+        Ok(())
+    }
+
+    /// The index of a material by its name.
+    pub(super) fn material_named(&self, item: &Item) -> Result<usize, FormatError> {
+        let name = item.text("material")?;
+        let known = || self.materials.keys().map(String::as_str);
+        match self.materials.get(name) {
+            Some(&(index, _)) => Ok(index),
+            None => Err(SceneError::unknown("material", name, known(), &item.at).into()),
+        }
+    }
+
+    /// The material of models that neither name nor bring one.
+    pub(super) fn default_material(&mut self) -> usize {
+        let scene = &mut self.scene;
+        *self.default_material.get_or_insert_with(|| scene.add_material(default_material()))
+    }
+}

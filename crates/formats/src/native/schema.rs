@@ -1,0 +1,198 @@
+//! A JSON schema of scene files, for editors: made from the same tables that the reader reads.
+
+use super::place::KEYFRAME_KEYS;
+use super::shapes::SHAPES;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::generators::GENERATORS;
+use bilux_scene::{CAMERAS, LIGHTS, MATERIALS};
+use serde_json::{Map, Value, json};
+
+/// A JSON schema (draft 2020-12) of native scene files. `settings` are the keys of `[render]`.
+pub fn toml_schema(settings: &[Parameter]) -> Value {
+    let rows = |entries: Vec<&Entry>, extra: &[(&str, Value)], kind_default: Option<&str>| {
+        one_of(entries, "kind", extra, kind_default)
+    };
+    let name = ("name", described("string", "what it is called"));
+    let materials = rows(MATERIALS.iter().map(|r| &r.entry).collect(), std::slice::from_ref(&name), None);
+    let lights = rows(LIGHTS.iter().map(|r| &r.entry).collect(), std::slice::from_ref(&name), None);
+    let cameras: Vec<&Entry> = CAMERAS.iter().map(|r| &r.entry).collect();
+    let keyframes = ("keyframes", camera_keyframes(&cameras));
+    let camera = rows(cameras, &[name, keyframes], Some("perspective"));
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Bilux scene",
+        "type": "object",
+        "additionalProperties": false,
+        "properties": {
+            "include": {
+                "description": "other scene files, relative to this one, that belong to it",
+                "type": "array",
+                "items": { "type": "string" },
+            },
+            "render": {
+                "description": "settings of the render",
+                "type": "object",
+                "additionalProperties": settings.is_empty(),
+                "properties": properties(settings),
+            },
+            "camera": { "oneOf": [camera.clone(), list(camera)] },
+            "light": list(lights),
+            "material": list(materials),
+            "model": list(model()),
+        },
+    })
+}
+
+fn list(items: Value) -> Value {
+    json!({ "type": "array", "items": items })
+}
+
+fn described(kind: &str, description: &str) -> Value {
+    json!({ "type": kind, "description": description })
+}
+
+/// A table that is one of the rows, told apart by a key.
+fn one_of(rows: Vec<&Entry>, key: &str, extra: &[(&str, Value)], default: Option<&str>) -> Value {
+    let table = |entry: &Entry| {
+        let mut all = properties(entry.parameters);
+        all.extend(extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())));
+        all.insert(key.to_owned(), json!({ "const": entry.name }));
+        let needed = entry.parameters.iter().filter(|p| p.default.is_empty()).map(|p| p.name);
+        let kind = (default != Some(entry.name)).then_some(key);
+        json!({
+            "description": entry.summary,
+            "type": "object",
+            "additionalProperties": false,
+            "properties": all,
+            "required": needed.chain(kind).collect::<Vec<_>>(),
+        })
+    };
+    json!({ "oneOf": rows.into_iter().map(table).collect::<Vec<_>>() })
+}
+
+fn properties(parameters: &[Parameter]) -> Map<String, Value> {
+    parameters.iter().map(|p| (p.name.to_owned(), property(p))).collect()
+}
+
+fn property(parameter: &Parameter) -> Value {
+    let mut schema = values(parameter.kind);
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(", in {}", parameter.unit) };
+    schema["description"] = format!("{}{unit}", parameter.summary).into();
+    if let Some(default) = default_value(parameter) {
+        schema["default"] = default;
+    }
+    schema
+}
+
+fn values(kind: ParameterKind) -> Value {
+    let colour = |min: f64, max: f64| {
+        let channel = json!({ "type": "number", "minimum": min, "maximum": max });
+        vec![json!({ "type": "array", "items": channel, "minItems": 3, "maxItems": 3 }), channel]
+    };
+    match kind {
+        ParameterKind::Bool => json!({ "type": "boolean" }),
+        ParameterKind::Integer { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        ParameterKind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
+        ParameterKind::Colour { min, max } => json!({ "oneOf": colour(min, max) }),
+        ParameterKind::ColourTexture { min, max } => {
+            let file = described("string", "a picture, relative to this file");
+            let texture = json!({
+                "type": "object",
+                "additionalProperties": false,
+                "properties": { "texture": file },
+                "required": ["texture"],
+            });
+            json!({ "oneOf": colour(min, max).into_iter().chain([texture]).collect::<Vec<_>>() })
+        }
+        ParameterKind::Vector => vector(),
+        ParameterKind::Choice(words) => json!({ "enum": words }),
+        ParameterKind::Text => json!({ "type": "string" }),
+    }
+}
+
+fn vector() -> Value {
+    let numbers = json!({ "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 });
+    json!({ "oneOf": [numbers, { "type": "number" }] })
+}
+
+/// A default as JSON has it; tables write them as text.
+fn default_value(parameter: &Parameter) -> Option<Value> {
+    let text = parameter.default;
+    let numbers: Vec<Value> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    Some(match parameter.kind {
+        _ if text.is_empty() => return None,
+        ParameterKind::Bool => json!(text == "true"),
+        ParameterKind::Choice(_) | ParameterKind::Text => json!(text),
+        _ => match <[Value; 1]>::try_from(numbers) {
+            Ok([one]) => one,
+            Err(several) => json!(several),
+        },
+    })
+}
+
+fn camera_keyframes(cameras: &[&Entry]) -> Value {
+    let mut all: Map<String, Value> = cameras.iter().flat_map(|entry| properties(entry.parameters)).collect();
+    all.insert("time".to_owned(), described("number", "when, in seconds"));
+    let mut schema = list(
+        json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["time"] }),
+    );
+    schema["description"] = "times, rising, each with the parameters that differ".into();
+    schema
+}
+
+/// `[[model]]`: a file, or one of the shapes, or one of the generators.
+fn model() -> Value {
+    let place = place();
+    let common = common_of_models();
+    let with_common = |entries: Vec<&Entry>, key: &str| {
+        let extra: Vec<(&str, Value)> =
+            common.iter().chain(&place).map(|(key, value)| (*key, value.clone())).collect();
+        one_of(entries, key, &extra, None)["oneOf"].clone()
+    };
+    let file = Entry { name: "", summary: "meshes from a file", source: "", parameters: &[] };
+    let mut tables = with_common(vec![&file], "file");
+    tables[0]["properties"]["file"] = described("string", "a scene file, relative to this one");
+    let shapes = with_common(SHAPES.iter().map(|row| &row.entry).collect(), "shape");
+    let generators = with_common(GENERATORS.iter().map(|row| &row.entry).collect(), "generate");
+    let all = [tables, shapes, generators].into_iter().filter_map(|rows| rows.as_array().cloned()).flatten();
+    json!({ "oneOf": all.collect::<Vec<_>>() })
+}
+
+fn common_of_models() -> Vec<(&'static str, Value)> {
+    let words = json!({ "type": "array", "items": { "enum": ["lights", "cameras"] } });
+    let renamed = json!({ "type": "object", "additionalProperties": { "type": "string" } });
+    vec![
+        ("name", described("string", "what it is called")),
+        ("material", described("string", "the name of the material of all of it")),
+        ("materials", renamed),
+        ("instance", described("boolean", "keep one copy of each mesh, however often it stands here")),
+        ("with", words),
+    ]
+}
+
+fn place() -> Vec<(&'static str, Value)> {
+    let axis = json!({
+        "type": "object",
+        "additionalProperties": false,
+        "properties": {
+            "axis": vector(),
+            "degrees": { "type": "number" },
+            "quaternion": { "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 },
+        },
+    });
+    let rotate = json!({ "oneOf": [vector(), axis], "description": "degrees about x, then y, then z; or about an axis" });
+    let pose = [
+        ("time", described("number", "when, in seconds")),
+        ("translate", vector()),
+        ("rotate", rotate),
+        ("scale", vector()),
+    ];
+    debug_assert!(pose.iter().map(|(key, _)| *key).eq(KEYFRAME_KEYS));
+    let frame: Map<String, Value> =
+        pose.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+    let frames = list(json!({
+        "type": "object", "additionalProperties": false, "properties": frame, "required": ["time"],
+    }));
+    let matrix = described("array", "four rows of four numbers, the last of them [0, 0, 0, 1]");
+    pose.into_iter().skip(1).chain([("matrix", matrix), ("keyframes", frames)]).collect()
+}

@@ -1,0 +1,124 @@
+//! Materials, lights and cameras: a kind, and the parameters of its row.
+
+use super::document::{Item, Node, Table};
+use super::include::Part;
+use super::scene::Native;
+use crate::FormatError;
+use bilux_math::registry::Entry;
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, Value};
+
+/// Keys that all of them have.
+pub(super) const KEYS: [&str; 2] = ["name", "kind"];
+
+impl Native<'_, '_> {
+    pub(super) fn material(&mut self, table: &Table, part: &Part) -> Result<Spec, FormatError> {
+        let rows: Vec<&Entry> = MATERIALS.iter().map(|row| &row.entry).collect();
+        self.spec(table, part, "material", None, &rows, &[])
+    }
+
+    pub(super) fn light(&mut self, table: &Table, part: &Part) -> Result<Spec, FormatError> {
+        let rows: Vec<&Entry> = LIGHTS.iter().map(|row| &row.entry).collect();
+        self.spec(table, part, "light", None, &rows, &[])
+    }
+
+    pub(super) fn camera(&mut self, table: &Table, part: &Part) -> Result<CameraSpec, FormatError> {
+        let rows: Vec<&Entry> = CAMERAS.iter().map(|row| &row.entry).collect();
+        let spec = self.spec(table, part, "camera", Some("perspective"), &rows, &["keyframes"])?;
+        let row = rows.iter().find(|row| row.name == spec.kind);
+        let mut keyframes = Vec::new();
+        for frame in table.tables("keyframes")? {
+            let time =
+                frame.find("time").ok_or_else(|| missing("time (of the keyframe, in seconds)", frame))?;
+            let time = time.number("time")? as f32;
+            let names = row.iter().flat_map(|row| row.parameters).map(|p| p.name);
+            frame.check_keys("a camera's keyframe", names.chain(["time"]))?;
+            let mut changes = Parameters::default();
+            for (key, at, item) in frame.entries.iter().filter(|(key, ..)| key != "time") {
+                changes.set_at(key, plain_value(key, item)?, at.clone());
+            }
+            keyframes.push((time, changes));
+        }
+        Ok(CameraSpec { spec, keyframes })
+    }
+
+    /// A spec that its row accepts.
+    fn spec(
+        &mut self,
+        table: &Table,
+        part: &Part,
+        what: &str,
+        default_kind: Option<&str>,
+        rows: &[&Entry],
+        more_keys: &[&str],
+    ) -> Result<Spec, FormatError> {
+        let kinds = || rows.iter().map(|row| row.name);
+        let (kind, at) = match table.find("kind") {
+            Some(item) => (item.text("kind")?, &item.at),
+            None => {
+                let kind = default_kind.ok_or_else(|| missing_kind(what, kinds(), table))?;
+                (kind, &table.at)
+            }
+        };
+        let Some(row) = rows.iter().find(|row| row.name == kind) else {
+            return Err(SceneError::unknown(what, kind, kinds(), at).into());
+        };
+        let structural = || KEYS.iter().chain(more_keys).copied();
+        let names = row.parameters.iter().map(|p| p.name);
+        table.check_keys(&format!("the {what} '{kind}'"), structural().chain(names))?;
+        let name = table.text("name")?.unwrap_or_default();
+        let mut spec = Spec { span: table.at.clone(), ..Spec::new(name, kind) };
+        for (key, at, item) in table.entries.iter().filter(|(key, ..)| !structural().any(|k| k == key)) {
+            if let Some(value) = self.value(key, item, part)? {
+                spec.parameters.set_at(key, value, at.clone());
+            }
+        }
+        Reader::new(&spec, row)?;
+        Ok(spec)
+    }
+
+    /// A parameter's value; `None` for a texture that is missing, so that the default holds.
+    fn value(&mut self, key: &str, item: &Item, part: &Part) -> Result<Option<Value>, FormatError> {
+        let Node::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
+        table.check_keys(&format!("the texture of '{key}'"), ["texture"].into_iter())?;
+        let file = table.find("texture").ok_or_else(|| missing("texture (a file)", table))?;
+        let name = file.text("texture")?;
+        match self.reading.texture(part.folder.as_deref(), name, &file.at) {
+            Ok(texture) => {
+                self.scene.textures.push(texture);
+                Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
+            }
+            Err(error @ FormatError::TooLarge { .. }) => Err(error),
+            Err(error) => {
+                let reason = error.without_place();
+                let message = format!("the default of '{key}' stands in place of a texture: {reason}");
+                self.scene.warn(message, file.at.clone());
+                Ok(None)
+            }
+        }
+    }
+}
+
+/// A value without tables.
+pub(super) fn plain_value(key: &str, item: &Item) -> Result<Value, FormatError> {
+    Ok(match &item.node {
+        Node::Bool(b) => Value::Bool(*b),
+        Node::Integer(i) => Value::Integer(*i),
+        Node::Number(x) => Value::Number(*x),
+        Node::Text(text) => Value::Text(text.clone()),
+        Node::List(items) => {
+            Value::List(items.iter().map(|item| plain_value(key, item)).collect::<Result<_, _>>()?)
+        }
+        Node::Table(_) => return Err(item.wrong(key, "a value, or a list of values")),
+    })
+}
+
+/// The refusal of a table without something that it needs.
+pub(super) fn missing(what: &str, table: &Table) -> FormatError {
+    SceneError::Missing { what: what.to_owned(), at: table.at.clone() }.into()
+}
+
+fn missing_kind<'k>(what: &str, kinds: impl Iterator<Item = &'k str>, table: &Table) -> FormatError {
+    let kinds: Vec<&str> = kinds.collect();
+    missing(&format!("kind (of the {what}: {})", kinds.join(", ")), table)
+}

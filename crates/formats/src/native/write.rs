@@ -1,0 +1,199 @@
+//! Writing the native scene file, its meshes beside it as PLY and its textures as PNG or EXR.
+
+use crate::FormatError;
+use crate::bake::name_of;
+use crate::ply::encode;
+use crate::text::whole_file;
+use crate::writing::Writing;
+use bilux_math::MotionKey;
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
+
+pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+    let mut out = String::new();
+    if !scene.settings.0.is_empty() {
+        out.push_str("[render]\n");
+        parameters(&scene.settings, scene, writing, &mut out)?;
+    }
+    for camera in &scene.cameras {
+        write_camera(camera, scene, writing, &mut out)?;
+    }
+    for light in &scene.lights {
+        out.push_str("\n[[light]]\n");
+        write_spec(light, &light.name, scene, writing, &mut out)?;
+    }
+    let names = material_names(&scene.materials);
+    for (spec, name) in scene.materials.iter().zip(&names) {
+        out.push_str("\n[[material]]\n");
+        write_spec(spec, name, scene, writing, &mut out)?;
+    }
+    let mut meshes = HashMap::new();
+    for object in &scene.objects {
+        write_model(object, &names, &mut meshes, writing, &mut out)?;
+    }
+    writing.main = out.trim_start().as_bytes().to_vec();
+    Ok(())
+}
+
+/// A name for each material, none of them twice.
+fn material_names(materials: &[Spec]) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let mut unused = |spec: &Spec| {
+        let name = if spec.name.is_empty() { &spec.kind } else { &spec.name };
+        let numbered = (2..).map(|i| format!("{name} {i}"));
+        let free =
+            std::iter::once(name.clone()).chain(numbered).find(|n| !taken.contains(n)).unwrap_or_default();
+        taken.insert(free.clone());
+        free
+    };
+    materials.iter().map(&mut unused).collect()
+}
+
+fn write_spec(
+    spec: &Spec,
+    name: &str,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+    out: &mut String,
+) -> Result<(), FormatError> {
+    if !name.is_empty() {
+        out.push_str(&format!("name = {}\n", quoted(name)));
+    }
+    out.push_str(&format!("kind = {}\n", quoted(&spec.kind)));
+    parameters(&spec.parameters, scene, writing, out)
+}
+
+fn parameters(
+    parameters: &Parameters,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+    out: &mut String,
+) -> Result<(), FormatError> {
+    for (key, value, _) in &parameters.0 {
+        if let Some(value) = value_text(value, scene, writing)? {
+            let bare =
+                key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-') && !key.is_empty();
+            let key = if bare { key.clone() } else { quoted(key) };
+            out.push_str(&format!("{key} = {value}\n"));
+        }
+    }
+    Ok(())
+}
+
+fn write_camera(
+    camera: &CameraSpec,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+    out: &mut String,
+) -> Result<(), FormatError> {
+    out.push_str("\n[[camera]]\n");
+    write_spec(&camera.spec, &camera.spec.name, scene, writing, out)?;
+    for (time, changes) in &camera.keyframes {
+        out.push_str(&format!("\n[[camera.keyframes]]\ntime = {}\n", number(f64::from(*time))));
+        parameters(changes, scene, writing, out)?;
+    }
+    Ok(())
+}
+
+fn write_model(
+    object: &Object,
+    materials: &[String],
+    meshes: &mut HashMap<*const Mesh, String>,
+    writing: &mut Writing,
+    out: &mut String,
+) -> Result<(), FormatError> {
+    let file = match meshes.get(&Arc::as_ptr(&object.mesh)) {
+        Some(file) => file.clone(),
+        None => {
+            let file = format!("{}-mesh-{}.ply", writing.stem, meshes.len() + 1);
+            let Some(bytes) = encode(&[&object.mesh], writing.options.ascii) else {
+                let message = "a mesh has more vertices than its file can hold";
+                return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
+            };
+            writing.beside.push((file.clone(), bytes));
+            meshes.insert(Arc::as_ptr(&object.mesh), file.clone());
+            file
+        }
+    };
+    out.push_str(&format!("\n[[model]]\nname = {}\nfile = {}\n", quoted(name_of(object)), quoted(&file)));
+    if let Some(name) = materials.get(object.material) {
+        out.push_str(&format!("material = {}\n", quoted(name)));
+    }
+    if object.instanced {
+        out.push_str("instance = true\n");
+    }
+    let transform = object.motion.at(0.0);
+    let keys = object.motion.keys();
+    if !keys.is_empty() {
+        keys.iter().for_each(|key| write_key(key, out));
+    } else if !transform.is_identity() {
+        let rows = transform.matrix().transpose().to_cols_array_2d().map(|row| list(&row));
+        out.push_str(&format!("matrix = [{}]\n", rows.join(", ")));
+    }
+    Ok(())
+}
+
+fn write_key(key: &MotionKey, out: &mut String) {
+    out.push_str(&format!(
+        "\n[[model.keyframes]]\ntime = {}\ntranslate = {}\nrotate = {{ quaternion = {} }}\nscale = {}\n",
+        number(f64::from(key.time_seconds)),
+        list(&key.translation.to_array()),
+        list(&key.rotation.to_array()),
+        list(&key.scale.to_array()),
+    ));
+}
+
+fn list(numbers: &[f32]) -> String {
+    let all: Vec<String> = numbers.iter().map(|&x| number(f64::from(x))).collect();
+    format!("[{}]", all.join(", "))
+}
+
+/// `None` for a texture that is not there.
+fn value_text(
+    value: &Value,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+) -> Result<Option<String>, FormatError> {
+    Ok(Some(match value {
+        Value::Bool(b) => b.to_string(),
+        Value::Integer(i) => i.to_string(),
+        Value::Number(x) => number(*x),
+        Value::Text(text) => quoted(text),
+        Value::List(items) => {
+            let texts = items.iter().map(|item| value_text(item, scene, writing));
+            let texts = texts.collect::<Result<Vec<_>, _>>()?;
+            format!("[{}]", texts.into_iter().flatten().collect::<Vec<_>>().join(", "))
+        }
+        Value::Texture(index) => match writing.texture(scene, *index)? {
+            Some(file) => format!("{{ texture = {} }}", quoted(&file)),
+            None => return Ok(None),
+        },
+    }))
+}
+
+/// The shortest text of a number that reads back as the same, taken as an f32 where it is one.
+fn number(x: f64) -> String {
+    let narrow = x as f32;
+    match x {
+        x if x.is_nan() => "nan".to_owned(),
+        x if f64::from(narrow) == x => format!("{narrow:?}"),
+        x => format!("{x:?}"),
+    }
+}
+
+/// Text in quotes as TOML has it.
+fn quoted(text: &str) -> String {
+    let mut out = String::from('"');
+    for letter in text.chars() {
+        match letter {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            c if c.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}

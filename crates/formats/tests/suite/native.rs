@@ -1,0 +1,438 @@
+//! The native scene file.
+
+use crate::{read_text, refusal, warnings};
+use bilux_formats::{FormatError, ReadOptions, SHAPES, WriteOptions, read, toml_schema, write};
+use bilux_math::registry::{Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::generators::GENERATORS;
+use bilux_scene::{SceneBuilder, Value};
+use std::path::Path;
+
+/// Reads the first of some files in a folder of their own.
+fn read_files(files: &[(&str, &str)]) -> Result<SceneBuilder, FormatError> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    read(&folder.path().join(files[0].0), &ReadOptions::default())
+}
+
+#[track_caller]
+fn file_refusal(files: &[(&str, &str)]) -> String {
+    read_files(files).expect_err("this should be refused").to_string()
+}
+
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\nusemtl wood\nf 1 2 3\n";
+
+const SCENE: &str = r#"
+[render]
+integrator = "whitted"
+size = [640, 480]
+spp = 4
+
+[camera]
+position = [0, 1, 5]
+fov = 35.5
+
+[[light]]
+kind = "point"
+name = "lamp"
+position = [2, 3, 4]
+intensity = [10, 9, 8]
+
+[[material]]
+name = "glass"
+kind = "dielectric"
+eta = 1.33
+
+[[model]]
+shape = "sphere"
+radius = 0.5
+material = "glass"
+translate = [0, 1, 0]
+
+[[model]]
+name = "ground"
+shape = "floor"
+"#;
+
+#[test]
+fn a_whole_scene() {
+    let scene = read_text("toml", SCENE).unwrap();
+    assert_eq!(warnings(&scene), "");
+    let (value, at) = scene.settings.find("integrator").unwrap();
+    assert_eq!((value, at.line, at.column), (&Value::from("whitted"), 3, 1));
+    assert_eq!(scene.cameras[0].spec.kind, "perspective");
+    assert_eq!((scene.lights[0].name.as_str(), scene.lights[0].kind.as_str()), ("lamp", "point"));
+    let [ball, ground] = &scene.objects[..] else { panic!() };
+    assert_eq!(scene.materials[ball.material].name, "glass");
+    assert_eq!(scene.materials[ground.material].name, "default");
+    assert_eq!((ball.name.as_str(), ground.name.as_str()), ("sphere", "ground"));
+    let bounds = ball.motion.at(0.0).bounds(&ball.mesh.bounds());
+    assert_eq!((bounds.min.y, bounds.max.y), (0.5, 1.5));
+    assert!(scene.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
+}
+
+#[test]
+fn models_from_files_keep_replace_or_rename_their_materials() {
+    let main = r#"
+        [[material]]
+        name = "gold"
+        kind = "mirror"
+        [[model]]
+        file = "parts/a.obj"
+        instance = true
+        [[model]]
+        file = "parts/a.obj"
+        material = "gold"
+        [[model]]
+        name = "third"
+        file = "parts/a.obj"
+        materials = { wood = "gold" }
+    "#;
+    let scene = read_files(&[("main.toml", main), ("parts/a.obj", OBJ)]).unwrap();
+    let used: Vec<&str> = scene.objects.iter().map(|o| &*scene.materials[o.material].name).collect();
+    assert_eq!(used, ["paint", "wood", "gold", "gold", "paint", "gold"]);
+    assert_eq!(scene.materials.len(), 3, "the file's materials are here once");
+    assert!(std::sync::Arc::ptr_eq(&scene.objects[0].mesh, &scene.objects[2].mesh));
+    assert!(scene.objects[0].instanced && !scene.objects[2].instanced);
+    assert_eq!(scene.objects[5].name, "third/a");
+    assert_eq!(scene.warnings.len(), 1, "warnings of a file come once: {}", warnings(&scene));
+}
+
+#[test]
+fn generated_scenes_bring_materials_and_on_request_the_rest() {
+    for row in GENERATORS {
+        let name = row.entry.name;
+        let scene = read_text("toml", format!("[[model]]\ngenerate = \"{name}\"\n")).unwrap();
+        assert!(!scene.objects.is_empty() && scene.lights.is_empty() && scene.cameras.is_empty(), "{name}");
+    }
+    let scene =
+        read_text("toml", "[[model]]\ngenerate = \"teapots\"\ncount = 4\nwith = [\"lights\", \"cameras\"]\n")
+            .unwrap();
+    assert_eq!(scene.objects.len(), 5);
+    assert!(!scene.lights.is_empty() && scene.cameras.len() == 1);
+}
+
+#[test]
+fn no_parameter_has_the_name_of_a_key_of_models() {
+    let keys = [
+        "file",
+        "shape",
+        "generate",
+        "name",
+        "material",
+        "materials",
+        "instance",
+        "with",
+        "translate",
+        "rotate",
+        "scale",
+        "matrix",
+        "keyframes",
+    ];
+    let entries = GENERATORS.iter().map(|r| &r.entry).chain(SHAPES.iter().map(|r| &r.entry));
+    for entry in entries {
+        assert!(entry.parameters.iter().all(|p| !keys.contains(&p.name)), "{}", entry.name);
+    }
+}
+
+/// Where a model puts the point (1, 2, 3) at a time.
+fn placed(place: &str, time: f32) -> Vec3 {
+    let scene = read_text("toml", format!("[[model]]\nshape = \"box\"\n{place}\n")).unwrap();
+    scene.objects[0].motion.at(time).point(Vec3::new(1.0, 2.0, 3.0))
+}
+
+#[track_caller]
+fn assert_near(a: Vec3, b: Vec3) {
+    assert!((a - b).length() < 1e-5, "{a} is not {b}");
+}
+
+#[test]
+fn places_scale_then_rotate_then_translate() {
+    assert_near(placed("translate = [10, 0, 0]\nscale = 2", 0.0), Vec3::new(12.0, 4.0, 6.0));
+    assert_near(placed("rotate = [90, 0, 0]", 0.0), Vec3::new(1.0, -3.0, 2.0));
+    assert_near(placed("rotate = [90, 0, 90]", 0.0), Vec3::new(3.0, 1.0, 2.0));
+    assert_near(
+        placed("rotate = { axis = [0, 5, 0], degrees = 90 }\nscale = [1, 1, -1]", 0.0),
+        Vec3::new(-3.0, 2.0, -1.0),
+    );
+    assert_near(placed("rotate = { quaternion = [0, 0, 1, 0] }", 0.0), Vec3::new(-1.0, -2.0, 3.0));
+    assert_near(
+        placed("matrix = [[0, 1, 0, 7], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]", 0.0),
+        Vec3::new(9.0, 1.0, 3.0),
+    );
+    assert_near(
+        placed("matrix = [1, 0, 0, 7, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]", 0.0),
+        Vec3::new(8.0, 2.0, 3.0),
+    );
+}
+
+#[test]
+fn a_whole_turn_between_two_keyframes_is_one() {
+    let spin = "keyframes = [{ time = 0 }, { time = 4, rotate = [0, 360, 0], translate = [8, 0, 0] }]";
+    for (time, expected) in [
+        (0.0, Vec3::new(1.0, 2.0, 3.0)),
+        (1.0, Vec3::new(2.0 + 3.0, 2.0, -1.0)),
+        (2.0, Vec3::new(4.0 - 1.0, 2.0, -3.0)),
+        (3.0, Vec3::new(6.0 - 3.0, 2.0, 1.0)),
+        (9.0, Vec3::new(9.0, 2.0, 3.0)),
+    ] {
+        assert_near(placed(spin, time), expected);
+    }
+    let axis = "keyframes = [{ time = 0, rotate = { axis = [0, 1, 0], degrees = 0 } }, { time = 2, rotate = { axis = [0, 1, 0], degrees = 180 } }]";
+    assert_near(placed(axis, 1.0), Vec3::new(3.0, 2.0, -1.0));
+}
+
+#[test]
+fn scenes_in_scenes_are_moved_as_one() {
+    let inner = "[[model]]\nshape = \"box\"\ntranslate = [1, 0, 0]\n";
+    let outer = |place: &str| format!("[[model]]\nfile = \"inner.toml\"\n{place}\n");
+    let place = |text: &str, time| {
+        let scene = read_files(&[("main.toml", &outer(text)), ("inner.toml", inner)]).unwrap();
+        scene.objects[0].motion.at(time).bounds(&scene.objects[0].mesh.bounds()).centre()
+    };
+    assert_near(place("rotate = [0, 0, 90]", 0.0), Vec3::Y);
+    assert_near(
+        place("keyframes = [{ time = 0 }, { time = 1, translate = [0, 0, 5] }]", 1.0),
+        Vec3::new(1.0, 0.0, 5.0),
+    );
+    let moving = "[[model]]\nshape = \"box\"\nkeyframes = [{ time = 0 }, { time = 1, scale = 2 }]\n";
+    let message = file_refusal(&[("main.toml", &outer("scale = 2")), ("inner.toml", moving)]);
+    assert!(message.contains("main.toml:1:") && message.contains("moves by itself"), "{message}");
+}
+
+#[test]
+fn includes_come_once_and_the_including_file_has_the_last_word() {
+    let main = "include = [\"a.toml\", \"sub/b.toml\"]\n[render]\nspp = 9\n[[model]]\nshape = \"box\"\nmaterial = \"red\"\n";
+    let scene = read_files(&[
+        ("main.toml", main),
+        ("a.toml", "[render]\nspp = 1\nseed = 3\n[[material]]\nname = \"red\"\nkind = \"diffuse\"\nreflectance = [1, 0, 0]\n"),
+        ("sub/b.toml", "include = [\"../a.toml\"]\n[[model]]\nfile = \"t.obj\"\nmaterial = \"red\"\n"),
+        ("sub/t.obj", OBJ),
+    ])
+    .unwrap();
+    assert_eq!(scene.settings.find("spp").unwrap().0, &Value::Integer(9));
+    assert_eq!(scene.settings.find("seed").unwrap().0, &Value::Integer(3));
+    assert_eq!(scene.objects.len(), 3);
+}
+
+#[test]
+fn cycles_are_refused() {
+    let message = file_refusal(&[("a.toml", "include = [\"b.toml\"]"), ("b.toml", "include = [\"a.toml\"]")]);
+    assert!(message.contains("b.toml:1:12") && message.contains("includes itself"), "{message}");
+    let message = file_refusal(&[
+        ("a.toml", "[[model]]\nfile = \"b.toml\""),
+        ("b.toml", "[[model]]\nfile = \"a.toml\""),
+    ]);
+    assert!(message.contains("b.toml:2:8") && message.contains("put into itself"), "{message}");
+    // Doubling at every step: 2^12 objects are a scene, and 2^60 are refused for their memory.
+    let chain = |depth: usize| {
+        let mut files: Vec<(String, String)> = (0..depth)
+            .map(|i| {
+                (
+                    format!("{i}.toml"),
+                    format!("[[model]]\nfile = \"{n}.toml\"\n[[model]]\nfile = \"{n}.toml\"\n", n = i + 1),
+                )
+            })
+            .collect();
+        files.push((format!("{depth}.toml"), "[[model]]\nshape = \"quad\"".to_owned()));
+        let files: Vec<(&str, &str)> = files.iter().map(|(a, b)| (&**a, &**b)).collect();
+        read_files(&files).map(|scene| scene.objects.len())
+    };
+    assert_eq!(chain(12).unwrap(), 4096);
+    assert!(chain(60).is_err());
+}
+
+#[test]
+fn nothing_outside_the_folder_is_opened() {
+    let outer = tempfile::tempdir().unwrap();
+    std::fs::create_dir(outer.path().join("inner")).unwrap();
+    std::fs::write(outer.path().join("t.obj"), OBJ).unwrap();
+    let path = outer.path().join("inner/main.toml");
+    std::fs::write(&path, "[[model]]\nfile = \"../t.obj\"\n").unwrap();
+    let message = read(&path, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(message.contains("main.toml:2:8") && message.contains("outside the scene's folder"), "{message}");
+    assert!(read(&path, &ReadOptions { allow_outside: true, ..Default::default() }).is_ok());
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
+    let cases = [
+        (
+            "[[modle]]\nshape = \"box\"\n",
+            "scene.toml:1:3: there is no key of a scene 'modle'; did you mean 'model'?",
+        ),
+        (
+            "[[model]]\nshape = \"box\"\nmaterail = \"x\"\n",
+            "scene.toml:3:1: there is no key of a model made of 'box' 'materail'; did you mean 'material'?",
+        ),
+        ("[[model]]\nshape = \"boks\"\n", "scene.toml:2:9: there is no shape 'boks'; did you mean 'box'?"),
+        (
+            "[[model]]\ngenerate = \"teapod\"\n",
+            "scene.toml:2:12: there is no scene to generate 'teapod'; did you mean 'teapot'?",
+        ),
+        ("[[model]]\nshape = \"box\"\nmaterial = \"x\"\n", "scene.toml:3:12: there is no material 'x'"),
+        ("[[model]]\nname = \"x\"\n", "scene.toml:1:1: one of file, shape and generate"),
+        (
+            "[[model]]\nshape = \"sphere\"\nradius = -1\n",
+            "scene.toml:3:1: sphere.radius is -1, but has to be a number from",
+        ),
+        ("[[model]]\nshape = \"box\"\nscale = 0\n", "scene.toml:1:1: this place is none: no scale may be 0"),
+        (
+            "[[model]]\nshape = \"box\"\ntranslate = [1, 2]\n",
+            "scene.toml:3:13: translate is a list of 2, but has to be three numbers",
+        ),
+        ("[[model]]\nshape = \"box\"\nmatrix = 1\n", "scene.toml:3:10: matrix is 1, but has to be four rows"),
+        (
+            "[[model]]\nshape = \"box\"\nmatrix = [1, 1, 1, 1]\nscale = 2\n",
+            "scene.toml:3:10: 'matrix' stands alone",
+        ),
+        ("[[model]]\nshape = \"box\"\nkeyframes = [{ time = 1 }, { time = 1 }]\n", "times have to rise"),
+        (
+            "[[model]]\nshape = \"box\"\nkeyframes = [{ scale = 1 }]\n",
+            "scene.toml:3:14: time (of the keyframe, in seconds) has to be given",
+        ),
+        (
+            "[[model]]\nshape = \"box\"\nkeyframes = [{ time = 0 }, { time = 1, rotate = [1e30, 0, 0] }]\n",
+            "put more of them",
+        ),
+        ("[[material]]\nkind = \"phong\"\n", "scene.toml:1:1: name (what models call the material)"),
+        (
+            "[[material]]\nname = \"a\"\n",
+            "scene.toml:1:1: kind (of the material: phong, diffuse, mirror, dielectric)",
+        ),
+        ("[[material]]\nname = \"a\"\nkind = \"glas\"\n", "scene.toml:3:8: there is no material 'glas'"),
+        (
+            "[[material]]\nname = \"a\"\nkind = \"phong\"\nexponnent = 3\n",
+            "scene.toml:4:1: there is no key of the material 'phong' 'exponnent'; did you mean 'exponent'?",
+        ),
+        (
+            "[[material]]\nname = \"a\"\nkind = \"phong\"\nkd = 2\n",
+            "scene.toml:4:1: phong.kd is 2, but has to be a colour",
+        ),
+        (
+            "[[material]]\nname = \"a\"\nkind = \"phong\"\n[[material]]\nname = \"a\"\nkind = \"phong\"\n",
+            "scene.toml:4:1: there is a material 'a' already, at scene.toml:1:1",
+        ),
+        (
+            "[[light]]\nkind = \"point\"\npostion = [1, 1, 1]\n",
+            "scene.toml:3:1: there is no key of the light 'point' 'postion'; did you mean 'position'?",
+        ),
+        (
+            "[camera]\nkeyframes = [{ time = 0, fow = 3 }]\n",
+            "scene.toml:2:26: there is no key of a camera's keyframe 'fow'; did you mean 'fov'?",
+        ),
+        ("[camera]\nposition = 2020-01-01\n", "scene.toml:2:12: a scene has no dates"),
+        ("[render]\nspp = { a = 1 }\n", "scene.toml:2:7: spp is a table"),
+        ("[render\n", "scene.toml:1:8: this is no TOML"),
+        ("a = \"\u{0}\"", "this is no TOML"),
+        ("include = \"x.toml\"\n", "scene.toml:1:11: include is \"x.toml\", but has to be a list of files"),
+        ("model = 3\n", "scene.toml:1:9: model is 3, but has to be a table"),
+    ];
+    for (text, part) in cases {
+        let message = refusal("toml", text);
+        assert!(message.contains(part), "{text:?}: {message}");
+    }
+    let message =
+        bilux_formats::read_bytes(b"a = '\xff'", "toml", None, "x", &ReadOptions::default()).unwrap_err();
+    assert!(message.to_string().starts_with("x:1:6: a TOML file is UTF-8"), "{message}");
+    let message = file_refusal(&[("a.toml", "[[model]]\nfile = \"none.obj\"\n")]);
+    assert!(message.contains("a.toml:2:8: there is no file 'none.obj' in"), "{message}");
+}
+
+#[test]
+fn textures_are_read_and_missing_ones_are_warnings() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = bilux_pictures::Picture::from_rgb(1, 1, vec![Rgb::new(0.0, 1.0, 0.0)]).unwrap();
+    bilux_pictures::write(folder.path().join("t.png"), &picture, &Default::default()).unwrap();
+    let path = folder.path().join("main.toml");
+    let material = |file: &str| {
+        format!("[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = {{ texture = \"{file}\" }}\n")
+    };
+    std::fs::write(&path, material("t.png")).unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    assert_eq!(scene.materials[0].parameters.find("reflectance").unwrap().0, &Value::Texture(0));
+    assert_eq!(scene.textures[0].texels, [Rgb::new(0.0, 1.0, 0.0)]);
+    std::fs::write(&path, material("no.png")).unwrap();
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    assert!(
+        warnings(&scene).contains(
+            "main.toml:4:27: the default of 'reflectance' stands in place of a texture: there is no file"
+        ),
+        "{}",
+        warnings(&scene)
+    );
+    assert!(read(&path, &ReadOptions { strict: true, ..Default::default() }).is_err());
+}
+
+fn there_and_back(scene: &SceneBuilder, folder: &Path) -> SceneBuilder {
+    let path = folder.join("out.toml");
+    assert_eq!(write(&path, scene, &WriteOptions::default()).unwrap(), []);
+    read(&path, &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn whole_scenes_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let moving = "[[model]]\nshape = \"box\"\nscale = [1, 2, 3]\nkeyframes = [{ time = 0 }, { time = 1, rotate = [10, 20, 30] }]\n[[model]]\nshape = \"box\"\nrotate = [1, 2, 3]\ninstance = true\n[[camera.keyframes]]\ntime = 2.5\nfov = 30\n";
+    let generated = "[[model]]\ngenerate = \"teapots\"\ncount = 2\nper_vertex = true\nmoving = true\nwith = [\"lights\", \"cameras\"]\n";
+    for text in [SCENE, moving, generated] {
+        let scene = read_text("toml", text).unwrap();
+        let back = there_and_back(&scene, folder.path());
+        let again = there_and_back(&back, folder.path());
+        for other in [&back, &again] {
+            let values = |p: &bilux_scene::Parameters| {
+                p.0.iter().map(|(k, v, _)| (k.clone(), format!("{v:?}"))).collect::<Vec<_>>()
+            };
+            assert_eq!(values(&scene.settings), values(&other.settings));
+            let specs = |all: &[bilux_scene::Spec]| {
+                all.iter().map(|s| (s.name.clone(), s.kind.clone(), s.parameters.0.len())).collect::<Vec<_>>()
+            };
+            assert_eq!(specs(&scene.materials), specs(&other.materials));
+            assert_eq!(specs(&scene.lights), specs(&other.lights));
+            assert_eq!(scene.cameras.len(), other.cameras.len());
+            assert_eq!(scene.objects.len(), other.objects.len());
+            for (a, b) in scene.objects.iter().zip(&other.objects) {
+                assert_eq!((&a.name, a.material, a.instanced), (&b.name, b.material, b.instanced));
+                assert!(crate::round_trips::corners(&a.mesh) == crate::round_trips::corners(&b.mesh));
+                for time in [0.0, 0.3, 1.0, 5.0] {
+                    let (p, q) = (a.motion.at(time).point(Vec3::ONE), b.motion.at(time).point(Vec3::ONE));
+                    assert!((p - q).length() <= 1e-6 * p.length(), "{p} {q}");
+                }
+            }
+        }
+        assert_eq!(back.textures.len(), again.textures.len());
+    }
+}
+
+#[test]
+fn the_schema_knows_what_the_reader_knows() {
+    let spp = Parameter {
+        name: "spp",
+        summary: "samples",
+        unit: "",
+        kind: ParameterKind::Integer { min: 1, max: 9 },
+        default: "4",
+    };
+    let schema = toml_schema(&[spp]);
+    let text = schema.to_string();
+    assert_eq!(schema["properties"]["render"]["properties"]["spp"]["maximum"], 9);
+    assert_eq!(schema["properties"]["render"]["properties"]["spp"]["default"], 4);
+    for word in [
+        "dielectric",
+        "perspective",
+        "environment",
+        "sphere",
+        "teapots",
+        "keyframes",
+        "exponent",
+        "quaternion",
+    ] {
+        assert!(text.contains(&format!("\"{word}\"")), "{word}");
+    }
+    let keys: Vec<&String> = schema["properties"].as_object().unwrap().keys().collect();
+    assert_eq!(keys, ["include", "render", "camera", "light", "material", "model"]);
+}
