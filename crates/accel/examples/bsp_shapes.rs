@@ -133,7 +133,7 @@ impl Rays {
         Rays { closest: sample(&self.closest), any: sample(&self.any) }
     }
 
-    /// Microseconds a ray, the least of three runs, and the work counted.
+    /// Microseconds a ray, the least of seven runs, and the work counted.
     fn measure(&self, tree: &dyn Accelerator) -> (f64, Counters) {
         let query = Query::default();
         let mut counters = Counters::default();
@@ -150,7 +150,7 @@ impl Rays {
             std::hint::black_box(nearest + any);
             start.elapsed().as_secs_f64() * 1e6 / (self.closest.len() + self.any.len()) as f64
         };
-        ((0..3).map(|_| run()).fold(f64::INFINITY, f64::min), counters)
+        ((0..7).map(|_| run()).fold(f64::INFINITY, f64::min), counters)
     }
 }
 

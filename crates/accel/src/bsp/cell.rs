@@ -70,29 +70,35 @@ impl Cell {
         [left + cap, right + cap]
     }
 
-    /// The parts left and right of a plane.
-    pub(super) fn split(&self, plane: &Plane) -> [Cell; 2] {
-        let (mut left, mut right) = (Cell::default(), Cell::default());
-        let mut rim = Vec::new();
+    /// The parts left and right of a plane, each reaching over it by `tolerance`: so much do the pieces of a
+    /// side, and cells thinner than that would not hold what they are said to.
+    pub(super) fn split(&self, plane: &Plane, tolerance: f64) -> [Cell; 2] {
+        [self.cut(&plane.moved(tolerance), false), self.cut(&plane.moved(-tolerance), true)]
+    }
+
+    /// The part left of a plane, or right of it.
+    fn cut(&self, plane: &Plane, right: bool) -> Cell {
+        let (mut part, mut rim) = (Cell::default(), Vec::new());
         for (_, points) in self.faces() {
             around(points, plane, |corner| match corner {
-                Corner::Left(point) => left.points.push(point),
-                Corner::Right(point) => right.points.push(point),
+                Corner::Left(point) if !right => part.points.push(point),
+                Corner::Right(point) if right => part.points.push(point),
                 Corner::Crossing(point, _) => {
-                    left.points.push(point);
-                    right.points.push(point);
+                    part.points.push(point);
                     rim.push(point);
                 }
+                _ => {}
             });
-            left.close();
-            right.close();
+            part.close();
         }
         let rim = in_order(rim, plane);
-        left.points.extend(&rim);
-        right.points.extend(rim.iter().rev());
-        left.close();
-        right.close();
-        [left, right]
+        if right {
+            part.points.extend(rim.iter().rev())
+        } else {
+            part.points.extend(&rim)
+        }
+        part.close();
+        part
     }
 
     fn faces(&self) -> impl Iterator<Item = (Face, &[DVec3])> {
@@ -258,7 +264,7 @@ mod tests {
         ] {
             let plane = Plane::through(DVec3::from(point), DVec3::from(normal)).unwrap();
             let areas = cell.areas(&plane);
-            let parts = cell.split(&plane);
+            let parts = cell.split(&plane, 0.0);
             for (area, part) in areas.iter().zip(&parts) {
                 assert!((area - part.area()).abs() < 1e-9, "{area} {}", part.area());
             }
@@ -268,10 +274,16 @@ mod tests {
     }
 
     #[test]
+    fn parts_reach_over_the_plane_by_the_tolerance() {
+        let [left, right] = unit_box().split(&Plane::perpendicular(0, 0.5), 0.25);
+        assert_eq!((left.area(), right.area()), (5.0, 5.0));
+    }
+
+    #[test]
     fn a_plane_beside_a_cell_leaves_it_whole() {
         let plane = Plane::perpendicular(1, 2.0);
         assert_eq!(unit_box().areas(&plane), [6.0, 0.0]);
-        let [left, right] = unit_box().split(&plane);
+        let [left, right] = unit_box().split(&plane, 0.1);
         assert_eq!((left.area(), right.area()), (6.0, 0.0));
     }
 }

@@ -73,6 +73,11 @@ impl Plane {
         Some(Plane { normal, at: f64::from(normal.dot(point) as f32), axis: 3 })
     }
 
+    /// The plane so much further right; no longer exactly f32, so not for a tree.
+    pub(super) fn moved(&self, by: f64) -> Plane {
+        Plane { at: self.at + by, ..*self }
+    }
+
     /// The axis that it is perpendicular to, if it is.
     pub(super) fn axis(&self) -> Option<usize> {
         (self.axis < 3).then_some(usize::from(self.axis))

@@ -96,7 +96,8 @@ pub(super) struct Choice {
 struct Grower<'a> {
     mesh: &'a TriangleMesh,
     space: Space,
-    /// Partitions of at most so many references have all their planes weighed.
+    /// Partitions of at most so many references have all their planes weighed; larger ones of which a sweep
+    /// makes nothing, those of half as many triangles.
     few: usize,
     /// Most forks above a leaf.
     deepest: usize,
@@ -117,7 +118,7 @@ impl Grower<'_> {
             right.append(&on)
         }
         let growth = growth * before as f64 / (left.len() + right.len()) as f64;
-        let [left_room, right_room] = room.split(&plane);
+        let [left_room, right_room] = room.split(&plane, self.space.tolerance);
         let grow_left = || self.grow(left, left_room, growth, depth + 1);
         let grow_right = || self.grow(right, right_room, growth, depth + 1);
         let (left, right) =
@@ -141,9 +142,9 @@ impl Grower<'_> {
         let cell = room.cell();
         let mut best = None;
         let mut cost = leaf;
-        for sample in 0..pieces.len().min(self.few) {
-            let piece = sample * pieces.len() / pieces.len().min(self.few);
-            for plane in self.planes(pieces, piece).into_iter().flatten() {
+        let samples = if pieces.len() > self.few { self.few / 2 } else { pieces.len() };
+        for sample in 0..samples {
+            for plane in self.planes(pieces, sample * pieces.len() / samples).into_iter().flatten() {
                 if let Some(choice) = self.weigh(plane, pieces, &cell, cost, most) {
                     cost = choice.cost;
                     best = Some(choice);
@@ -217,14 +218,14 @@ impl Room {
         }
     }
 
-    fn split(&self, plane: &Plane) -> [Room; 2] {
+    fn split(&self, plane: &Plane, tolerance: f64) -> [Room; 2] {
         if let (Room::Box(low, high), Some(axis)) = (self, plane.axis()) {
-            let at = plane.coefficients().1;
+            let at = f64::from(plane.coefficients().1);
             let (mut middle_low, mut middle_high) = (*low, *high);
-            middle_low[axis] = f64::from(at);
-            middle_high[axis] = f64::from(at);
+            middle_low[axis] = low[axis].max(at - tolerance);
+            middle_high[axis] = high[axis].min(at + tolerance);
             return [Room::Box(*low, middle_high), Room::Box(middle_low, *high)];
         }
-        self.cell().split(plane).map(Room::Polyhedron)
+        self.cell().split(plane, tolerance).map(Room::Polyhedron)
     }
 }
