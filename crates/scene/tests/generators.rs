@@ -4,6 +4,7 @@
 
 use bilux_math::{Aabb, Vec3};
 use bilux_scene::generators::teapot::{Teapot, patches};
+use bilux_scene::generators::vessel::Vessel;
 use bilux_scene::generators::{GENERATORS, copies, generate, shapes};
 use bilux_scene::{AccelChoice, Mesh, Object, SceneBuilder, Spec, Value};
 use std::collections::HashMap;
@@ -246,4 +247,19 @@ fn copies_stand_exactly_at_multiples_of_the_offset() {
         }
     }
     assert_eq!(copies(&scene, 0, offset).objects.len(), 0);
+}
+
+#[test]
+fn the_vessel_is_closed_and_faces_outwards() {
+    for n in [4, 8, 16, 31] {
+        let solid = Vessel { tessellation: n, height: 3.15, wall: None }.mesh();
+        assert_eq!(open_edges(&solid), 0, "tessellation {n}");
+        let hollow =
+            Vessel { wall: Some(0.025), ..Vessel { tessellation: n, height: 3.15, wall: None } }.mesh();
+        assert_eq!(open_edges(&hollow), 0, "tessellation {n}, hollow");
+        assert!(volume(&solid) > 24.0 && volume(&hollow) < 0.2 * volume(&solid), "tessellation {n}");
+        assert!(volume(&hollow) > 0.0);
+    }
+    let fine = Vessel { tessellation: 32, height: 3.15, wall: Some(0.025) }.mesh();
+    assert!(least_agreement(&fine) > 0.6, "{}", least_agreement(&fine));
 }

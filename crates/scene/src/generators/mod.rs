@@ -14,6 +14,7 @@ mod coverage;
 pub mod shapes;
 pub mod teapot;
 mod teapots;
+pub mod vessel;
 
 pub use copies::copies;
 

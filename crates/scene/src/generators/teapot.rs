@@ -8,7 +8,6 @@ use super::{GeneratorEntry, integer, length, switch};
 use crate::builder::{Object, SceneBuilder};
 use crate::mesh::Mesh;
 use crate::parameters::Spec;
-use bilux_math::glam::DVec2;
 use bilux_math::registry::Entry;
 use bilux_math::{DVec3, Rgb, Vec2};
 use std::sync::Arc;
@@ -164,17 +163,20 @@ impl Patch {
     /// The point is the same, to the bit, from whichever side and in whichever direction an edge is walked: at
     /// an edge three of the four weights are exactly 0, and weights and sums are symmetric in `i` and `n - i`.
     pub fn at(&self, i: u32, j: u32, n: u32) -> (DVec3, DVec3) {
-        let (u, v) = (Cubic::new(i, n), Cubic::new(j, n));
+        self.blend(&Cubic::new(i, n), &Cubic::new(j, n))
+    }
+
+    /// The point and the unit normal at any u and v.
+    pub(super) fn blend(&self, u: &Cubic, v: &Cubic) -> (DVec3, DVec3) {
         let rows = self.0.map(|row| u.blend(&row));
         let slopes = self.0.map(|row| u.slope(&row));
         let (along_u, along_v) = (v.blend(&slopes), v.slope(&rows));
-        let normal = along_u.cross(along_v);
         let size = along_u.length().max(along_v.length());
         // At a pole the row is a single point: ∂u vanishes, and next to it is the change of ∂u along v.
         let normal = if along_u.length() > 1e-12 * size {
-            normal
+            along_u.cross(along_v)
         } else {
-            v.slope(&slopes).cross(along_v) * if 2 * j < n { 1.0 } else { -1.0 }
+            v.slope(&slopes).cross(along_v) * if v.weights[0] > v.weights[3] { 1.0 } else { -1.0 }
         };
         (v.blend(&rows), normal.normalize_or_zero())
     }
@@ -209,12 +211,16 @@ pub(super) struct Cubic {
 
 impl Cubic {
     pub(super) fn new(i: u32, n: u32) -> Cubic {
-        Cubic::of(DVec2::new(f64::from(i) / f64::from(n), f64::from(n - i) / f64::from(n)))
+        Cubic::of(f64::from(i) / f64::from(n), f64::from(n - i) / f64::from(n))
     }
 
-    /// At a parameter given with its complement to 1.
-    pub(super) fn of(t: DVec2) -> Cubic {
-        let (a, b) = (t.x, t.y);
+    /// At a parameter in 0..=1.
+    pub(super) fn at(t: f64) -> Cubic {
+        Cubic::of(t, 1.0 - t)
+    }
+
+    /// At a parameter and its complement to 1.
+    fn of(a: f64, b: f64) -> Cubic {
         Cubic {
             weights: [b * b * b, 3.0 * (a * (b * b)), 3.0 * (b * (a * a)), a * a * a],
             slopes: [3.0 * (b * b), 6.0 * (a * b), 3.0 * (a * a)],
@@ -226,7 +232,7 @@ impl Cubic {
         (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2])
     }
 
-    pub(super) fn slope(&self, p: &[DVec3; 4]) -> DVec3 {
+    fn slope(&self, p: &[DVec3; 4]) -> DVec3 {
         let s = &self.slopes;
         (p[1] - p[0]) * s[0] + (p[2] - p[1]) * s[1] + (p[3] - p[2]) * s[2]
     }

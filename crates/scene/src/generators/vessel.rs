@@ -1,0 +1,398 @@
+//! The teapot as a solid that glass can be made of: closed, and nowhere inside of itself.
+//!
+//! Light that enters glass has to leave it again, so the outside has to be one closed surface. Newell's is not:
+//! handle and spout are tubes that go through the wall, the lid lies in the rim without touching it. Here lid and
+//! rim are joined by a flat ring, tubes are cut off where they meet the body, the body has holes of the same
+//! outline, to the bit, and the spout has a flat end below its lip. A cavity, if there is one, is a second closed
+//! surface that faces inwards, within body and lid; handle and spout are solid.
+
+use super::teapot::{Cubic, NEWELL_HEIGHT, PROFILE, Patch, TUBES, half_of, quarter_of};
+use crate::mesh::Mesh;
+use bilux_math::transcendental::atan2_f64;
+use bilux_math::{DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// How the vessel is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vessel {
+    /// Pieces that each patch edge is cut into, at least 4.
+    pub tessellation: u32,
+    /// From the table to the top of the lid, metres.
+    pub height: f64,
+    /// Thickness of the wall, in parts of the height; `None` for one that is glass all through.
+    pub wall: Option<f64>,
+}
+
+impl Vessel {
+    /// The mesh: closed, counter-clockwise from where the air is, with normals.
+    pub fn mesh(&self) -> Mesh {
+        let n = self.tessellation.clamp(4, 256);
+        let mut maker = Maker { n, corners: Vec::new(), triangles: Vec::new() };
+        maker.body();
+        if let Some(wall) = self.wall {
+            maker.cavity(wall * NEWELL_HEIGHT);
+        }
+        let scale = self.height / NEWELL_HEIGHT;
+        let place = |&(p, _): &(DVec3, DVec3)| (p * scale).as_vec3();
+        let positions: Vec<_> = maker.corners.iter().map(place).collect();
+        let has_area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| positions[i as usize]);
+            a != b && b != c && c != a
+        };
+        maker.triangles.retain(has_area);
+        let normals = maker.corners.iter().map(|(_, n)| n.as_vec3()).collect();
+        Mesh { name: "vessel".into(), positions, normals, triangles: maker.triangles, ..Mesh::default() }
+    }
+}
+
+/// The profile's curves by their place in it.
+const LID: u32 = 1;
+const RIM: u32 = 2;
+const SHOULDER: u32 = 3;
+const FOOT: u32 = 5;
+
+struct Maker {
+    n: u32,
+    /// Positions and normals.
+    corners: Vec<(DVec3, DVec3)>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Maker {
+    /// Corners around the body.
+    fn around(&self) -> u32 {
+        4 * self.n
+    }
+
+    /// A point of the body, by steps around and by steps down along a curve of the profile.
+    fn on_body(&self, i: u32, curve: u32, j: u32) -> (DVec3, DVec3) {
+        let i = i % self.around();
+        quarter_of(&PROFILE[curve as usize], (i / self.n) as usize).at(i % self.n, j, self.n)
+    }
+
+    fn push(&mut self, corner: (DVec3, DVec3)) -> u32 {
+        self.corners.push(corner);
+        self.corners.len() as u32 - 1
+    }
+
+    /// A ring of corners around the body; gives the index of the first.
+    fn ring(&mut self, at: impl Fn(&Maker, u32) -> (DVec3, DVec3)) -> u32 {
+        let first = self.corners.len() as u32;
+        for i in 0..self.around() {
+            let corner = at(self, i);
+            self.corners.push(corner);
+        }
+        first
+    }
+
+    /// Squares between two rings, the upper one first, where `keep` says so.
+    fn band(&mut self, upper: u32, lower: u32, keep: impl Fn(u32) -> bool) {
+        let around = self.around();
+        for i in (0..around).filter(|&i| keep(i)) {
+            let k = (i + 1) % around;
+            self.triangles.push([upper + i, upper + k, lower + k]);
+            self.triangles.push([upper + i, lower + k, lower + i]);
+        }
+    }
+
+    fn body(&mut self) {
+        let n = self.n;
+        // Two rows meet where curves do; row (c, j) begins at `(c * (n + 1) + j) * around`.
+        for (curve, j) in (0..PROFILE.len() as u32).flat_map(|c| (0..=n).map(move |j| (c, j))) {
+            self.ring(|m, i| m.on_body(i, curve, j));
+        }
+        let grafts = [Graft::spout(n), Graft::handle_top(n), Graft::handle_foot(n)];
+        for (curve, j) in (0..PROFILE.len() as u32).flat_map(|c| (0..n).map(move |j| (c, j))) {
+            let upper = self.row(curve * n + j, curve);
+            let whole = |i: u32| !grafts.iter().any(|g| g.takes(i, curve * n + j));
+            self.band(upper, upper + self.around(), whole);
+        }
+        let flat = |m: &Maker, i, curve, j| (m.on_body(i, curve, j).0, DVec3::Y);
+        let inner = self.ring(|m, i| flat(m, i, LID, n));
+        let outer = self.ring(|m, i| flat(m, i, RIM, 0));
+        self.band(inner, outer, |_| true);
+        let [spout, top, foot] = &grafts;
+        for graft in &grafts {
+            self.sew(graft);
+        }
+        self.tube(&Tube::SPOUT, &spout.ends, &vec![2.0; spout.ends.len()], true);
+        self.tube(&Tube::HANDLE, &top.ends, &foot.ends, false);
+    }
+
+    /// Where a row begins, by steps down the whole profile, as a row of the given curve.
+    fn row(&self, down: u32, curve: u32) -> u32 {
+        (down + curve) * self.around()
+    }
+
+    /// Joins the outline of the cells that a graft takes to the ring where the tube meets the body: walks both
+    /// by angle around the middle.
+    fn sew(&mut self, graft: &Graft) {
+        let outline = graft.outline();
+        let outer: Vec<(f64, u32)> = outline
+            .iter()
+            .map(|&(i, down)| {
+                let curve = (down / self.n).min(FOOT);
+                let index = self.row(down, curve) + i % self.around();
+                (graft.angle(DVec2::new(f64::from(i), f64::from(down))), index)
+            })
+            .collect();
+        let inner: Vec<(f64, u32)> =
+            graft.ring.iter().map(|(cell, corner)| (graft.angle(*cell), self.push(*corner))).collect();
+        let (outer, inner) = (by_angle(outer), by_angle(inner));
+        let (mut a, mut b) = (0, 0);
+        let turned = |ring: &[(f64, u32)], k: usize| ring[k % ring.len()].0 + TAU * (k / ring.len()) as f64;
+        let index = |ring: &[(f64, u32)], k: usize| ring[k % ring.len()].1;
+        while a < outer.len() || b < inner.len() {
+            let outer_next =
+                b == inner.len() || (a < outer.len() && turned(&outer, a + 1) <= turned(&inner, b + 1));
+            if outer_next {
+                self.triangles.push([index(&outer, a), index(&outer, a + 1), index(&inner, b)]);
+                a += 1;
+            } else {
+                self.triangles.push([index(&outer, a), index(&inner, b + 1), index(&inner, b)]);
+                b += 1;
+            }
+        }
+    }
+
+    /// A tube between two parameters for every point around it; `capped` at its end.
+    fn tube(&mut self, tube: &Tube, from: &[f64], to: &[f64], capped: bool) {
+        let (around, along) = (2 * self.n, 2 * self.n);
+        let first = self.corners.len() as u32;
+        for (k, t) in (0..=along).flat_map(|k| (0..around).map(move |t| (k, t))) {
+            let (a, b) = (from[t as usize], to[t as usize]);
+            let fraction = f64::from(k) / f64::from(along);
+            let s = if k == along { b } else { a + (b - a) * fraction };
+            self.corners.push(tube.at(t, self.n, s));
+        }
+        for (k, t) in (0..along).flat_map(|k| (0..around).map(move |t| (k, t))) {
+            let corner = |t: u32, k: u32| first + k * around + t % around;
+            let (a, b, c, d) = (corner(t, k), corner(t + 1, k), corner(t + 1, k + 1), corner(t, k + 1));
+            self.triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        if capped {
+            let last = first + along * around;
+            let rim: Vec<DVec3> = (0..around).map(|t| self.corners[(last + t) as usize].0).collect();
+            let middle = rim.iter().sum::<DVec3>() / rim.len() as f64;
+            let centre = self.push((middle, DVec3::Y));
+            let flat: Vec<u32> = rim.iter().map(|&p| self.push((p, DVec3::Y))).collect();
+            for t in 0..flat.len() {
+                self.triangles.push([flat[t], flat[(t + 1) % flat.len()], centre]);
+            }
+        }
+    }
+
+    /// The inside of the wall: lid and body moved inwards, facing inwards.
+    fn cavity(&mut self, wall: f64) {
+        let n = self.n;
+        let first_triangle = self.triangles.len();
+        let first_corner = self.corners.len();
+        let inwards = |(p, normal): (DVec3, DVec3)| (p - normal * wall, normal);
+        let top = inwards(self.on_body(0, LID, 0)).0.y;
+        let mut upper = self.ring(|_, _| (DVec3::Y * top, DVec3::Y));
+        for (curve, j) in self.cavity_rows(inwards) {
+            let lower = self.ring(|m, i| inwards(m.on_body(i, curve, j)));
+            self.band(upper, lower, |_| true);
+            upper = lower;
+        }
+        for triangle in &mut self.triangles[first_triangle..] {
+            triangle.reverse();
+        }
+        for (_, normal) in &mut self.corners[first_corner..] {
+            *normal = -*normal;
+        }
+    }
+
+    /// Rows of the body that the cavity has too, by curve and step. The lid's edge and the shoulder's beginning
+    /// would meet the rim from below; and where the outside bends more tightly than the wall is thick, the
+    /// inside would run back on itself.
+    fn cavity_rows(&self, inwards: impl Fn((DVec3, DVec3)) -> (DVec3, DVec3)) -> Vec<(u32, u32)> {
+        let n = self.n;
+        let lid = (0..=n * 3 / 4).map(|j| (LID, j));
+        let shoulder = (n.div_ceil(6)..n).map(|j| (SHOULDER, j));
+        let below = (SHOULDER + 1..=FOOT).flat_map(|c| (0..n).map(move |j| (c, j)));
+        let mut kept: Vec<((u32, u32), DVec3, DVec3)> = Vec::new();
+        for (curve, j) in lid.chain(shoulder).chain(below).chain([(FOOT, n)]) {
+            let (here, normal) = inwards(self.on_body(0, curve, j));
+            let onwards = DVec3::new(normal.y, -normal.x, 0.0);
+            let agrees = |from: DVec3, along: DVec3| (here - from).dot(along) > 0.5 * (here - from).length();
+            if kept.last().is_some_and(|(_, last, _)| !agrees(*last, onwards)) {
+                continue;
+            }
+            while kept.last().is_some_and(|(_, last, along)| !agrees(*last, *along)) {
+                kept.pop();
+            }
+            kept.push(((curve, j), here, onwards));
+        }
+        kept.into_iter().map(|(row, ..)| row).collect()
+    }
+}
+
+fn by_angle(mut ring: Vec<(f64, u32)>) -> Vec<(f64, u32)> {
+    ring.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ring
+}
+
+/// A tube of two patches, its parameter from 0 to 2.
+struct Tube {
+    halves: [&'static [[f64; 5]; 4]; 2],
+}
+
+impl Tube {
+    const HANDLE: Tube = Tube { halves: [&TUBES[0], &TUBES[1]] };
+    const SPOUT: Tube = Tube { halves: [&TUBES[2], &TUBES[3]] };
+
+    /// Point and normal at step `t` of `2 n` around and at `s` along.
+    fn at(&self, t: u32, n: u32, s: f64) -> (DVec3, DVec3) {
+        let patch: Patch = half_of(self.halves[usize::from(s > 1.0)]);
+        let u = Cubic::new(if t <= n { t } else { 2 * n - t }, n);
+        let (p, normal) = patch.blend(&u, &Cubic::at(if s > 1.0 { s - 1.0 } else { s }));
+        let mirror = |v: DVec3| if t <= n { v } else { DVec3::new(v.x, v.y, 0.0 - v.z) };
+        (mirror(p), mirror(normal))
+    }
+}
+
+/// Where a tube meets the body.
+struct Graft {
+    /// Around the tube: where it is in cells of the body, and the point with the body's normal.
+    ring: Vec<(DVec2, (DVec3, DVec3))>,
+    /// The tube's parameter at each of these.
+    ends: Vec<f64>,
+    /// Cells that are taken out of the body: first and last plus one, around and down.
+    cells: [[u32; 2]; 2],
+    /// Cells around the body.
+    around: u32,
+    /// Middle of the ring, in cells, and half its width and height.
+    middle: DVec2,
+    half: DVec2,
+}
+
+impl Graft {
+    fn spout(n: u32) -> Graft {
+        Graft::new(&Tube::SPOUT, n, 0.0, 1.0)
+    }
+
+    fn handle_top(n: u32) -> Graft {
+        Graft::new(&Tube::HANDLE, n, 0.0, 1.0)
+    }
+
+    fn handle_foot(n: u32) -> Graft {
+        Graft::new(&Tube::HANDLE, n, 2.0, 1.0)
+    }
+
+    /// Follows the tube from its parameter `inside` the body to `outside`.
+    fn new(tube: &Tube, n: u32, inside: f64, outside: f64) -> Graft {
+        let ends: Vec<f64> = (0..2 * n)
+            .map(|t| {
+                let (mut a, mut b) = (inside, outside);
+                for _ in 0..60 {
+                    let middle = (a + b) * 0.5;
+                    if BodyPoint::of(tube.at(t, n, middle).0).outside > 0.0 { b = middle } else { a = middle }
+                }
+                a
+            })
+            .collect();
+        let around_and_down = |p: DVec3| {
+            let at = BodyPoint::of(p);
+            (DVec2::new(at.around, at.down) * f64::from(n), (p, at.normal))
+        };
+        let ring: Vec<_> = (0..2 * n).map(|t| around_and_down(tube.at(t, n, ends[t as usize]).0)).collect();
+        let (mut low, mut high) = (ring[0].0, ring[0].0);
+        for (cell, _) in &ring {
+            (low, high) = (low.min(*cell), high.max(*cell));
+        }
+        let (first, last) = ((low - 0.25).floor(), (high + 0.25).ceil());
+        let cells = [[first.x as u32, last.x as u32], [first.y as u32, last.y as u32]];
+        Graft { ring, ends, cells, around: 4 * n, middle: (low + high) * 0.5, half: (high - low) * 0.5 }
+    }
+
+    fn takes(&self, i: u32, down: u32) -> bool {
+        let [[i0, i1], [j0, j1]] = self.cells;
+        let columns = i0..i1;
+        // Cells of the spout go on beyond the last quarter.
+        (j0..j1).contains(&down) && (columns.contains(&i) || columns.contains(&(i + self.around)))
+    }
+
+    /// Corners around the cells that are taken.
+    fn outline(&self) -> Vec<(u32, u32)> {
+        let [[i0, i1], [j0, j1]] = self.cells;
+        let right = (i0..i1).map(|i| (i, j0));
+        let down = (j0..j1).map(|j| (i1, j));
+        let left = (i0 + 1..=i1).rev().map(|i| (i, j1));
+        let up = (j0 + 1..=j1).rev().map(|j| (i0, j));
+        right.chain(down).chain(left).chain(up).collect()
+    }
+
+    fn angle(&self, cell: DVec2) -> f64 {
+        let d = (cell - self.middle) / self.half;
+        atan2_f64(d.y, d.x)
+    }
+}
+
+/// A point seen from the body: the body is a profile times a curve that is nearly a circle.
+struct BodyPoint {
+    /// How far it is outside, in lengths of the profile's radius.
+    outside: f64,
+    /// Quarters around, from +z over -x and -z to +x and beyond: spout and handle lie whole on either side.
+    around: f64,
+    /// Curves down the profile.
+    down: f64,
+    normal: DVec3,
+}
+
+impl BodyPoint {
+    fn of(p: DVec3) -> BodyPoint {
+        let turn = atan2_f64(p.z, p.x) / FRAC_PI_2;
+        // The spout is at 0, where the quarters begin and end: count it as 4.
+        let around = if turn < 1.0 { turn + 4.0 } else { turn };
+        let quarter = around.floor() as usize % 4;
+        let wanted = (around - around.floor()) * FRAC_PI_2;
+        let arc = [[1.0, 0.0, 0.0], [1.0, 0.56, 0.0], [0.56, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from);
+        let u = solve(|u| {
+            let q = Cubic::at(u).blend(&arc);
+            atan2_f64(q.y, q.x) - wanted
+        });
+        let curve = if p.y > PROFILE[SHOULDER as usize][3][2] { SHOULDER } else { SHOULDER + 1 };
+        let profile = PROFILE[curve as usize].map(|[r, _, y]| DVec3::new(r, y, 0.0));
+        let v = solve(|v| p.y - Cubic::at(v).blend(&profile).y);
+        let radius = p.with_y(0.0).length() / Cubic::at(u).blend(&arc).length();
+        let (_, normal) = quarter_of(&PROFILE[curve as usize], quarter).blend(&Cubic::at(u), &Cubic::at(v));
+        BodyPoint {
+            outside: radius - Cubic::at(v).blend(&profile).x,
+            around: around.floor() + u,
+            down: f64::from(curve) + v,
+            normal,
+        }
+    }
+}
+
+/// Where a rising function of 0..=1 is zero.
+fn solve(f: impl Fn(f64) -> f64) -> f64 {
+    let (mut a, mut b) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = (a + b) * 0.5;
+        if f(middle) > 0.0 { b = middle } else { a = middle }
+    }
+    (a + b) * 0.5
+}
+
+impl Graft {
+    #[cfg(test)]
+    fn gap(&self) -> f64 {
+        self.ring.iter().map(|(_, (p, _))| BodyPoint::of(*p).outside.abs()).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tubes_end_on_the_body() {
+        for n in [4, 16, 33] {
+            for graft in [Graft::spout(n), Graft::handle_top(n), Graft::handle_foot(n)] {
+                assert!(graft.gap() < 1e-9, "{}", graft.gap());
+            }
+        }
+    }
+}
