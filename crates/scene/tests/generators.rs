@@ -263,3 +263,14 @@ fn the_vessel_is_closed_and_faces_outwards() {
     let fine = Vessel { tessellation: 32, height: 3.15, wall: Some(0.025) }.mesh();
     assert!(least_agreement(&fine) > 0.6, "{}", least_agreement(&fine));
 }
+
+#[test]
+fn what_a_vessel_holds_is_closed_and_inside() {
+    let vessel = Vessel { tessellation: 16, height: 1.0, wall: Some(0.022) };
+    let tea = vessel.filling(0.5);
+    assert_eq!(open_edges(&tea), 0);
+    let (low, high) = (tea.bounds().min, tea.bounds().max);
+    assert!(low.y > 0.02 && high.y < 0.5 && high.y > 0.4, "{low} {high}");
+    assert!(volume(&tea) > 0.3 * volume(&Vessel { wall: None, ..vessel }.mesh()));
+    assert!(vessel.filling(-1.0).triangles.is_empty());
+}

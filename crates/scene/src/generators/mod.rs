@@ -14,6 +14,7 @@ mod coverage;
 pub mod shapes;
 pub mod teapot;
 mod teapots;
+mod trio;
 pub mod vessel;
 
 pub use copies::copies;
@@ -33,7 +34,8 @@ pub struct GeneratorEntry {
 }
 
 /// Every scene that there is.
-pub const GENERATORS: &[GeneratorEntry] = &[teapots::ENTRY, teapot::ENTRY, cornell::ENTRY, cornell::SPHERES];
+pub const GENERATORS: &[GeneratorEntry] =
+    &[trio::ENTRY, teapots::ENTRY, teapot::ENTRY, cornell::ENTRY, cornell::SPHERES];
 
 /// Makes the scene that a spec describes.
 ///

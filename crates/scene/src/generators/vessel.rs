@@ -32,16 +32,18 @@ impl Vessel {
         if let Some(wall) = self.wall {
             maker.cavity(wall * NEWELL_HEIGHT);
         }
-        let scale = self.height / NEWELL_HEIGHT;
-        let place = |&(p, _): &(DVec3, DVec3)| (p * scale).as_vec3();
-        let positions: Vec<_> = maker.corners.iter().map(place).collect();
-        let has_area = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| positions[i as usize]);
-            a != b && b != c && c != a
-        };
-        maker.triangles.retain(has_area);
-        let normals = maker.corners.iter().map(|(_, n)| n.as_vec3()).collect();
-        Mesh { name: "vessel".into(), positions, normals, triangles: maker.triangles, ..Mesh::default() }
+        maker.finish(self.height)
+    }
+}
+
+impl Vessel {
+    /// What a hollow vessel holds: a closed mesh that fills its cavity up to this part of the height, and
+    /// stays a hundredth of the wall's thickness away from it, since two surfaces in one place have no order.
+    pub fn filling(&self, level: f64) -> Mesh {
+        let n = self.tessellation.clamp(4, 256);
+        let mut maker = Maker { n, corners: Vec::new(), triangles: Vec::new() };
+        maker.liquid(self.wall.unwrap_or(0.0) * NEWELL_HEIGHT * 1.01, level * NEWELL_HEIGHT);
+        Mesh { name: "filling".to_owned(), ..maker.finish(self.height) }
     }
 }
 
@@ -59,6 +61,18 @@ struct Maker {
 }
 
 impl Maker {
+    fn finish(mut self, height: f64) -> Mesh {
+        let scale = height / NEWELL_HEIGHT;
+        let positions: Vec<_> = self.corners.iter().map(|(p, _)| (*p * scale).as_vec3()).collect();
+        let has_area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| positions[i as usize]);
+            a != b && b != c && c != a
+        };
+        self.triangles.retain(has_area);
+        let normals = self.corners.iter().map(|(_, n)| n.as_vec3()).collect();
+        Mesh { name: "vessel".into(), positions, normals, triangles: self.triangles, ..Mesh::default() }
+    }
+
     /// Corners around the body.
     fn around(&self) -> u32 {
         4 * self.n
@@ -200,6 +214,26 @@ impl Maker {
         }
         for (_, normal) in &mut self.corners[first_corner..] {
             *normal = -*normal;
+        }
+    }
+
+    /// The body below a level, moved inwards, under a flat surface with sharp edges.
+    fn liquid(&mut self, wall: f64, level: f64) {
+        let inwards = |(p, normal): (DVec3, DVec3)| (p - normal * wall, normal);
+        let mut rows = self.cavity_rows(inwards);
+        rows.retain(|&(curve, j)| {
+            let p = inwards(self.on_body(0, curve, j)).0;
+            curve >= SHOULDER && p.y < level
+        });
+        let Some(&(curve, j)) = rows.first() else { return };
+        let brim = |m: &Maker, i| (inwards(m.on_body(i, curve, j)).0, DVec3::Y);
+        let middle = DVec3::Y * brim(self, 0).0.y;
+        let (centre, edge) = (self.ring(|_, _| (middle, DVec3::Y)), self.ring(brim));
+        self.band(centre, edge, |_| true);
+        let rings: Vec<u32> =
+            rows.iter().map(|&(c, j)| self.ring(|m, i| inwards(m.on_body(i, c, j)))).collect();
+        for pair in rings.windows(2) {
+            self.band(pair[0], pair[1], |_| true);
         }
     }
 
