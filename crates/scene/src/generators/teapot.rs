@@ -8,7 +8,7 @@ use super::{GeneratorEntry, integer, length, switch};
 use crate::builder::{Object, SceneBuilder};
 use crate::mesh::Mesh;
 use crate::parameters::Spec;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter};
 use bilux_math::{DVec3, Rgb, Vec2};
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         summary: "the teapot alone; camera and light are left to the studio",
         source: "Newell 1975",
         parameters: &[
-            TESSELLATION,
+            Parameter { default: "16", ..TESSELLATION },
             length("height", "from the table to the top of the lid", "3.15"),
             switch("bottom", "closed below, which Newell's own was not", "true"),
         ],
@@ -41,7 +41,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     },
 };
 
-pub(super) const TESSELLATION: bilux_math::registry::Parameter =
+pub(super) const TESSELLATION: Parameter =
     integer("tessellation", "pieces that each edge of the 32 patches is cut into", 1, 256, "8");
 
 /// Height that the control points give.

@@ -20,7 +20,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         source: "Newell 1975",
         parameters: &[
             integer("count", "how many teapots", 1, 10_000, "3"),
-            vector("offset", "from each teapot to the next, in the layout paper", "2.5 0 -4.5"),
+            vector("offset", "from each teapot to the next, in the layout paper", "1.6 0 -4.6"),
             choice(
                 "layout",
                 "paper: in a row, seen from one place; equal-coverage: in a block, seen from so far that the \
@@ -137,7 +137,7 @@ fn add_floor(scene: &mut SceneBuilder, bounds: &Aabb) {
         .with("exponent", 40.0f32);
     let material = scene.add_material(green);
     let middle = bounds.centre() * Vec3::new(1.0, 0.0, 1.0);
-    let side = 2.0 * bounds.extent().max_element() + 30.0;
+    let side = 8.0 * bounds.extent().max_element() + 120.0;
     scene.objects.push(Object::new("floor", Arc::new(shapes::floor(middle, side)), material));
 }
 
@@ -158,7 +158,7 @@ fn add_lights(scene: &mut SceneBuilder) {
 
 fn add_camera(scene: &mut SceneBuilder, reader: &Reader, places: &[Vec3], bounds: &Aabb) {
     let (eye, look_at) = if reader.text("layout") == "paper" {
-        (Vec3::new(-5.5, 7.0, 13.0), Vec3::new(2.6, 0.9, -4.0))
+        (Vec3::new(9.0, 7.6, 15.4), Vec3::new(2.2, 0.9, -5.0))
     } else {
         let towards = Vec3::new(0.30, 0.62, 1.0).normalize();
         let middle = bounds.centre();

@@ -198,7 +198,6 @@ impl Maker {
 
     /// The inside of the wall: lid and body moved inwards, facing inwards.
     fn cavity(&mut self, wall: f64) {
-        let n = self.n;
         let first_triangle = self.triangles.len();
         let first_corner = self.corners.len();
         let inwards = |(p, normal): (DVec3, DVec3)| (p - normal * wall, normal);
