@@ -2,8 +2,8 @@
 //! all of it the same keys of one table.
 
 use crate::Error;
-use bilux_accel::registry::{BspGroup, BspSplit};
-use bilux_accel::{Culling, Query};
+use bilux_accel::registry::{BspGroup, BspSplit, Quality};
+use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Spec};
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
@@ -34,6 +34,8 @@ pub const RENDER: Entry = Entry {
         text("tonemap", "the curve for pictures for a display", "none"),
         choice("transfer", "how light becomes bytes", &["srgb", "linear"], "srgb"),
         choice("culling", "back faces of closed, opaque meshes", &["none", "back"], "none"),
+        choice("build", "time that a tree may take", &["fast", "balanced", "best"], "balanced"),
+        choice("cpu", "instructions that kernels may use", &["auto", "baseline", "avx2", "avx512"], "auto"),
         choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"),
         choice("bsp_group", "what bsp keeps together", &["polygons", "objects"], "polygons"),
         switch("early_out", "end a search at the first hit that nothing nearer can beat"),
@@ -209,6 +211,13 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         if reader.text("bsp_split") == "fuchs" { BspSplit::Fuchs } else { BspSplit::Mean };
     choice.options.bsp_group =
         if reader.text("bsp_group") == "objects" { BspGroup::Objects } else { BspGroup::Polygons };
+    choice.options.quality = match reader.text("build").as_str() {
+        "fast" => Quality::Fast,
+        "best" => Quality::Best,
+        _ => Quality::Balanced,
+    };
+    let wanted = CpuLevel::ALL.into_iter().find(|level| level.name() == reader.text("cpu"));
+    choice.options.cpu_level = wanted.unwrap_or_default();
     choice.query = Query {
         culling: if reader.text("culling") == "back" { Culling::Back } else { Culling::None },
         early_out: reader.bool("early_out"),

@@ -78,6 +78,8 @@ pub enum Command {
         /// Folder for the pages of all commands
         folder: Option<PathBuf>,
     },
+    /// Print the JSON schema of scene files, for editors
+    Schema,
     /// Print the licences of Bilux and of what it is built from
     Licenses,
 }

@@ -35,6 +35,7 @@ fn main() -> ExitCode {
         Command::List(ref list) => commands::list::run(list),
         Command::Completions { shell } => commands::manual::completions(shell),
         Command::Man { ref folder } => commands::manual::pages(folder.as_deref()),
+        Command::Schema => commands::list::schema(),
         Command::Licenses => commands::manual::licenses(),
     };
     match result {

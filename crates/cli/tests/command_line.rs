@@ -37,6 +37,10 @@ fn one_picture_for_any_threads_and_any_accelerator() {
         for row in bilux::accel::ACCELERATORS {
             assert!(with(&["--accel", row.entry.name]) == reference, "{integrator}, {}", row.entry.name);
         }
+        for cpu in ["cpu=baseline", "cpu=avx2", "cpu=avx512"] {
+            let more = ["--accel", "brute-simd", "--set", cpu];
+            assert!(with(&more) == reference, "{integrator}, {cpu}");
+        }
         for option in ["bsp_split=fuchs", "bsp_group=objects", "early_out=false"] {
             let more = ["--accel", "bsp", "--set", option];
             assert!(with(&more) == reference, "{integrator}, {option}");
@@ -179,4 +183,49 @@ fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
     run(&["convert", "again.asc", "-o", "again.obj"]);
     let read = |name: &str| std::fs::read(path.join(name)).unwrap();
     assert!(read("again.obj") == read("three.obj"));
+}
+
+#[test]
+fn every_shipped_scene_is_made_read_and_rendered_the_same() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    for row in bilux::scene::generators::GENERATORS {
+        let name = row.entry.name;
+        bilux(path).args(["generate", name, "-o", "scene.toml"]).assert().success();
+        let render = ["render", "scene.toml", "--size", "24x24", "-i", "whitted", "-o", "read.pfm"];
+        bilux(path).args(render).assert().success();
+        let direct = bilux::generate(&bilux::scene::Spec::new("", name)).unwrap();
+        let mut settings = bilux::scene::Parameters::default();
+        settings.set("size", "24x24");
+        settings.set("integrator", "whitted");
+        let picture = bilux::Job::new(&direct, &settings).unwrap().render(&bilux::Quiet).unwrap();
+        let read = bilux::pictures::read(path.join("read.pfm")).unwrap();
+        assert!(read.to_rgb() == picture.picture().unwrap().to_rgb(), "{name}");
+    }
+}
+
+#[test]
+fn frames_are_numbered_and_differ_where_things_move() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let generate = ["generate", "teapots", "--count", "2", "--set", "moving=true", "-o", "move.toml"];
+    bilux(path).args(generate).assert().success();
+    let render = [
+        "render",
+        "move.toml",
+        "--size",
+        "32x32",
+        "-i",
+        "cast",
+        "--frames",
+        "0-2",
+        "-o",
+        "{stem}-{frame}.pfm",
+    ];
+    bilux(path).args(render).args(["--set", "fps=1"]).assert().success();
+    let frame = |n: u32| std::fs::read(path.join(format!("move-{n:04}.pfm"))).unwrap();
+    assert!(frame(0) != frame(1) && frame(1) != frame(2));
+    let again = ["render", "move.toml", "--size", "32x32", "-i", "cast", "--at", "2", "-o", "at.pfm"];
+    bilux(path).args(again).assert().success();
+    assert!(std::fs::read(path.join("at.pfm")).unwrap() == frame(2));
 }

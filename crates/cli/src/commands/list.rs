@@ -103,6 +103,19 @@ pub fn run(arguments: &List) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
+/// Prints the JSON schema of scene files.
+pub fn schema() -> anyhow::Result<u8> {
+    let rows = bilux::transport::integrators::INTEGRATORS.iter().map(|row| row.entry);
+    let mut settings: Vec<Parameter> = bilux::settings::RENDER.parameters.to_vec();
+    for parameter in rows.flat_map(|entry| entry.parameters) {
+        if !settings.iter().any(|known| known.name == parameter.name) {
+            settings.push(*parameter);
+        }
+    }
+    output::print(serde_json::to_string_pretty(&bilux::formats::toml_schema(&settings))?);
+    Ok(DONE)
+}
+
 fn row_text(row: &Entry) -> String {
     let source = if row.source.is_empty() { String::new() } else { format!(" [{}]", row.source) };
     let mut text = format!("  {:<14} {}{source}", row.name, row.summary);

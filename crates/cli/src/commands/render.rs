@@ -21,12 +21,18 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let targets = targets(arguments).map_err(usage::wrong)?;
     for (scene, output) in &targets {
         let status = render_one(scene, output, &user, arguments, common, &interrupt)
-            .with_context(|| scene.display().to_string())?;
+            .map_err(|error| naming(scene, error))?;
         if status != DONE {
             return Ok(status);
         }
     }
     Ok(DONE)
+}
+
+/// The error with the scene's name, unless it tells it already.
+fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
+    let name = scene.display().to_string();
+    if format!("{error:#}").contains(&name) { error } else { error.context(name) }
 }
 
 /// Every scene with its picture's name, found wrong before anything is rendered.
