@@ -11,6 +11,7 @@
 mod copies;
 mod cornell;
 mod coverage;
+mod graft;
 pub mod shapes;
 pub mod teapot;
 mod teapots;

@@ -100,6 +100,12 @@ pub(super) const PROFILE: [[[f64; 3]; 4]; 6] = [
     [[1.5, 0.84, 0.15], [1.5, 0.84, 0.075], [1.425, 0.798, 0.0], [0.0, 0.0, 0.0]],
 ];
 
+/// Curves of the profile by their place in it.
+pub(super) const LID: u32 = 1;
+pub(super) const RIM: u32 = 2;
+pub(super) const SHOULDER: u32 = 3;
+pub(super) const FOOT: u32 = 5;
+
 /// Handle and spout, two patches each, by rings of control points: x and y where the ring crosses the middle
 /// plane first and last, and how far it bulges from that plane.
 pub(super) const TUBES: [[[f64; 5]; 4]; 4] = [

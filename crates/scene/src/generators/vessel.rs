@@ -6,11 +6,11 @@
 //! outline, to the bit, and the spout has a flat end below its lip. A cavity, if there is one, is a second closed
 //! surface that faces inwards, within body and lid; handle and spout are solid.
 
-use super::teapot::{Cubic, NEWELL_HEIGHT, PROFILE, Patch, TUBES, half_of, quarter_of};
+use super::graft::{Graft, Tube};
+use super::teapot::{FOOT, LID, NEWELL_HEIGHT, PROFILE, RIM, SHOULDER, quarter_of};
 use crate::mesh::Mesh;
-use bilux_math::transcendental::atan2_f64;
 use bilux_math::{DVec2, DVec3};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// How the vessel is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,12 +46,6 @@ impl Vessel {
         Mesh { name: "filling".to_owned(), ..maker.finish(self.height) }
     }
 }
-
-/// The profile's curves by their place in it.
-const LID: u32 = 1;
-const RIM: u32 = 2;
-const SHOULDER: u32 = 3;
-const FOOT: u32 = 5;
 
 struct Maker {
     n: u32,
@@ -264,168 +258,4 @@ impl Maker {
 fn by_angle(mut ring: Vec<(f64, u32)>) -> Vec<(f64, u32)> {
     ring.sort_by(|a, b| a.0.total_cmp(&b.0));
     ring
-}
-
-/// A tube of two patches, its parameter from 0 to 2.
-struct Tube {
-    halves: [&'static [[f64; 5]; 4]; 2],
-}
-
-impl Tube {
-    const HANDLE: Tube = Tube { halves: [&TUBES[0], &TUBES[1]] };
-    const SPOUT: Tube = Tube { halves: [&TUBES[2], &TUBES[3]] };
-
-    /// Point and normal at step `t` of `2 n` around and at `s` along.
-    fn at(&self, t: u32, n: u32, s: f64) -> (DVec3, DVec3) {
-        let patch: Patch = half_of(self.halves[usize::from(s > 1.0)]);
-        let u = Cubic::new(if t <= n { t } else { 2 * n - t }, n);
-        let (p, normal) = patch.blend(&u, &Cubic::at(if s > 1.0 { s - 1.0 } else { s }));
-        let mirror = |v: DVec3| if t <= n { v } else { DVec3::new(v.x, v.y, 0.0 - v.z) };
-        (mirror(p), mirror(normal))
-    }
-}
-
-/// Where a tube meets the body.
-struct Graft {
-    /// Around the tube: where it is in cells of the body, and the point with the body's normal.
-    ring: Vec<(DVec2, (DVec3, DVec3))>,
-    /// The tube's parameter at each of these.
-    ends: Vec<f64>,
-    /// Cells that are taken out of the body: first and last plus one, around and down.
-    cells: [[u32; 2]; 2],
-    /// Cells around the body.
-    around: u32,
-    /// Middle of the ring, in cells, and half its width and height.
-    middle: DVec2,
-    half: DVec2,
-}
-
-impl Graft {
-    fn spout(n: u32) -> Graft {
-        Graft::new(&Tube::SPOUT, n, 0.0, 1.0)
-    }
-
-    fn handle_top(n: u32) -> Graft {
-        Graft::new(&Tube::HANDLE, n, 0.0, 1.0)
-    }
-
-    fn handle_foot(n: u32) -> Graft {
-        Graft::new(&Tube::HANDLE, n, 2.0, 1.0)
-    }
-
-    /// Follows the tube from its parameter `inside` the body to `outside`.
-    fn new(tube: &Tube, n: u32, inside: f64, outside: f64) -> Graft {
-        let ends: Vec<f64> = (0..2 * n)
-            .map(|t| {
-                let (mut a, mut b) = (inside, outside);
-                for _ in 0..60 {
-                    let middle = (a + b) * 0.5;
-                    if BodyPoint::of(tube.at(t, n, middle).0).outside > 0.0 { b = middle } else { a = middle }
-                }
-                a
-            })
-            .collect();
-        let around_and_down = |p: DVec3| {
-            let at = BodyPoint::of(p);
-            (DVec2::new(at.around, at.down) * f64::from(n), (p, at.normal))
-        };
-        let ring: Vec<_> = (0..2 * n).map(|t| around_and_down(tube.at(t, n, ends[t as usize]).0)).collect();
-        let (mut low, mut high) = (ring[0].0, ring[0].0);
-        for (cell, _) in &ring {
-            (low, high) = (low.min(*cell), high.max(*cell));
-        }
-        let (first, last) = ((low - 0.25).floor(), (high + 0.25).ceil());
-        let cells = [[first.x as u32, last.x as u32], [first.y as u32, last.y as u32]];
-        Graft { ring, ends, cells, around: 4 * n, middle: (low + high) * 0.5, half: (high - low) * 0.5 }
-    }
-
-    fn takes(&self, i: u32, down: u32) -> bool {
-        let [[i0, i1], [j0, j1]] = self.cells;
-        let columns = i0..i1;
-        // Cells of the spout go on beyond the last quarter.
-        (j0..j1).contains(&down) && (columns.contains(&i) || columns.contains(&(i + self.around)))
-    }
-
-    /// Corners around the cells that are taken.
-    fn outline(&self) -> Vec<(u32, u32)> {
-        let [[i0, i1], [j0, j1]] = self.cells;
-        let right = (i0..i1).map(|i| (i, j0));
-        let down = (j0..j1).map(|j| (i1, j));
-        let left = (i0 + 1..=i1).rev().map(|i| (i, j1));
-        let up = (j0 + 1..=j1).rev().map(|j| (i0, j));
-        right.chain(down).chain(left).chain(up).collect()
-    }
-
-    fn angle(&self, cell: DVec2) -> f64 {
-        let d = (cell - self.middle) / self.half;
-        atan2_f64(d.y, d.x)
-    }
-}
-
-/// A point seen from the body: the body is a profile times a curve that is nearly a circle.
-struct BodyPoint {
-    /// How far it is outside, in lengths of the profile's radius.
-    outside: f64,
-    /// Quarters around, from +z over -x and -z to +x and beyond: spout and handle lie whole on either side.
-    around: f64,
-    /// Curves down the profile.
-    down: f64,
-    normal: DVec3,
-}
-
-impl BodyPoint {
-    fn of(p: DVec3) -> BodyPoint {
-        let turn = atan2_f64(p.z, p.x) / FRAC_PI_2;
-        // The spout is at 0, where the quarters begin and end: count it as 4.
-        let around = if turn < 1.0 { turn + 4.0 } else { turn };
-        let quarter = around.floor() as usize % 4;
-        let wanted = (around - around.floor()) * FRAC_PI_2;
-        let arc = [[1.0, 0.0, 0.0], [1.0, 0.56, 0.0], [0.56, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from);
-        let u = solve(|u| {
-            let q = Cubic::at(u).blend(&arc);
-            atan2_f64(q.y, q.x) - wanted
-        });
-        let curve = if p.y > PROFILE[SHOULDER as usize][3][2] { SHOULDER } else { SHOULDER + 1 };
-        let profile = PROFILE[curve as usize].map(|[r, _, y]| DVec3::new(r, y, 0.0));
-        let v = solve(|v| p.y - Cubic::at(v).blend(&profile).y);
-        let radius = p.with_y(0.0).length() / Cubic::at(u).blend(&arc).length();
-        let (_, normal) = quarter_of(&PROFILE[curve as usize], quarter).blend(&Cubic::at(u), &Cubic::at(v));
-        BodyPoint {
-            outside: radius - Cubic::at(v).blend(&profile).x,
-            around: around.floor() + u,
-            down: f64::from(curve) + v,
-            normal,
-        }
-    }
-}
-
-/// Where a rising function of 0..=1 is zero.
-fn solve(f: impl Fn(f64) -> f64) -> f64 {
-    let (mut a, mut b) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = (a + b) * 0.5;
-        if f(middle) > 0.0 { b = middle } else { a = middle }
-    }
-    (a + b) * 0.5
-}
-
-impl Graft {
-    #[cfg(test)]
-    fn gap(&self) -> f64 {
-        self.ring.iter().map(|(_, (p, _))| BodyPoint::of(*p).outside.abs()).fold(0.0, f64::max)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tubes_end_on_the_body() {
-        for n in [4, 16, 33] {
-            for graft in [Graft::spout(n), Graft::handle_top(n), Graft::handle_foot(n)] {
-                assert!(graft.gap() < 1e-9, "{}", graft.gap());
-            }
-        }
-    }
 }
