@@ -44,3 +44,7 @@ pub use kd_tree::KdTree;
 pub use mesh::{MeshError, TriangleMesh};
 pub use ray::{Culling, Hit, Primitive, Query, Ray};
 pub use registry::{ACCELERATORS, AcceleratorEntry, BuildError, BuildOptions, build};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
