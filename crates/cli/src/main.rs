@@ -23,6 +23,7 @@ const FAILED: u8 = 1;
 const WRONG_COMMAND_LINE: u8 = 2;
 
 fn main() -> ExitCode {
+    tell_faults_of_ours();
     let arguments = Arguments::parse();
     let result = match arguments.command {
         Command::Render(ref render) => commands::render::run(render, &arguments.common),
@@ -46,4 +47,13 @@ fn main() -> ExitCode {
             ExitCode::from(if wrong { WRONG_COMMAND_LINE } else { FAILED })
         }
     }
+}
+
+/// A panic is a fault of ours, and says so. Those inside picture decoders are caught and become errors.
+fn tell_faults_of_ours() {
+    std::panic::set_hook(Box::new(|panic| {
+        if !bilux::pictures::is_decoding() {
+            output::say(format_args!("error: a fault of Bilux itself, please report it: {panic}"));
+        }
+    }));
 }
