@@ -2,6 +2,7 @@
 
 mod cast;
 mod cook;
+mod occlusion;
 mod path;
 mod whitted;
 
@@ -57,7 +58,8 @@ pub struct IntegratorEntry {
 }
 
 /// Every integrator that there is.
-pub const INTEGRATORS: &[IntegratorEntry] = &[cast::ENTRY, whitted::ENTRY, cook::ENTRY, path::ENTRY];
+pub const INTEGRATORS: &[IntegratorEntry] =
+    &[cast::ENTRY, whitted::ENTRY, cook::ENTRY, path::ENTRY, occlusion::ENTRY];
 
 /// The row of this name.
 ///

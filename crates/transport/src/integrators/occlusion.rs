@@ -1,0 +1,46 @@
+//! `occlusion`: how open each point is to the sky, whatever its material and the scene's lights: the quickest way
+//! to see the shape of a bare model. [Zhukov 1998]
+
+use super::{IntegratorEntry, PixelIntegrator};
+use crate::task::Task;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Frame, Rgb, Vec3, warp};
+use bilux_scene::Ray;
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "occlusion",
+        summary: "ambient occlusion: how open each point is to the sky, without materials and lights",
+        source: "Zhukov 1998",
+        parameters: &[Parameter {
+            name: "distance",
+            summary: "beyond this nothing closes a point in; 0 for no end",
+            unit: "m",
+            kind: ParameterKind::Number { min: 0.0, max: 1e9 },
+            default: "0",
+        }],
+    },
+    covers: "",
+    classic: true,
+    default_spp: 16,
+    build: |reader| {
+        let distance = reader.number("distance");
+        Ok(Box::new(Occlusion { distance: if distance > 0.0 { distance } else { f32::INFINITY } }))
+    },
+};
+
+struct Occlusion {
+    distance: f32,
+}
+
+impl PixelIntegrator for Occlusion {
+    /// 1 where a direction that the cosine law picks is open, 0 where it is closed; 1 beyond the scene.
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        let Some(surface) = task.tracer.closest(ray) else { return Rgb::WHITE };
+        let faces_eye = surface.n_shade.dot(Vec3::from(ray.direction)) < 0.0;
+        let normal = if faces_eye { surface.n_shade } else { -surface.n_shade };
+        let wi = Frame::from_normal(normal).to_world(warp::sample_cosine_hemisphere(task.sampler.next_2d()));
+        let probe = Ray { t_max: self.distance, ..surface.spawn(wi) };
+        if task.tracer.occluded(&probe) { Rgb::BLACK } else { Rgb::WHITE }
+    }
+}
