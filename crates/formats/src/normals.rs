@@ -21,56 +21,84 @@ pub(crate) struct Faces<'a, P> {
     pub(crate) smoothing: &'a [Smoothing],
 }
 
+/// Normals that corners share, and which each has.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct CornerNormals {
+    pub(crate) normals: Vec<Vec3>,
+    /// For each corner an index into the normals.
+    pub(crate) of_corner: Vec<u32>,
+}
+
 /// Where more faces meet than this, all are averaged: looking at every pair would take too long.
 const MOST_PAIRED: usize = 256;
+
+/// The normal of a face, and its area.
+#[derive(Clone, Copy)]
+struct Facing {
+    unit: Vec3,
+    area: f32,
+}
 
 impl<P: Fn(usize) -> u32> Faces<'_, P> {
     /// A normal for each corner: the area-weighted mean of the faces around its position that it is smooth
     /// towards. `None` where that is each face's own normal everywhere, so that none are needed.
-    pub(crate) fn corner_normals(&self, crease_angle: f32) -> Option<Vec<Vec3>> {
+    pub(crate) fn corner_normals(&self, crease_angle: f32) -> Option<CornerNormals> {
         let (normals, any_smooth) = self.normals_and_whether_needed(crease_angle);
         any_smooth.then_some(normals)
     }
 
     /// The same, needed or not.
-    pub(crate) fn all_corner_normals(&self, crease_angle: f32) -> Vec<Vec3> {
+    pub(crate) fn all_corner_normals(&self, crease_angle: f32) -> CornerNormals {
         self.normals_and_whether_needed(crease_angle).0
     }
 
-    fn normals_and_whether_needed(&self, crease_angle: f32) -> (Vec<Vec3>, bool) {
+    fn normals_and_whether_needed(&self, crease_angle: f32) -> (CornerNormals, bool) {
         let limit = cos(crease_angle.clamp(0.0, 180.0).to_radians());
-        let areas = self.face_normals();
-        let around = self.faces_around();
+        let facing = self.facing();
+        let around = self.around();
         let mut any_smooth = false;
-        let mut normals = Vec::with_capacity(self.corner_count());
-        for face in 0..self.ends.len() {
-            let own = areas[face];
-            for corner in self.corners(face) {
-                let neighbours = around.of((self.position_of)(corner));
-                let many = neighbours.len() > MOST_PAIRED && self.smoothing[face] != FLAT;
-                let mut sum = Vec3::ZERO;
-                for &other in neighbours {
-                    let other = other as usize;
-                    if other == face || many || self.smooth_between(face, other, &areas, limit) {
-                        sum += areas[other];
+        let mut result = CornerNormals { normals: Vec::new(), of_corner: vec![0; self.corner_count()] };
+        for position in 0..self.positions.len() {
+            let first = result.normals.len();
+            let here = around.of(position);
+            let weighted = |&(_, face): &(u32, u32)| facing[face as usize].unit * facing[face as usize].area;
+            let crowd: Option<Vec3> = (here.len() > MOST_PAIRED).then(|| here.iter().map(weighted).sum());
+            for &(corner, face) in here {
+                let normal = match crowd {
+                    Some(sum) if self.smoothing[face as usize] != FLAT => {
+                        sum.normalize_or(facing[face as usize].unit)
                     }
+                    _ => self.normal_at(&here[..here.len().min(MOST_PAIRED)], face, &facing, limit),
+                };
+                let own = facing[face as usize].unit;
+                any_smooth |= own != Vec3::ZERO && normal.dot(own) < ALIKE;
+                let known = result.normals[first..].iter().take(MOST_PAIRED).position(|&n| n == normal);
+                let index = first + known.unwrap_or(result.normals.len() - first);
+                if index == result.normals.len() {
+                    result.normals.push(normal);
                 }
-                let normal = sum.normalize_or_zero();
-                any_smooth |= own != Vec3::ZERO && normal.dot(own) < own.length() * ALIKE;
-                normals.push(normal);
+                result.of_corner[corner as usize] = index as u32;
             }
         }
-        (normals, any_smooth)
+        (result, any_smooth)
     }
 
-    fn smooth_between(&self, a: usize, b: usize, areas: &[Vec3], limit: f32) -> bool {
-        match (self.smoothing[a], self.smoothing[b]) {
-            (BY_ANGLE, BY_ANGLE) => {
-                let (a, b) = (areas[a], areas[b]);
-                a.dot(b) > limit * (a.length() * b.length())
+    /// The normal of a face at a position, among the corners there.
+    fn normal_at(&self, here: &[(u32, u32)], face: u32, facing: &[Facing], limit: f32) -> Vec3 {
+        let own = facing[face as usize];
+        let smoothing = self.smoothing[face as usize];
+        let mut sum = Vec3::ZERO;
+        for &(_, other) in here {
+            let theirs = facing[other as usize];
+            let joined = match (smoothing, self.smoothing[other as usize]) {
+                (BY_ANGLE, BY_ANGLE) => other == face || own.unit.dot(theirs.unit) > limit,
+                (a, b) => other == face || (a == b && a != FLAT),
+            };
+            if joined {
+                sum += theirs.unit * theirs.area;
             }
-            (a, b) => a == b && a != FLAT,
         }
+        sum.normalize_or(own.unit)
     }
 
     fn corner_count(&self) -> usize {
@@ -82,15 +110,17 @@ impl<P: Fn(usize) -> u32> Faces<'_, P> {
         start as usize..self.ends[face] as usize
     }
 
-    /// Normals as long as the faces' areas are large.
-    fn face_normals(&self) -> Vec<Vec3> {
+    fn facing(&self) -> Vec<Facing> {
         let at = |corner| self.positions[(self.position_of)(corner) as usize];
-        let normal = |face| newell(self.corners(face).map(at)).as_vec3();
-        (0..self.ends.len()).map(normal).collect()
+        let facing = |face| {
+            let normal = newell(self.corners(face).map(at)).as_vec3();
+            Facing { unit: normal.normalize_or_zero(), area: normal.length() }
+        };
+        (0..self.ends.len()).map(facing).collect()
     }
 
-    /// For each position the faces around it.
-    fn faces_around(&self) -> Around {
+    /// For each position the corners there, with their faces.
+    fn around(&self) -> Around {
         let mut starts = vec![0u32; self.positions.len() + 2];
         for corner in 0..self.corner_count() {
             starts[(self.position_of)(corner) as usize + 2] += 1;
@@ -98,15 +128,15 @@ impl<P: Fn(usize) -> u32> Faces<'_, P> {
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut faces = vec![0u32; self.corner_count()];
+        let mut corners = vec![(0u32, 0u32); self.corner_count()];
         for face in 0..self.ends.len() {
             for corner in self.corners(face) {
                 let slot = &mut starts[(self.position_of)(corner) as usize + 1];
-                faces[*slot as usize] = face as u32;
+                corners[*slot as usize] = (corner as u32, face as u32);
                 *slot += 1;
             }
         }
-        Around { starts, faces }
+        Around { starts, corners }
     }
 }
 
@@ -114,15 +144,14 @@ impl<P: Fn(usize) -> u32> Faces<'_, P> {
 const ALIKE: f32 = 1.0 - 1e-6;
 
 struct Around {
-    /// Where each position's faces start.
+    /// Where each position's corners start.
     starts: Vec<u32>,
-    faces: Vec<u32>,
+    corners: Vec<(u32, u32)>,
 }
 
 impl Around {
-    fn of(&self, position: u32) -> &[u32] {
-        let i = position as usize;
-        &self.faces[self.starts[i] as usize..self.starts[i + 1] as usize]
+    fn of(&self, position: usize) -> &[(u32, u32)] {
+        &self.corners[self.starts[position] as usize..self.starts[position + 1] as usize]
     }
 }
 
@@ -158,6 +187,7 @@ mod tests {
         let corners = [0u32, 1, 2, 3, 4, 0, 3, 5];
         Faces { positions: &positions, ends: &[4, 8], position_of: |c| corners[c], smoothing: &smoothing }
             .corner_normals(40.0)
+            .map(|found| found.of_corner.iter().map(|&i| found.normals[i as usize]).collect())
     }
 
     #[test]

@@ -83,7 +83,7 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
     if angle <= 0.0 {
         soup.smoothing.fill(FLAT);
     }
-    reading.budget.take::<[u32; 5]>(soup.corners.len(), source.name)?;
+    reading.budget.take::<[u32; 7]>(soup.corners.len(), source.name)?;
     reading.budget.take::<[u32; 4]>(soup.ends.len() + soup.positions.len(), source.name)?;
     let faces = Faces {
         positions: &soup.positions,
@@ -93,14 +93,13 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
     };
     let found = if mixed { Some(faces.all_corner_normals(angle)) } else { faces.corner_normals(angle) };
     let Some(found) = found else { return Ok(()) };
-    let mut shared: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
-    for (corner, normal) in soup.corners.iter_mut().zip(found).filter(|(corner, _)| corner[2] == NONE) {
-        let key = (corner[0], normal.to_array().map(f32::to_bits));
-        corner[2] = *shared.entry(key).or_insert_with(|| {
-            soup.normals.push(normal);
-            (soup.normals.len() - 1) as u32
-        });
+    let given = soup.normals.len() as u32;
+    for (corner, index) in
+        soup.corners.iter_mut().zip(found.of_corner).filter(|(corner, _)| corner[2] == NONE)
+    {
+        corner[2] = given + index;
     }
+    soup.normals.extend(found.normals);
     Ok(())
 }
 

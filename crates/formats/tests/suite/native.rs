@@ -436,3 +436,25 @@ fn the_schema_knows_what_the_reader_knows() {
     let keys: Vec<&String> = schema["properties"].as_object().unwrap().keys().collect();
     assert_eq!(keys, ["include", "render", "camera", "light", "material", "model"]);
 }
+
+#[test]
+fn the_examples_of_the_manual_are_scenes() {
+    let page = include_str!("../../../../docs/formats/scene-toml.md");
+    let examples: Vec<&str> = page
+        .split("```toml\n")
+        .skip(1)
+        .filter_map(|rest| rest.split_once("```").map(|(text, _)| text))
+        .collect();
+    assert!(examples.len() >= 2);
+    let folder = tempfile::tempdir().unwrap();
+    let picture = bilux_pictures::Picture::from_rgb(1, 1, vec![Rgb::WHITE]).unwrap();
+    bilux_pictures::write(folder.path().join("tiles.png"), &picture, &Default::default()).unwrap();
+    std::fs::write(folder.path().join("pot.obj"), OBJ.replace("usemtl", "#")).unwrap();
+    std::fs::write(folder.path().join("lights.toml"), "[[light]]\nkind = \"point\"\n").unwrap();
+    for example in examples {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, example).unwrap();
+        let scene = read(&path, &ReadOptions { strict: true, ..Default::default() }).unwrap();
+        assert!(scene.build(&Default::default(), [0.0, 1.0], 1.0).is_ok());
+    }
+}

@@ -1,0 +1,167 @@
+//! Any bytes give a scene or an error, within bounded memory, and never a panic.
+
+use bilux_formats::{ReadOptions, read, read_bytes};
+use bilux_scene::SceneBuilder;
+use proptest::prelude::*;
+use std::path::{Path, PathBuf};
+
+const FORMATS: [&str; 5] = ["asc", "obj", "ply", "stl", "toml"];
+
+fn corpus(format: &str) -> Vec<(PathBuf, Vec<u8>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fuzz/corpus/scene_{format}"));
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files.into_iter().map(|path| (path.clone(), std::fs::read(path).unwrap())).collect()
+}
+
+/// Reads, and when that works builds and says what it has; both may refuse.
+fn survive(format: &str, bytes: &[u8]) -> Option<SceneBuilder> {
+    let options = ReadOptions { max_memory: 8 << 20, ..ReadOptions::default() };
+    let scene = read_bytes(bytes, format, None, "x", &options).map_err(|e| e.to_string()).ok()?;
+    let _ = scene.build(&Default::default(), [0.0, 1.0], 1.0).map(|built| built.bounds());
+    Some(scene)
+}
+
+#[test]
+fn the_corpus_reads_and_its_broken_files_are_refused() {
+    for format in FORMATS {
+        let files = corpus(format);
+        assert!(files.len() >= 5, "{format}");
+        for (path, bytes) in files {
+            let broken = path.file_name().unwrap().to_string_lossy().starts_with("broken");
+            let read = read_bytes(&bytes, format, None, "x", &ReadOptions::default());
+            assert_eq!(read.is_err(), broken, "{}: {:?}", path.display(), read.err().map(|e| e.to_string()));
+        }
+    }
+}
+
+#[test]
+fn every_beginning_of_every_file_is_survived() {
+    for format in FORMATS {
+        for (_, bytes) in corpus(format) {
+            (0..bytes.len().min(3000)).for_each(|length| drop(survive(format, &bytes[..length])));
+        }
+    }
+}
+
+/// What happens to a file: where, and what.
+#[derive(Clone, Debug)]
+enum Harm {
+    Set(usize, u8),
+    Remove(usize, usize),
+    Repeat(usize, usize),
+    Insert(usize, &'static str),
+}
+
+fn harm() -> impl Strategy<Value = Harm> {
+    let words = [
+        "-",
+        "nan",
+        "1e39",
+        "4294967296",
+        "-1",
+        "0",
+        "/",
+        "\n",
+        "\r",
+        "\"",
+        "[",
+        "\\\n",
+        "\u{0}",
+        "99999999999999999999",
+    ];
+    prop_oneof![
+        (any::<usize>(), any::<u8>()).prop_map(|(at, byte)| Harm::Set(at, byte)),
+        (any::<usize>(), 1usize..40).prop_map(|(at, n)| Harm::Remove(at, n)),
+        (any::<usize>(), 1usize..80).prop_map(|(at, n)| Harm::Repeat(at, n)),
+        (any::<usize>(), prop::sample::select(words.to_vec())).prop_map(|(at, word)| Harm::Insert(at, word)),
+    ]
+}
+
+fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
+    for harm in harms {
+        let length = bytes.len().max(1);
+        match *harm {
+            Harm::Set(at, byte) => {
+                if let Some(slot) = bytes.get_mut(at % length) {
+                    *slot = byte;
+                }
+            }
+            Harm::Remove(at, n) => {
+                drop(bytes.drain((at % length).min(bytes.len())..(at % length + n).min(bytes.len())))
+            }
+            Harm::Repeat(at, n) => {
+                let piece =
+                    bytes[(at % length).min(bytes.len())..(at % length + n).min(bytes.len())].to_vec();
+                let at = (at % length).min(bytes.len());
+                drop(bytes.splice(at..at, piece));
+            }
+            Harm::Insert(at, word) => {
+                let at = (at % length).min(bytes.len());
+                drop(bytes.splice(at..at, word.bytes()));
+            }
+        }
+    }
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn arbitrary_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        for format in FORMATS {
+            survive(format, &bytes);
+        }
+        survive("", &bytes);
+    }
+
+    #[test]
+    fn harmed_files_are_survived(pick: usize, harms in prop::collection::vec(harm(), 1..6)) {
+        for format in FORMATS {
+            let files = corpus(format);
+            let (_, bytes) = &files[pick % files.len()];
+            survive(format, &harmed(bytes.clone(), &harms));
+        }
+    }
+
+    #[test]
+    fn harmed_materials_are_survived(harms in prop::collection::vec(harm(), 0..6)) {
+        let library = "newmtl a\nKd .8 .4 .2\nKs 1 1 1\nNs 9\nillum 3\nd .5\nTf 1 1 1\nmap_Kd -o 1 2 3 -bm .5 x.png\nnewmtl b\nKe spectral x.rfl\nNi 1.3\nillum 7\nKe 1 2 3\n";
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("x.mtl"), harmed(library.into(), &harms)).unwrap();
+        std::fs::write(folder.path().join("x.obj"), "mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n").unwrap();
+        if let Ok(scene) = read(&folder.path().join("x.obj"), &ReadOptions::default()) {
+            prop_assert!(scene.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
+        }
+    }
+
+    #[test]
+    fn meshes_of_any_numbers_come_back_through_every_format(
+        corners in prop::collection::vec(prop::array::uniform8(any::<f32>()), 3..12),
+    ) {
+        let mut text = String::new();
+        for triangle in corners.chunks_exact(3) {
+            text.push_str("triangle\n");
+            for corner in triangle {
+                text.push_str(&corner.map(|x| format!("{x:?}")).join(" "));
+                text.push('\n');
+            }
+        }
+        let original = crate::read_text("asc", text).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        for file in ["a.asc", "a.obj", "a.ply", "a.toml"] {
+            let path = folder.path().join(file);
+            bilux_formats::write(&path, &original, &Default::default()).unwrap();
+            let back = read(&path, &ReadOptions::default()).unwrap();
+            let bits = |s: &SceneBuilder| -> Vec<Vec<u32>> {
+                // Not every NaN has a text of its own.
+                let one_nan = |bits: u32| if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits };
+                let all = crate::round_trips::corners(&s.objects[0].mesh).into_iter();
+                all.map(|corner| corner.into_iter().map(one_nan).collect()).collect()
+            };
+            prop_assert_eq!(bits(&original), bits(&back), "{}", file);
+        }
+    }
+}
