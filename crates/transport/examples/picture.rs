@@ -1,0 +1,25 @@
+//! Renders a scene made by formula: `picture SCENE INTEGRATOR SAMPLES SIZE OUT.png`, where SCENE is
+//! `still-life` (a matt, a mirror and a glass ball) or a row of `bilux_scene::generators::GENERATORS`.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use bilux_pictures::{WriteOptions, write};
+use bilux_scene::{Spec, generators};
+use bilux_transport::RenderSettings;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [scene, integrator, samples, size, out] = &arguments[..] else {
+        return Err("usage: picture SCENE INTEGRATOR SAMPLES SIZE OUT.png".into());
+    };
+    let builder = match scene.as_str() {
+        "still-life" => common::still_life(),
+        name => generators::generate(&Spec::new("", name))?,
+    };
+    let size = size.parse()?;
+    let settings = RenderSettings::new(size, size, samples.parse()?);
+    let rendered = common::shoot(&common::built(&builder), &*common::integrator(integrator), &settings);
+    write(out, &rendered.film.to_picture()?, &WriteOptions::default())?;
+    Ok(())
+}
