@@ -279,3 +279,18 @@ fn tinted_shadows_let_coloured_light_through_glass() {
     assert_eq!(seen(&builder, &whitted(), 1), Rgb::BLACK);
     assert_near(seen(&builder, &whitted().with("shadows", "tinted"), 1), open * tint);
 }
+
+#[test]
+fn what_the_cutoff_leaves_out_cannot_be_seen() {
+    let scene = built(&common::still_life());
+    let film = |cutoff: Option<f32>| {
+        let spec = cutoff.map_or(whitted(), |c| whitted().with("cutoff", c));
+        let settings = RenderSettings { max_depth: 8, ..RenderSettings::new(48, 48, 1) };
+        shoot(&scene, &*integrators::build(&spec).unwrap(), &settings)
+    };
+    let (all, most) = (film(Some(0.0)), film(None));
+    assert!(most.counters.rays < all.counters.rays);
+    for (a, b) in all.film.to_rgb().into_iter().zip(most.film.to_rgb()) {
+        assert!((a - b).map(f32::abs).max_channel() < 1.5 / 255.0, "{a:?} became {b:?}");
+    }
+}

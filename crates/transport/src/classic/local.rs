@@ -46,13 +46,16 @@ pub(crate) struct Local {
 }
 
 impl LocalRules {
-    /// What lights do at a point that is seen from `eye` (a unit vector away from the surface).
+    /// What lights do at a point that is seen from `eye` (a unit vector away from the surface). Lights that
+    /// add no more than `least` are left out, and so are their shadow rays: most of those from mirrors and
+    /// glass, where only the highlight counts.
     pub(crate) fn illuminate(
         &self,
         task: &mut Task,
         surface: &Surface,
         material: &ClassicMaterial,
         eye: Vec3,
+        least: f32,
     ) -> Local {
         let scene = task.scene();
         let mut local = Local { ambient: material.ka * scene.classic_ambient(), ..Local::default() };
@@ -63,20 +66,26 @@ impl LocalRules {
                 continue;
             };
             lights += 1;
-            let lit = faced(surface.n_shade, seen.wi, eye);
-            let arrives = match self.rule {
-                ShadowRule::PerLight if lit.is_none() => continue,
-                ShadowRule::Paper if open => Rgb::WHITE,
-                _ => self.shadows.transmitted(task, surface, &seen),
-            };
-            open |= !arrives.is_black();
-            let Some((n, n_dot_l)) = lit else { continue };
-            let arrives = if self.rule == ShadowRule::Paper { Rgb::WHITE } else { arrives };
-            let colour = light.classic_colour * seen.strength * arrives;
-            local.diffuse += material.kd * colour * n_dot_l;
-            if !material.ks.is_black() {
-                local.highlight += colour * self.highlight(n, &seen, eye, material.exponent);
+            let colour = light.classic_colour * seen.strength;
+            let (mut diffuse, mut highlight) = (Rgb::BLACK, Rgb::BLACK);
+            if let Some((n, n_dot_l)) = faced(surface.n_shade, seen.wi, eye) {
+                diffuse = material.kd * colour * n_dot_l;
+                if !material.ks.is_black() {
+                    highlight = colour * self.highlight(n, &seen, eye, material.exponent);
+                }
             }
+            let arrives = match self.rule {
+                ShadowRule::Paper => {
+                    open = open || !self.shadows.transmitted(task, surface, &seen).is_black();
+                    Rgb::WHITE
+                }
+                ShadowRule::PerLight if (diffuse + material.ks * highlight).max_channel() <= least => {
+                    continue;
+                }
+                ShadowRule::PerLight => self.shadows.transmitted(task, surface, &seen),
+            };
+            local.diffuse += diffuse * arrives;
+            local.highlight += highlight * arrives;
         }
         if self.rule == ShadowRule::Paper && lights > 0 && !open { Local::default() } else { local }
     }

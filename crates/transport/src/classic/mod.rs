@@ -49,7 +49,7 @@ pub(crate) const CUTOFF: Parameter = Parameter {
     summary: "rays that can add less than this to the picture are not followed; 0 follows all",
     unit: "",
     kind: ParameterKind::Number { min: 0.0, max: 1.0 },
-    default: "0.001",
+    default: "0.004",
 };
 
 /// The parameter [`SPECULAR`].

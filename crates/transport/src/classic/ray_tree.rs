@@ -105,7 +105,9 @@ impl RayTree {
     ) -> Rgb {
         task.sampler.enter(node.id);
         let place = Place::new(surface, material, eye);
-        let Local { ambient, diffuse, highlight } = self.local.illuminate(task, surface, material, eye);
+        let least = self.cutoff / (16.0 * node.weight);
+        let Local { ambient, diffuse, highlight } =
+            self.local.illuminate(task, surface, material, eye, least);
         task.note(node.depth, || {
             let name = &task_name(surface);
             format!("meets {name} at {}, {}", surface.p, if place.outside { "outside" } else { "inside" })

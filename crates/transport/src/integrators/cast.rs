@@ -69,7 +69,7 @@ impl PixelIntegrator for Cast {
         }
         let eye = if self.infinite_viewer { -task.camera.forward(ray.time) } else { -direction };
         let classic = material.classic(&surface);
-        let local = self.rules.illuminate(task, &surface, &classic, eye);
+        let local = self.rules.illuminate(task, &surface, &classic, eye, 0.0);
         (local.ambient + local.diffuse + classic.ks * local.highlight).clamp(0.0, 1.0)
     }
 
