@@ -37,6 +37,11 @@ impl Budget {
         }
     }
 
+    /// What is taken.
+    pub(crate) fn spent(&self) -> u64 {
+        self.spent
+    }
+
     /// Gives back what is no longer held.
     pub(crate) fn give_back(&mut self, bytes: u64) {
         self.spent = self.spent.saturating_sub(bytes);

@@ -124,7 +124,9 @@ pub(crate) fn read_source(
     if source.bytes.is_empty() {
         return Err(FormatError::malformed("the file is empty", whole_file(source.name)));
     }
+    let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
     let scene = read(reading, source)?;
+    reading.settle(spent, textures, &scene);
     match scene.warnings.first() {
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
         _ => Ok(scene),

@@ -4,8 +4,8 @@ use crate::budget::Budget;
 use crate::{FormatError, ReadOptions};
 use bilux_math::Rgb;
 use bilux_pictures::Limits;
-use bilux_scene::{SceneBuilder, Span, Spec, Texture};
-use std::collections::HashMap;
+use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -36,8 +36,11 @@ pub(crate) struct Reading<'o> {
     /// Nothing outside this folder is opened.
     root: Option<PathBuf>,
     textures: HashMap<PathBuf, Arc<Texture>>,
+    texture_bytes: u64,
     /// Scenes put into other scenes, each read once.
     pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
+    /// Meshes that are counted in the budget for good.
+    counted: HashSet<*const Mesh>,
     /// The chain of scenes put into each other, from the first to the one that is read.
     pub(crate) open: Vec<PathBuf>,
 }
@@ -53,9 +56,38 @@ impl<'o> Reading<'o> {
             budget: Budget::new(options.max_memory),
             root,
             textures: HashMap::new(),
+            texture_bytes: 0,
             models: HashMap::new(),
+            counted: HashSet::new(),
             open: Vec::new(),
         }
+    }
+
+    /// Counts what a file has become in place of what reading it took; textures are held on their own.
+    pub(crate) fn settle(&mut self, spent_before: u64, textures_before: u64, scene: &SceneBuilder) {
+        let mut held = self.texture_bytes - textures_before;
+        for object in &scene.objects {
+            held += (size_of::<Object>() + object.name.len()) as u64;
+            if self.counted.insert(Arc::as_ptr(&object.mesh)) {
+                held += bytes_of(&object.mesh);
+            }
+        }
+        held += (scene.materials.len() * size_of::<[Spec; 4]>()) as u64;
+        let now = spent_before.saturating_add(held);
+        self.budget.give_back(self.budget.spent().saturating_sub(now));
+    }
+
+    /// Takes memory for texels, for good.
+    pub(crate) fn hold_texels(&mut self, count: usize, file: &str) -> Result<(), FormatError> {
+        let bytes = (count * size_of::<Rgb>()) as u64;
+        self.budget.take_bytes(bytes, file)?;
+        self.texture_bytes += bytes;
+        Ok(())
+    }
+
+    /// Bytes of all textures that were read.
+    pub(crate) fn texture_bytes(&self) -> u64 {
+        self.texture_bytes
     }
 
     /// Begins to read a scene that is put into another.
@@ -95,6 +127,8 @@ impl<'o> Reading<'o> {
         let found = [folder.join(name), folder.join(&portable), folder.join(beside)]
             .into_iter()
             .find_map(|path| fs::canonicalize(path).ok())
+            // Whatever else it may be, a pipe would never end.
+            .filter(|path| path.is_file())
             .ok_or_else(missing)?;
         match &self.root {
             Some(root) if found.starts_with(root) || self.options.allow_outside => Ok(found),
@@ -145,7 +179,7 @@ impl<'o> Reading<'o> {
                 FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
             })?
             .into_linear();
-        self.budget.take_bytes((picture.pixel_count() * size_of::<Rgb>()) as u64, name)?;
+        self.hold_texels(picture.pixel_count(), name)?;
         let (width, height) = (picture.width(), picture.height());
         let texels = picture.to_rgb().ok_or_else(|| {
             FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
@@ -155,6 +189,13 @@ impl<'o> Reading<'o> {
         self.textures.insert(path, texture.clone());
         Ok(texture)
     }
+}
+
+/// What a mesh holds, in bytes.
+pub(crate) fn bytes_of(mesh: &Mesh) -> u64 {
+    let triples = mesh.positions.len() + mesh.normals.len() + mesh.triangles.len();
+    let colours = mesh.vertex_kd.len() + mesh.vertex_ks.len();
+    4 * (3 * (triples + colours) + 2 * mesh.uvs.len()) as u64
 }
 
 fn non_empty(folder: &Path) -> &Path {

@@ -3,6 +3,7 @@
 use crate::{FormatError, WriteOptions};
 use bilux_pictures::{Picture, write_atomically};
 use bilux_scene::{SceneBuilder, Span, Warning};
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// The files of a scene while they are made.
@@ -71,4 +72,24 @@ pub(crate) fn write_all(path: &Path, writing: Writing) -> Result<Vec<Warning>, F
     }
     write_atomically(path, &writing.main).map_err(|e| e.in_file(path))?;
     Ok(writing.warnings)
+}
+
+/// Gives names that were not given before: a number goes behind one that was.
+#[derive(Debug, Default)]
+pub(crate) struct UnusedNames {
+    taken: HashSet<String>,
+    /// The next number of each name.
+    next: HashMap<String, u64>,
+}
+
+impl UnusedNames {
+    pub(crate) fn unused(&mut self, name: &str) -> String {
+        let mut free = name.to_owned();
+        while !self.taken.insert(free.clone()) {
+            let number = self.next.entry(name.to_owned()).or_insert(2);
+            free = format!("{name} {number}");
+            *number += 1;
+        }
+        free
+    }
 }

@@ -4,15 +4,16 @@ use super::document::{Item, Node, Table};
 use super::include::Part;
 use super::merge::moved;
 use super::place::{self, motion};
-use super::scene::Native;
+use super::scene::{MOST_NAMES, Native};
 use super::shapes::SHAPES;
 use super::specs::{missing, plain_value};
 use crate::FormatError;
 use crate::formats::{format_named, read_source, unknown};
-use crate::reading::Source;
+use crate::reading::{Source, bytes_of};
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -85,16 +86,17 @@ impl Native<'_, '_> {
         let Node::Table(names) = &item.node else {
             return Err(item.wrong("materials", "a table, as in { paint = \"gold\" }"));
         };
+        let mut indices: HashMap<&str, Vec<usize>> = HashMap::new();
+        for (i, spec) in model.materials.iter().enumerate() {
+            indices.entry(&spec.name).or_default().push(i);
+        }
         for (theirs, at, ours) in &names.entries {
             let index = self.material_named(ours)?;
-            let same = |spec: &Spec| spec.name == *theirs;
-            if !model.materials.iter().any(same) {
-                let known = model.materials.iter().map(|spec| spec.name.as_str());
+            let Some(same) = indices.get(theirs.as_str()) else {
+                let known = model.materials.iter().map(|spec| spec.name.as_str()).take(MOST_NAMES);
                 return Err(SceneError::unknown("material of this model", theirs, known, at).into());
-            }
-            for (slot, _) in renamed.iter_mut().zip(&model.materials).filter(|(_, spec)| same(spec)) {
-                *slot = Some(index);
-            }
+            };
+            same.iter().for_each(|&slot| renamed[slot] = Some(index));
         }
         Ok(renamed)
     }
@@ -188,10 +190,7 @@ impl Native<'_, '_> {
     }
 
     fn charge_mesh(&mut self, mesh: &Mesh, table: &Table) -> Result<(), FormatError> {
-        let floats = 3 * (mesh.positions.len() + mesh.normals.len() + mesh.triangles.len())
-            + 2 * mesh.uvs.len()
-            + 3 * (mesh.vertex_kd.len() + mesh.vertex_ks.len());
-        self.reading.budget.take_bytes(4 * floats as u64, &table.at.file)
+        self.reading.budget.take_bytes(bytes_of(mesh), &table.at.file)
     }
 
     /// `with = ["lights", "cameras"]`: what else of a model's scene is wanted.

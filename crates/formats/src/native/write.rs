@@ -4,11 +4,11 @@ use crate::FormatError;
 use crate::bake::name_of;
 use crate::ply::encode;
 use crate::text::whole_file;
-use crate::writing::Writing;
+use crate::writing::{UnusedNames, Writing};
 use bilux_math::MotionKey;
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
@@ -39,16 +39,9 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
 
 /// A name for each material, none of them twice.
 fn material_names(materials: &[Spec]) -> Vec<String> {
-    let mut taken = HashSet::new();
-    let mut unused = |spec: &Spec| {
-        let name = if spec.name.is_empty() { &spec.kind } else { &spec.name };
-        let numbered = (2..).map(|i| format!("{name} {i}"));
-        let free =
-            std::iter::once(name.clone()).chain(numbered).find(|n| !taken.contains(n)).unwrap_or_default();
-        taken.insert(free.clone());
-        free
-    };
-    materials.iter().map(&mut unused).collect()
+    let mut names = UnusedNames::default();
+    let name = |spec: &Spec| names.unused(if spec.name.is_empty() { &spec.kind } else { &spec.name });
+    materials.iter().map(name).collect()
 }
 
 fn write_spec(

@@ -241,7 +241,7 @@ impl Library<'_, '_, '_> {
         if tint == Rgb::WHITE || tint.is_black() {
             return Ok(texture);
         }
-        self.reading.budget.take_bytes((texture.texels.len() * size_of::<Rgb>()) as u64, self.source.name)?;
+        self.reading.hold_texels(texture.texels.len(), self.source.name)?;
         let texels = texture.texels.iter().map(|&texel| texel * tint).collect();
         Ok(Arc::new(Texture { name: texture.name.clone(), texels, ..*texture }))
     }

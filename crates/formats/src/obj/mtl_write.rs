@@ -5,10 +5,9 @@ use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
 use crate::reading::default_material;
 use crate::values::{colour, number, texture};
-use crate::writing::Writing;
+use crate::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
 use bilux_scene::{SceneBuilder, Spec, Value};
-use std::collections::HashSet;
 
 /// Writes every material but the plain one into a library beside; gives the name of each.
 pub(super) fn write_library(
@@ -16,7 +15,7 @@ pub(super) fn write_library(
     writing: &mut Writing,
 ) -> Result<Vec<Option<String>>, FormatError> {
     let plain = default_material();
-    let mut taken = HashSet::new();
+    let mut unused = UnusedNames::default();
     let mut out = Vec::new();
     let mut names = Vec::new();
     for spec in &scene.materials {
@@ -24,7 +23,8 @@ pub(super) fn write_library(
             names.push(None);
             continue;
         }
-        let name = unused_name(&spec.name, &mut taken);
+        let name = Some(one_line(&spec.name)).filter(|n| !n.is_empty());
+        let name = unused.unused(name.as_deref().unwrap_or("material"));
         out.extend_from_slice(format!("newmtl {name}\n").as_bytes());
         names.push(Some(name));
         write_material(spec, scene, writing, &mut out)?;
@@ -36,14 +36,6 @@ pub(super) fn write_library(
         writing.beside.push((library, out));
     }
     Ok(names)
-}
-
-fn unused_name(name: &str, taken: &mut HashSet<String>) -> String {
-    let name = Some(one_line(name)).filter(|n| !n.is_empty()).unwrap_or_else(|| "material".to_owned());
-    let numbered = (2..).map(|i| format!("{name}_{i}"));
-    let free = std::iter::once(name.clone()).chain(numbered).find(|n| !taken.contains(n)).unwrap_or(name);
-    taken.insert(free.clone());
-    free
 }
 
 /// Parameters that MTL holds, by kind.

@@ -131,7 +131,10 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
             b"element" => elements.push(read_element(&mut cursor, places, start)?),
             b"property" => {
                 properties += 1;
-                let Some(element) = elements.last_mut().filter(|_| properties <= MOST_PROPERTIES) else {
+                if properties > MOST_PROPERTIES {
+                    return fail(format!("there are more than {MOST_PROPERTIES} properties"), start);
+                }
+                let Some(element) = elements.last_mut() else {
                     return fail(
                         "a property belongs to an element, which is declared before".to_owned(),
                         start,

@@ -140,8 +140,10 @@ impl Ply<'_, '_, '_> {
             let message = "there are more than 4 billion vertices: cut the file into several";
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
+        let floats = 3 * (1 + usize::from(slots.normals) + usize::from(slots.kd) + usize::from(slots.ks))
+            + 2 * usize::from(slots.uvs);
         for _ in 0..element.count {
-            self.reading.budget.take::<[f32; MEANINGS.len()]>(1, self.source.name)?;
+            self.reading.budget.take::<f32>(floats, self.source.name)?;
             let start = self.body.offset();
             let mut values = [0f32; MEANINGS.len()];
             for (property, meaning) in element.properties.iter().zip(&slots.meaning) {

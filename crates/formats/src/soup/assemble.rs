@@ -11,6 +11,9 @@ use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// What a vertex takes while it is made: position, normal, uv, kd and what finds it again.
+type Vertex = [u32; 14];
+
 /// Makes an object of every run.
 pub(crate) fn assemble(
     reading: &mut Reading,
@@ -23,9 +26,9 @@ pub(crate) fn assemble(
 ) -> Result<(), FormatError> {
     check_indices(&mut soup, places, oddities)?;
     add_normals(reading, source, &mut soup)?;
-    // A corner becomes a vertex at most: 8 numbers, colour, the slot that finds it again, and a triangle.
-    reading.budget.take::<[u32; 16]>(soup.corners.len(), source.name)?;
-    reading.budget.take::<Slot>(soup.positions.len(), source.name)?;
+    reading.budget.take_bytes((soup.positions.len() * size_of::<Slot>()) as u64, source.name)?;
+    // A polygon has two triangles fewer than corners.
+    reading.budget.take::<[u32; 3]>(soup.corners.len() - 2 * soup.ends.len(), source.name)?;
     let mut welder = Welder::new(soup.positions.len());
     let mut triangulator = Triangulator::default();
     let stem = source.stem();
@@ -34,10 +37,12 @@ pub(crate) fn assemble(
         let end = runs.get(i + 1).map_or(soup.ends.len(), |next| next.first_face);
         let mut piece = Piece::new(&soup, &mut welder);
         for face in run.first_face..end {
+            let made = piece.made.len();
             if piece.add_face(face, &mut triangulator).is_none() {
                 let what = "a hollow polygon has too many corners to be cut, and is drawn as if it bulged";
                 oddities.note(what, || places.at(soup.offsets[face]));
             }
+            reading.budget.take::<Vertex>(piece.made.len() - made, source.name)?;
         }
         piece.note_gaps(run, places, &soup, oddities);
         let material = material_of(run, &soup, &mut materials, places, scene, oddities);
@@ -83,8 +88,9 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
     if angle <= 0.0 {
         soup.smoothing.fill(FLAT);
     }
-    reading.budget.take::<[u32; 7]>(soup.corners.len(), source.name)?;
-    reading.budget.take::<[u32; 4]>(soup.ends.len() + soup.positions.len(), source.name)?;
+    // Each corner its neighbours, its index and at most a normal; each face its own.
+    let needed = 24 * soup.corners.len() + 16 * (soup.ends.len() + soup.positions.len());
+    reading.budget.take_bytes(needed as u64, source.name)?;
     let faces = Faces {
         positions: &soup.positions,
         ends: &soup.ends,

@@ -409,6 +409,38 @@ fn whole_scenes_come_back() {
 }
 
 #[test]
+fn a_file_that_is_no_file_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = read(&folder.path().join("none.obj"), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(missing.contains("none.obj: cannot open it"), "{missing}");
+    let message = read(folder.path(), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(message.contains("cannot read it"), "{message}");
+    std::fs::create_dir(folder.path().join("t.obj")).unwrap();
+    let message = file_refusal(&[("a.toml", "[[model]]\nfile = \".\"\n")]);
+    assert!(message.contains("there is no file '.'"), "{message}");
+    let unknown = folder.path().join("scene.objj");
+    std::fs::write(&unknown, "hello").unwrap();
+    let message = read(&unknown, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(message.contains("did you mean 'obj'?"), "{message}");
+    std::fs::write(&unknown, OBJ).unwrap();
+    assert!(read(&unknown, &ReadOptions::default()).is_ok(), "the bytes tell what the extension does not");
+}
+
+#[test]
+fn many_settings_and_names_are_no_burden() {
+    let many: String = (0..2000).map(|i| format!("k{i} = 1\n")).collect();
+    assert!(refusal("toml", format!("[render]\n{many}")).contains("more than 1000 settings"));
+    let library: String = (0..20_000).map(|i| format!("newmtl m\nNs {i}\n")).collect();
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("m.mtl"), library).unwrap();
+    std::fs::write(folder.path().join("m.obj"), format!("mtllib m.mtl\n{OBJ}")).unwrap();
+    let scene = read(&folder.path().join("m.obj"), &ReadOptions::default()).unwrap();
+    write(&folder.path().join("n.obj"), &scene, &WriteOptions::default()).unwrap();
+    let back = read(&folder.path().join("n.obj"), &ReadOptions::default()).unwrap();
+    assert_eq!(back.materials.len(), scene.materials.len());
+}
+
+#[test]
 fn the_schema_knows_what_the_reader_knows() {
     let spp = Parameter {
         name: "spp",
