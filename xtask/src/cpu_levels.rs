@@ -2,7 +2,7 @@
 //!
 //! Each level is a build of its own, so this takes minutes and is no part of `cargo xtask test`.
 
-use crate::process::{cargo, output, root, run as run_process};
+use crate::process::{cargo, output, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -65,7 +65,7 @@ pub(crate) fn run(_: &[String]) -> Result<()> {
     let mut columns = Vec::new();
     for level in &able {
         println!("==> {}", level.name);
-        let folder = root().join("target/cpu-levels").join(level.name);
+        let folder = target_folder().join("cpu-levels").join(level.name);
         let binary = build(level.name, &folder)?;
         columns.push(
             PICTURES.iter().map(|picture| draw(picture, &binary, &folder)).collect::<Result<Vec<_>>>()?,

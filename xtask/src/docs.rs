@@ -1,11 +1,12 @@
 //! `cargo xtask docs`: the library documentation, and the reference pages in `docs/reference/`, which are made
 //! from the tables that the binary lists. `--check` only says whether those pages are fresh.
 
-use crate::process::{cargo, output, root, run as run_process};
+use crate::process::{cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
+use std::process::Command;
 
 /// Where the pages are, from the root of the repository.
 const FOLDER: &str = "docs/reference";
@@ -36,12 +37,18 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         [word] if word == "--check" => true,
         _ => bail!("only `--check` can be asked for"),
     };
-    let pages = pages()?;
+    // As the tests build it, so that no package is built a second time with other features.
+    run_process(&mut cargo(&["test", "--quiet", "--locked", "--workspace", "--no-run"]))?;
     if check {
-        return compare(&pages);
+        return check_reference();
     }
-    write(&pages)?;
+    write(&pages()?)?;
     library()
+}
+
+/// Checks the reference pages against the binary that the tests have built.
+pub(crate) fn check_reference() -> Result<()> {
+    compare(&pages()?)
 }
 
 /// The documentation of the libraries; a warning is an error. That the reason for something public is found
@@ -74,9 +81,7 @@ fn pages() -> Result<BTreeMap<String, String>> {
 }
 
 fn bilux(arguments: &[&str]) -> Result<String> {
-    let mut words = vec!["run", "--quiet", "--locked", "--package", "bilux-cli", "--"];
-    words.extend(arguments);
-    output(&mut cargo(&words))
+    output(Command::new(target_folder().join("debug").join("bilux")).args(arguments))
 }
 
 fn page(name: &str, title: &str, rows: &[Value]) -> String {

@@ -16,7 +16,8 @@ const STEPS: &[Step] = &[
     Step { name: "licences", run: |_| crate::licences::run(&[]) },
     Step { name: "clippy", run: clippy },
     Step { name: "test", run: tests },
-    Step { name: "doc", run: doc },
+    Step { name: "reference", run: |_| crate::docs::check_reference() },
+    Step { name: "doc", run: |_| crate::docs::library() },
 ];
 
 /// Runs every step, or those that are named, and reports all of them even when one fails.
@@ -74,10 +75,6 @@ fn tests(totals: &mut Totals) -> Result<()> {
         (_, 0) => bail!("no test ran"),
         _ => bail!("a test failed: see above"),
     }
-}
-
-fn doc(_: &mut Totals) -> Result<()> {
-    crate::docs::library()
 }
 
 fn run_step(arguments: &[&str]) -> Result<()> {

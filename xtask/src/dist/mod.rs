@@ -7,7 +7,7 @@
 mod elf;
 
 use crate::licences::PAGE as NOTICES;
-use crate::process::{cargo, output, root, run as run_process};
+use crate::process::{cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -82,8 +82,7 @@ fn build(target: &Target) -> Result<PathBuf> {
     let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
     command.env(variable, flags()).env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
     run_process(&mut command)?;
-    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    Ok(folder.join(triple).join("release").join("bilux"))
+    Ok(target_folder().join(triple).join("release").join("bilux"))
 }
 
 /// Messages of panics name source files: from the root of the repository and of cargo's home, not of this

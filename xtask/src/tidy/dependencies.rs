@@ -1,8 +1,12 @@
 //! Every dependency of the workspace is argued for in `docs/adr/dependencies.md`, by a line of its table
-//! that begins `` | `name` | ``; some crate uses it; and no line there speaks of one that is gone.
+//! that begins `` | `name` | ``; some crate asks for it; and no line there speaks of one that is gone. What a
+//! crate asks for, its code names.
 
 use super::Violation;
 use super::repository::Repository;
+use crate::process::root;
+use crate::workspace::Package;
+use std::path::Path;
 
 const PAGE: &str = "docs/adr/dependencies.md";
 const MANIFEST: &str = "Cargo.toml";
@@ -28,7 +32,28 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     for name in argued.iter().filter(|name| declared.iter().all(|(other, _)| other != *name)) {
         violations.push(Violation::new(PAGE, 0, format!("argues for '{name}', which is no dependency")));
     }
+    violations.extend(
+        repository
+            .packages
+            .iter()
+            .filter(|package| package.member)
+            .flat_map(|member| unnamed(repository, member)),
+    );
     violations
+}
+
+/// What a crate asks for although its code never names it.
+fn unnamed(repository: &Repository, member: &Package) -> Vec<Violation> {
+    let folder = member.folder.strip_prefix(root()).unwrap_or(&member.folder);
+    let code: Vec<_> =
+        repository.rust().filter(|(file, _)| Path::new(&file.path).starts_with(folder)).collect();
+    let names = |name: &str| {
+        let word = name.replace('-', "_");
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        code.iter().any(|(_, rust)| rust.code.split(|c| !is_word(c)).any(|other| other == word))
+    };
+    let unnamed = member.dependencies.iter().filter(|name| !names(name));
+    unnamed.map(|name| Violation::new(&member.name, 0, format!("never names '{name}': delete it"))).collect()
 }
 
 /// The names in `[workspace.dependencies]` that are not our own crates, with their lines.
@@ -52,15 +77,18 @@ fn is_used(repository: &Repository, name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::workspace::Package;
 
     #[test]
     fn planted_differences_are_found() {
         let manifest = "[workspace.dependencies]\nours = { path = \"x\" }\n# why\nglam = \"1\"\nlibm = \"1\"\n\n[x]\ny = 1\n";
         let page = "| `glam` | vectors |\n| `gone` | no more |\n";
-        let mut repository = Repository::planted(&[(MANIFEST, manifest), (PAGE, page)]);
-        let dependencies = vec!["libm".to_owned()];
-        repository.packages.push(Package { member: true, dependencies, ..Package::default() });
+        let code = "use libm::sin; // stl_io\n";
+        let files =
+            [(MANIFEST, manifest), (PAGE, page), ("crates/a/src/lib.rs", code), ("b.rs", "stl_io::f()")];
+        let mut repository = Repository::planted(&files);
+        let dependencies = vec!["libm".to_owned(), "stl-io".to_owned()];
+        let (name, folder) = ("a".to_owned(), root().join("crates/a"));
+        repository.packages.push(Package { name, folder, member: true, dependencies, ..Package::default() });
         let found: Vec<_> = check(&repository).iter().map(ToString::to_string).collect();
         assert_eq!(
             found,
@@ -68,6 +96,7 @@ mod tests {
                 "Cargo.toml:4: no crate uses 'glam': delete it",
                 "Cargo.toml:5: nothing argues for 'libm' in docs/adr/dependencies.md",
                 "docs/adr/dependencies.md: argues for 'gone', which is no dependency",
+                "a: never names 'stl-io': delete it",
             ]
         );
     }
