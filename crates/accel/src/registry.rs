@@ -51,7 +51,8 @@ pub struct BuildOptions {
     pub cpu_level: CpuLevel,
 }
 
-/// How much time a builder may take for a better structure.
+/// How much time a builder may take for a better structure. `bsp-sah` weighs planes of any orientation for no
+/// partition, small ones, or larger ones too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
     /// Ready soon.
@@ -73,6 +74,13 @@ pub enum BspSplit {
     Fuchs,
 }
 
+impl BspSplit {
+    /// By the name that `bsp` lists for its parameter `bsp_split`.
+    pub fn from_name(name: &str) -> Option<BspSplit> {
+        [("mean", BspSplit::Mean), ("fuchs", BspSplit::Fuchs)].into_iter().find_map(named(name))
+    }
+}
+
 /// What the paper's tree keeps together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BspGroup {
@@ -81,6 +89,25 @@ pub enum BspGroup {
     Polygons,
     /// Whole objects.
     Objects,
+}
+
+impl BspGroup {
+    /// By the name that `bsp` lists for its parameter `bsp_group`.
+    pub fn from_name(name: &str) -> Option<BspGroup> {
+        [("polygons", BspGroup::Polygons), ("objects", BspGroup::Objects)].into_iter().find_map(named(name))
+    }
+}
+
+impl Quality {
+    /// By the name that people type.
+    pub fn from_name(name: &str) -> Option<Quality> {
+        let all = [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("best", Quality::Best)];
+        all.into_iter().find_map(named(name))
+    }
+}
+
+fn named<T>(name: &str) -> impl Fn((&str, T)) -> Option<T> {
+    move |(candidate, value)| (candidate == name).then_some(value)
 }
 
 /// Builds the structure of this name (`auto` is the fastest) over a mesh.

@@ -20,7 +20,8 @@ use super::plane::{Plane, Space};
 use super::tree::{Branch, BspTree, MAX_DEPTH};
 use crate::mesh::TriangleMesh;
 use crate::registry::{AcceleratorEntry, BspGroup, BspSplit, BuildError, BuildOptions};
-use bilux_math::{DVec3, registry::Entry};
+use bilux_math::DVec3;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
 
 /// Row of [`crate::ACCELERATORS`].
@@ -29,10 +30,27 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
         name: "bsp",
         summary: "planes through the mean position of polygons, with their mean orientation: the paper's tree",
         source: "Fuchs 1980",
-        parameters: &[],
+        parameters: PARAMETERS,
     },
     build,
 };
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "bsp_split",
+        summary: "planes by the mean position and orientation, or the polygon's own that cuts fewest",
+        unit: "",
+        kind: ParameterKind::Choice(&["mean", "fuchs"]),
+        default: "mean",
+    },
+    Parameter {
+        name: "bsp_group",
+        summary: "what is kept together",
+        unit: "",
+        kind: ParameterKind::Choice(&["polygons", "objects"]),
+        default: "polygons",
+    },
+];
 
 /// Most polygons in a leaf that could be parted.
 pub const LEAF: usize = 4;

@@ -8,6 +8,7 @@ use crate::{
     Accelerator, BuildOptions, Counters, Culling, Primitive, Query, Ray, TreeShape, TriangleMesh, build,
 };
 use bilux_math::hash::{hash_words, unit_f32};
+use bilux_math::registry::ParameterKind;
 use bilux_math::{DVec3, Vec3, transcendental};
 use std::sync::Arc;
 
@@ -389,9 +390,25 @@ fn trees_do_not_depend_on_threads() {
 }
 
 #[test]
-fn the_rim_of_a_plane_belongs_to_neither_side_alone() {
+fn planes_along_an_axis_are_known_as_such() {
     let plane = Plane::through(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)).unwrap();
     assert_eq!(plane.axis(), None);
     assert_eq!(Plane::through(DVec3::ONE, DVec3::new(0.0, -2.0, 0.0)).unwrap().axis(), Some(1));
     assert!(Plane::through(DVec3::ONE, DVec3::ZERO).is_none());
+}
+
+#[test]
+fn every_listed_choice_has_a_meaning_and_the_default_is_the_default() {
+    for parameter in super::paper::ENTRY.entry.parameters {
+        let ParameterKind::Choice(choices) = parameter.kind else { panic!("{}", parameter.name) };
+        let known = |choice: &str| match parameter.name {
+            "bsp_split" => BspSplit::from_name(choice).map(|split| split == BspSplit::default()),
+            "bsp_group" => BspGroup::from_name(choice).map(|group| group == BspGroup::default()),
+            other => panic!("{other}"),
+        };
+        for &choice in choices {
+            assert_eq!(known(choice), Some(choice == parameter.default), "{choice}");
+        }
+        assert_eq!(known("none"), None);
+    }
 }

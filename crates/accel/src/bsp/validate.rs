@@ -6,8 +6,8 @@ use crate::mesh::TriangleMesh;
 use bilux_math::DVec3;
 
 impl BspTree {
-    /// Checks the layout, and that every point of every triangle is in some leaf that holds the triangle: the
-    /// promise that [`super`] builds on. Points tried are a grid of `(n + 1)(n + 2) / 2` on each triangle.
+    /// Checks the layout, and the invariant of [`super`]: that every point of every triangle is in some leaf
+    /// which holds the triangle. Points tried are a grid of `(n + 1)(n + 2) / 2` on each triangle.
     ///
     /// # Errors
     /// What is broken first, in words.
