@@ -22,11 +22,13 @@ impl Transform {
 
     /// From a matrix of column vectors; `None` when it is not affine, not finite or not invertible.
     pub fn from_matrix(matrix: DMat4) -> Option<Transform> {
-        let inverse = matrix.inverse();
-        let affine = matrix.row(3) == glam::DVec4::W;
-        let sound = affine && matrix.is_finite() && inverse.is_finite() && matrix.determinant() != 0.0;
-        let (forward, inverse) = (matrix.as_mat4(), inverse.as_mat4());
-        (sound && forward.is_finite() && inverse.is_finite()).then_some(Transform { forward, inverse })
+        let affine = matrix.row(3) == glam::DVec4::W && matrix.is_finite();
+        // The inverse is that of the rounded matrix, so that a matrix written to a file and read again is the same map.
+        let forward = matrix.as_mat4();
+        let rounded = forward.as_dmat4();
+        let inverse = rounded.inverse().as_mat4();
+        let sound = forward.is_finite() && inverse.is_finite() && rounded.determinant() != 0.0;
+        (affine && sound).then_some(Transform { forward, inverse })
     }
 
     /// First `self`, then `next`.
@@ -80,5 +82,26 @@ impl Transform {
     /// True when it turns right-handed into left-handed.
     pub fn mirrors(&self) -> bool {
         self.forward.determinant() < 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn written_and_read_again_it_is_the_same_map() {
+        let matrix = DMat4::from_translation(DVec3::new(-1.2, 0.0, -0.42))
+            * DMat4::from_rotation_y(204f64.to_radians());
+        let made = Transform::from_matrix(matrix).unwrap();
+        assert_eq!(made, Transform::from_matrix(made.matrix().as_dmat4()).unwrap());
+    }
+
+    #[test]
+    fn what_no_map_can_undo_is_refused() {
+        assert_eq!(Transform::from_matrix(DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0))), None);
+        assert_eq!(Transform::from_matrix(DMat4::from_scale(DVec3::splat(1e300))), None);
+        assert_eq!(Transform::from_matrix(DMat4::from_translation(DVec3::splat(f64::NAN))), None);
     }
 }
