@@ -1,11 +1,13 @@
 //! Any bytes give a scene or an error, within bounded memory, and never a panic.
 
-use bilux_formats::{ReadOptions, read, read_bytes};
+use bilux_formats::{ReadOptions, SCENE_FORMATS, read, read_bytes};
 use bilux_scene::SceneBuilder;
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
-const FORMATS: [&str; 5] = ["asc", "obj", "ply", "stl", "toml"];
+fn formats() -> impl Iterator<Item = &'static str> {
+    SCENE_FORMATS.iter().map(|row| row.entry.name)
+}
 
 fn corpus(format: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../fuzz/corpus/scene_{format}"));
@@ -25,7 +27,7 @@ fn survive(format: &str, bytes: &[u8]) -> Option<SceneBuilder> {
 
 #[test]
 fn the_corpus_reads_and_its_broken_files_are_refused() {
-    for format in FORMATS {
+    for format in formats() {
         let files = corpus(format);
         assert!(files.len() >= 5, "{format}");
         for (path, bytes) in files {
@@ -38,7 +40,7 @@ fn the_corpus_reads_and_its_broken_files_are_refused() {
 
 #[test]
 fn every_beginning_of_every_file_is_survived() {
-    for format in FORMATS {
+    for format in formats() {
         for (_, bytes) in corpus(format) {
             (0..bytes.len().min(3000)).for_each(|length| drop(survive(format, &bytes[..length])));
         }
@@ -111,7 +113,7 @@ proptest! {
 
     #[test]
     fn arbitrary_bytes_are_survived(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
-        for format in FORMATS {
+        for format in formats() {
             survive(format, &bytes);
         }
         survive("", &bytes);
@@ -119,7 +121,7 @@ proptest! {
 
     #[test]
     fn harmed_files_are_survived(pick: usize, harms in prop::collection::vec(harm(), 1..6)) {
-        for format in FORMATS {
+        for format in formats() {
             let files = corpus(format);
             let (_, bytes) = &files[pick % files.len()];
             survive(format, &harmed(bytes.clone(), &harms));
