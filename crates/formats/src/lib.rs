@@ -14,6 +14,7 @@ mod formats;
 mod native;
 mod normals;
 mod obj;
+mod off;
 mod options;
 mod ply;
 mod polygon;

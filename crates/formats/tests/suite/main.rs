@@ -6,6 +6,7 @@ mod asc;
 mod hostile;
 mod native;
 mod obj;
+mod off;
 mod oracles;
 mod ply;
 mod round_trips;

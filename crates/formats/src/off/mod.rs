@@ -1,0 +1,27 @@
+//! OFF, the object file format of Geomview, as text. See `docs/formats/off.md`.
+
+mod read;
+mod write;
+
+use crate::formats::SceneFormatEntry;
+use bilux_math::registry::Entry;
+use read::Columns;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "off",
+        summary: "OFF, the text of Geomview and of collections of shapes",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["off"],
+    capabilities: &["polygons", "normals", "uv", "vertex-kd"],
+    sniff: |bytes| {
+        Columns::of_word(bytes.split(u8::is_ascii_whitespace).next().unwrap_or_default()).is_some()
+    },
+    read: Some(read::read),
+    write: Some(write::write),
+};
+
+/// The comment that keeps faces without normals flat when we read what we wrote.
+const FLAT_COMMENT: &[u8] = b"shading flat";

@@ -1,0 +1,271 @@
+//! Reading OFF.
+
+use super::FLAT_COMMENT;
+use crate::FormatError;
+use crate::float::parse_f32;
+use crate::normals::{BY_ANGLE, FLAT, Smoothing};
+use crate::reading::{Oddities, Reading, Source};
+use crate::soup::{Corner, NONE, Run, Soup, assemble};
+use crate::text::{Cursor, Places, quoted};
+use bilux_math::colour::srgb_decode;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::SceneBuilder;
+use std::collections::HashMap;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let places = Places::new(source.name, source.bytes);
+    let mut reader = Off {
+        reading,
+        source,
+        places: &places,
+        cursor: Cursor::new(source.bytes),
+        soup: Soup::default(),
+        smoothing: BY_ANGLE,
+        oddities: Oddities::default(),
+    };
+    let columns = reader.first_word()?;
+    let [vertices, faces] = reader.counts()?;
+    reader.vertices(vertices, columns)?;
+    reader.faces(faces, columns)?;
+    reader.finish()
+}
+
+/// What stands on the line of a vertex behind its position, in this order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Columns {
+    pub(super) normals: bool,
+    pub(super) colours: bool,
+    pub(super) uvs: bool,
+}
+
+impl Columns {
+    /// What the first word says, `[ST][C][N]OFF`, and how long it is; counts may follow without a blank.
+    pub(super) fn of_word(word: &[u8]) -> Option<(Columns, usize)> {
+        let mut rest = word;
+        let mut takes = |prefix: &[u8]| {
+            let found = rest.strip_prefix(prefix);
+            rest = found.unwrap_or(rest);
+            found.is_some()
+        };
+        let columns = Columns { uvs: takes(b"ST"), colours: takes(b"C"), normals: takes(b"N") };
+        let is_off = takes(b"OFF") && rest.iter().all(u8::is_ascii_digit);
+        is_off.then_some((columns, word.len() - rest.len()))
+    }
+
+    /// How many numbers a vertex has, without the opacity that its colour may have.
+    fn width(self) -> usize {
+        3 + 3 * usize::from(self.normals) + 3 * usize::from(self.colours) + 2 * usize::from(self.uvs)
+    }
+}
+
+struct Off<'a, 'o, 'r> {
+    reading: &'r mut Reading<'o>,
+    source: &'a Source<'a>,
+    places: &'a Places<'a>,
+    cursor: Cursor<'a>,
+    soup: Soup,
+    /// How faces without normals look.
+    smoothing: Smoothing,
+    oddities: Oddities,
+}
+
+/// The numbers of one line, the first of them; the rest is counted.
+struct Row {
+    numbers: [f32; 12],
+    count: usize,
+    start: usize,
+}
+
+impl<'a> Off<'a, '_, '_> {
+    fn first_word(&mut self) -> Result<Columns, FormatError> {
+        let start = self.next_line("its first word, OFF")?;
+        let word = self.cursor.word();
+        let Some((columns, length)) = Columns::of_word(word) else {
+            let known = "an OFF file begins with OFF, behind ST, C and N at most, in this order";
+            let message = match word.ends_with(b"OFF") {
+                true => format!("{} has other columns or dimensions: {known}", quoted(word)),
+                false => format!("{} should not stand here: {known}", quoted(word)),
+            };
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        };
+        self.cursor.go_to(start + length);
+        if self.cursor.peek_word() == b"BINARY" {
+            let message = "this OFF file is binary: write it as text";
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        }
+        Ok(columns)
+    }
+
+    /// Numbers of vertices and of faces; that of edges, which nobody needs, may be missing.
+    fn counts(&mut self) -> Result<[u64; 2], FormatError> {
+        let start = self.next_line("its numbers of vertices and faces")?;
+        let mut counts = [0; 2];
+        for count in &mut counts {
+            *count = integer(self.cursor.word()).ok_or_else(|| {
+                let message = "here stand the numbers of vertices, faces and edges, such as '8 6 12'";
+                FormatError::malformed(message, self.places.at(start))
+            })?;
+        }
+        self.cursor.end_line();
+        if counts[0] >= u64::from(NONE) {
+            let message = "there are more than 4 billion vertices: cut the file into several";
+            return Err(FormatError::malformed(message, self.places.at(start)));
+        }
+        Ok(counts)
+    }
+
+    fn vertices(&mut self, count: u64, columns: Columns) -> Result<(), FormatError> {
+        // Linear from 0 to 1, as the format has it, unless a number shows that they are bytes.
+        let mut bytes = false;
+        for _ in 0..count {
+            self.reading.budget.take::<f32>(columns.width(), self.source.name)?;
+            let row = self.row("all of its vertices")?;
+            let Some(extra) = row.count.checked_sub(columns.width()) else {
+                let (have, need) = (row.count, columns.width());
+                let message = format!("a vertex has {need} numbers here, but this line has {have}");
+                return Err(FormatError::malformed(message, self.places.at(row.start)));
+            };
+            let opacity = usize::from(columns.colours && extra == 1);
+            let (position, mut rest) = row.numbers.split_at(3);
+            self.soup.positions.push(Vec3::from_slice(position));
+            if columns.normals {
+                self.soup.normals.push(Vec3::from_slice(rest));
+                rest = &rest[3..];
+            }
+            if columns.colours {
+                bytes |= rest[..3].iter().any(|&c| c > 1.0);
+                self.soup.colours.push(Rgb::new(rest[0], rest[1], rest[2]));
+                rest = &rest[3 + opacity..];
+            }
+            if columns.uvs {
+                self.soup.uvs.push(Vec2::from_slice(rest));
+            }
+            self.note_odd(&row, extra > opacity);
+        }
+        if bytes {
+            self.soup.colours.iter_mut().for_each(|kd| *kd = kd.map(|c| srgb_decode(c / 255.0)));
+        }
+        Ok(())
+    }
+
+    fn note_odd(&mut self, row: &Row, is_long: bool) {
+        let places = self.places;
+        if is_long {
+            let what = "a vertex has more numbers than the first word of the file says; they are left out";
+            self.oddities.note(what, || places.at(row.start));
+        }
+        if row.numbers.iter().any(|x| !x.is_finite()) {
+            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            self.oddities.note(what, || places.at(row.start));
+        }
+    }
+
+    fn faces(&mut self, count: u64, columns: Columns) -> Result<(), FormatError> {
+        let of_vertex = |given: bool, vertex: u32| if given { vertex } else { NONE };
+        for _ in 0..count {
+            let start = self.next_line("all of its faces")?;
+            let first = self.soup.corners.len();
+            for _ in 0..self.index("a face begins with its number of corners")? {
+                let vertex = self.index("a face has the numbers of its vertices, counted from 0")?;
+                self.reading.budget.take::<Corner>(1, self.source.name)?;
+                let (uv, normal) = (of_vertex(columns.uvs, vertex), of_vertex(columns.normals, vertex));
+                self.soup.corners.push([vertex, uv, normal]);
+            }
+            if !matches!(self.cursor.peek_word(), [] | [b'#', ..]) {
+                let places = self.places;
+                self.oddities.note("a face has a colour of its own, which is left out", || places.at(start));
+            }
+            self.cursor.end_line();
+            self.end_face(first, start)?;
+        }
+        Ok(())
+    }
+
+    fn end_face(&mut self, first: usize, start: usize) -> Result<(), FormatError> {
+        let (soup, places) = (&mut self.soup, self.places);
+        if soup.corners.len() - first < 3 {
+            soup.corners.truncate(first);
+            self.oddities.note("a face has fewer than 3 corners and is left out", || places.at(start));
+            return Ok(());
+        }
+        self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
+        if soup.corners.len() as u64 >= u64::from(NONE) {
+            let message = "there are more than 4 billion corners: cut the file into several";
+            return Err(FormatError::malformed(message, places.at(start)));
+        }
+        soup.ends.push(soup.corners.len() as u32);
+        soup.offsets.push(start);
+        soup.smoothing.push(self.smoothing);
+        Ok(())
+    }
+
+    fn finish(self) -> Result<SceneBuilder, FormatError> {
+        let Off { reading, source, places, mut soup, mut oddities, .. } = self;
+        if soup.ends.is_empty() {
+            return Err(FormatError::malformed("there is no face in it", places.whole()));
+        }
+        soup.runs.push(Run { first_face: 0, name: source.stem(), material: None });
+        let mut scene = SceneBuilder::default();
+        assemble(reading, source, places, soup, HashMap::new(), &mut scene, &mut oddities)?;
+        oddities.into_warnings(&mut scene);
+        Ok(scene)
+    }
+
+    /// Goes to the next line with anything on it but a comment, and gives where it begins.
+    fn next_line(&mut self, wanted: &str) -> Result<usize, FormatError> {
+        loop {
+            self.cursor.skip_blanks();
+            match self.cursor.peek_word() {
+                [b'#', ..] => {
+                    let comment = self.cursor.rest_of_line();
+                    if comment[1..].trim_ascii() == FLAT_COMMENT {
+                        self.smoothing = FLAT;
+                    }
+                }
+                [] if self.cursor.is_done() => {
+                    let message = format!("the file ends before {wanted}: it was cut off");
+                    return Err(FormatError::malformed(message, self.places.at(self.cursor.offset())));
+                }
+                [] => {}
+                _ => return Ok(self.cursor.offset()),
+            }
+            self.cursor.end_line();
+        }
+    }
+
+    /// The numbers of the next line.
+    fn row(&mut self, wanted: &str) -> Result<Row, FormatError> {
+        let mut row = Row { numbers: [0.0; 12], count: 0, start: self.next_line(wanted)? };
+        loop {
+            let word = self.cursor.word();
+            if matches!(word, [] | [b'#', ..]) {
+                self.cursor.end_line();
+                return Ok(row);
+            }
+            let number = parse_f32(word).ok_or_else(|| self.no_number(word, "a vertex has numbers"))?;
+            if let Some(slot) = row.numbers.get_mut(row.count) {
+                *slot = number;
+            }
+            row.count += 1;
+        }
+    }
+
+    fn index(&mut self, wanted: &str) -> Result<u32, FormatError> {
+        let word = self.cursor.word();
+        let index = integer(word).and_then(|index| u32::try_from(index).ok()).filter(|&i| i != NONE);
+        index.ok_or_else(|| self.no_number(word, wanted))
+    }
+
+    /// The trouble with the word that was just passed.
+    fn no_number(&self, word: &'a [u8], wanted: &str) -> FormatError {
+        let message = match word {
+            b"" => format!("the line ends too early: {wanted}"),
+            word => format!("{} should not stand here: {wanted}", quoted(word)),
+        };
+        FormatError::malformed(message, self.places.at(self.cursor.offset() - word.len()))
+    }
+}
+
+fn integer(word: &[u8]) -> Option<u64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
