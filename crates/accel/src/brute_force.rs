@@ -48,13 +48,10 @@ impl Traverse for BruteForce {
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
         let Some(ray) = PreparedRay::new(ray) else { return false };
-        for (index, triangle) in self.mesh.triangles().iter().enumerate() {
-            count.triangles(1);
-            if hits(&ray, query.culling, triangle, index as u32) {
-                return true;
-            }
-        }
-        false
+        let hit = |(index, triangle)| hits(&ray, query.culling, triangle, index as u32);
+        let found = self.mesh.triangles().iter().enumerate().position(hit);
+        count.triangles(found.map_or(self.mesh.len(), |index| index + 1));
+        found.is_some()
     }
 
     fn bounds(&self) -> Aabb {

@@ -83,6 +83,8 @@ impl TwoLevel {
             .collect();
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
         let top = match top {
+            // One alone is asked at once: it looks at its own box.
+            _ if boxes.len() < 2 => Top::List,
             TopLevel::List => Top::List,
             TopLevel::Bvh => {
                 let (tree, order) = Tree::over(boxes.len(), |index| boxes[index as usize]);

@@ -26,13 +26,18 @@ pub struct SlabRay {
     pub nearest: f32,
     /// `|d_kz|`.
     pace: f32,
+    /// What makes up for underflow, in `t` and in `s`. A normal number, since others are slow.
+    least: f32,
 }
 
 /// Directions closer than this to a plane are tilted to it: over any distance the tilt is far less than the pad.
 const STEEPEST: f32 = (1u64 << 40) as f32;
 
-/// 4 units of f32 rounding, for the products below.
-const SLACK: f32 = 4.0 / 16_777_216.0;
+/// One unit of f32 rounding.
+const UNIT: f32 = 1.0 / 16_777_216.0;
+
+/// For the roundings of the products below.
+const SLACK: f32 = 4.0 * UNIT;
 
 impl SlabRay {
     /// For a ray whose origin and direction are finite and whose direction is not zero; `pad` is the
@@ -43,8 +48,10 @@ impl SlabRay {
         let pad = if pad < f32::INFINITY { pad } else { f32::INFINITY };
         let pace = direction[0].abs().max(direction[1].abs()).max(direction[2].abs());
         let inverse = direction.map(|d| (pace / d).clamp(-STEEPEST, STEEPEST));
-        let upper = origin.map(|o| (o + pad).next_up());
-        let lower = origin.map(|o| (o - pad).next_down());
+        // Two units of rounding more, so that the sums are beyond what they should be.
+        let beyond = origin.map(|o| pad + o.abs() * (2.0 * UNIT));
+        let upper: [f32; 3] = std::array::from_fn(|k| origin[k] + beyond[k]);
+        let lower: [f32; 3] = std::array::from_fn(|k| origin[k] - beyond[k]);
         let down = direction.map(f32::is_sign_negative);
         let pick = |when: bool| std::array::from_fn(|k| if down[k] == when { lower[k] } else { upper[k] });
         let mut ray = SlabRay {
@@ -54,6 +61,7 @@ impl SlabRay {
             enters_high: down.map(usize::from),
             nearest: 0.0,
             pace,
+            least: pace.max(1.0) * f32::MIN_POSITIVE,
         };
         ray.nearest = -ray.limit(-t_min);
         ray
@@ -62,9 +70,8 @@ impl SlabRay {
     /// The least `s` that no hit at `t` or before can exceed.
     #[inline]
     pub fn limit(&self, t: f32) -> f32 {
-        // One denormal step before and a least normal number after make up for underflow.
-        let s = (t + f32::from_bits(1)) * self.pace;
-        let limit = s + s.abs() * SLACK + f32::MIN_POSITIVE;
+        let s = t * self.pace;
+        let limit = s + s.abs() * SLACK + self.least;
         // Only infinities can have made this: they limit nothing.
         if limit.is_nan() { f32::INFINITY } else { limit }
     }

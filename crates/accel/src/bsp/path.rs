@@ -107,12 +107,12 @@ impl Path {
 }
 
 /// The lemma's pad, or infinity for rays whose arithmetic might leave the range of f32: those are not
-/// pruned at all. A `t` that underflows is off by up to 2⁻¹⁴⁹, hence the last term.
+/// pruned at all. A `t` that underflows is off by up to 2⁻¹⁴⁹, hence the last term (a normal number: others are slow).
 fn slack(ray: &PreparedRay, bounds: &Aabb) -> f32 {
     let pad = ray.pad(bounds);
     let reach = ray.ray.direction.iter().fold(0f32, |reach, d| reach.max(d.abs()));
     let tame = pad < LARGE && reach < LARGE && reach > 1.0 / LARGE;
-    if tame { pad + reach * (f32::MIN_POSITIVE / 4_194_304.0) } else { f32::INFINITY }
+    if tame { pad + reach.max(1.0) * f32::MIN_POSITIVE } else { f32::INFINITY }
 }
 
 /// 2¹⁰⁰.
