@@ -1,15 +1,21 @@
-//! Picking one of many lights, more often where there is more to come.
+//! Which lights to sample: all of a few; of many one, more often where there is more to come.
 
 use bilux_scene::Scene;
+use std::ops::Range;
 
-/// A probability for every light of a scene: by its power, with a tenth shared out alike, so that a weak light
-/// close by is never forgotten.
+/// A probability for every light of a scene. Where there are few, each is always sampled: a shadow ray costs less
+/// than the noise of a choice that is blind to the place. Otherwise by its power, with a tenth shared out alike, so
+/// that a weak light close by is never forgotten.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
     probabilities: Vec<f32>,
     /// `cdf[i]` is the sum of the probabilities `0..=i`.
     cdf: Vec<f32>,
+    few: bool,
 }
+
+/// So many lights are all sampled.
+const FEW: usize = 4;
 
 const SHARED_ALIKE: f64 = 0.1;
 
@@ -25,7 +31,9 @@ impl LightChoice {
         let powers: Vec<f64> = powers.map(sound).collect();
         let total: f64 = powers.iter().sum();
         let shining = powers.iter().filter(|p| **p > 0.0).count().max(1) as f64;
+        let few = shining <= FEW as f64;
         let probability = |p: &f64| match *p {
+            p if p > 0.0 && few => 1.0,
             p if p > 0.0 => (p / total * (1.0 - SHARED_ALIKE) + SHARED_ALIKE / shining) as f32,
             _ => 0.0,
         };
@@ -36,16 +44,18 @@ impl LightChoice {
             sum += p;
             cdf.push(sum);
         }
-        LightChoice { probabilities, cdf }
+        LightChoice { probabilities, cdf, few }
     }
 
-    /// A light and its probability; `None` where none shines.
+    /// Which lights to sample: those of the range whose probability is above 0.
     #[inline]
-    pub fn sample(&self, u: f32) -> Option<(usize, f32)> {
-        let wanted = u * self.cdf.last()?;
+    pub fn sample(&self, u: f32) -> Range<usize> {
+        if self.few {
+            return 0..self.cdf.len();
+        }
+        let wanted = u * self.cdf[self.cdf.len() - 1];
         let index = self.cdf.partition_point(|&sum| sum <= wanted).min(self.cdf.len() - 1);
-        let probability = self.probabilities[index];
-        (probability > 0.0).then_some((index, probability))
+        index..index + 1
     }
 
     /// The probability of a light.
@@ -61,23 +71,32 @@ mod tests {
 
     #[test]
     fn each_light_is_picked_as_often_as_it_says() {
-        let choice = LightChoice::from_powers([3.0, 0.0, 1.0, f32::NAN, 96.0].into_iter());
-        let mut counts = [0; 5];
+        let powers = [3.0, 0.0, 1.0, f32::NAN, 80.0, 12.0, 4.0];
+        let choice = LightChoice::from_powers(powers.into_iter());
+        let mut counts = [0; 7];
         for i in 0..100_000 {
-            let (light, probability) = choice.sample((i as f32 + 0.5) / 100_000.0).unwrap();
-            assert_eq!(probability, choice.probability(light));
-            counts[light] += 1;
+            let picked = choice.sample((i as f32 + 0.5) / 100_000.0);
+            assert_eq!(picked.len(), 1);
+            counts[picked.start] += 1;
         }
         for (light, n) in counts.into_iter().enumerate() {
             let share = n as f32 / 100_000.0;
             assert!((share - choice.probability(light)).abs() < 1e-4, "light {light}: {share}");
         }
-        assert!(choice.probability(2) > 0.03 && choice.probability(1) == 0.0);
+        assert!(choice.probability(2) > 0.02 && choice.probability(1) == 0.0);
+    }
+
+    #[test]
+    fn of_few_lights_each_is_sampled_that_shines() {
+        let choice = LightChoice::from_powers([1.0, 0.0, 1e9].into_iter());
+        assert_eq!(choice.sample(0.5), 0..3);
+        assert_eq!([0, 1, 2].map(|light| choice.probability(light)), [1.0, 0.0, 1.0]);
     }
 
     #[test]
     fn where_nothing_shines_nothing_is_picked() {
-        assert_eq!(LightChoice::from_powers([0.0].into_iter()).sample(0.5), None);
-        assert_eq!(LightChoice::from_powers([].into_iter()).sample(0.5), None);
+        let dark = LightChoice::from_powers([0.0].into_iter());
+        assert_eq!(dark.probability(0), 0.0);
+        assert!(LightChoice::from_powers([].into_iter()).sample(0.5).is_empty());
     }
 }

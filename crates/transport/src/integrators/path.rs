@@ -49,6 +49,16 @@ struct Path {
     roulette_depth: u32,
 }
 
+/// Where lights are sampled from.
+#[derive(Clone, Copy)]
+struct Vertex<'a> {
+    surface: &'a Surface,
+    bsdf: &'a Bsdf,
+    wo: Vec3,
+    /// Absorption between there and the lights.
+    sigma_a: Rgb,
+}
+
 /// How light is found where both ways could find it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sampling {
@@ -163,15 +173,20 @@ impl Path {
         }
     }
 
-    /// One light, sampled from a surface: what it sends along `wo`.
+    /// Lights sampled from a surface: what they send along `wo`.
     fn direct(&self, task: &mut Task, surface: &Surface, bsdf: &Bsdf, wo: Vec3, sigma_a: Rgb) -> Rgb {
-        let (u_light, u) = (task.sampler.next_1d(), task.sampler.next_2d());
-        if bsdf.is_delta() {
+        let u = task.sampler.next_1d();
+        let from = Vertex { surface, bsdf, wo, sigma_a };
+        task.lights.sample(u).fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, &from))
+    }
+
+    /// One of them.
+    fn light(&self, task: &mut Task, index: usize, from: &Vertex) -> Rgb {
+        let Vertex { surface, bsdf, wo, sigma_a } = *from;
+        let (u, probability) = (task.sampler.next_2d(), task.lights.probability(index));
+        if bsdf.is_delta() || probability == 0.0 {
             return Rgb::BLACK;
         }
-        let Some((index, probability)) = task.lights.sample(u_light) else {
-            return Rgb::BLACK;
-        };
         let light = &task.scene().lights()[index].light;
         if self.sampling == Sampling::Scattering && !light.is_delta() {
             return Rgb::BLACK;
