@@ -26,7 +26,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "tidy", summary: "the repository's own rules", run: tidy::run },
     Chore { name: "licences", summary: "every package that we build on is permissive", run: licences::run },
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
-    Chore { name: "dist", summary: "the binary as it is released, with its checksum", run: dist::run },
+    Chore { name: "dist", summary: "what is released: the binary, its pages, a checksum", run: dist::run },
     Chore {
         name: "cpu-levels",
         summary: "the same pictures at every CPU level (minutes)",

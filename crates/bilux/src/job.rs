@@ -2,9 +2,12 @@
 
 use crate::Error;
 use crate::fingerprint::fingerprint;
+use crate::oddities::oddities;
 use crate::settings::Settings;
 use bilux_pictures::{Picture, WriteOptions};
-use bilux_scene::{AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span};
+use bilux_scene::{
+    AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Warning,
+};
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{Film, Filter, PixelAnchor, Progress, RenderSettings, Replay, SamplePlace, Window};
 use std::ops::Range;
@@ -20,6 +23,7 @@ pub struct Job {
     settings: Settings,
     render: RenderSettings,
     fingerprint: String,
+    warnings: Vec<Warning>,
 }
 
 /// What a render gave.
@@ -56,8 +60,10 @@ impl Job {
         let built = completed.build(&settings.accel, shutter_at(&settings, settings.time), aspect)?;
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
         let integrator = (settings.integrator.build)(&reader)?;
+        let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
         Ok(Job {
-            camera: choose_camera(&built, &settings.camera)?,
+            warnings: oddities(scene, &built, &*camera),
+            camera,
             render: render_settings(&settings)?,
             fingerprint: fingerprint(&completed, &settings),
             accel: settings.accel.clone(),
@@ -71,6 +77,11 @@ impl Job {
     pub fn at_time(&mut self, time: f32) {
         self.settings.time = time;
         self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
+    }
+
+    /// What is odd about the picture, though it can be rendered.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 
     /// Only samples `range` of each pixel, for a partial film.
@@ -203,18 +214,21 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
 }
 
 /// A camera by its name, or by its number from 0.
-fn choose_camera(scene: &Scene, wanted: &str) -> Result<Arc<dyn Camera>, Error> {
+fn choose_camera(scene: &Scene, wanted: &str, at: &Span) -> Result<Arc<dyn Camera>, Error> {
     let cameras = scene.cameras();
     let by_name = cameras.iter().find(|(name, _)| name == wanted);
     let by_number = wanted.parse().ok().and_then(|i: usize| cameras.get(i));
-    match by_name.or(by_number) {
-        Some((_, camera)) => Ok(camera.clone()),
-        None => {
-            let numbers: Vec<String> = (0..cameras.len()).map(|i| i.to_string()).collect();
-            let names =
-                cameras.iter().map(|(name, _)| name.as_str()).chain(numbers.iter().map(String::as_str));
-            Err(SceneError::unknown("camera", wanted, names.filter(|n| !n.is_empty()), &Span::default())
-                .into())
-        }
+    if let Some((_, camera)) = by_name.or(by_number) {
+        return Ok(camera.clone());
     }
+    let names: Vec<&str> = cameras.iter().map(|(name, _)| name.as_str()).filter(|n| !n.is_empty()).collect();
+    if names.is_empty() || wanted.parse::<usize>().is_ok() {
+        let message = format!(
+            "there is no camera '{wanted}': this scene has {}, counted from 0{}",
+            cameras.len(),
+            if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
+        );
+        return Err(SceneError::invalid(message, at).into());
+    }
+    Err(SceneError::unknown("camera", wanted, names, at).into())
 }

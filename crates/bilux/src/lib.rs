@@ -18,6 +18,7 @@
 pub mod error;
 pub mod fingerprint;
 pub mod job;
+mod oddities;
 pub mod presets;
 pub mod settings;
 

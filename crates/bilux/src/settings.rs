@@ -5,7 +5,8 @@ use crate::Error;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Spec};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec};
+use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 
 /// The integrator that `auto` stands for.
@@ -104,6 +105,8 @@ pub struct Settings {
     pub threads: usize,
     /// Name or number of the camera.
     pub camera: String,
+    /// Where the camera was asked for.
+    pub camera_at: Span,
     /// When, in seconds.
     pub time: f32,
     /// How long light is let in, in seconds.
@@ -135,7 +138,7 @@ impl Settings {
         let integrator = find_integrator(&reader)?;
         let integrator_parameters = integrator_parameters(integrator, rest)?;
         let (width, height) = parse_size(&reader.text("size"))
-            .ok_or_else(|| SceneError::invalid("a size is written as 640x480", reader.span("size")))?;
+            .ok_or_else(|| SceneError::invalid(no_size(&reader.text("size")), reader.span("size")))?;
         let spp = match reader.integer("spp") {
             0 => integrator.default_spp,
             n => u32::try_from(n).unwrap_or(u32::MAX),
@@ -154,6 +157,7 @@ impl Settings {
                 name if name.is_empty() => "0".to_owned(),
                 name => name,
             },
+            camera_at: reader.span("camera").clone(),
             time: reader.number("time"),
             shutter: reader.number("shutter"),
             fps: reader.number("fps"),
@@ -166,10 +170,15 @@ impl Settings {
     }
 }
 
-/// `640x480` as two numbers that are not zero.
+/// What is said of a text that [`parse_size`] does not take.
+pub fn no_size(text: &str) -> String {
+    format!("'{text}' is no size: write it as 640x480, with sides of 1 to {MAX_SIDE} pixels")
+}
+
+/// `640x480` as two numbers that a film can have.
 pub fn parse_size(text: &str) -> Option<(u32, u32)> {
     let (w, h) = text.split_once(['x', 'X', '×'])?;
-    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|&n| n > 0);
+    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
     Some((side(w)?, side(h)?))
 }
 

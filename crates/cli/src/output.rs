@@ -1,5 +1,6 @@
 //! What is said: results on standard output, everything else on standard error.
 
+use bilux::formats::FormatError;
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 
@@ -31,8 +32,29 @@ pub fn warning(text: impl Display) {
 
 /// Says why the work failed.
 pub fn error(error: &anyhow::Error) {
-    let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
-    say(format_args!("{}: {}", painted("error", "31"), causes.join(": ")));
+    say(format_args!("{}: {}", painted("error", "31"), message(error)));
+}
+
+/// An error with its causes, each said once: libraries' messages mostly end with their cause's already.
+pub fn message(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string).filter(|cause| !cause.is_empty()) {
+        match text.as_str() {
+            "" => text = cause,
+            said if said.ends_with(&cause) => {}
+            _ => text += &format!(": {cause}"),
+        }
+    }
+    text + error.chain().find_map(flag_that_helps).unwrap_or_default()
+}
+
+/// The flag by which to allow what the library says has to be allowed.
+fn flag_that_helps(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
+    match cause.downcast_ref::<bilux::Error>()? {
+        bilux::Error::Format(FormatError::TooLarge { .. }) => Some(" (--max-memory 16G)"),
+        bilux::Error::Format(FormatError::Outside { .. }) => Some(" (--allow-outside)"),
+        _ => None,
+    }
 }
 
 /// Bold and coloured on a terminal, unless `NO_COLOR` is set.

@@ -7,7 +7,7 @@ struct WrongCommandLine(anyhow::Error);
 
 impl fmt::Display for WrongCommandLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:#}", self.0)
+        f.write_str(&crate::output::message(&self.0))
     }
 }
 

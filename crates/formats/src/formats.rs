@@ -122,7 +122,7 @@ pub(crate) fn read_source(
         return Err(unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
     };
     if source.bytes.is_empty() {
-        return Err(FormatError::malformed("the file is empty", whole_file(source.name)));
+        return Err(FormatError::malformed("the file is empty: export it again", whole_file(source.name)));
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
     let scene = read(reading, source)?;

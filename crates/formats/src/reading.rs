@@ -1,6 +1,7 @@
 //! One job of reading: what is allowed, what has been used, which files belong to it.
 
 use crate::budget::Budget;
+use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
 use bilux_math::Rgb;
 use bilux_pictures::Limits;
@@ -143,8 +144,8 @@ impl<'o> Reading<'o> {
         let file = fs::File::open(path).map_err(failed("open it"))?;
         let metadata = file.metadata().map_err(failed("open it"))?;
         if metadata.is_dir() {
-            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
-            return Err(failed("read it")(source));
+            let at = whole_file(&path.display().to_string().into());
+            return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
         }
         let limit = self.budget.left();
         let mut bytes = Vec::new();

@@ -1,5 +1,7 @@
 //! Lines and words of a text file, with their places. Lines end at CR, LF or both.
 
+use crate::FormatError;
+use crate::reading::Source;
 use bilux_scene::Span;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -152,6 +154,18 @@ impl<'a> Places<'a> {
     /// The place of the file as a whole.
     pub(crate) fn whole(&self) -> Span {
         whole_file(&self.file)
+    }
+}
+
+/// The trouble with a file that should be text; where its bytes are none, that is the trouble.
+pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
+    match error {
+        // Zeros behind the text, as some programs leave them, are passed as blanks.
+        FormatError::Malformed { message, at } if source.bytes.iter().take(4096).any(|&b| b == 0) => {
+            let message = format!("this file is no plain text, but binary, or text of 16 bits ({message})");
+            FormatError::Malformed { message, at }
+        }
+        error => error,
     }
 }
 

@@ -24,7 +24,8 @@ pub enum PictureError {
     },
     /// No picture format goes by this name or extension.
     #[error(
-        "'{name}' is not a picture format that can be {verb}{}; there are: {known}",
+        "{} that can be {verb}{}; there are: {known}",
+        format_in_question(name),
         did_you_mean(suggestion)
     )]
     UnknownFormat {
@@ -149,6 +150,14 @@ impl PictureError {
             PictureError::InFile { .. } => self,
             source => PictureError::InFile { path: path.to_owned(), source: Box::new(source) },
         }
+    }
+}
+
+/// A name without an extension asks for no format.
+fn format_in_question(name: &str) -> String {
+    match name {
+        "" => "the name has no extension of a picture format".to_owned(),
+        name => format!("'{name}' is not a picture format"),
     }
 }
 

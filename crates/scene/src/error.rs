@@ -7,7 +7,7 @@ use crate::parameters::Span;
 #[non_exhaustive]
 pub enum SceneError {
     /// A name that no table holds.
-    #[error("{at}: there is no {what} '{name}'{}", suggestion(.nearest, .known))]
+    #[error("{at}: there is no {}{}", named(.what, .name), suggestion(.nearest, .known))]
     Unknown {
         /// What kind of name.
         what: String,
@@ -91,9 +91,18 @@ pub fn nearest_name(name: &str, known: &[String]) -> Option<String> {
     (distance(best) <= 1 + name.chars().count() / 3).then(|| best.clone())
 }
 
+/// The name behind its kind, before what it would belong to: "key 'fow' of a camera".
+fn named(what: &str, name: &str) -> String {
+    match what.split_once(" of ") {
+        Some((what, whole)) => format!("{what} '{name}' of {whole}"),
+        None => format!("{what} '{name}'"),
+    }
+}
+
 fn suggestion(nearest: &Option<String>, known: &[String]) -> String {
     match nearest {
         Some(name) => format!("; did you mean '{name}'?"),
+        None if known.is_empty() => ", nor any other".to_owned(),
         None => format!(" (known: {})", known.join(", ")),
     }
 }

@@ -1,5 +1,6 @@
 //! `cargo xtask dist`: the binary as it is released, static where that can be had, in an archive with its
-//! notices, completions and man pages, and the archive's SHA-256 beside it.
+//! licences, completions, man pages and scenes, and the archive's SHA-256 beside it. The profile is `dist` of
+//! `Cargo.toml`.
 //!
 //! The archive is a function of the sources and the toolchain: no time, owner or path of the machine that
 //! builds it gets in.
@@ -16,6 +17,9 @@ use std::process::Command;
 
 /// What goes along with the binary.
 const PAGES: &[&str] = &["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICES];
+
+/// The scenes that the front page's commands name.
+const SCENES: &str = "scenes";
 
 const SHELLS: &[&str] = &["bash", "zsh", "fish", "powershell", "elvish"];
 
@@ -78,20 +82,20 @@ fn install(triple: &str) -> bool {
 fn build(target: &Target) -> Result<PathBuf> {
     let triple = target.triple.as_str();
     let mut command =
-        cargo(&["build", "--locked", "--release", "--package", "bilux-cli", "--target", triple]);
+        cargo(&["build", "--locked", "--profile", "dist", "--package", "bilux-cli", "--target", triple]);
     let variable = format!("CARGO_TARGET_{}_RUSTFLAGS", triple.to_uppercase().replace('-', "_"));
-    command.env(variable, flags()).env("CARGO_PROFILE_RELEASE_STRIP", "symbols");
-    run_process(&mut command)?;
-    Ok(target_folder().join(triple).join("release").join("bilux"))
+    run_process(command.env(variable, flags(target.is_static)))?;
+    Ok(target_folder().join(triple).join("dist").join("bilux"))
 }
 
 /// Messages of panics name source files: from the root of the repository and of cargo's home, not of this
 /// machine's disk.
-fn flags() -> String {
+fn flags(is_static: bool) -> String {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
     let remap = |from: PathBuf, to: &str| format!("--remap-path-prefix={}={to}", from.display());
-    let mut flags = vec!["-Ctarget-feature=+crt-static".to_owned(), remap(root(), "bilux")];
+    let mut flags = vec![remap(root(), "bilux")];
+    flags.extend(is_static.then(|| "-Ctarget-feature=+crt-static".to_owned()));
     flags.extend(home.map(|home| remap(home, "cargo")));
     flags.join(" ")
 }
@@ -113,11 +117,23 @@ fn assemble(folder: &Path, binary: &Path) -> Result<()> {
     for page in PAGES {
         fs::copy(root().join(page), folder.join(page)).with_context(|| format!("cannot copy {page}"))?;
     }
+    copy_folder(&root().join(SCENES), &folder.join(SCENES))?;
     for shell in SHELLS {
         let text = output(Command::new(folder.join("bilux")).args(["completions", shell]))?;
         fs::write(completions.join(format!("bilux.{shell}")), text)?;
     }
     run_process(Command::new(folder.join("bilux")).arg("man").arg(folder.join("man")))
+}
+
+/// Copies the files of a folder; there is none in it.
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
+    for entry in fs::read_dir(from).with_context(|| format!("cannot read {}", from.display()))? {
+        let entry = entry?;
+        fs::copy(entry.path(), to.join(entry.file_name()))
+            .with_context(|| format!("cannot copy {}", entry.path().display()))?;
+    }
+    Ok(())
 }
 
 /// Packs the folder, the same way every time.
@@ -155,6 +171,6 @@ mod tests {
 
     #[test]
     fn the_folder_of_the_repository_is_renamed() {
-        assert!(flags().contains(&format!("--remap-path-prefix={}=bilux", root().display())));
+        assert!(flags(true).contains(&format!("--remap-path-prefix={}=bilux", root().display())));
     }
 }

@@ -4,13 +4,13 @@ use super::{DONE, check_folder};
 use crate::arguments::{Bench, BenchKind, Common};
 use crate::output;
 use anyhow::Context;
-use bilux::settings::parse_size;
+use bilux::settings::{no_size, parse_size};
 use bilux_bench::Options;
 
 pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     let defaults = Options::default();
     let size = match &arguments.size {
-        Some(text) => parse_size(text).context("a size is written as 640x480")?,
+        Some(text) => parse_size(text).with_context(|| no_size(text))?,
         None => defaults.size,
     };
     let options = Options {

@@ -3,10 +3,11 @@
 use super::{DONE, check_folder, read_options, tell_warnings};
 use crate::arguments::{Common, Convert};
 use crate::usage;
-use anyhow::bail;
+use anyhow::anyhow;
 use bilux::formats::WriteOptions;
 use bilux::pictures::Limits;
 use bilux::pictures::formats::format_of_path;
+use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
@@ -18,18 +19,23 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             bilux::pictures::write(output, &picture, &Default::default())?;
         }
         (false, false) => {
+            bilux::formats::format_of_path(output).map_err(usage::wrong)?;
             let scene = bilux::load(input, &read_options(common))?;
             tell_warnings(&scene.warnings, common)?;
             let options = WriteOptions { ascii: arguments.ascii };
             let lost = bilux::formats::write(output, &scene, &options)?;
             tell_warnings(&lost, common)?;
         }
-        (false, true) => bail!(
-            "{} is a scene and {} a picture: that is what `bilux render` does",
-            input.display(),
-            output.display()
-        ),
-        (true, false) => bail!("{} is a picture, {} a scene", input.display(), output.display()),
+        (false, true) => {
+            return Err(mismatch(input, output, "a scene", "a picture: that is what `bilux render` does"));
+        }
+        (true, false) => {
+            return Err(mismatch(input, output, "a picture", "a scene: name a picture, such as out.png"));
+        }
     }
     Ok(DONE)
+}
+
+fn mismatch(input: &Path, output: &Path, one: &str, other: &str) -> anyhow::Error {
+    usage::wrong(anyhow!("{} is {one}, and {} {other}", input.display(), output.display()))
 }

@@ -10,13 +10,14 @@ use bilux::scene::{Spec, Value};
 
 pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
+    bilux::formats::format_of_path(&arguments.output).map_err(usage::wrong)?;
     let scene = match &arguments.from {
         Some(file) => {
             let model = bilux::load(file, &read_options(common))?;
             let offset = arguments.offset.map_or(Vec3::X, Vec3::from);
             bilux::scene::generators::copies(&model, arguments.count.unwrap_or(1), offset)
         }
-        None => bilux::generate(&spec(arguments)?)?,
+        None => bilux::generate(&spec(arguments).map_err(usage::wrong)?).map_err(usage::wrong)?,
     };
     tell_warnings(&scene.warnings, common)?;
     let lost = bilux::formats::write(&arguments.output, &scene, &WriteOptions::default())?;

@@ -73,7 +73,8 @@ fn read_scene(path: &Path, arguments: &Render, common: &Common) -> anyhow::Resul
         let format = arguments
             .input_format
             .as_deref()
-            .context("say what comes from standard input: --input-format toml (see `bilux list formats`)")?;
+            .context("say what comes from standard input: --input-format toml (see `bilux list formats`)")
+            .map_err(usage::wrong)?;
         let mut bytes = Vec::new();
         std::io::stdin().take(common.max_memory).read_to_end(&mut bytes)?;
         bilux::formats::read_bytes(&bytes, format, Some(Path::new(".")), "standard input", &options)?
@@ -99,6 +100,7 @@ fn render_one(
     let begun = Instant::now();
     let mut job = Job::new(&scene, user)?;
     let build_seconds = begun.elapsed().as_secs_f64();
+    tell_warnings(job.warnings(), common)?;
     if let Some((from, to)) = arguments.samples {
         job.samples(from..to);
     }

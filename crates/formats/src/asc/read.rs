@@ -3,7 +3,7 @@
 use crate::FormatError;
 use crate::float::parse_f32;
 use crate::reading::{Oddities, Reading, Source, plain_material};
-use crate::text::{Cursor, Places, name_of, quoted};
+use crate::text::{Cursor, Places, name_of, no_text, quoted};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::collections::HashMap;
@@ -29,7 +29,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         group: Group { name: source.stem(), ..Group::default() },
         materials: HashMap::new(),
     };
-    reader.groups()?;
+    reader.groups().map_err(|error| no_text(error, source))?;
     let Asc { mut scene, oddities, places, .. } = reader;
     if scene.objects.is_empty() {
         let message = "there is no triangle in it: each is a line with a word, then three lines of 8 numbers \
@@ -199,7 +199,10 @@ impl Asc<'_, '_, '_> {
             let more = self.line_of_numbers()?;
             let fits = if broken { count + more.count <= needed } else { more.count == stride };
             if !fits {
-                let message = format!("this vertex has {} numbers, where {stride} were expected", more.count);
+                let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
+                let count = more.count;
+                let message =
+                    format!("this vertex has {count} numbers, where {stride} were expected{cut_off}");
                 return Err(FormatError::malformed(message, self.places.at(line)));
             }
             numbers.values[count..count + more.count].copy_from_slice(&more.values[..more.count]);

@@ -6,7 +6,7 @@ use crate::float::parse_f32;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
-use crate::text::{Cursor, Places, name_of, quoted};
+use crate::text::{Cursor, Places, name_of, no_text, quoted};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Object, SceneBuilder};
 use std::collections::HashMap;
@@ -26,7 +26,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         smoothing: BY_ANGLE,
         in_run: false,
     };
-    reader.statements()?;
+    reader.statements().map_err(|error| no_text(error, source))?;
     reader.finish()
 }
 
@@ -151,7 +151,9 @@ impl Obj<'_, '_, '_> {
         }
         if count < least {
             let at = self.places.at(self.cursor.offset());
-            let message = format!("there are {count} numbers on this line, where {least} are needed");
+            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
+            let message =
+                format!("there are {count} numbers on this line, where {least} are needed{cut_off}");
             return Err(FormatError::malformed(message, at));
         }
         if odd {

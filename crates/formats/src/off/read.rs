@@ -6,7 +6,7 @@ use crate::float::parse_f32;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
-use crate::text::{Cursor, Places, quoted};
+use crate::text::{Cursor, Places, no_text, quoted};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::SceneBuilder;
@@ -23,7 +23,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         smoothing: BY_ANGLE,
         oddities: Oddities::default(),
     };
-    let columns = reader.first_word()?;
+    let columns = reader.first_word().map_err(|error| no_text(error, source))?;
     let [vertices, faces] = reader.counts()?;
     reader.vertices(vertices, columns)?;
     reader.faces(faces, columns)?;

@@ -263,11 +263,11 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
     let cases = [
         (
             "[[modle]]\nshape = \"box\"\n",
-            "scene.toml:1:3: there is no key of a scene 'modle'; did you mean 'model'?",
+            "scene.toml:1:3: there is no key 'modle' of a scene; did you mean 'model'?",
         ),
         (
             "[[model]]\nshape = \"box\"\nmaterail = \"x\"\n",
-            "scene.toml:3:1: there is no key of a model made of 'box' 'materail'; did you mean 'material'?",
+            "scene.toml:3:1: there is no key 'materail' of a model made of 'box'; did you mean 'material'?",
         ),
         ("[[model]]\nshape = \"boks\"\n", "scene.toml:2:9: there is no shape 'boks'; did you mean 'box'?"),
         (
@@ -307,7 +307,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ("[[material]]\nname = \"a\"\nkind = \"glas\"\n", "scene.toml:3:8: there is no material 'glas'"),
         (
             "[[material]]\nname = \"a\"\nkind = \"phong\"\nexponnent = 3\n",
-            "scene.toml:4:1: there is no key of the material 'phong' 'exponnent'; did you mean 'exponent'?",
+            "scene.toml:4:1: there is no key 'exponnent' of the material 'phong'; did you mean 'exponent'?",
         ),
         (
             "[[material]]\nname = \"a\"\nkind = \"phong\"\nkd = 2\n",
@@ -319,11 +319,11 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ),
         (
             "[[light]]\nkind = \"point\"\npostion = [1, 1, 1]\n",
-            "scene.toml:3:1: there is no key of the light 'point' 'postion'; did you mean 'position'?",
+            "scene.toml:3:1: there is no key 'postion' of the light 'point'; did you mean 'position'?",
         ),
         (
             "[camera]\nkeyframes = [{ time = 0, fow = 3 }]\n",
-            "scene.toml:2:26: there is no key of a camera's keyframe 'fow'; did you mean 'fov'?",
+            "scene.toml:2:26: there is no key 'fow' of a camera's keyframe; did you mean 'fov'?",
         ),
         ("[camera]\nposition = 2020-01-01\n", "scene.toml:2:12: a scene has no dates"),
         ("[render]\nspp = { a = 1 }\n", "scene.toml:2:7: spp is a table"),

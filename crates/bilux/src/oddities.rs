@@ -1,0 +1,107 @@
+//! What is odd about a picture before it is rendered, though it can be.
+
+use bilux_math::{Vec2, Vec3};
+use bilux_scene::{Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, Span, Surface, Tracer, Warning};
+
+/// Warnings about a scene, as it was before anything was made up for, and as a camera sees it.
+pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let mut warn =
+        |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
+    if !given.objects.iter().any(|object| has_finite_triangle(&object.mesh)) {
+        warn("there is nothing to be seen: no triangle has corners that are all numbers");
+    } else if is_in_glass(scene, camera) {
+        warn(
+            "the camera is inside of something transparent, and sees all through it: move the camera out, \
+             unless this is meant",
+        );
+    }
+    warnings
+}
+
+fn has_finite_triangle(mesh: &Mesh) -> bool {
+    let is_finite = |&i: &u32| mesh.positions.get(i as usize).is_some_and(|p| p.is_finite());
+    mesh.triangles.iter().any(|triangle| triangle.iter().all(is_finite))
+}
+
+/// Directions that meet no wall of an ordinary room at an edge.
+const AROUND: [Vec3; 6] = [
+    Vec3::new(0.91, 0.11, 0.4),
+    Vec3::new(-0.93, -0.13, 0.34),
+    Vec3::new(0.21, 0.92, -0.33),
+    Vec3::new(-0.17, -0.94, -0.3),
+    Vec3::new(0.31, -0.23, 0.92),
+    Vec3::new(-0.37, 0.19, -0.91),
+];
+
+/// True when rays that way all leave some transparent solid once more than they enter it.
+fn is_in_glass(scene: &Scene, camera: &dyn Camera) -> bool {
+    let sample = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: scene.shutter()[0] };
+    let eye = camera.ray(&sample);
+    let inside_of = |direction: &Vec3| solids_around(scene, Ray { direction: direction.to_array(), ..eye });
+    let mut around = inside_of(&AROUND[0]);
+    for direction in &AROUND[1..] {
+        if around.is_empty() {
+            return false;
+        }
+        let also = inside_of(direction);
+        around.retain(|object| also.contains(object));
+    }
+    !around.is_empty()
+}
+
+/// Surfaces that a ray is followed through; who is behind more than that is not looked for.
+const MOST_SURFACES: usize = 256;
+
+/// Transparent objects that a ray leaves more often than it enters.
+fn solids_around(scene: &Scene, mut ray: Ray) -> Vec<u32> {
+    let mut tracer = Tracer::new(scene, false);
+    let mut left: Vec<(u32, i32)> = Vec::new();
+    for _ in 0..MOST_SURFACES {
+        let Some(surface) = tracer.closest(&ray) else { break };
+        let direction = Vec3::from(ray.direction);
+        if is_solid_glass(scene, &surface) {
+            let step = if surface.n_geom.dot(direction) > 0.0 { 1 } else { -1 };
+            match left.iter_mut().find(|(object, _)| *object == surface.object) {
+                Some((_, count)) => *count += step,
+                None => left.push((surface.object, step)),
+            }
+        }
+        ray = surface.spawn(direction);
+    }
+    left.into_iter().filter(|(_, count)| *count > 0).map(|(object, _)| object).collect()
+}
+
+fn is_solid_glass(scene: &Scene, surface: &Surface) -> bool {
+    let classic = scene.material(surface).classic(surface);
+    !classic.kt.is_black() && !classic.thin
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Job;
+    use bilux_math::Vec3;
+    use bilux_scene::cameras::CameraSpec;
+    use bilux_scene::{Object, Parameters, SceneBuilder, Spec, Value, generators::shapes};
+    use std::sync::Arc;
+
+    /// Warnings when a camera stands there, with a ball of this material at the origin.
+    fn told(material: Spec, position: [f32; 3]) -> Vec<String> {
+        let mut scene = SceneBuilder::default();
+        let material = scene.add_material(material);
+        scene.objects.push(Object::new("ball", Arc::new(shapes::icosphere(Vec3::ZERO, 1.0, 3)), material));
+        let camera = Spec::new("", "perspective").with("position", Value::triple(position));
+        let camera = camera.with("look_at", Value::triple([0.0, 0.1, 9.0]));
+        scene.cameras.push(CameraSpec { spec: camera, ..CameraSpec::default() });
+        let job = Job::new(&scene, &Parameters::default()).unwrap();
+        job.warnings().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_camera_inside_glass_is_told_and_no_other() {
+        let glass = || Spec::new("glass", "dielectric");
+        assert!(told(glass(), [0.1, 0.2, 0.0])[0].contains("inside of something transparent"));
+        assert!(told(glass(), [0.0, 0.0, -3.0]).is_empty(), "outside");
+        assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "a room");
+    }
+}
