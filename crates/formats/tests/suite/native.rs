@@ -414,7 +414,7 @@ fn a_file_that_is_no_file_is_told() {
     let missing = read(&folder.path().join("none.obj"), &ReadOptions::default()).unwrap_err().to_string();
     assert!(missing.contains("none.obj: cannot open it"), "{missing}");
     let message = read(folder.path(), &ReadOptions::default()).unwrap_err().to_string();
-    assert!(message.contains("cannot read it"), "{message}");
+    assert!(message.contains("this is a folder: name a scene file in it"), "{message}");
     std::fs::create_dir(folder.path().join("t.obj")).unwrap();
     let message = file_refusal(&[("a.toml", "[[model]]\nfile = \".\"\n")]);
     assert!(message.contains("there is no file '.'"), "{message}");
