@@ -1,5 +1,6 @@
 //! Whatever a comment cites, `[Woop 2013]` or `[Schlick 1994, eq. 15]`, and whatever an entry of a
-//! registry names as its source, has its line in `REFERENCES.md`, which begins `- **[Woop 2013]**`.
+//! registry names as its source, has its line in `REFERENCES.md`, which begins `- **[Woop 2013]**`; and what
+//! stands there is cited by some file of code.
 
 use super::Violation;
 use super::repository::Repository;
@@ -21,7 +22,19 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
             }
         }
     }
+    let uncited = |key: &&str| !repository.rust().any(|(file, _)| is_named(&file.text, key));
+    for key in keys.iter().filter(|key| uncited(key)) {
+        violations.push(Violation::new(LIST, 0, format!("[{key}] is cited by no code")));
+    }
     violations
+}
+
+/// Whether a text has a key, which a comment may break after any of its words.
+fn is_named(text: &str, key: &str) -> bool {
+    text.contains(key) || {
+        let words: Vec<_> = text.split_whitespace().filter(|word| !word.starts_with("//")).collect();
+        words.join(" ").contains(key)
+    }
 }
 
 /// The keys of the list; one that stands there twice is a violation.
@@ -71,7 +84,8 @@ mod tests {
     const FOUND: &str = "- **[Woop 2013]** S. Woop, C. Benthin, I. Wald.\n";
 
     fn check_text(text: &str) -> Vec<usize> {
-        let repository = Repository::planted(&[("REFERENCES.md", FOUND), ("a.rs", text)]);
+        let cites = ("b.rs", "// [Woop\n// 2013]\n");
+        let repository = Repository::planted(&[("REFERENCES.md", FOUND), ("a.rs", text), cites]);
         check(&repository).into_iter().map(|found| found.line).collect()
     }
 
@@ -92,8 +106,11 @@ mod tests {
 
     #[test]
     fn a_key_stands_once() {
-        let twice = Repository::planted(&[("REFERENCES.md", &FOUND.repeat(2))]);
+        let cites = ("b.rs", "// [Woop 2013]\n");
+        let twice = Repository::planted(&[("REFERENCES.md", &FOUND.repeat(2)), cites]);
         assert_eq!(check(&twice), [Violation::new("REFERENCES.md", 2, "[Woop 2013] stands here twice")]);
         assert_eq!(check(&Repository::default()).len(), 1, "no list at all");
+        let alone = Repository::planted(&[("REFERENCES.md", FOUND)]);
+        assert_eq!(check(&alone), [Violation::new("REFERENCES.md", 0, "[Woop 2013] is cited by no code")]);
     }
 }
