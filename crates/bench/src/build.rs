@@ -57,16 +57,19 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
     Ok(Report { rows, text: table("Building trees over teapots", &header, &cells), picture: None })
 }
 
-/// All triangles of a scene of teapots, in world space.
+/// All triangles of a scene of teapots, in world space, with the objects as groups.
 pub(crate) fn mesh(count: u32, layout: &str) -> Result<Arc<TriangleMesh>, Error> {
     let scene = crate::teapots::scene(count, layout)?;
-    let mut corners = Vec::new();
+    let (mut corners, mut groups) = (Vec::new(), Vec::new());
     for object in &scene.objects {
         let to_world = object.motion.at(0.0);
         let corner = |i: u32| -> Vec3 { to_world.point(object.mesh.positions[i as usize]) };
+        let first = corners.len() as u32;
         corners.extend(object.mesh.triangles.iter().map(|t| t.map(|i| corner(i).to_array())));
+        groups.push(first..corners.len() as u32);
     }
     let mesh = TriangleMesh::from_corners(corners)
+        .and_then(|mesh| mesh.with_groups(groups))
         .map_err(|e| SceneError::invalid(e.to_string(), &Default::default()))?;
     Ok(Arc::new(mesh))
 }

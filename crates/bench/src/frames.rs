@@ -14,6 +14,7 @@ const FRAMES: u32 = 24;
 /// # Errors
 /// When an accelerator is not known.
 pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+    let size = options.size_or((512, 512));
     let count = options.counts.first().copied().unwrap_or(5);
     let default = ["bsp-sah", "bvh"].map(str::to_owned).to_vec();
     let accels = if options.accels.is_empty() { default } else { options.accels.clone() };
@@ -22,7 +23,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
         let scene = scene(count, motion)?;
         for accel in &accels {
             tell(&format!("{motion}, {accel}"));
-            let settings = settings(accel, options.size);
+            let settings = settings(accel, size);
             let (kept, kept_pictures) = timed(|| kept(&scene, &settings))?;
             let (anew, anew_pictures) = timed(|| anew(&scene, &settings))?;
             let same = kept_pictures == anew_pictures;
@@ -41,7 +42,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
             ]);
         }
     }
-    let title = format!("{FRAMES} frames of {count} teapots, {}x{}, whitted", options.size.0, options.size.1);
+    let title = format!("{FRAMES} frames of {count} teapots, {}x{}, whitted", size.0, size.1);
     let header = ["scene", "accel", "seconds", "all anew", "gain", "pictures"];
     Ok(Report { rows, text: table(&title, &header, &cells), picture: None })
 }

@@ -40,8 +40,8 @@ pub struct Options {
     pub counts: Vec<u32>,
     /// Accelerators; empty for the benchmark's own.
     pub accels: Vec<String>,
-    /// Width and height of pictures.
-    pub size: (u32, u32),
+    /// Width and height of pictures; the benchmark's own where not given.
+    pub size: Option<(u32, u32)>,
     /// Repeats, of which the median counts.
     pub repeats: u32,
     /// `paper`: at its fixed offset, seen by its camera; `coverage`: covering equally much of the picture.
@@ -50,13 +50,13 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Options {
-        Options {
-            counts: Vec::new(),
-            accels: Vec::new(),
-            size: (512, 512),
-            repeats: 3,
-            layout: "paper".to_owned(),
-        }
+        Options { counts: Vec::new(), accels: Vec::new(), size: None, repeats: 3, layout: "paper".to_owned() }
+    }
+}
+
+impl Options {
+    fn size_or(&self, own: (u32, u32)) -> (u32, u32) {
+        self.size.unwrap_or(own)
     }
 }
 

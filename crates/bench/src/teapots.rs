@@ -39,10 +39,20 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
     let mut rows: Vec<Row> = Vec::new();
     for &count in &counts {
         let scene = scene(count, &options.layout)?;
+        let mut rivals =
+            accels.iter().map(|accel| Rival::new(&scene, accel, options)).collect::<Result<Vec<_>, _>>()?;
+        for round in 0..options.repeats.max(1) {
+            for rival in &mut rivals {
+                // A loop over all triangles takes long enough to be timed once.
+                if round == 0 || !rival.is_loop() {
+                    tell(&format!("{count} teapots by {}, round {}", rival.accel, round + 1));
+                    rival.race()?;
+                }
+            }
+        }
         let first = rows.len();
-        for accel in &accels {
-            tell(&format!("{count} teapots by {accel}"));
-            rows.push(measure(&scene, count, accel, options)?);
+        for rival in rivals {
+            rows.push(rival.row(count, &scene)?);
         }
         let brute = rows[first..].iter().find(|r| r.accel == "brute").map(|r| r.seconds);
         for row in &mut rows[first..] {
@@ -72,29 +82,59 @@ fn settings(accel: &str, size: (u32, u32)) -> Parameters {
     settings
 }
 
-fn measure(scene: &SceneBuilder, count: u32, accel: &str, options: &Options) -> Result<Row, Error> {
-    let (build_seconds, mut job) = timed(|| Job::new(scene, &settings(accel, options.size)))?;
-    // A loop over all triangles counts them once a ray, which costs nothing: it is timed once, counting.
-    let is_loop = accel.starts_with("brute");
-    let repeats = if is_loop { 0 } else { options.repeats.max(1) };
-    let seconds: Vec<f64> =
-        (0..repeats).map(|_| Ok(timed(|| job.render(&Quiet))?.0)).collect::<Result<_, Error>>()?;
-    job.count_work();
-    let (counted_seconds, outcome) = timed(|| job.render(&Quiet))?;
-    let trees = job.scene().geometry().instances();
-    let bytes: usize = trees.iter().map(|tree| tree.accelerator.memory_bytes()).sum();
-    let triangles: usize = scene.objects.iter().map(|o| o.mesh.triangles.len()).sum();
-    Ok(Row {
-        count,
-        accel: accel.to_owned(),
-        triangles,
-        seconds: if is_loop { counted_seconds } else { median(seconds) },
-        speedup: None,
-        build_seconds,
-        bytes_per_triangle: bytes as f64 / triangles as f64,
-        outcome_counters: outcome.counters,
-        picture: hash(&outcome)?,
-    })
+/// An accelerator in the race.
+struct Rival {
+    accel: String,
+    job: Job,
+    build_seconds: f64,
+    seconds: Vec<f64>,
+    outcome: Option<Outcome>,
+}
+
+impl Rival {
+    fn new(scene: &SceneBuilder, accel: &str, options: &Options) -> Result<Rival, Error> {
+        let (build_seconds, job) = timed(|| Job::new(scene, &settings(accel, options.size_or((512, 512)))))?;
+        Ok(Rival { accel: accel.to_owned(), job, build_seconds, seconds: Vec::new(), outcome: None })
+    }
+
+    /// True where counting costs nothing, so that one run does for time and counts.
+    fn is_loop(&self) -> bool {
+        self.accel.starts_with("brute")
+    }
+
+    fn race(&mut self) -> Result<(), Error> {
+        if self.is_loop() {
+            self.job.count_work();
+        }
+        let (seconds, outcome) = timed(|| self.job.render(&Quiet))?;
+        self.seconds.push(seconds);
+        self.outcome = Some(outcome);
+        Ok(())
+    }
+
+    fn row(mut self, count: u32, scene: &SceneBuilder) -> Result<Row, Error> {
+        let outcome = match self.outcome.take().filter(|_| self.is_loop()) {
+            Some(counted) => counted,
+            None => {
+                self.job.count_work();
+                self.job.render(&Quiet)?
+            }
+        };
+        let trees = self.job.scene().geometry().instances();
+        let bytes: usize = trees.iter().map(|tree| tree.accelerator.memory_bytes()).sum();
+        let triangles: usize = scene.objects.iter().map(|o| o.mesh.triangles.len()).sum();
+        Ok(Row {
+            count,
+            accel: self.accel,
+            triangles,
+            seconds: median(self.seconds),
+            speedup: None,
+            build_seconds: self.build_seconds,
+            bytes_per_triangle: bytes as f64 / triangles as f64,
+            outcome_counters: outcome.counters,
+            picture: hash(&outcome)?,
+        })
+    }
 }
 
 /// A hash of the picture's samples, bit for bit.
@@ -153,7 +193,7 @@ fn text(rows: &[Row], options: &Options) -> String {
             ]
         })
         .collect();
-    let (w, h) = options.size;
+    let (w, h) = options.size_or((512, 512));
     table(
         &format!("Figure 2 anew: {w}x{h}, whitted, depth 5, one thread, layout '{}'", options.layout),
         &header,

@@ -30,7 +30,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
         rows.push(json!({
             "algorithm": row.entry.name, "exact": row.exact, "seconds": seconds,
             "build_seconds": result.build_seconds, "depth_comparisons": c.depth_comparisons,
-            "sort_comparisons": c.sort_comparisons, "splits": c.splits, "overdraw": c.overdraw,
+            "sort_comparisons": c.sort_comparisons, "splits": c.splits, "overdraw": c.overdraw, "side_tests": c.side_tests,
             "wrong_pixels": wrong, "pixel_tests": c.triangle_tests, "pieces": c.pieces,
             "skipped_subtrees": c.skipped_subtrees, "windows": c.windows,
         }));
@@ -39,7 +39,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
         line.extend(numbers.iter().map(u64::to_string));
         cells.push(line);
     }
-    let (w, h) = options.size;
+    let (w, h) = options.size_or((512, 512));
     let title = format!("Seeing without rays: {count} teapots, {} triangles, {w}x{h}", mesh.len());
     let header = ["algorithm", "seconds", "depth cmp", "sort cmp", "splits", "overdraw", "wrong pixels"];
     Ok(Report { rows, text: table(&title, &header, &cells), picture: None })
@@ -63,7 +63,7 @@ fn repeated(repeats: u32, work: impl Fn() -> VisibilityResult) -> (f64, Visibili
 
 /// The view of the teapots' camera through the pixels' centres.
 fn view(count: u32, options: &Options) -> Result<View, Error> {
-    let (width, height) = options.size;
+    let (width, height) = options.size_or((512, 512));
     let mut settings = Parameters::default();
     settings.set("size", bilux::scene::Value::Text(format!("{width}x{height}")));
     let job = Job::new(&crate::teapots::scene(count, &options.layout)?, &settings)?;

@@ -9,10 +9,8 @@ use bilux_bench::Options;
 
 pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     let defaults = Options::default();
-    let size = match &arguments.size {
-        Some(text) => parse_size(text).with_context(|| no_size(text))?,
-        None => defaults.size,
-    };
+    let size = |text: &String| parse_size(text).with_context(|| no_size(text));
+    let size = arguments.size.as_ref().map(size).transpose()?;
     let options = Options {
         counts: arguments.counts.clone(),
         accels: arguments.accel.clone(),
