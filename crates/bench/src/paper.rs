@@ -22,7 +22,7 @@ const COSTS: [u32; 5] = [1, 4, 16, 64, 256];
 /// When something cannot be rendered.
 pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
     let scene = bilux::generate(&Spec::new("", "trio"))?;
-    let size = options.size_or((384, 216));
+    let size = options.size_or((256, 144));
     let mask = mirror_mask(&scene, size)?;
     tell(&format!("path, converged: {CONVERGED} samples"));
     let (_, converged) = render(&scene, "path", CONVERGED, 1, size)?;
