@@ -6,9 +6,9 @@
 pub enum CpuLevel {
     /// What every machine of the target has.
     Baseline,
-    /// AVX2, eight lanes.
+    /// AVX2 with FMA, BMI and its kin, as all have since 2013: eight lanes.
     Avx2,
-    /// AVX-512 F, sixteen lanes.
+    /// AVX-512 F, VL, DQ and BW, as all for servers have since 2017: sixteen lanes, and masks for eight.
     Avx512,
 }
 
@@ -20,10 +20,14 @@ impl CpuLevel {
     pub fn detect() -> CpuLevel {
         #[cfg(target_arch = "x86_64")]
         {
-            if std::arch::is_x86_feature_detected!("avx512f") {
+            use std::arch::is_x86_feature_detected as has;
+            let avx2 = has!("avx2") && has!("fma") && has!("lzcnt") && has!("popcnt");
+            let avx2 = avx2 && has!("bmi1") && has!("bmi2");
+            let avx512 = has!("avx512f") && has!("avx512vl") && has!("avx512dq") && has!("avx512bw");
+            if avx2 && avx512 {
                 return CpuLevel::Avx512;
             }
-            if std::arch::is_x86_feature_detected!("avx2") {
+            if avx2 {
                 return CpuLevel::Avx2;
             }
         }

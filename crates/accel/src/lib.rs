@@ -24,6 +24,7 @@ pub mod brute_force;
 pub mod brute_simd;
 pub mod bsp;
 pub mod bvh;
+pub mod bvh8;
 pub mod counters;
 pub mod cpu_level;
 pub mod instancing;
@@ -37,6 +38,7 @@ pub mod visibility;
 
 pub use accelerator::{Accelerator, Traverse, TreeShape};
 pub use bvh::Bvh;
+pub use bvh8::Bvh8;
 pub use counters::Counters;
 pub use cpu_level::CpuLevel;
 pub use instancing::{Instance, TopLevel, TwoLevel};

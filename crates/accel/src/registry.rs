@@ -3,13 +3,20 @@
 use crate::accelerator::Accelerator;
 use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
-use crate::{brute_force, brute_simd, bsp, bvh, kd_tree};
+use crate::{brute_force, brute_simd, bsp, bvh, bvh8, kd_tree};
 use bilux_math::registry::Entry;
 use std::sync::Arc;
 
 /// Every structure that there is.
-pub const ACCELERATORS: &[AcceleratorEntry] =
-    &[brute_force::ENTRY, brute_simd::ENTRY, bsp::paper::ENTRY, bsp::sah::ENTRY, kd_tree::ENTRY, bvh::ENTRY];
+pub const ACCELERATORS: &[AcceleratorEntry] = &[
+    brute_force::ENTRY,
+    brute_simd::ENTRY,
+    bsp::paper::ENTRY,
+    bsp::sah::ENTRY,
+    kd_tree::ENTRY,
+    bvh::ENTRY,
+    bvh8::ENTRY,
+];
 
 /// The structure that `auto` stands for: the fastest.
 pub const AUTO: &str = "bvh";

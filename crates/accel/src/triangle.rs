@@ -103,8 +103,9 @@ impl PreparedRay {
         [(vertex[kx] - o[kx]) - shear_x * z, (vertex[ky] - o[ky]) - shear_y * z, z]
     }
 
+    /// What is left of [`PreparedRay::cross`] for the corners in sheared space.
     #[inline]
-    fn cross_exactly(&self, a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<Crossing> {
+    pub(crate) fn cross_exactly(&self, a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<Crossing> {
         let [ax, ay, az] = a.map(f64::from);
         let [bx, by, bz] = b.map(f64::from);
         let [cx, cy, cz] = c.map(f64::from);
@@ -186,8 +187,15 @@ pub fn hits(ray: &PreparedRay, culling: Culling, triangle: &[[f32; 3]; 3], primi
     ray.cross(triangle).is_some_and(|crossing| counts(ray, culling, &crossing, primitive, ray.ray.t_max))
 }
 
+/// True when a crossing is between the ends of the ray that count, and on a side that does.
 #[inline(always)]
-fn counts(ray: &PreparedRay, culling: Culling, crossing: &Crossing, primitive: u32, t_max: f32) -> bool {
+pub(crate) fn counts(
+    ray: &PreparedRay,
+    culling: Culling,
+    crossing: &Crossing,
+    primitive: u32,
+    t_max: f32,
+) -> bool {
     crossing.t >= ray.ray.t_min
         && crossing.t <= t_max
         && primitive != ray.ray.exclude.index

@@ -53,7 +53,7 @@ pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
             "bsp-sah" => [Quality::Fast, Quality::Balanced, Quality::Best]
                 .map(|quality| ("quality", BuildOptions { quality, ..plain.clone() }))
                 .to_vec(),
-            "brute-simd" => CpuLevel::ALL
+            "brute-simd" | "bvh8" => CpuLevel::ALL
                 .iter()
                 .filter(|&&level| level <= CpuLevel::detect())
                 .map(|&cpu_level| (cpu_level.name(), BuildOptions { cpu_level, ..plain.clone() }))

@@ -1,0 +1,88 @@
+//! What is put into the tree: boxes of triangles, four numbers at a time.
+
+use crate::bvh8::layout::Planes;
+use crate::mesh::TriangleMesh;
+use bilux_math::Vec3;
+use bilux_math::glam::Vec4;
+use rayon::prelude::*;
+
+/// The box of a triangle. The fourth numbers hold the two halves of its index, as whole numbers: bits of an index
+/// would be denormal numbers, which are slow.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    low: Vec4,
+    high: Vec4,
+}
+
+impl Item {
+    pub(super) fn new(planes: &Planes, index: u32) -> Item {
+        let with = |corner: [f32; 3], half: u32| Vec3::from(corner).extend(half as f32);
+        Item { low: with(planes[0], index & 0xffff), high: with(planes[1], index >> 16) }
+    }
+
+    pub(super) fn index(&self) -> u32 {
+        self.low.w as u32 | (self.high.w as u32) << 16
+    }
+
+    #[inline(always)]
+    pub(super) fn centre(&self) -> Vec4 {
+        self.low * 0.5 + self.high * 0.5
+    }
+}
+
+/// A box that grows; the fourth numbers mean nothing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    pub(super) low: Vec4,
+    pub(super) high: Vec4,
+}
+
+impl Bounds {
+    pub(super) const EMPTY: Bounds = Bounds { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
+
+    pub(super) fn of(items: &[Item]) -> Bounds {
+        items.iter().fold(Bounds::EMPTY, |all, item| all.with(item))
+    }
+
+    #[inline(always)]
+    pub(super) fn with(self, item: &Item) -> Bounds {
+        Bounds { low: self.low.min(item.low), high: self.high.max(item.high) }
+    }
+
+    #[inline(always)]
+    pub(super) fn with_point(self, point: Vec4) -> Bounds {
+        Bounds { low: self.low.min(point), high: self.high.max(point) }
+    }
+
+    #[inline(always)]
+    pub(super) fn union(self, other: Bounds) -> Bounds {
+        Bounds { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    #[inline(always)]
+    pub(super) fn half_area(&self) -> f32 {
+        let e = self.high - self.low;
+        e.x * (e.y + e.z) + e.y * e.z
+    }
+
+    pub(super) fn planes(&self) -> Planes {
+        [self.low.truncate().to_array(), self.high.truncate().to_array()]
+    }
+}
+
+/// One for each triangle that is finite, in their order.
+pub(super) fn items_of(mesh: &TriangleMesh) -> Vec<Item> {
+    let item = |(index, corners): (usize, &[[f32; 3]; 3])| {
+        let [a, b, c] = corners.map(Vec3::from);
+        let planes = [a.min(b).min(c).to_array(), a.max(b).max(c).to_array()];
+        // Zero times a finite number is zero, and NaN otherwise.
+        let finite = ((a * 0.0 + b * 0.0) + c * 0.0).cmpeq(Vec3::ZERO).all();
+        (Item::new(&planes, index as u32), finite)
+    };
+    let all = mesh.triangles().par_iter().enumerate().with_min_len(4096).map(item);
+    if mesh.triangles().par_iter().with_min_len(4096).all(|t| t.iter().flatten().all(|x| x.is_finite())) {
+        all.map(|(item, _)| item).collect()
+    } else {
+        all.filter_map(|(item, finite)| finite.then_some(item)).collect()
+    }
+}

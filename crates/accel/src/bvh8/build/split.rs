@@ -1,0 +1,182 @@
+//! Where to cut a set of items: the surface-area heuristic over bins [Wald 2007], in blocks of triangles.
+
+use super::item::{Bounds, Item};
+use crate::bvh8::layout::LANES;
+use bilux_math::glam::Vec4;
+use rayon::prelude::*;
+
+/// Bins an axis, for many items.
+pub(super) const BINS: usize = 16;
+/// From this many items on, one pass over them is shared by threads.
+const PARALLEL_PASS: usize = 1 << 16;
+/// Items that a thread takes of such a pass.
+const CHUNK: usize = 1 << 14;
+
+/// A cut between two bins.
+pub(super) struct Split {
+    grid: Grid,
+    axis: usize,
+    /// The first bin that goes to the right.
+    bin: u32,
+    pub(super) counts: [usize; 2],
+    pub(super) bounds: [Bounds; 2],
+}
+
+/// Maps centres to bins along each axis.
+#[derive(Clone, Copy)]
+struct Grid {
+    least: Vec4,
+    scale: Vec4,
+    bins: usize,
+}
+
+/// 1.5 · 2²³: floats around this have no fraction, and their low bits are a whole number.
+const WHOLE: f32 = 12_582_912.0;
+
+impl Grid {
+    fn new(centres: &Bounds, len: usize) -> Grid {
+        let bins = (4 + len / 8).min(BINS);
+        let extent = centres.high - centres.low;
+        // A little less, so that the greatest centre falls into the last bin.
+        let scale = Vec4::splat(bins as f32 * 0.9999) / extent;
+        let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
+        Grid {
+            least: centres.low,
+            scale: Vec4::new(sound(scale.x), sound(scale.y), sound(scale.z), 0.0),
+            bins,
+        }
+    }
+
+    /// The bin on each axis, by rounding to whole numbers.
+    #[inline(always)]
+    fn bins_of(&self, item: &Item) -> [usize; 3] {
+        let place = (item.centre() - self.least) * self.scale - Vec4::splat(0.5) + Vec4::splat(WHOLE);
+        let bin = |x: f32| (x.to_bits() as usize & 0xff).min(self.bins - 1);
+        [bin(place.x), bin(place.y), bin(place.z)]
+    }
+}
+
+type Bins = [[(Bounds, u32); BINS]; 3];
+
+const NO_ITEMS: (Bounds, u32) = (Bounds::EMPTY, 0);
+
+/// The cheapest cut; `None` when there is nothing to choose, as when all centres are one.
+pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
+    let grid = Grid::new(centres, items.len());
+    if grid.scale == Vec4::ZERO {
+        return None;
+    }
+    let bins = if items.len() >= PARALLEL_PASS {
+        let parts = items.par_chunks(CHUNK).map(|items| Box::new(fill(items, &grid)));
+        *parts.reduce(|| Box::new([[NO_ITEMS; BINS]; 3]), merge)
+    } else {
+        fill(items, &grid)
+    };
+    let mut best: Option<(f32, Split)> = None;
+    for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+        sweep(&bins[axis], grid, axis, &mut best);
+    }
+    best.map(|(_, split)| split)
+}
+
+#[inline]
+fn fill(items: &[Item], grid: &Grid) -> Bins {
+    let mut bins = [[NO_ITEMS; BINS]; 3];
+    for item in items {
+        let places = grid.bins_of(item);
+        for (axis, bins) in bins.iter_mut().enumerate() {
+            let (bounds, count) = &mut bins[places[axis]];
+            *bounds = bounds.with(item);
+            *count += 1;
+        }
+    }
+    bins
+}
+
+fn merge(mut a: Box<Bins>, b: Box<Bins>) -> Box<Bins> {
+    for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
+        *a = (a.0.union(b.0), a.1 + b.1);
+    }
+    a
+}
+
+/// Blocks that so many triangles fill.
+#[inline(always)]
+pub(super) fn blocks(count: u32) -> f32 {
+    count.div_ceil(LANES as u32) as f32
+}
+
+fn sweep(bins: &[(Bounds, u32); BINS], grid: Grid, axis: usize, best: &mut Option<(f32, Split)>) {
+    let mut right = [(Bounds::EMPTY, 0, 0.0f32); BINS];
+    let (mut bounds, mut count) = NO_ITEMS;
+    for bin in (1..grid.bins).rev() {
+        (bounds, count) = (bounds.union(bins[bin].0), count + bins[bin].1);
+        right[bin] = (bounds, count, bounds.half_area() * blocks(count));
+    }
+    let (mut bounds, mut count) = NO_ITEMS;
+    for bin in 1..grid.bins {
+        (bounds, count) = (bounds.union(bins[bin - 1].0), count + bins[bin - 1].1);
+        let (right_bounds, right_count, right_cost) = right[bin];
+        let cost = bounds.half_area() * blocks(count) + right_cost;
+        // Costs beyond all numbers say nothing; empty sides make such too.
+        let usable = count > 0 && right_count > 0 && cost < f32::INFINITY;
+        if usable && best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            let counts = [count as usize, right_count as usize];
+            let split = Split { grid, axis, bin: bin as u32, counts, bounds: [bounds, right_bounds] };
+            *best = Some((cost, split));
+        }
+    }
+}
+
+/// What lies on both sides of a cut.
+pub(super) struct Halves {
+    /// Items of the left side.
+    pub(super) middle: usize,
+    pub(super) bounds: [Bounds; 2],
+    /// Around the centres.
+    pub(super) centres: [Bounds; 2],
+}
+
+/// Moves the items of the left side to the front.
+pub(super) fn partition(items: &mut [Item], split: &Split) -> Halves {
+    let is_left = |item: &Item| split.grid.bins_of(item)[split.axis] < split.bin as usize;
+    let [mut left, mut right] = [Bounds::EMPTY; 2];
+    let (mut front, mut back) = (0, items.len());
+    loop {
+        while front < back && is_left(&items[front]) {
+            left = left.with_point(items[front].centre());
+            front += 1;
+        }
+        if front == back {
+            break;
+        }
+        right = right.with_point(items[front].centre());
+        back -= 1;
+        while front < back && !is_left(&items[back]) {
+            right = right.with_point(items[back].centre());
+            back -= 1;
+        }
+        if front == back {
+            break;
+        }
+        left = left.with_point(items[back].centre());
+        items.swap(front, back);
+        front += 1;
+    }
+    Halves { middle: front, bounds: split.bounds, centres: [left, right] }
+}
+
+/// Cuts by number, along the axis on which centres are furthest apart.
+pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
+    let middle = items.len() / 2;
+    let spread = centres.high * 0.5 - centres.low * 0.5;
+    let axis = (1..3).fold(0, |best, axis| if spread[axis] > spread[best] { axis } else { best });
+    if spread[axis] > 0.0 {
+        items.select_nth_unstable_by(middle, |a, b| {
+            a.centre()[axis].total_cmp(&b.centre()[axis]).then(a.index().cmp(&b.index()))
+        });
+    }
+    let (left, right) = items.split_at(middle);
+    let around = |items: &[Item]| items.iter().fold(Bounds::EMPTY, |all, item| all.with_point(item.centre()));
+    Halves { middle, bounds: [Bounds::of(left), Bounds::of(right)], centres: [around(left), around(right)] }
+}

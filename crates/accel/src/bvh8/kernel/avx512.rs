@@ -1,0 +1,130 @@
+//! AVX-512 on eight lanes: masks, and compression for more than two children.
+
+use super::View;
+use super::body::{self, Level, Stack};
+use crate::bvh8::layout::WIDTH;
+use crate::bvh8::ray::WideRay;
+use crate::counters::Count;
+use crate::ray::{Hit, Query};
+use std::arch::x86_64::*;
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn closest<C: Count>(
+    view: View<'_>,
+    ray: &WideRay,
+    query: &Query,
+    count: &mut C,
+) -> Option<Hit> {
+    // SAFETY: this function is called only where its features are.
+    unsafe { body::closest::<Avx512, C>(view, ray, query, count) }
+}
+
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn any<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count: &mut C) -> bool {
+    // SAFETY: as above.
+    unsafe { body::any::<Avx512, C>(view, ray, query, count) }
+}
+
+struct Avx512;
+
+impl Level for Avx512 {
+    type Ray = super::avx2::BoxRay;
+    type Distances = __m256i;
+
+    #[inline(always)]
+    unsafe fn ray(ray: &WideRay) -> Self::Ray {
+        // SAFETY: as the trait demands.
+        unsafe { super::avx2::BoxRay::new(ray) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat(bits: i32) -> __m256i {
+        // SAFETY: as the trait demands.
+        unsafe { _mm256_set1_epi32(bits) }
+    }
+
+    #[inline(always)]
+    unsafe fn meet(ray: &Self::Ray, node: *const u8, limit: __m256i) -> (u32, __m256i) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let (enter, leave) = ray.span(node, limit);
+            (u32::from(_mm256_cmple_epi32_mask(enter, leave)), enter)
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn array(distances: __m256i) -> [u32; WIDTH] {
+        // SAFETY: both are 32 bytes.
+        unsafe { std::mem::transmute(distances) }
+    }
+
+    /// Distances with the lane in their last three bits, sorted by a network of six stages [Knuth 1998].
+    #[inline(always)]
+    unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let keys = _mm256_ternarylogic_epi32::<0xf8>(lanes, enter, _mm256_set1_epi32(!7));
+            // Those that do not count are less than all others, and come last.
+            let mut keys = _mm256_mask_compress_epi32(_mm256_set1_epi32(-1), mask as u8, keys);
+            let size = mask.count_ones();
+            if size > 4 {
+                keys = sort8(keys);
+            } else {
+                keys = sort4(keys);
+            }
+            let references = _mm256_load_si256(node.add(192).cast());
+            let sorted = _mm256_permutevar8x32_epi32(references, keys);
+            let top = stack.height;
+            _mm256_storeu_si256(stack.references.as_mut_ptr().add(top).cast(), sorted);
+            _mm256_storeu_si256(stack.enter.as_mut_ptr().add(top).cast(), keys);
+            stack.height = top + size as usize;
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let references = _mm256_load_si256(node.add(192).cast());
+            let kept = _mm256_maskz_compress_epi32(mask as u8, references);
+            _mm256_storeu_si256(stack.references.as_mut_ptr().add(stack.height).cast(), kept);
+            stack.height += mask.count_ones() as usize;
+        }
+    }
+}
+
+/// One stage of a network: each lane meets its partner, and those of the mask keep the lesser.
+macro_rules! stage {
+    ($keys:expr, $lesser:expr, $partner:expr) => {{
+        let partner = $partner;
+        let greater = _mm256_max_epi32($keys, partner);
+        _mm256_mask_min_epi32(greater, $lesser, $keys, partner)
+    }};
+}
+
+/// The first four, in descending order.
+#[inline(always)]
+unsafe fn sort4(keys: __m256i) -> __m256i {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let keys = stage!(keys, 0b1010, _mm256_shuffle_epi32::<0b10_11_00_01>(keys));
+        let keys = stage!(keys, 0b1100, _mm256_shuffle_epi32::<0b00_01_10_11>(keys));
+        stage!(keys, 0b1010, _mm256_shuffle_epi32::<0b10_11_00_01>(keys))
+    }
+}
+
+/// All eight, in descending order.
+#[inline(always)]
+unsafe fn sort8(keys: __m256i) -> __m256i {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let keys = stage!(keys, 0b1010_1010, _mm256_shuffle_epi32::<0b10_11_00_01>(keys));
+        let keys = stage!(keys, 0b1100_1100, _mm256_shuffle_epi32::<0b00_01_10_11>(keys));
+        let keys = stage!(keys, 0b1010_1010, _mm256_shuffle_epi32::<0b10_11_00_01>(keys));
+        let reverse = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
+        let keys = stage!(keys, 0b1111_0000, _mm256_permutevar8x32_epi32(keys, reverse));
+        let keys = stage!(keys, 0b1100_1100, _mm256_shuffle_epi32::<0b01_00_11_10>(keys));
+        stage!(keys, 0b1010_1010, _mm256_shuffle_epi32::<0b10_11_00_01>(keys))
+    }
+}

@@ -1,0 +1,68 @@
+//! Walking through the tree: one body, written over what a level of instructions can do.
+//!
+//! Each wide level has one function for each query that is compiled for its instructions, so that all of the body
+//! comes out in them. Who calls has made sure that the machine has them.
+#![allow(unsafe_code)] // Loads by pointer and instructions of a level; each block says why it is sound.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod block;
+#[cfg(target_arch = "x86_64")]
+mod body;
+mod plain;
+
+use super::layout::{Ref, Unit};
+use super::ray::WideRay;
+use crate::counters::Count;
+use crate::cpu_level::CpuLevel;
+use crate::ray::{Hit, Query};
+
+/// What is walked through. The root is a node or a leaf of `units`, and so is all that it refers to.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) units: &'a [Unit],
+    pub(super) root: Ref,
+}
+
+/// The nearest hit.
+#[inline]
+pub(super) fn closest<C: Count>(
+    level: CpuLevel,
+    view: View<'_>,
+    ray: &WideRay,
+    query: &Query,
+    count: &mut C,
+) -> Option<Hit> {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: a structure holds a level that `available` found on this machine; the ray is tame.
+        CpuLevel::Avx512 if ray.is_tame => unsafe { avx512::closest(view, ray, query, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx2 if ray.is_tame => unsafe { avx2::closest(view, ray, query, count) },
+        _ => plain::closest(view, ray, query, count),
+    }
+}
+
+/// Whether there is any hit.
+#[inline]
+pub(super) fn any<C: Count>(
+    level: CpuLevel,
+    view: View<'_>,
+    ray: &WideRay,
+    query: &Query,
+    count: &mut C,
+) -> bool {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx512 if ray.is_tame => unsafe { avx512::any(view, ray, query, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx2 if ray.is_tame => unsafe { avx2::any(view, ray, query, count) },
+        _ => plain::any(view, ray, query, count),
+    }
+}

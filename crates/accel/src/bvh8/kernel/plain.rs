@@ -1,0 +1,113 @@
+//! The twin that the wide kernels are held against, for every machine and every ray: the box tests of
+//! [`SlabRay`], the triangle test as it is.
+
+use super::View;
+use crate::bvh8::build::binary::MAX_DEPTH;
+use crate::bvh8::layout::{BLOCK_UNITS, LANES, Ref, Unit, WIDTH, triangle};
+use crate::bvh8::ray::WideRay;
+use crate::counters::Count;
+use crate::ray::{Hit, Query};
+use crate::slab::SlabRay;
+use crate::triangle::{Nearest, hits};
+use std::ops::ControlFlow;
+
+pub(super) fn closest<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count: &mut C) -> Option<Hit> {
+    let WideRay { prepared, slabs, .. } = ray;
+    let mut nearest = Nearest::new(&prepared.ray);
+    let mut limit = slabs.limit(nearest.t);
+    walk(view, slabs, limit, count, |leaf, count| {
+        let before = nearest.t;
+        for (block, lane) in places(leaf) {
+            let (corners, primitive) = triangle(block, lane);
+            nearest.test(prepared, query.culling, &corners, primitive);
+        }
+        count.triangles(leaf.len() / BLOCK_UNITS * LANES);
+        if query.early_out && nearest.t < before {
+            limit = slabs.limit(nearest.t);
+        }
+        ControlFlow::Continue(limit)
+    });
+    nearest.hit()
+}
+
+pub(super) fn any<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count: &mut C) -> bool {
+    let WideRay { prepared, slabs, .. } = ray;
+    let limit = slabs.limit(prepared.ray.t_max);
+    let mut found = false;
+    walk(view, slabs, limit, count, |leaf, count| {
+        for (block, lane) in places(leaf) {
+            count.triangles(1);
+            let (corners, primitive) = triangle(block, lane);
+            if hits(prepared, query.culling, &corners, primitive) {
+                found = true;
+                return ControlFlow::Break(());
+            }
+        }
+        ControlFlow::Continue(limit)
+    });
+    found
+}
+
+fn places(leaf: &[Unit]) -> impl Iterator<Item = (&[Unit], usize)> {
+    leaf.chunks_exact(BLOCK_UNITS).flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
+}
+
+/// A subtree still to be visited, and where the ray enters it.
+#[derive(Clone, Copy)]
+struct Waiting {
+    reference: Ref,
+    enter: f32,
+}
+
+/// Goes through the leaves that the ray meets up to `limit`, roughly the nearer first.
+#[inline(always)]
+fn walk<C: Count>(
+    view: View<'_>,
+    ray: &SlabRay,
+    mut limit: f32,
+    count: &mut C,
+    mut leaf: impl FnMut(&[Unit], &mut C) -> ControlFlow<(), f32>,
+) {
+    let mut stack = [Waiting { reference: view.root, enter: f32::NEG_INFINITY }; MAX_DEPTH * (WIDTH - 1) + 1];
+    let mut height = 1;
+    while height > 0 {
+        height -= 1;
+        let Waiting { reference, enter } = stack[height];
+        // Comparisons are such that what is not a number, as overflow makes it, leaves nothing out.
+        if enter > limit {
+            count.early_out();
+            continue;
+        }
+        count.node();
+        if !reference.is_node() {
+            match leaf(&view.units[reference.leaf_units()], count) {
+                ControlFlow::Continue(lower) => limit = lower,
+                ControlFlow::Break(()) => return,
+            }
+            continue;
+        }
+        let node = &view.units[reference.unit()..];
+        let base = height;
+        for child in 0..WIDTH {
+            let reference = Ref(node[6].0[child]);
+            let plane = |row: usize| f32::from_bits(node[row].0[child]);
+            let planes = [[plane(0), plane(1), plane(2)], [plane(3), plane(4), plane(5)]];
+            let [enter, leave] = ray.span(&planes);
+            if reference == Ref::EMPTY || enter > leave || leave < ray.nearest {
+                continue;
+            }
+            if enter > limit {
+                count.early_out();
+                continue;
+            }
+            // Sorted in, so that the nearest comes out first.
+            let mut place = height;
+            while place > base && stack[place - 1].enter < enter {
+                stack[place] = stack[place - 1];
+                place -= 1;
+            }
+            stack[place] = Waiting { reference, enter };
+            height += 1;
+        }
+    }
+}
