@@ -213,12 +213,43 @@ fn run(tree: &dyn Accelerator, class: &Class) -> (f64, u64) {
     (class.rays.len() as f64 / start.elapsed().as_secs_f64() / 1e6, sum)
 }
 
+fn write(folder: &str, triangles: &Triangles, classes: &[Class]) -> Result<(), Box<dyn Error>> {
+    let words = |words: &[u32]| words.iter().flat_map(|w| w.to_le_bytes()).collect::<Vec<u8>>();
+    let count = triangles.len() as u32;
+    // Vertices shared by bits.
+    let mut known = std::collections::HashMap::new();
+    let (mut points, mut indices) = (Vec::new(), Vec::new());
+    for p in triangles.iter().flatten() {
+        let next = known.len() as u32;
+        let bits = p.map(f32::to_bits);
+        indices.push(*known.entry(bits).or_insert_with(|| {
+            points.extend(bits);
+            next
+        }));
+    }
+    let header = [u32::from_le_bytes(*b"MSH1"), known.len() as u32, count];
+    std::fs::write(format!("{folder}/mesh.msh"), [words(&header), words(&points), words(&indices)].concat())?;
+    for class in classes {
+        let header = [u32::from_le_bytes(*b"RAY1"), u32::from(class.any), class.rays.len() as u32];
+        let rays = class.rays.iter().flat_map(|r| {
+            let ([a, b, c], [x, y, z]) = (r.origin, r.direction);
+            // What the other side does not know how to exclude.
+            let start = if r.exclude == bilux_accel::Primitive::NONE { 0.0 } else { 1e-4 };
+            [a, b, c, r.t_min.max(start), x, y, z, r.t_max].map(f32::to_bits)
+        });
+        let rays: Vec<u32> = rays.collect();
+        std::fs::write(format!("{folder}/{}.ray", class.name), [words(&header), words(&rays)].concat())?;
+    }
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut scene_name = "teapots".to_owned();
     let mut accels = "bvh,bvh8".to_owned();
     let (mut rounds, mut log2) = (5, 20);
     let mut options = BuildOptions::default();
     let mut only = String::new();
+    let mut dump = None;
     let mut arguments = std::env::args().skip(1);
     while let Some(key) = arguments.next() {
         let value = arguments.next().ok_or("a value is missing")?;
@@ -228,6 +259,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "--rounds" => rounds = value.parse()?,
             "--rays" => log2 = value.parse()?,
             "--class" => only = value,
+            "--dump" => dump = Some(value),
             "--build" => options.quality = Quality::from_name(&value).ok_or("no such quality")?,
             "--level" => {
                 let level = CpuLevel::ALL.into_iter().find(|level| level.name() == value);
@@ -261,6 +293,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         trees.push((name.to_owned(), tree));
     }
     let classes = classes(&triangles, trees[0].1.as_ref(), log2);
+    if let Some(folder) = dump {
+        write(&folder, &triangles, &classes)?;
+    }
     for class in classes.iter().filter(|class| only.is_empty() || class.name == only) {
         let mut speeds = vec![Vec::new(); trees.len()];
         let mut sums = Vec::new();

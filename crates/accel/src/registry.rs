@@ -19,7 +19,7 @@ pub const ACCELERATORS: &[AcceleratorEntry] = &[
 ];
 
 /// The structure that `auto` stands for: the fastest.
-pub const AUTO: &str = "bvh";
+pub const AUTO: &str = "bvh8";
 
 /// One structure.
 #[derive(Clone, Copy, Debug)]

@@ -39,6 +39,21 @@ const UNIT: f32 = 1.0 / 16_777_216.0;
 /// For the roundings of the products below.
 const SLACK: f32 = 4.0 * UNIT;
 
+/// See [`SlabRay::limit`].
+#[inline(always)]
+pub(crate) fn limit_of(t: f32, pace: f32, least: f32) -> f32 {
+    let s = t * pace;
+    let limit = s + s.abs() * SLACK + least;
+    // Only infinities can have made what is not a number: they limit nothing.
+    smaller(limit, f32::INFINITY)
+}
+
+/// What makes up for underflow in [`limit_of`]: a normal number, since others are slow.
+#[inline(always)]
+pub(crate) fn least_of(pace: f32) -> f32 {
+    larger(pace, 1.0) * f32::MIN_POSITIVE
+}
+
 impl SlabRay {
     /// For a ray whose origin and direction are finite and whose direction is not zero; `pad` is the
     /// distance by which every box has to grow, see [`crate::triangle::PreparedRay::pad`].
@@ -61,7 +76,7 @@ impl SlabRay {
             enters_high: down.map(usize::from),
             nearest: 0.0,
             pace,
-            least: pace.max(1.0) * f32::MIN_POSITIVE,
+            least: least_of(pace),
         };
         ray.nearest = -ray.limit(-t_min);
         ray
@@ -70,10 +85,7 @@ impl SlabRay {
     /// The least `s` that no hit at `t` or before can exceed.
     #[inline]
     pub fn limit(&self, t: f32) -> f32 {
-        let s = t * self.pace;
-        let limit = s + s.abs() * SLACK + self.least;
-        // Only infinities can have made this: they limit nothing.
-        if limit.is_nan() { f32::INFINITY } else { limit }
+        limit_of(t, self.pace, self.least)
     }
 
     /// Where the ray enters and leaves a box given as `[least, greatest]` corners; it misses the box when

@@ -103,9 +103,8 @@ impl PreparedRay {
         [(vertex[kx] - o[kx]) - shear_x * z, (vertex[ky] - o[ky]) - shear_y * z, z]
     }
 
-    /// What is left of [`PreparedRay::cross`] for the corners in sheared space.
     #[inline]
-    pub(crate) fn cross_exactly(&self, a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<Crossing> {
+    fn cross_exactly(&self, a: [f32; 3], b: [f32; 3], c: [f32; 3]) -> Option<Crossing> {
         let [ax, ay, az] = a.map(f64::from);
         let [bx, by, bz] = b.map(f64::from);
         let [cx, cy, cz] = c.map(f64::from);

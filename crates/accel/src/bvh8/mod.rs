@@ -6,7 +6,8 @@
 mod build;
 mod kernel;
 mod layout;
-mod ray;
+#[cfg(test)]
+mod tests;
 
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
@@ -17,7 +18,6 @@ use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, Vec3, registry::Entry};
 use kernel::View;
 use layout::{Ref, Unit};
-use ray::WideRay;
 
 /// Row of [`crate::ACCELERATORS`].
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
@@ -35,7 +35,8 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 pub struct Bvh8 {
     units: Vec<Unit>,
     root: Ref,
-    bounds: Aabb,
+    /// Of the box around everything; the fourth numbers are zero.
+    corners: [[f32; 4]; 2],
     level: CpuLevel,
 }
 
@@ -46,14 +47,14 @@ impl Bvh8 {
     /// When it would take more than 8 GiB.
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Bvh8, BuildError> {
         let built = build::build(mesh)?;
-        let [min, max] = built.planes.map(Vec3::from);
-        let (units, root, level) = (built.units, built.root, options.cpu_level.available());
-        Ok(Bvh8 { units, root, bounds: Aabb { min, max }, level })
+        let corners = built.planes.map(|[x, y, z]| [x, y, z, 0.0]);
+        Ok(Bvh8 { units: built.units, root: built.root, corners, level: options.cpu_level.available() })
     }
 
     #[inline(always)]
     fn view(&self) -> Option<View<'_>> {
-        (!self.units.is_empty()).then_some(View { units: &self.units, root: self.root })
+        let corners = self.corners;
+        (!self.units.is_empty()).then_some(View { units: &self.units, root: self.root, corners })
     }
 }
 
@@ -61,19 +62,18 @@ impl Traverse for Bvh8 {
     #[inline]
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
         count.ray();
-        let (view, ray) = (self.view()?, WideRay::new(ray, &self.bounds)?);
-        kernel::closest(self.level, view, &ray, query, count)
+        kernel::closest(self.level, self.view()?, ray, query, count)
     }
 
     #[inline]
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
-        let (Some(view), Some(ray)) = (self.view(), WideRay::new(ray, &self.bounds)) else { return false };
-        kernel::any(self.level, view, &ray, query, count)
+        self.view().is_some_and(|view| kernel::any(self.level, view, ray, query, count))
     }
 
     fn bounds(&self) -> Aabb {
-        self.bounds
+        let [min, max] = self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+        Aabb { min, max }
     }
 
     fn memory_bytes(&self) -> usize {

@@ -6,12 +6,13 @@
 use super::binary::{Binary, Node};
 use super::item::Bounds;
 use super::split::blocks;
-use crate::bvh8::layout::WIDTH;
+use crate::bvh8::layout::{LANES, MAX_BLOCKS, WIDTH};
 
 /// What a visit to a node costs, in tests of a block.
 const NODE_COST: f32 = 1.2;
 /// Larger leaves are not considered.
-const LARGEST_LEAF: usize = 16;
+const LARGEST_LEAF: usize = 4 * LANES;
+const _: () = assert!(LARGEST_LEAF <= MAX_BLOCKS * LANES);
 
 /// `costs[i]`: the least cost of a subtree as at most `i + 1` wide ones.
 pub(super) type Costs = [f32; WIDTH - 1];

@@ -2,16 +2,15 @@
 
 use super::View;
 use super::body::{self, Level, Stack};
-use crate::bvh8::layout::WIDTH;
-use crate::bvh8::ray::WideRay;
+use super::tame::BoxRay;
 use crate::counters::Count;
-use crate::ray::{Hit, Query};
+use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::*;
 
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn closest<C: Count>(
     view: View<'_>,
-    ray: &WideRay,
+    ray: &Ray,
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
@@ -20,7 +19,7 @@ pub(super) unsafe fn closest<C: Count>(
 }
 
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-pub(super) unsafe fn any<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count: &mut C) -> bool {
+pub(super) unsafe fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
     // SAFETY: as above.
     unsafe { body::any::<Avx512, C>(view, ray, query, count) }
 }
@@ -28,23 +27,8 @@ pub(super) unsafe fn any<C: Count>(view: View<'_>, ray: &WideRay, query: &Query,
 struct Avx512;
 
 impl Level for Avx512 {
-    type Ray = super::avx2::BoxRay;
-    type Distances = __m256i;
-
     #[inline(always)]
-    unsafe fn ray(ray: &WideRay) -> Self::Ray {
-        // SAFETY: as the trait demands.
-        unsafe { super::avx2::BoxRay::new(ray) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat(bits: i32) -> __m256i {
-        // SAFETY: as the trait demands.
-        unsafe { _mm256_set1_epi32(bits) }
-    }
-
-    #[inline(always)]
-    unsafe fn meet(ray: &Self::Ray, node: *const u8, limit: __m256i) -> (u32, __m256i) {
+    unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i) {
         // SAFETY: as the trait demands.
         unsafe {
             let (enter, leave) = ray.span(node, limit);
@@ -52,13 +36,7 @@ impl Level for Avx512 {
         }
     }
 
-    #[inline(always)]
-    unsafe fn array(distances: __m256i) -> [u32; WIDTH] {
-        // SAFETY: both are 32 bytes.
-        unsafe { std::mem::transmute(distances) }
-    }
-
-    /// Distances with the lane in their last three bits, sorted by a network of six stages [Knuth 1998].
+    /// Distances with the lane in their last three bits, sorted by a network of six stages.
     #[inline(always)]
     unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
@@ -76,8 +54,8 @@ impl Level for Avx512 {
             let references = _mm256_load_si256(node.add(192).cast());
             let sorted = _mm256_permutevar8x32_epi32(references, keys);
             let top = stack.height;
-            _mm256_storeu_si256(stack.references.as_mut_ptr().add(top).cast(), sorted);
-            _mm256_storeu_si256(stack.enter.as_mut_ptr().add(top).cast(), keys);
+            _mm256_storeu_si256(stack.reference(top).cast(), sorted);
+            _mm256_storeu_si256(stack.enter(top).cast(), keys);
             stack.height = top + size as usize;
         }
     }
@@ -88,7 +66,7 @@ impl Level for Avx512 {
         unsafe {
             let references = _mm256_load_si256(node.add(192).cast());
             let kept = _mm256_maskz_compress_epi32(mask as u8, references);
-            _mm256_storeu_si256(stack.references.as_mut_ptr().add(stack.height).cast(), kept);
+            _mm256_storeu_si256(stack.reference(stack.height).cast(), kept);
             stack.height += mask.count_ones() as usize;
         }
     }

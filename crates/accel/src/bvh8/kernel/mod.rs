@@ -13,18 +13,21 @@ mod block;
 #[cfg(target_arch = "x86_64")]
 mod body;
 mod plain;
+#[cfg(target_arch = "x86_64")]
+mod tame;
 
 use super::layout::{Ref, Unit};
-use super::ray::WideRay;
 use crate::counters::Count;
 use crate::cpu_level::CpuLevel;
-use crate::ray::{Hit, Query};
+use crate::ray::{Hit, Query, Ray};
 
 /// What is walked through. The root is a node or a leaf of `units`, and so is all that it refers to.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) units: &'a [Unit],
     pub(super) root: Ref,
+    /// Of the box around everything; the fourth numbers are zero.
+    pub(super) corners: [[f32; 4]; 2],
 }
 
 /// The nearest hit.
@@ -32,17 +35,17 @@ pub(super) struct View<'a> {
 pub(super) fn closest<C: Count>(
     level: CpuLevel,
     view: View<'_>,
-    ray: &WideRay,
+    ray: &Ray,
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
     match level {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: a structure holds a level that `available` found on this machine; the ray is tame.
-        CpuLevel::Avx512 if ray.is_tame => unsafe { avx512::closest(view, ray, query, count) },
+        // SAFETY: a structure holds a level that `available` found on this machine.
+        CpuLevel::Avx512 => unsafe { avx512::closest(view, ray, query, count) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx2 if ray.is_tame => unsafe { avx2::closest(view, ray, query, count) },
+        CpuLevel::Avx2 => unsafe { avx2::closest(view, ray, query, count) },
         _ => plain::closest(view, ray, query, count),
     }
 }
@@ -52,17 +55,17 @@ pub(super) fn closest<C: Count>(
 pub(super) fn any<C: Count>(
     level: CpuLevel,
     view: View<'_>,
-    ray: &WideRay,
+    ray: &Ray,
     query: &Query,
     count: &mut C,
 ) -> bool {
     match level {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx512 if ray.is_tame => unsafe { avx512::any(view, ray, query, count) },
+        CpuLevel::Avx512 => unsafe { avx512::any(view, ray, query, count) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx2 if ray.is_tame => unsafe { avx2::any(view, ray, query, count) },
+        CpuLevel::Avx2 => unsafe { avx2::any(view, ray, query, count) },
         _ => plain::any(view, ray, query, count),
     }
 }

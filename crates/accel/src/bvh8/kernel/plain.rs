@@ -4,22 +4,23 @@
 use super::View;
 use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{BLOCK_UNITS, LANES, Ref, Unit, WIDTH, triangle};
-use crate::bvh8::ray::WideRay;
 use crate::counters::Count;
-use crate::ray::{Hit, Query};
+use crate::ray::{Hit, Query, Ray};
 use crate::slab::SlabRay;
-use crate::triangle::{Nearest, hits};
+use crate::triangle::{Nearest, PreparedRay, hits};
+use bilux_math::{Aabb, Vec3};
 use std::ops::ControlFlow;
 
-pub(super) fn closest<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count: &mut C) -> Option<Hit> {
-    let WideRay { prepared, slabs, .. } = ray;
-    let mut nearest = Nearest::new(&prepared.ray);
+#[inline(never)]
+pub(super) fn closest<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
+    let (prepared, slabs) = prepare(&view, ray)?;
+    let mut nearest = Nearest::new(ray);
     let mut limit = slabs.limit(nearest.t);
-    walk(view, slabs, limit, count, |leaf, count| {
+    walk(view, &slabs, limit, count, |leaf, count| {
         let before = nearest.t;
         for (block, lane) in places(leaf) {
             let (corners, primitive) = triangle(block, lane);
-            nearest.test(prepared, query.culling, &corners, primitive);
+            nearest.test(&prepared, query.culling, &corners, primitive);
         }
         count.triangles(leaf.len() / BLOCK_UNITS * LANES);
         if query.early_out && nearest.t < before {
@@ -30,15 +31,16 @@ pub(super) fn closest<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, co
     nearest.hit()
 }
 
-pub(super) fn any<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count: &mut C) -> bool {
-    let WideRay { prepared, slabs, .. } = ray;
-    let limit = slabs.limit(prepared.ray.t_max);
+#[inline(never)]
+pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
+    let Some((prepared, slabs)) = prepare(&view, ray) else { return false };
+    let limit = slabs.limit(ray.t_max);
     let mut found = false;
-    walk(view, slabs, limit, count, |leaf, count| {
+    walk(view, &slabs, limit, count, |leaf, count| {
         for (block, lane) in places(leaf) {
             count.triangles(1);
             let (corners, primitive) = triangle(block, lane);
-            if hits(prepared, query.culling, &corners, primitive) {
+            if hits(&prepared, query.culling, &corners, primitive) {
                 found = true;
                 return ControlFlow::Break(());
             }
@@ -46,6 +48,13 @@ pub(super) fn any<C: Count>(view: View<'_>, ray: &WideRay, query: &Query, count:
         ControlFlow::Continue(limit)
     });
     found
+}
+
+fn prepare(view: &View<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
+    let prepared = PreparedRay::new(ray)?;
+    let [min, max] = view.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+    let pad = prepared.pad(&Aabb { min, max });
+    Some((prepared, SlabRay::new(ray.origin, ray.direction, ray.t_min, pad)))
 }
 
 fn places(leaf: &[Unit]) -> impl Iterator<Item = (&[Unit], usize)> {

@@ -1,0 +1,154 @@
+//! A ray as the wide kernels want it, made in a few dozen instructions.
+//!
+//! # Boxes
+//! Where [`crate::slab`] takes a plane's distance as `(plane − origin) · inverse`, this takes it as the fused
+//! `plane · inverse − bias` with `bias = origin · inverse`, rounded once a ray. That rounding displaces
+//! all planes of an axis by at most `2⁻²⁴ · |origin|`, and that of `origin ± pad` by as much again: the pad of
+//! the lemma is therefore grown by four times that, twice what it takes; see `docs/adr/0008-bvh8.md`.
+//!
+//! # Tame rays
+//! Of a tame ray all of this is finite and no distance that counts is negative. So no NaN can come up, and
+//! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
+
+use super::View;
+use super::block::BlockRay;
+use crate::ray::Ray;
+use crate::slab::{least_of, limit_of};
+use std::arch::x86_64::*;
+
+/// A ray with a lane for each child of a node.
+#[derive(Clone, Copy)]
+pub(super) struct BoxRay {
+    /// Bytes from the front of a node to the planes where the ray comes in, and goes out.
+    enter_rows: [usize; 3],
+    leave_rows: [usize; 3],
+    inverse: [__m256; 3],
+    enter_bias: [__m256; 3],
+    leave_bias: [__m256; 3],
+    nearest: __m256i,
+}
+
+/// A ray for boxes and triangles.
+#[derive(Clone, Copy)]
+pub(super) struct TameRay {
+    pub(super) boxes: BoxRay,
+    pub(super) blocks: BlockRay,
+    /// The greatest component of the direction, without its sign.
+    pace: f32,
+}
+
+/// 16 and 4 units of f32 rounding: the pad of the lemma, and what is added to it here.
+const PAD: f32 = 16.0 / 16_777_216.0;
+const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
+/// As in [`crate::slab`].
+const STEEPEST: f32 = (1u64 << 40) as f32;
+
+impl TameRay {
+    /// `None` for rays that are not tame, or can hit nothing.
+    ///
+    /// # Safety
+    /// The machine must have AVX2.
+    #[inline(always)]
+    pub(super) unsafe fn new(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+        // SAFETY: as the caller promises; corners are four floats each.
+        unsafe {
+            let wide = |v: [f32; 3]| _mm_setr_ps(v[0], v[1], v[2], 0.0);
+            let (origin, direction) = (wide(ray.origin), wide(ray.direction));
+            let [low, high] = [0, 1].map(|side| _mm_loadu_ps(view.corners[side].as_ptr()));
+            let minus = _mm_set1_ps(-0.0);
+            let size = |v| _mm_andnot_ps(minus, v);
+            let (sizes, pace) = (size(direction), greatest(size(direction)));
+            let far = greatest(_mm_max_ps(size(_mm_sub_ps(low, origin)), size(_mm_sub_ps(high, origin))));
+            let pad = _mm_add_ps(
+                _mm_add_ps(_mm_mul_ps(far, _mm_set1_ps(PAD)), _mm_set1_ps(4.0 * f32::MIN_POSITIVE)),
+                _mm_mul_ps(size(origin), _mm_set1_ps(BIAS_PAD)),
+            );
+            let (upper, lower) = (_mm_add_ps(origin, pad), _mm_sub_ps(origin, pad));
+            let steepest = _mm_set1_ps(STEEPEST);
+            let inverse = _mm_div_ps(pace, direction);
+            let inverse = _mm_min_ps(_mm_max_ps(inverse, _mm_or_ps(minus, steepest)), steepest);
+            let enter = _mm_mul_ps(_mm_blendv_ps(upper, lower, direction), inverse);
+            let leave = _mm_mul_ps(_mm_blendv_ps(lower, upper, direction), inverse);
+            // Sums of sizes are finite when all of them are; no comparison holds for what is not a number.
+            let sum = _mm_add_ps(_mm_add_ps(size(enter), size(leave)), sizes);
+            let finite = _mm_movemask_ps(_mm_cmplt_ps(sum, _mm_set1_ps(f32::INFINITY))) & 7 == 7;
+            let length = _mm_cvtss_f32(pace);
+            let ends = ray.t_min >= 0.0 && ray.t_min <= ray.t_max;
+            if !(finite && ends && length > 0.0) {
+                return None;
+            }
+            let least = -limit_of(-ray.t_min, length, least_of(length));
+            let least = if least > 0.0 { least } else { 0.0 };
+            let steep_axes = _mm_movemask_ps(_mm_cmpge_ps(sizes, pace)) as u32 & 7;
+            let boxes = BoxRay::new(direction, inverse, enter, leave, least);
+            let blocks = BlockRay::new(ray, origin, direction, 31 - steep_axes.leading_zeros());
+            Some(TameRay { boxes, blocks, pace: length })
+        }
+    }
+
+    /// The bits of the least `s` that no hit at `t` or before can exceed; `t` is not negative.
+    #[inline(always)]
+    pub(super) fn limit_bits(&self, t: f32) -> u32 {
+        limit_of(t, self.pace, least_of(self.pace)).to_bits()
+    }
+}
+
+/// The greatest of the first three, in all four.
+#[inline(always)]
+unsafe fn greatest(v: __m128) -> __m128 {
+    // SAFETY: every x86-64 machine has SSE.
+    unsafe {
+        let rotated = _mm_max_ps(v, _mm_shuffle_ps::<0b11_00_10_01>(v, v));
+        let pair = _mm_max_ps(rotated, _mm_shuffle_ps::<0b11_01_00_10>(v, v));
+        _mm_shuffle_ps::<0>(pair, pair)
+    }
+}
+
+impl BoxRay {
+    #[inline(always)]
+    unsafe fn new(direction: __m128, inverse: __m128, enter: __m128, leave: __m128, least: f32) -> BoxRay {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let down = _mm_movemask_ps(direction) as usize;
+            let enter_rows = std::array::from_fn(|k| ((down >> k & 1) * 3 + k) * 32);
+            let spread = |v: __m128| {
+                [
+                    _mm256_broadcastss_ps(v),
+                    _mm256_broadcastss_ps(_mm_shuffle_ps::<0b01_01_01_01>(v, v)),
+                    _mm256_broadcastss_ps(_mm_shuffle_ps::<0b10_10_10_10>(v, v)),
+                ]
+            };
+            BoxRay {
+                enter_rows,
+                leave_rows: std::array::from_fn(|k| (k * 2 + 3) * 32 - enter_rows[k]),
+                inverse: spread(inverse),
+                enter_bias: spread(enter),
+                leave_bias: spread(leave),
+                nearest: _mm256_set1_epi32(least.to_bits() as i32),
+            }
+        }
+    }
+
+    /// Where the ray enters the children of a node, and where it leaves them or reaches the limit.
+    ///
+    /// Minima and maxima of whole numbers are right because what decides is not negative: a negative entry never
+    /// beats `nearest`, and a negative exit is below it.
+    ///
+    /// # Safety
+    /// The machine must have AVX2 and FMA, and `node` must point to a node.
+    #[inline(always)]
+    pub(super) unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+        // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
+        unsafe {
+            let distance = |row: usize, k: usize, bias: __m256| {
+                let planes = _mm256_load_ps(node.add(row).cast());
+                _mm256_castps_si256(_mm256_fmsub_ps(planes, self.inverse[k], bias))
+            };
+            let enter = |k: usize| distance(self.enter_rows[k], k, self.enter_bias[k]);
+            let leave = |k: usize| distance(self.leave_rows[k], k, self.leave_bias[k]);
+            let (a, b) = (_mm256_max_epi32(enter(0), enter(1)), _mm256_max_epi32(enter(2), self.nearest));
+            let (c, d) = (_mm256_min_epi32(leave(0), leave(1)), _mm256_min_epi32(leave(2), limit));
+            (_mm256_max_epi32(a, b), _mm256_min_epi32(c, d))
+        }
+    }
+}
