@@ -24,7 +24,7 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bvh8",
         summary: "boxes in boxes, eight by eight, all eight looked at in one instruction: the fastest",
-        source: "Wald 2008, Ylitie 2017",
+        source: "Wald 2008",
         parameters: &[],
     },
     build: |mesh, options| Ok(Box::new(Bvh8::new(&mesh, options)?)),
