@@ -117,9 +117,9 @@ pub(super) fn write_leaf(units: &mut [Unit], triangles: impl Iterator<Item = ([[
 
 fn write_triangle(block: &mut [Unit], lane: usize, triangle: [[f32; 3]; 3], primitive: u32) {
     let mut put = |row: usize, word: u32| block[row * LANES / 8].0[row * LANES % 8 + lane] = word;
-    for axis in 0..3 {
-        for corner in 0..3 {
-            put(axis * 3 + corner, triangle[corner][axis].to_bits());
+    for (corner, point) in triangle.iter().enumerate() {
+        for (axis, x) in point.iter().enumerate() {
+            put(axis * 3 + corner, x.to_bits());
         }
     }
     put(9, primitive);
