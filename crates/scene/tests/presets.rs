@@ -45,9 +45,10 @@ fn seen_at(scene: &SceneBuilder, p: Vec3) -> Option<Vec2> {
     })
 }
 
-/// The farthest from the middle, on either axis, that any vertex is seen.
+/// The farthest from the middle, on either axis, that any vertex is seen, but for those of the studio's floor.
 fn reach(scene: &SceneBuilder) -> f32 {
-    let vertices = scene.objects.iter().flat_map(|o| {
+    let model = scene.objects.iter().filter(|o| o.name != "studio floor");
+    let vertices = model.flat_map(|o| {
         let to_world = o.motion.at(0.0);
         o.mesh.positions.iter().map(move |&p| to_world.point(p))
     });
@@ -97,6 +98,22 @@ fn framing_stands_whatever_a_file_holds() {
         complete(&mut scene);
         builds(&scene);
     }
+}
+
+#[test]
+fn a_bare_model_of_no_material_is_of_clay_on_a_floor() {
+    let mut scene = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    scene.materials[0] = Spec::new("default", "phong");
+    complete(&mut scene);
+    assert!(scene.materials[0].parameters.find("kd").is_some());
+    assert_eq!(scene.objects.len(), 2);
+    let floor = &scene.objects[1].mesh.positions;
+    assert!(floor.iter().all(|p| p.y < 0.0 && p.y > -0.01));
+    let mut told = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    told.materials[0] = Spec::new("mine", "phong").with("kd", 0.1f32);
+    let mine = told.materials[0].clone();
+    complete(&mut told);
+    assert_eq!(told.materials[0], mine);
 }
 
 #[test]

@@ -22,32 +22,51 @@ pub(super) const ENTRY: PresetEntry = PresetEntry {
 };
 
 fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
-    let framing = Framing::of(scene);
     scene.cameras.clear();
     scene.lights.clear();
-    complete(scene);
-    let floor = Spec::new("studio floor", "diffuse").with("reflectance", Rgb::new(0.52, 0.51, 0.50));
-    let material = scene.add_material(floor);
-    let middle = Vec3::new(framing.middle.x as f32, framing.lowest as f32, framing.middle.z as f32);
-    let mesh = shapes::disc(middle, (framing.radius * 12.0) as f32, 96);
-    scene.objects.push(Object::new("studio floor", Arc::new(mesh), material));
+    let framing = Framing::of(scene);
+    scene.cameras.push(framing.camera());
+    scene.lights.extend(framing.lights());
+    furnish(scene, &framing);
     Ok(())
 }
 
-/// Gives a scene without a camera one that frames everything in it, and a scene without any light that of a
-/// studio. Does nothing to a scene that has both.
+/// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
+/// studio where it has neither. Does nothing to a scene that has both.
 pub fn complete(scene: &mut SceneBuilder) {
     let lit = !scene.lights.is_empty() || scene.objects.iter().any(|o| gives_light(scene, o));
-    if lit && !scene.cameras.is_empty() {
+    let seen = !scene.cameras.is_empty();
+    if lit && seen {
         return;
     }
     let framing = Framing::of(scene);
-    if scene.cameras.is_empty() {
-        scene.cameras.push(CameraSpec { spec: framing.camera(), keyframes: Vec::new() });
+    if !seen {
+        scene.cameras.push(framing.camera());
     }
     if !lit {
         scene.lights.extend(framing.lights());
     }
+    if !lit && !seen {
+        furnish(scene, &framing);
+    }
+}
+
+/// Puts a floor under the model, and makes of clay what nobody has said a word about.
+fn furnish(scene: &mut SceneBuilder, framing: &Framing) {
+    for material in scene.materials.iter_mut().filter(|m| m.kind == "phong" && m.parameters.0.is_empty()) {
+        let clay = Spec::new(&material.name, "phong").with("kd", Rgb::new(0.62, 0.59, 0.55));
+        *material = clay.with("ks", 0.05f32).with("exponent", 40.0f32).with("reflectivity", 0.0f32);
+    }
+    if scene.objects.is_empty() {
+        return;
+    }
+    let floor = Spec::new("studio floor", "diffuse").with("reflectance", Rgb::new(0.45, 0.44, 0.43));
+    let material = scene.add_material(floor);
+    // A little below, so that a model with a floor of its own keeps that.
+    let height = framing.lowest - framing.radius * 1e-3;
+    let middle = Vec3::new(framing.middle.x as f32, height as f32, framing.middle.z as f32);
+    let mesh = shapes::disc(middle, (framing.radius * 40.0) as f32, 96);
+    scene.objects.push(Object::new("studio floor", Arc::new(mesh), material));
 }
 
 fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
@@ -129,11 +148,12 @@ impl Framing {
         self.eye = self.middle + shift - self.axes[2] * distance;
     }
 
-    fn camera(&self) -> Spec {
-        Spec::new("studio", "perspective")
+    fn camera(&self) -> CameraSpec {
+        let spec = Spec::new("studio", "perspective")
             .with("position", self.eye.as_vec3())
             .with("look_at", (self.eye + self.axes[2] * self.distance).as_vec3())
-            .with("fov", FOV)
+            .with("fov", FOV);
+        CameraSpec { spec, keyframes: Vec::new() }
     }
 
     /// A large panel from the left and above, a weaker one from behind on the right, and a pale room.
@@ -144,12 +164,12 @@ impl Framing {
         let key = Lamp { name: "key", towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
         let rim = Lamp { name: "rim", towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
         [
-            key.spec(self, warm * 4.2).with("classic", warm * 0.72),
-            rim.spec(self, cool * 4.0).with("classic", cool * 0.28),
+            key.spec(self, warm * 4.4).with("classic", warm * 0.72),
+            rim.spec(self, cool * 3.2).with("classic", cool * 0.28),
             Spec::new("room", "environment")
-                .with("zenith", Rgb::new(0.52, 0.55, 0.60))
-                .with("horizon", Rgb::new(0.36, 0.37, 0.39))
-                .with("ground", Rgb::new(0.14, 0.135, 0.13)),
+                .with("zenith", Rgb::new(0.40, 0.42, 0.46))
+                .with("horizon", Rgb::new(0.26, 0.27, 0.29))
+                .with("ground", Rgb::new(0.10, 0.096, 0.092)),
         ]
     }
 }
