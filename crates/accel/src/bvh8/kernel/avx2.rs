@@ -7,6 +7,10 @@ use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::*;
 
+/// See [`super::closest`].
+///
+/// # Safety
+/// The machine must have the level, and the view must be sound.
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn closest<C: Count>(
     view: View<'_>,
@@ -61,6 +65,7 @@ impl Level for Avx2 {
         }
     }
 
+    // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
         let mut left = mask;

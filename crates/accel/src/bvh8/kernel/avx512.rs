@@ -7,6 +7,10 @@ use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::*;
 
+/// See [`super::closest`].
+///
+/// # Safety
+/// The machine must have the level, and the view must be sound.
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub(super) unsafe fn closest<C: Count>(
     view: View<'_>,
@@ -60,6 +64,7 @@ impl Level for Avx512 {
         }
     }
 
+    // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
         // SAFETY: as the trait demands.
@@ -82,6 +87,9 @@ macro_rules! stage {
 }
 
 /// The first four, in descending order.
+///
+/// # Safety
+/// The machine must have AVX-512, as for all that follows.
 #[inline(always)]
 unsafe fn sort4(keys: __m256i) -> __m256i {
     // SAFETY: as the caller promises.

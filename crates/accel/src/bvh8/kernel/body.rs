@@ -54,6 +54,9 @@ impl Stack {
     }
 
     /// Where reference number `place` is, or is to be.
+    ///
+    /// # Safety
+    /// There must be so many places, as for all that follows.
     #[inline(always)]
     pub(super) unsafe fn reference(&mut self, place: usize) -> *mut Ref {
         // SAFETY: the tree is not deeper than there is room for.
@@ -182,6 +185,9 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
 
 /// Tests a block and keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive
 /// as high as that of no hit.
+///
+/// # Safety
+/// The machine must have the level, and `block` must point to a block.
 #[inline(always)]
 unsafe fn test(ray: &TameRay, block: *const u8, query: &Query, nearest: &mut Hit) {
     // SAFETY: as the caller promises.
@@ -255,6 +261,10 @@ pub(super) unsafe fn any<L: Level, C: Count>(
 
 const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
 
+/// The primitive of a triangle.
+///
+/// # Safety
+/// `block` must point to a block, and `lane` be below [`LANES`].
 #[inline(always)]
 unsafe fn primitive(block: *const u8, lane: usize) -> u32 {
     // SAFETY: a block holds its primitives behind nine rows of 4 numbers.

@@ -94,6 +94,9 @@ impl TameRay {
 }
 
 /// The greatest of the first three, in all four.
+///
+/// # Safety
+/// Asks for SSE, which every machine of this kind has.
 #[inline(always)]
 unsafe fn greatest(v: __m128) -> __m128 {
     // SAFETY: every x86-64 machine has SSE.
