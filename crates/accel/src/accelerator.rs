@@ -12,6 +12,11 @@ pub trait Accelerator: Send + Sync {
     fn closest_hit(&self, ray: &Ray, query: &Query) -> Option<Hit>;
     /// True when anything at all is hit.
     fn any_hit(&self, ray: &Ray, query: &Query) -> bool;
+    /// As [`Accelerator::closest_hit`] for each ray, into the place of the same number; rays or places that have
+    /// no counterpart are left as they are. The same hits, bit for bit, and often sooner than one by one.
+    fn closest_hits(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]);
+    /// As [`Accelerator::any_hit`] for each ray, likewise.
+    fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]);
     /// As [`Accelerator::closest_hit`], counting what it took.
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit>;
     /// As [`Accelerator::any_hit`], counting what it took.
@@ -30,6 +35,18 @@ pub trait Traverse: Send + Sync {
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit>;
     /// See [`Accelerator::any_hit`].
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool;
+    /// See [`Accelerator::closest_hits`]; one by one, unless a structure knows better.
+    fn closest_each(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.closest(ray, query, &mut Nothing);
+        }
+    }
+    /// See [`Accelerator::any_hits`]; one by one, unless a structure knows better.
+    fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.any(ray, query, &mut Nothing);
+        }
+    }
     /// See [`Accelerator::bounds`].
     fn bounds(&self) -> Aabb;
     /// See [`Accelerator::memory_bytes`].
@@ -44,6 +61,12 @@ impl<T: Traverse> Accelerator for T {
     }
     fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
         self.any(ray, query, &mut Nothing)
+    }
+    fn closest_hits(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
+        self.closest_each(rays, query, hits);
+    }
+    fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+        self.any_each(rays, query, hits);
     }
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit> {
         self.closest(ray, query, counters)

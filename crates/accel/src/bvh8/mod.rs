@@ -71,6 +71,20 @@ impl Traverse for Bvh8 {
         self.view().is_some_and(|view| kernel::any(self.level, view, ray, query, count))
     }
 
+    fn closest_each(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
+        match self.view() {
+            Some(view) => kernel::closest_each(self.level, view, rays, query, hits),
+            None => hits.iter_mut().zip(rays).for_each(|(hit, _)| *hit = None),
+        }
+    }
+
+    fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+        match self.view() {
+            Some(view) => kernel::any_each(self.level, view, rays, query, hits),
+            None => hits.iter_mut().zip(rays).for_each(|(hit, _)| *hit = false),
+        }
+    }
+
     fn bounds(&self) -> Aabb {
         let [min, max] = self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
         Aabb { min, max }

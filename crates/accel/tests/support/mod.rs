@@ -78,12 +78,12 @@ pub struct Difference {
     pub answer: Option<Hit>,
 }
 
-fn bits(hit: Option<Hit>) -> Option<[u32; 5]> {
+pub fn bits(hit: Option<Hit>) -> Option<[u32; 5]> {
     hit.map(|h| [h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.primitive, h.instance])
 }
 
 /// The questions asked for each ray.
-fn queries() -> [Query; 4] {
+pub fn queries() -> [Query; 4] {
     let plain = Query::default();
     [
         plain,
@@ -129,6 +129,27 @@ impl Truth {
         self.cases.iter().filter(|(.., hit)| hit.is_some()).count()
     }
 
+    /// The same questions asked in batches: all that share a query at once, and a few, and none.
+    fn differences_in_batches(&self, other: &dyn Accelerator) -> Vec<Difference> {
+        let mut found = Vec::new();
+        for query in queries() {
+            let cases: Vec<_> = self.cases.iter().filter(|case| case.1 == query).collect();
+            let rays: Vec<Ray> = cases.iter().map(|case| case.0).collect();
+            let (mut hits, mut any) = (vec![None; rays.len()], vec![false; rays.len()]);
+            let few = rays.len().min(3);
+            other.closest_hits(&rays[..few], &query, &mut hits[..few]);
+            other.closest_hits(&rays[few..], &query, &mut hits[few..]);
+            other.closest_hits(&[], &query, &mut hits);
+            other.any_hits(&rays, &query, &mut any);
+            for ((&&(ray, query, truth), answer), any) in cases.iter().zip(hits).zip(any) {
+                if bits(answer) != bits(truth) || any != truth.is_some() {
+                    found.push(Difference { ray, query, truth, answer });
+                }
+            }
+        }
+        found
+    }
+
     /// Where a structure does not agree: on the nearest hit, on whether there is any, or with counting on.
     pub fn differences(&self, other: &dyn Accelerator) -> Vec<Difference> {
         let mut found = Vec::new();
@@ -144,6 +165,7 @@ impl Truth {
                 found.push(Difference { ray: *ray, query: *query, truth: *truth, answer });
             }
         }
+        found.extend(self.differences_in_batches(other));
         found
     }
 }

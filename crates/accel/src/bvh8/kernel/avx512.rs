@@ -1,8 +1,8 @@
 //! AVX-512 on eight lanes: masks, and compression for more than two children.
 
-use super::View;
 use super::body::{self, Level, Stack};
 use super::tame::BoxRay;
+use super::{View, batch};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::*;
@@ -26,6 +26,28 @@ pub(super) unsafe fn closest<C: Count>(
 pub(super) unsafe fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
     // SAFETY: as above.
     unsafe { body::any::<Avx512, C>(view, ray, query, count) }
+}
+
+/// See [`super::closest_each`].
+///
+/// # Safety
+/// As for [`closest`].
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn closest_each(view: View<'_>, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
+    let rays = &rays[..rays.len().min(hits.len())];
+    // SAFETY: as above.
+    unsafe { batch::each::<Avx512, false>(view, rays, query, |index, hit| hits[index] = hit) }
+}
+
+/// See [`super::any_each`].
+///
+/// # Safety
+/// As for [`closest`].
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+pub(super) unsafe fn any_each(view: View<'_>, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+    let rays = &rays[..rays.len().min(hits.len())];
+    // SAFETY: as above.
+    unsafe { batch::each::<Avx512, true>(view, rays, query, |index, hit| hits[index] = hit.is_some()) }
 }
 
 struct Avx512;

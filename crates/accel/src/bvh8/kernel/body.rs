@@ -49,7 +49,7 @@ pub(super) struct Stack {
 
 impl Stack {
     #[inline(always)]
-    fn new() -> Stack {
+    pub(super) fn new() -> Stack {
         Stack { references: MaybeUninit::uninit(), enter: MaybeUninit::uninit(), height: 0 }
     }
 
@@ -81,7 +81,7 @@ impl Stack {
     }
 
     #[inline(always)]
-    unsafe fn take_reference(&mut self) -> Ref {
+    pub(super) unsafe fn take_reference(&mut self) -> Ref {
         self.height -= 1;
         // SAFETY: everything below the height has been written.
         unsafe { self.reference(self.height).read() }
@@ -104,7 +104,7 @@ pub(super) unsafe fn reference(node: *const u8, child: usize) -> Ref {
 
 /// The nearest of the children of a mask that is not zero; the others go to the stack, the nearer on top.
 #[inline(always)]
-unsafe fn choose<L: Level>(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) -> Ref {
+pub(super) unsafe fn choose<L: Level>(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) -> Ref {
     // SAFETY: as the caller promises.
     unsafe {
         let first = mask.trailing_zeros() as usize;
@@ -189,7 +189,7 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
 /// # Safety
 /// The machine must have the level, and `block` must point to a block.
 #[inline(always)]
-unsafe fn test(ray: &TameRay, block: *const u8, query: &Query, nearest: &mut Hit) {
+pub(super) unsafe fn test(ray: &TameRay, block: *const u8, query: &Query, nearest: &mut Hit) {
     // SAFETY: as the caller promises.
     unsafe {
         let signs = ray.blocks.signs(block);
@@ -259,7 +259,7 @@ pub(super) unsafe fn any<L: Level, C: Count>(
     }
 }
 
-const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
+pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
 
 /// The primitive of a triangle.
 ///

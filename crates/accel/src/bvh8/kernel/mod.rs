@@ -9,6 +9,8 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
+mod batch;
+#[cfg(target_arch = "x86_64")]
 mod block;
 #[cfg(target_arch = "x86_64")]
 mod body;
@@ -17,7 +19,7 @@ mod plain;
 mod tame;
 
 use super::layout::{Ref, Unit};
-use crate::counters::Count;
+use crate::counters::{Count, Nothing};
 use crate::cpu_level::CpuLevel;
 use crate::ray::{Hit, Query, Ray};
 
@@ -67,5 +69,45 @@ pub(super) fn any<C: Count>(
         // SAFETY: as above.
         CpuLevel::Avx2 => unsafe { avx2::any(view, ray, query, count) },
         _ => plain::any(view, ray, query, count),
+    }
+}
+
+/// The nearest hit of each ray.
+pub(super) fn closest_each(
+    level: CpuLevel,
+    view: View<'_>,
+    rays: &[Ray],
+    query: &Query,
+    hits: &mut [Option<Hit>],
+) {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx512 => unsafe { avx512::closest_each(view, rays, query, hits) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx2 => unsafe { avx2::closest_each(view, rays, query, hits) },
+        _ => {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = plain::closest(view, ray, query, &mut Nothing);
+            }
+        }
+    }
+}
+
+/// Whether there is any hit, for each ray.
+pub(super) fn any_each(level: CpuLevel, view: View<'_>, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx512 => unsafe { avx512::any_each(view, rays, query, hits) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, hits) },
+        _ => {
+            for (ray, hit) in rays.iter().zip(hits) {
+                *hit = plain::any(view, ray, query, &mut Nothing);
+            }
+        }
     }
 }

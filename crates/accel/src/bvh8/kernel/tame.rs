@@ -33,6 +33,8 @@ pub(super) struct BoxRay {
 pub(super) struct TameRay {
     pub(super) boxes: BoxRay,
     pub(super) blocks: BlockRay,
+    /// As the ray has it.
+    pub(super) t_max: f32,
     /// The greatest component of the direction, without its sign.
     pace: f32,
 }
@@ -82,7 +84,7 @@ impl TameRay {
             let steep_axes = _mm_movemask_ps(_mm_cmpge_ps(sizes, pace)) as u32 & 7;
             let boxes = BoxRay::new(direction, inverse, enter, leave, least);
             let blocks = BlockRay::new(ray, origin, direction, 31 - steep_axes.leading_zeros());
-            Some(TameRay { boxes, blocks, pace: length })
+            Some(TameRay { boxes, blocks, t_max: ray.t_max, pace: length })
         }
     }
 

@@ -1,0 +1,184 @@
+//! Several rays at once, each on a way of its own: while one waits for memory, the others go on.
+//!
+//! A step takes a ray through one node or leaf, asks for what comes next, and hands over to the next ray.
+
+use super::body::{BLOCK_BYTES, Level, Stack, choose, test};
+use super::tame::TameRay;
+use super::{View, plain};
+use crate::bvh8::layout::Ref;
+use crate::counters::Nothing;
+use crate::ray::{Hit, Query, Ray};
+use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+
+/// Rays on the way at once.
+const WAYS: usize = 4;
+
+/// A ray on its way.
+struct Walk {
+    /// Its number.
+    index: usize,
+    ray: TameRay,
+    nearest: Hit,
+    limit_bits: u32,
+    current: Ref,
+    stack: Stack,
+}
+
+/// Answers each ray by its number: with its nearest hit or, where `ANY`, with whichever is found first.
+///
+/// # Safety
+/// The machine must have the level, and the view must be sound.
+#[inline(always)]
+pub(super) unsafe fn each<L: Level, const ANY: bool>(
+    view: View<'_>,
+    rays: &[Ray],
+    query: &Query,
+    mut answer: impl FnMut(usize, Option<Hit>),
+) {
+    let base = view.units.as_ptr().cast::<u8>();
+    let mut waiting = rays.iter().enumerate();
+    let mut walks: Vec<Walk> = Vec::with_capacity(WAYS);
+    let mut way = 0;
+    // SAFETY: as the caller promises.
+    unsafe {
+        while walks.len() < WAYS {
+            let Some((index, ray)) = next::<ANY>(&view, &mut waiting, query, &mut answer) else { break };
+            walks.push(Walk::new(&view, ray, index));
+        }
+        while !walks.is_empty() {
+            way = if way < walks.len() { way } else { 0 };
+            let walk = &mut walks[way];
+            if walk.step::<L, ANY>(base, query) {
+                way += 1;
+                continue;
+            }
+            answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
+            match next::<ANY>(&view, &mut waiting, query, &mut answer) {
+                Some((index, ray)) => walk.restart(&view, ray, index),
+                None => drop(walks.swap_remove(way)),
+            }
+        }
+    }
+}
+
+/// The next ray that is tame; those before it are answered.
+///
+/// # Safety
+/// As for [`each`].
+#[inline(always)]
+unsafe fn next<'r, const ANY: bool>(
+    view: &View<'_>,
+    waiting: &mut impl Iterator<Item = (usize, &'r Ray)>,
+    query: &Query,
+    answer: &mut impl FnMut(usize, Option<Hit>),
+) -> Option<(usize, TameRay)> {
+    const SOMETHING: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
+    for (index, ray) in waiting {
+        // SAFETY: as the caller promises.
+        match unsafe { TameRay::new(ray, view) } {
+            Some(tame) => return Some((index, tame)),
+            None if ANY => answer(index, plain::any(*view, ray, query, &mut Nothing).then_some(SOMETHING)),
+            None => answer(index, plain::closest(*view, ray, query, &mut Nothing)),
+        }
+    }
+    None
+}
+
+impl Walk {
+    #[inline(always)]
+    fn new(view: &View<'_>, ray: TameRay, index: usize) -> Walk {
+        let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
+        let limit_bits = ray.limit_bits(nearest.t);
+        Walk { index, ray, nearest, limit_bits, current: view.root, stack: Stack::new() }
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, view: &View<'_>, ray: TameRay, index: usize) {
+        self.nearest = Hit { t: ray.t_max, primitive: u32::MAX, ..self.nearest };
+        self.limit_bits = ray.limit_bits(ray.t_max);
+        (self.index, self.ray, self.current, self.stack.height) = (index, ray, view.root, 0);
+    }
+
+    /// One node or leaf; false when there is none left.
+    ///
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn step<L: Level, const ANY: bool>(&mut self, base: *const u8, query: &Query) -> bool {
+        // SAFETY: as the caller promises; references lead to whole nodes and leaves.
+        unsafe {
+            let place = base.add(self.current.byte());
+            if self.current.is_node() {
+                let (mask, enter) = L::meet(&self.ray.boxes, place, L::splat(self.limit_bits));
+                if mask != 0 {
+                    self.current = if ANY {
+                        L::push(place, mask, &mut self.stack);
+                        self.stack.take_reference()
+                    } else {
+                        choose::<L>(place, mask, enter, &mut self.stack)
+                    };
+                    prefetch(base, self.current);
+                    return true;
+                }
+            } else if self.leaf::<ANY>(place, query) {
+                return false;
+            }
+            self.next::<ANY>(base)
+        }
+    }
+
+    /// Tests the triangles of a leaf; true when that ends the search.
+    ///
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn leaf<const ANY: bool>(&mut self, place: *const u8, query: &Query) -> bool {
+        let before = self.nearest.t;
+        for index in 0..self.current.blocks() {
+            // SAFETY: as the caller promises.
+            unsafe { test(&self.ray, place.add(index * BLOCK_BYTES), query, &mut self.nearest) };
+            if ANY && self.nearest.primitive != u32::MAX {
+                return true;
+            }
+        }
+        if !ANY && query.early_out && self.nearest.t < before {
+            self.limit_bits = self.ray.limit_bits(self.nearest.t);
+        }
+        false
+    }
+
+    /// Goes on with what waits on the stack; false when nothing does.
+    ///
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn next<const ANY: bool>(&mut self, base: *const u8) -> bool {
+        while self.stack.height > 0 {
+            // SAFETY: something is there; what any hit puts there has no distance.
+            unsafe {
+                let enter = if ANY { 0 } else { *self.stack.enter(self.stack.height - 1) };
+                self.current = self.stack.take_reference();
+                if enter <= self.limit_bits | 7 {
+                    prefetch(base, self.current);
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
+
+/// Asks for the lines of a node, or of the first block of a leaf.
+///
+/// # Safety
+/// None is needed: a prefetch reads nothing.
+#[inline(always)]
+unsafe fn prefetch(base: *const u8, reference: Ref) {
+    // SAFETY: a prefetch reads nothing.
+    unsafe {
+        let place = base.wrapping_add(reference.byte()).cast::<i8>();
+        for line in 0..4 {
+            _mm_prefetch::<_MM_HINT_T0>(place.wrapping_add(line * 64));
+        }
+    }
+}
