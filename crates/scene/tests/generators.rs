@@ -274,3 +274,45 @@ fn what_a_vessel_holds_is_closed_and_inside() {
     assert!(volume(&tea) > 0.3 * volume(&Vessel { wall: None, ..vessel }.mesh()));
     assert!(vessel.filling(-1.0).triangles.is_empty());
 }
+
+#[test]
+fn the_scan_is_closed_faces_outwards_and_is_uneven() {
+    let mut volumes = Vec::new();
+    for detail in [8, 32, 64] {
+        let scene = generate(&Spec::new("", "scan").with("detail", Value::Integer(detail))).unwrap();
+        let statue = &scene.objects[0].mesh;
+        assert_eq!(open_edges(statue), 0, "detail {detail}");
+        volumes.push(volume(statue));
+        let area = |&[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|i| statue.positions[i as usize]);
+            (b - a).cross(c - a).length()
+        };
+        let mut areas: Vec<f32> = statue.triangles.iter().map(area).collect();
+        areas.sort_by(f32::total_cmp);
+        let n = areas.len();
+        assert!(areas[0] > 0.0 && areas[n * 9 / 10] > 10.0 * areas[n / 10]);
+    }
+    // A finer one is the same figure.
+    assert!(volumes[1] > 0.0 && (volumes[1] / volumes[2] - 1.0).abs() < 0.05, "{volumes:?}");
+}
+
+#[test]
+fn the_interior_grows_with_its_detail_and_everything_is_in_the_room() {
+    let triangles = |detail: i64| {
+        let scene = generate(&Spec::new("", "interior").with("detail", Value::Integer(detail))).unwrap();
+        let bounds = scene.bounds(0.0);
+        assert!(bounds.min.cmpge(Vec3::new(-3.21, -0.11, -2.51)).all(), "{bounds:?}");
+        assert!(bounds.max.cmple(Vec3::new(3.11, 2.81, 2.51)).all(), "{bounds:?}");
+        for object in &scene.objects {
+            assert!(
+                least_agreement(&object.mesh) > -0.1,
+                "{} {}",
+                object.name,
+                least_agreement(&object.mesh)
+            );
+        }
+        scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>()
+    };
+    assert!((50_000..100_000).contains(&triangles(1)));
+    assert!((200_000..300_000).contains(&triangles(2)));
+}

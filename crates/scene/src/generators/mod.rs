@@ -12,6 +12,8 @@ mod copies;
 mod cornell;
 mod coverage;
 mod graft;
+mod interior;
+mod scan;
 pub mod shapes;
 pub mod teapot;
 mod teapots;
@@ -35,8 +37,15 @@ pub struct GeneratorEntry {
 }
 
 /// Every scene that there is.
-pub const GENERATORS: &[GeneratorEntry] =
-    &[trio::ENTRY, teapots::ENTRY, teapot::ENTRY, cornell::ENTRY, cornell::SPHERES];
+pub const GENERATORS: &[GeneratorEntry] = &[
+    trio::ENTRY,
+    teapots::ENTRY,
+    teapot::ENTRY,
+    cornell::ENTRY,
+    cornell::SPHERES,
+    interior::ENTRY,
+    scan::ENTRY,
+];
 
 /// Makes the scene that a spec describes.
 ///

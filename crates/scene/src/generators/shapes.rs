@@ -142,7 +142,7 @@ pub fn torus(centre: Vec3, radius: f32, tube: f32, around: u32, along: u32) -> M
 }
 
 /// Squares over `(0..=columns) × (0..=rows)`, v downwards; corners that coincide make one triangle of a square.
-fn grid(name: &str, columns: u32, rows: u32, at: impl Fn(u32, u32) -> (Vec3, Vec3)) -> Mesh {
+pub(super) fn grid(name: &str, columns: u32, rows: u32, at: impl Fn(u32, u32) -> (Vec3, Vec3)) -> Mesh {
     let mut mesh = Mesh { name: name.to_owned(), ..Mesh::default() };
     for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {
         let (position, normal) = at(i, j);
