@@ -5,6 +5,7 @@
 pub mod build;
 pub mod frames;
 pub mod paper;
+pub mod rays;
 pub mod teapots;
 pub mod visibility;
 

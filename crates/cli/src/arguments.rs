@@ -283,11 +283,19 @@ pub struct List {
 #[command(after_help = "Examples:\n  \
     bilux bench teapots --counts 2,3,4,5 --accel brute,bsp,bsp-sah,kd,bvh\n  \
     bilux bench visibility --json\n  \
-    bilux bench paper -o figures.png")]
+    bilux bench paper -o figures.png\n  \
+    bilux bench rays                                  on our own scenes\n  \
+    bilux bench rays room.toml --accel bvh,kd --json\n  \
+    bilux bench rays --against embree=libembree4.so.4  beside Embree\n  \
+    bilux bench rays teapots3 --dump batches           meshes and rays for other programs\n  \
+    bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit")]
 pub struct Bench {
     /// What to measure
     #[arg(value_enum)]
     pub kind: BenchKind,
+    /// `rays`: scene files, or teapots3, interior, scan, teapot1m; all four of these if none is given
+    #[arg(value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
     /// As JSON
     #[arg(long)]
     pub json: bool,
@@ -309,6 +317,24 @@ pub struct Bench {
     /// A picture of what was rendered, where there is one
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// `rays`: how many in each class (1048576), or with --mesh a file of rays
+    #[arg(long, value_name = "N|FILE")]
+    pub rays: Vec<String>,
+    /// `rays`: rounds, in each of which every engine has a turn; medians count (5)
+    #[arg(long, value_name = "N")]
+    pub rounds: Option<u32>,
+    /// `rays`: a rival in a shared library, such as embree=libembree4.so.4
+    #[arg(long, value_name = "NAME=PATH", value_parser = parse_rival)]
+    pub against: Vec<(String, PathBuf)>,
+    /// `rays`: write meshes and rays into this folder
+    #[arg(long, value_name = "DIR")]
+    pub dump: Option<PathBuf>,
+    /// `rays`: a mesh file in place of scenes
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// `rays`: write the hits of the rays of --rays FILE
+    #[arg(long, value_name = "FILE")]
+    pub hits: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -323,6 +349,13 @@ pub enum BenchKind {
     Visibility,
     /// How fast trees are built, and how large they are
     Build,
+    /// Rays a second, beside other libraries
+    Rays,
+}
+
+fn parse_rival(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, path) = text.split_once('=').ok_or("is written as embree=/path/of/libembree4.so.4")?;
+    Ok((name.to_owned(), PathBuf::from(path)))
 }
 
 fn parse_bytes(text: &str) -> Result<u64, String> {

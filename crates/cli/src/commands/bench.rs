@@ -1,6 +1,6 @@
 //! `bilux bench`: measurements.
 
-use super::{DONE, check_folder};
+use super::{DONE, check_folder, read_options};
 use crate::arguments::{Bench, BenchKind, Common};
 use crate::output;
 use anyhow::Context;
@@ -32,6 +32,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Frames => bilux_bench::frames::run(&options, &tell)?,
         BenchKind::Visibility => bilux_bench::visibility::run(&options, &tell)?,
         BenchKind::Build => bilux_bench::build::run(&options, &tell)?,
+        BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &tell)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?);
@@ -44,3 +45,31 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     }
     Ok(DONE)
 }
+
+/// What `bench rays` is told.
+fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays::Options> {
+    let defaults = bilux_bench::rays::Options::default();
+    let (numbers, files): (Vec<&String>, Vec<&String>) =
+        arguments.rays.iter().partition(|text| text.parse::<u64>().is_ok());
+    let count = match numbers.last() {
+        Some(text) => text.parse().ok().filter(|n| (1..=MOST_RAYS).contains(n)).with_context(|| {
+            format!("--rays {text}: a class has from 1 to {MOST_RAYS} rays; a file of this name is written as ./{text}")
+        })?,
+        None => defaults.count,
+    };
+    Ok(bilux_bench::rays::Options {
+        scenes: arguments.scenes.clone(),
+        read: read_options(common),
+        accels: arguments.accel.clone(),
+        count,
+        rounds: arguments.rounds.unwrap_or(defaults.rounds),
+        against: arguments.against.clone(),
+        dump: arguments.dump.clone(),
+        mesh: arguments.mesh.clone(),
+        rays: files.into_iter().map(Into::into).collect(),
+        hits: arguments.hits.clone(),
+    })
+}
+
+/// More would not fit into the memory of most machines.
+const MOST_RAYS: usize = 1 << 26;

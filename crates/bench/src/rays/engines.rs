@@ -1,0 +1,165 @@
+//! What is measured: our structures and their rivals, behind one trait whose calls hold a whole batch.
+
+use super::embree::{Asked, Embree, KINDS, Packets, Tree};
+use super::{Batch, Mode};
+use bilux::Error;
+use bilux::accel::{ACCELERATORS, Accelerator, BuildOptions, Bvh, Hit, Query, TriangleMesh};
+use std::hint::black_box;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a batch of rays found, ray by ray.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Answers {
+    /// Closest hits; empty for a batch that asks for any.
+    pub(super) closest: Vec<Option<Hit>>,
+    /// Whether anything was hit; empty for a batch that asks for the closest.
+    pub(super) any: Vec<bool>,
+}
+
+impl Answers {
+    pub(super) fn fill(&mut self, any: bool, hits: impl Iterator<Item = Option<Hit>>) {
+        *self = Answers::default();
+        if any {
+            self.any = hits.map(|hit| hit.is_some()).collect();
+        } else {
+            self.closest = hits.collect();
+        }
+    }
+
+    /// Rays of which one says hit and the other miss, or that hit another primitive at a distance that differs
+    /// by more than a ten-thousandth.
+    pub(super) fn mismatches(&self, reference: &Answers) -> usize {
+        let differ = |(a, b): &(&Option<Hit>, &Option<Hit>)| match (a, b) {
+            (Some(a), Some(b)) => {
+                a.primitive != b.primitive && (a.t - b.t).abs() > 1e-4 * a.t.abs().max(b.t.abs())
+            }
+            (a, b) => a.is_some() != b.is_some(),
+        };
+        let closest = self.closest.iter().zip(&reference.closest).filter(differ).count();
+        closest + self.any.iter().zip(&reference.any).filter(|(a, b)| a != b).count()
+    }
+}
+
+/// A structure over the mesh of a scene, and one way of asking it.
+pub(super) trait Engine {
+    fn mode(&self) -> Mode;
+    fn build_seconds(&self) -> f64;
+    fn bytes(&self) -> usize;
+    /// Seconds that the rays take. To bring them into the engine's own form, and to take the answers out of it, is
+    /// not counted.
+    fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64;
+}
+
+/// An engine by its name.
+pub(super) struct Named {
+    pub(super) name: String,
+    /// One of our own.
+    pub(super) ours: bool,
+    pub(super) engine: Box<dyn Engine>,
+}
+
+/// Builds every engine over a mesh: ours, those behind the feature `peers`, and Embree from the libraries given.
+pub(super) fn build(
+    mesh: &Arc<TriangleMesh>,
+    accels: &[String],
+    against: &[Rc<Embree>],
+) -> Result<Vec<Named>, Error> {
+    let mut engines = Vec::new();
+    for name in accels {
+        engines.push(Named { name: name.clone(), ours: true, engine: ours(name, mesh)? });
+    }
+    #[cfg(feature = "peers")]
+    engines.extend(super::peers::build(mesh));
+    for embree in against {
+        for kind in KINDS {
+            let tree = Rc::new(Tree::build(embree, kind, mesh)?);
+            for (packets, suffix) in
+                [(Packets::One, ""), (Packets::Sixteen, "/16"), (Packets::Coherent, "/16-coherent")]
+            {
+                let engine = Box::new(Asked { tree: tree.clone(), packets });
+                engines.push(Named { name: format!("{}{suffix}", kind.name), ours: false, engine });
+            }
+        }
+    }
+    Ok(engines)
+}
+
+/// Loads what `--against NAME=PATH` names.
+pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Error> {
+    let load = |(name, path): &(String, PathBuf)| match name.as_str() {
+        "embree" => Embree::load(path),
+        other => Err(Error::Settings(format!("there is no peer '{other}' to load: embree is one"))),
+    };
+    against.iter().map(load).collect()
+}
+
+/// One of ours: called through its own type where that is public, so that the query is compiled into the loop.
+fn ours(name: &str, mesh: &Arc<TriangleMesh>) -> Result<Box<dyn Engine>, Error> {
+    let begun = Instant::now();
+    if name == "bvh" {
+        let tree = Box::new(Bvh::new(mesh));
+        return Ok(Box::new(Ours { tree, build_seconds: begun.elapsed().as_secs_f64() }));
+    }
+    let tree = bilux::accel::build(name, mesh.clone(), &BuildOptions::default()).map_err(|e| {
+        let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
+        Error::Settings(format!("{e}: there are {}", names.join(", ")))
+    })?;
+    Ok(Box::new(Ours { tree, build_seconds: begun.elapsed().as_secs_f64() }))
+}
+
+/// Ray by ray.
+struct Ours<A: ?Sized> {
+    tree: Box<A>,
+    build_seconds: f64,
+}
+
+impl<A: Accelerator + ?Sized> Engine for Ours<A> {
+    fn mode(&self) -> Mode {
+        Mode::Single
+    }
+
+    fn build_seconds(&self) -> f64 {
+        self.build_seconds
+    }
+
+    fn bytes(&self) -> usize {
+        self.tree.memory_bytes()
+    }
+
+    fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
+        let query = Query::default();
+        if batch.any {
+            loop_over(batch, answers, |ray| self.tree.any_hit(ray, &query), |&hit| hit.then_some(NOWHERE))
+        } else {
+            loop_over(batch, answers, |ray| self.tree.closest_hit(ray, &query), |&hit| hit)
+        }
+    }
+}
+
+/// What any hit says of where: nothing.
+pub(super) const NOWHERE: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
+
+/// Times `ask` over all rays, its answers written into memory that is already there, as Embree's are.
+pub(super) fn loop_over<T: Clone + Default>(
+    batch: &Batch,
+    answers: Option<&mut Answers>,
+    ask: impl Fn(&bilux::accel::Ray) -> T,
+    hit: impl Fn(&T) -> Option<Hit>,
+) -> f64 {
+    let mut found = vec![T::default(); batch.rays.len()];
+    // Memory that was never written costs page faults, which are nobody's rays.
+    found.iter_mut().for_each(|slot| *black_box(slot) = T::default());
+    let begun = Instant::now();
+    for (slot, ray) in found.iter_mut().zip(&batch.rays) {
+        *slot = ask(ray);
+    }
+    let seconds = begun.elapsed().as_secs_f64();
+    if let Some(answers) = answers {
+        answers.fill(batch.any, found.iter().map(hit));
+    }
+    black_box(found);
+    seconds
+}

@@ -1,0 +1,187 @@
+//! Rays a second: our structures and their rivals, on the same scenes, by the same rays, in turns.
+//!
+//! Five classes of rays: `primary` (closest, from the camera, Morton order in tiles of 16²), `ao` (any, short),
+//! `bounce` (closest, diffuse, in the order of pixels), `bounce2` (closest, from where those arrive, shuffled) and
+//! `shadow` (any, to an area light). One thread. Every engine traces a class once a round, the order rotated from
+//! round to round; medians count. Hits are held against those of `bvh`.
+
+mod classes;
+mod embree;
+mod engines;
+pub mod files;
+#[cfg(feature = "peers")]
+mod peers;
+mod report;
+mod scenes;
+
+use crate::{Report, Tell, median};
+use bilux::Error;
+use bilux::accel::registry::AUTO;
+use bilux::accel::{ACCELERATORS, Bvh, Query, Ray};
+use bilux::formats::ReadOptions;
+use engines::{Answers, Named};
+use report::Row;
+use scenes::Subject;
+use std::path::{Path, PathBuf};
+
+/// What the benchmark can be told.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Scene files; our own scenes where there are none.
+    pub scenes: Vec<PathBuf>,
+    /// How scene files are read.
+    pub read: ReadOptions,
+    /// Our structures; the fastest and `bvh` where there are none.
+    pub accels: Vec<String>,
+    /// Rays a class.
+    pub count: usize,
+    /// Rounds, of which the median counts.
+    pub rounds: u32,
+    /// Rivals in shared libraries: their name (`embree`) and the library.
+    pub against: Vec<(String, PathBuf)>,
+    /// Folder into which meshes and rays are written.
+    pub dump: Option<PathBuf>,
+    /// A mesh file and files of rays, in place of scenes.
+    pub mesh: Option<PathBuf>,
+    /// See `mesh`.
+    pub rays: Vec<PathBuf>,
+    /// Where the hits of the last file of rays are written.
+    pub hits: Option<PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            scenes: Vec::new(),
+            read: ReadOptions::default(),
+            accels: Vec::new(),
+            count: 1 << 20,
+            rounds: 5,
+            against: Vec::new(),
+            dump: None,
+            mesh: None,
+            rays: Vec::new(),
+            hits: None,
+        }
+    }
+}
+
+/// Rays that are asked the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch {
+    /// What kind of rays these are.
+    pub class: String,
+    /// Whether any hit does, in place of the closest.
+    pub any: bool,
+    /// The rays.
+    pub rays: Vec<Ray>,
+}
+
+/// How rays are handed over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    /// One a call.
+    Single,
+    /// Several a call.
+    Batch,
+}
+
+/// Measures.
+///
+/// # Errors
+/// When a file cannot be read or written, a name is not known, or nothing of a scene can be seen.
+pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+    let against = engines::load(&options.against)?;
+    let mut accels = options.accels.clone();
+    if accels.is_empty() {
+        accels = vec!["bvh".to_owned(), AUTO.to_owned()];
+        accels.dedup();
+    }
+    if let Some(unknown) = accels.iter().find(|name| ACCELERATORS.iter().all(|row| row.entry.name != **name))
+    {
+        let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
+        return Err(Error::Settings(format!(
+            "there is no accelerator '{unknown}': there are {}",
+            names.join(", ")
+        )));
+    }
+    let mut rows = Vec::new();
+    for source in scenes::sources(options)? {
+        tell(&format!("{}: rays", source.name()));
+        let (subject, batches) = source.load(options)?;
+        if let Some(folder) = &options.dump {
+            files::dump(folder, &subject.name, &subject.mesh, &batches)?;
+        }
+        tell(&format!("{}: trees over {} triangles", subject.name, subject.mesh.len()));
+        let built = engines::build(&subject.mesh, &accels, &against)?;
+        measure(&subject, &batches, &built, options, tell, &mut rows)?;
+    }
+    Ok(Report {
+        rows: rows.iter().map(Row::json).collect(),
+        text: report::text(&rows, options),
+        picture: None,
+    })
+}
+
+/// One scene: every class by every engine.
+fn measure(
+    subject: &Subject,
+    batches: &[Batch],
+    built: &[Named],
+    options: &Options,
+    tell: Tell,
+    rows: &mut Vec<Row>,
+) -> Result<(), Error> {
+    let reference = Bvh::new(&subject.mesh);
+    for batch in batches {
+        tell(&format!("{}: {} by {} engines", subject.name, batch.class, built.len()));
+        let truth = truth(&reference, batch);
+        if let Some(path) = &options.hits {
+            files::write_hits(path, &truth)?;
+        }
+        let mut seconds = vec![Vec::new(); built.len()];
+        let mut mismatches = vec![0; built.len()];
+        for round in 0..options.rounds.max(1) as usize {
+            for k in 0..built.len() {
+                let k = (k + round) % built.len();
+                let mut answers = (round == 0).then(Answers::default);
+                seconds[k].push(built[k].engine.trace(batch, answers.as_mut()));
+                if let Some(answers) = answers {
+                    mismatches[k] = answers.mismatches(&truth);
+                }
+            }
+        }
+        for ((named, seconds), mismatches) in built.iter().zip(seconds).zip(mismatches) {
+            rows.push(Row {
+                scene: subject.name.clone(),
+                triangles: subject.mesh.len(),
+                class: batch.class.clone(),
+                engine: named.name.clone(),
+                ours: named.ours,
+                mode: named.engine.mode(),
+                mrays: batch.rays.len() as f64 / median(seconds) * 1e-6,
+                build_seconds: named.engine.build_seconds(),
+                bytes_per_triangle: named.engine.bytes() as f64 / subject.mesh.len().max(1) as f64,
+                mismatches,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// What `bvh` answers.
+fn truth(reference: &Bvh, batch: &Batch) -> Answers {
+    use bilux::accel::Accelerator;
+    let (query, mut truth) = (Query::default(), Answers::default());
+    if batch.any {
+        truth.any = batch.rays.iter().map(|ray| reference.any_hit(ray, &query)).collect();
+    } else {
+        truth.closest = batch.rays.iter().map(|ray| reference.closest_hit(ray, &query)).collect();
+    }
+    truth
+}
+
+/// A setting that is wrong because of a file.
+fn file_error(what: &str, path: &Path, why: impl std::fmt::Display) -> Error {
+    Error::Settings(format!("cannot {what} '{}': {why}", path.display()))
+}

@@ -1,0 +1,89 @@
+//! The figures, as JSON and as tables.
+
+use super::{Mode, Options};
+use crate::table;
+use serde_json::{Value, json};
+
+/// What one engine did with one class on one scene.
+pub(super) struct Row {
+    pub(super) scene: String,
+    pub(super) triangles: usize,
+    pub(super) class: String,
+    pub(super) engine: String,
+    pub(super) ours: bool,
+    pub(super) mode: Mode,
+    pub(super) mrays: f64,
+    pub(super) build_seconds: f64,
+    pub(super) bytes_per_triangle: f64,
+    pub(super) mismatches: usize,
+}
+
+impl Row {
+    pub(super) fn json(&self) -> Value {
+        json!({
+            "scene": self.scene, "triangles": self.triangles, "class": self.class, "engine": self.engine,
+            "mode": self.mode.name(), "mrays": self.mrays, "build_seconds": self.build_seconds,
+            "bytes_per_triangle": self.bytes_per_triangle, "mismatches": self.mismatches,
+        })
+    }
+}
+
+impl Mode {
+    fn name(self) -> &'static str {
+        match self {
+            Mode::Single => "single",
+            Mode::Batch => "batch",
+        }
+    }
+}
+
+/// A table for each scene: engines down, classes across. Ours with the ratio to the best rival of the same mode.
+pub(super) fn text(rows: &[Row], options: &Options) -> String {
+    let mut scenes: Vec<&str> = rows.iter().map(|row| &*row.scene).collect();
+    scenes.dedup();
+    let one = |scene: &str| {
+        let of_scene: Vec<&Row> = rows.iter().filter(|row| row.scene == scene).collect();
+        of_one(scene, &of_scene, options)
+    };
+    scenes.iter().map(|scene| one(scene)).collect::<Vec<_>>().join("\n")
+}
+
+fn of_one(scene: &str, rows: &[&Row], options: &Options) -> String {
+    let mut classes: Vec<&str> = Vec::new();
+    let mut engines: Vec<(&str, Mode)> = Vec::new();
+    for row in rows {
+        if !classes.contains(&&*row.class) {
+            classes.push(&row.class);
+        }
+        if !engines.contains(&(&*row.engine, row.mode)) {
+            engines.push((&row.engine, row.mode));
+        }
+    }
+    let best = |class: &str, mode: Mode| {
+        let peers = rows.iter().filter(|r| !r.ours && r.class == class && r.mode == mode);
+        peers.map(|r| r.mrays).fold(0.0, f64::max)
+    };
+    let cells: Vec<Vec<String>> = engines
+        .iter()
+        .map(|&(engine, mode)| {
+            let own: Vec<&&Row> = rows.iter().filter(|r| r.engine == engine && r.mode == mode).collect();
+            let speed = |row: &Row| match best(&row.class, mode) {
+                best if best > 0.0 && row.ours => format!("{:.2} ({:.2}×)", row.mrays, row.mrays / best),
+                _ => format!("{:.2}", row.mrays),
+            };
+            let mut line = vec![engine.to_owned(), mode.name().to_owned()];
+            line.extend(own.iter().map(|row| speed(row)));
+            line.push(format!("{:.4}", own[0].build_seconds));
+            line.push(format!("{:.0}", own[0].bytes_per_triangle));
+            line.push(own.iter().map(|row| row.mismatches.to_string()).collect::<Vec<_>>().join("/"));
+            line
+        })
+        .collect();
+    let header: Vec<&str> =
+        ["engine", "mode"].into_iter().chain(classes).chain(["build s", "bytes/tri", "mismatches"]).collect();
+    let title = format!(
+        "{scene}: {} triangles, Mrays/s on one thread, median of {} (× the best rival of the same mode)",
+        rows[0].triangles, options.rounds
+    );
+    table(&title, &header, &cells)
+}
