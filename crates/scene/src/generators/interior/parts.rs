@@ -63,7 +63,9 @@ pub(super) fn turned(outline: &[[f32; 2]], around: u32, steps: u32) -> Mesh {
     let last = points.len() - 1;
     grid("turned", around, last as u32, |i, j| {
         let j = j as usize;
-        let slope = (points[(j + 1).min(last)] - points[j.saturating_sub(1)]).normalize_or(Vec2::NEG_Y);
+        // Halfway between the pieces on both sides, however short one is: less than a right angle from each.
+        let piece = |a: usize| (points[(a + 1).min(last)] - points[a.min(last)]).normalize_or_zero();
+        let slope = (piece(j) + if j > 0 { piece(j - 1) } else { Vec2::ZERO }).normalize_or(Vec2::NEG_Y);
         let (sin, cos) = sin_cos(TAU * (i % around) as f32 / around as f32);
         let place = |v: Vec2| Vec3::new(v.x * cos, v.y, -v.x * sin);
         (place(points[j]), place(Vec2::new(-slope.y, slope.x)))
