@@ -1,5 +1,8 @@
 //! Everything that can be typed. Help, completions and the man page are made from this one description.
 
+use crate::values::{
+    parse_bytes, parse_crop, parse_frames, parse_replay, parse_rival, parse_samples, parse_vector,
+};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -351,55 +354,4 @@ pub enum BenchKind {
     Build,
     /// Rays a second, beside other libraries
     Rays,
-}
-
-fn parse_rival(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, path) = text.split_once('=').ok_or("is written as embree=/path/of/libembree4.so.4")?;
-    Ok((name.to_owned(), PathBuf::from(path)))
-}
-
-fn parse_bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let factor = match text[digits.len()..].to_ascii_uppercase().as_str() {
-        "" | "B" => 1,
-        "K" | "KB" | "KIB" => 1 << 10,
-        "M" | "MB" | "MIB" => 1 << 20,
-        "G" | "GB" | "GIB" => 1u64 << 30,
-        "T" | "TB" | "TIB" => 1 << 40,
-        other => return Err(format!("'{other}' is no unit of memory: write 512M or 8G")),
-    };
-    let number: f64 = digits.parse().map_err(|_| format!("'{text}' is no size: write 512M or 8G"))?;
-    if number > 0.0 { Ok((number * factor as f64) as u64) } else { Err("has to be more than 0".to_owned()) }
-}
-
-fn parse_frames(text: &str) -> Result<(u32, u32), String> {
-    let (a, b) = text.split_once('-').unwrap_or((text, text));
-    match (a.trim().parse(), b.trim().parse()) {
-        (Ok(a), Ok(b)) if a <= b => Ok((a, b)),
-        _ => Err("frames are written as 0-47, the first before the last".to_owned()),
-    }
-}
-
-fn parse_samples(text: &str) -> Result<(u32, u32), String> {
-    match text.split_once("..").map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
-        Some((Ok(a), Ok(b))) if a < b => Ok((a, b)),
-        _ => Err("samples are written as 0..64, the end not included".to_owned()),
-    }
-}
-
-fn numbers<T: std::str::FromStr, const N: usize>(text: &str, example: &str) -> Result<[T; N], String> {
-    let parsed: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    parsed.and_then(|n| n.try_into().ok()).ok_or_else(|| format!("is written as {example}"))
-}
-
-fn parse_crop(text: &str) -> Result<[u32; 4], String> {
-    numbers(text, "X,Y,WIDTH,HEIGHT")
-}
-
-fn parse_replay(text: &str) -> Result<[u32; 3], String> {
-    numbers(text, "X,Y,SAMPLE")
-}
-
-fn parse_vector(text: &str) -> Result<[f32; 3], String> {
-    numbers(text, "X,Y,Z")
 }

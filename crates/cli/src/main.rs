@@ -11,6 +11,7 @@ mod output;
 mod progress;
 mod settings_from;
 mod usage;
+mod values;
 mod version;
 
 use arguments::{Arguments, Command};

@@ -16,11 +16,16 @@ use std::time::Instant;
 
 type Pointer = *mut c_void;
 /// Called when Embree takes or gives back memory.
+///
+/// # Safety
+/// Embree hands over the pointer that it was given for this.
 type Monitor = unsafe extern "C" fn(Pointer, isize, bool) -> bool;
 
 /// Declares the functions that are used, and finds them by name.
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
+        /// # Safety
+        /// Each is to be called as Embree's documentation says.
         #[allow(non_snake_case, reason = "as the library calls them")]
         struct Functions { $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)* }
 
@@ -130,6 +135,8 @@ pub(super) struct Embree {
     _library: Library,
 }
 
+/// # Safety
+/// See [`Monitor`]; the pointer is that of [`Embree::held`].
 unsafe extern "C" fn count(held: Pointer, bytes: isize, _post: bool) -> bool {
     // SAFETY: the pointer is that of `Embree::held`, which lives as long as the device.
     unsafe { &*held.cast::<AtomicIsize>() }.fetch_add(bytes, Ordering::Relaxed);

@@ -3,7 +3,11 @@
 use super::embree::{Asked, Embree, KINDS, Packets, Tree};
 use super::{Batch, Mode};
 use bilux::Error;
-use bilux::accel::{ACCELERATORS, Accelerator, BuildOptions, Bvh, Hit, Query, TriangleMesh};
+use bilux::accel::registry::Quality;
+use bilux::accel::{
+    ACCELERATORS, Accelerator, AcceleratorEntry, BuildError, BuildOptions, Bvh, Bvh8, Hit, Query, Ray,
+    TriangleMesh,
+};
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -30,13 +34,13 @@ impl Answers {
     }
 
     /// Rays of which one says hit and the other miss, or that hit another primitive at a distance that differs
-    /// by more than a ten-thousandth.
-    pub(super) fn mismatches(&self, reference: &Answers) -> usize {
+    /// by more than a ten-thousandth; where answers are to be `equal`, all that differ in anything.
+    pub(super) fn mismatches(&self, reference: &Answers, equal: bool) -> usize {
         let differ = |(a, b): &(&Option<Hit>, &Option<Hit>)| match (a, b) {
-            (Some(a), Some(b)) => {
+            (Some(a), Some(b)) if !equal => {
                 a.primitive != b.primitive && (a.t - b.t).abs() > 1e-4 * a.t.abs().max(b.t.abs())
             }
-            (a, b) => a.is_some() != b.is_some(),
+            (a, b) => a != b,
         };
         let closest = self.closest.iter().zip(&reference.closest).filter(differ).count();
         closest + self.any.iter().zip(&reference.any).filter(|(a, b)| a != b).count()
@@ -69,7 +73,7 @@ pub(super) fn build(
 ) -> Result<Vec<Named>, Error> {
     let mut engines = Vec::new();
     for name in accels {
-        engines.push(Named { name: name.clone(), ours: true, engine: ours(name, mesh)? });
+        engines.extend(ours(name, mesh)?);
     }
     #[cfg(feature = "peers")]
     engines.extend(super::peers::build(mesh));
@@ -96,24 +100,52 @@ pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Err
     against.iter().map(load).collect()
 }
 
-/// One of ours: called through its own type where that is public, so that the query is compiled into the loop.
-fn ours(name: &str, mesh: &Arc<TriangleMesh>) -> Result<Box<dyn Engine>, Error> {
-    let begun = Instant::now();
-    if name == "bvh" {
-        let tree = Box::new(Bvh::new(mesh));
-        return Ok(Box::new(Ours { tree, build_seconds: begun.elapsed().as_secs_f64() }));
+/// What our structures are told to be built with: the name of a structure, and behind a hyphen how much time its
+/// builder may take; balanced where nothing is said.
+pub(super) fn own(name: &str) -> Option<(&'static AcceleratorEntry, BuildOptions)> {
+    let row = |name: &str| ACCELERATORS.iter().find(|row| row.entry.name == name);
+    if let Some(row) = row(name) {
+        return Some((row, BuildOptions::default()));
     }
-    let tree = bilux::accel::build(name, mesh.clone(), &BuildOptions::default()).map_err(|e| {
-        let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
-        Error::Settings(format!("{e}: there are {}", names.join(", ")))
-    })?;
-    Ok(Box::new(Ours { tree, build_seconds: begun.elapsed().as_secs_f64() }))
+    let (name, quality) = name.rsplit_once('-')?;
+    Some((row(name)?, BuildOptions { quality: Quality::from_name(quality)?, ..BuildOptions::default() }))
+}
+
+/// Ours, ray by ray and, where a structure has a way of its own for many, in batches. Those that are asked for
+/// their speed are called through their own types, so that the query is compiled into the loop.
+fn ours(name: &str, mesh: &Arc<TriangleMesh>) -> Result<Vec<Named>, Error> {
+    let failed = |e: BuildError| Error::Settings(e.to_string());
+    let (row, options) = own(name).ok_or_else(|| failed(BuildError::UnknownName(name.to_owned())))?;
+    let named = |engine: Box<dyn Engine>| Named { name: name.to_owned(), ours: true, engine };
+    let begun = Instant::now();
+    Ok(match row.entry.name {
+        "bvh" => {
+            let tree = Rc::new(Bvh::new(mesh));
+            vec![named(Box::new(Ours::new(&tree, begun)))]
+        }
+        "bvh8" => {
+            let tree = Rc::new(Bvh8::new(mesh, &options).map_err(failed)?);
+            let single = Ours::new(&tree, begun);
+            let batches = Batches { tree, build_seconds: single.build_seconds };
+            vec![named(Box::new(single)), named(Box::new(batches))]
+        }
+        _ => {
+            let tree: Rc<dyn Accelerator> = (row.build)(mesh.clone(), &options).map_err(failed)?.into();
+            vec![named(Box::new(Ours::new(&tree, begun)))]
+        }
+    })
 }
 
 /// Ray by ray.
 struct Ours<A: ?Sized> {
-    tree: Box<A>,
+    tree: Rc<A>,
     build_seconds: f64,
+}
+
+impl<A: Accelerator + ?Sized> Ours<A> {
+    fn new(tree: &Rc<A>, begun: Instant) -> Ours<A> {
+        Ours { tree: tree.clone(), build_seconds: begun.elapsed().as_secs_f64() }
+    }
 }
 
 impl<A: Accelerator + ?Sized> Engine for Ours<A> {
@@ -139,22 +171,83 @@ impl<A: Accelerator + ?Sized> Engine for Ours<A> {
     }
 }
 
+/// Some thousand rays a call, as the integrators have them.
+struct Batches {
+    tree: Rc<Bvh8>,
+    build_seconds: f64,
+}
+
+/// Rays of a call.
+const BATCH: usize = 4096;
+
+impl Engine for Batches {
+    fn mode(&self) -> Mode {
+        Mode::Batch
+    }
+
+    fn build_seconds(&self) -> f64 {
+        self.build_seconds
+    }
+
+    fn bytes(&self) -> usize {
+        self.tree.memory_bytes()
+    }
+
+    fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
+        let query = Query::default();
+        if batch.any {
+            let ask = |rays: &[Ray], hits: &mut [bool]| self.tree.any_hits(rays, &query, hits);
+            batch_by_batch(batch, answers, ask, |&hit| hit.then_some(NOWHERE))
+        } else {
+            let ask = |rays: &[Ray], hits: &mut [Option<Hit>]| self.tree.closest_hits(rays, &query, hits);
+            batch_by_batch(batch, answers, ask, |&hit| hit)
+        }
+    }
+}
+
 /// What any hit says of where: nothing.
 pub(super) const NOWHERE: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
 
-/// Times `ask` over all rays, its answers written into memory that is already there, as Embree's are.
+/// Times `ask` over all rays, one by one.
 pub(super) fn loop_over<T: Clone + Default>(
     batch: &Batch,
     answers: Option<&mut Answers>,
-    ask: impl Fn(&bilux::accel::Ray) -> T,
+    ask: impl Fn(&Ray) -> T,
+    hit: impl Fn(&T) -> Option<Hit>,
+) -> f64 {
+    let each = |rays: &[Ray], found: &mut [T]| {
+        for (slot, ray) in found.iter_mut().zip(rays) {
+            *slot = ask(ray);
+        }
+    };
+    timed(batch, batch.rays.len(), answers, each, hit)
+}
+
+/// Times `ask` over all rays, [`BATCH`] at a time.
+fn batch_by_batch<T: Clone + Default>(
+    batch: &Batch,
+    answers: Option<&mut Answers>,
+    ask: impl Fn(&[Ray], &mut [T]),
+    hit: impl Fn(&T) -> Option<Hit>,
+) -> f64 {
+    timed(batch, BATCH, answers, ask, hit)
+}
+
+/// Answers are written into memory that is already there, as Embree's are.
+#[inline(always)]
+fn timed<T: Clone + Default>(
+    batch: &Batch,
+    size: usize,
+    answers: Option<&mut Answers>,
+    ask: impl Fn(&[Ray], &mut [T]),
     hit: impl Fn(&T) -> Option<Hit>,
 ) -> f64 {
     let mut found = vec![T::default(); batch.rays.len()];
     // Memory that was never written costs page faults, which are nobody's rays.
     found.iter_mut().for_each(|slot| *black_box(slot) = T::default());
-    let begun = Instant::now();
-    for (slot, ray) in found.iter_mut().zip(&batch.rays) {
-        *slot = ask(ray);
+    let (size, begun) = (size.max(1), Instant::now());
+    for (rays, found) in batch.rays.chunks(size).zip(found.chunks_mut(size)) {
+        ask(rays, found);
     }
     let seconds = begun.elapsed().as_secs_f64();
     if let Some(answers) = answers {

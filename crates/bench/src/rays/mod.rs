@@ -97,11 +97,10 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
         accels = vec!["bvh".to_owned(), AUTO.to_owned()];
         accels.dedup();
     }
-    if let Some(unknown) = accels.iter().find(|name| ACCELERATORS.iter().all(|row| row.entry.name != **name))
-    {
+    if let Some(unknown) = accels.iter().find(|name| engines::own(name).is_none()) {
         let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
         return Err(Error::Settings(format!(
-            "there is no accelerator '{unknown}': there are {}",
+            "there is no accelerator '{unknown}': there are {}, each also with -fast or -best behind it",
             names.join(", ")
         )));
     }
@@ -147,7 +146,7 @@ fn measure(
                 let mut answers = (round == 0).then(Answers::default);
                 seconds[k].push(built[k].engine.trace(batch, answers.as_mut()));
                 if let Some(answers) = answers {
-                    mismatches[k] = answers.mismatches(&truth);
+                    mismatches[k] = answers.mismatches(&truth, built[k].ours);
                 }
             }
         }
