@@ -69,25 +69,25 @@ impl Level for Avx2 {
         // SAFETY: as the trait demands.
         unsafe {
             let distances = lanes(enter);
-            let base = stack.height;
-            let mut left = mask;
+            let (references, enters) = (stack.references(), stack.distances());
+            let (mut left, mut size) = (mask, 0);
             while left != 0 {
                 let child = left.trailing_zeros() as usize & 7;
                 left &= left - 1;
-                let mut place = stack.height;
-                stack.height += 1;
-                while place > base && *stack.enter(place - 1) < distances[child] {
-                    *stack.enter(place) = *stack.enter(place - 1);
-                    *stack.reference(place) = *stack.reference(place - 1);
+                let mut place = size;
+                size += 1;
+                while place > 0 && *enters.add(place - 1) < distances[child] {
+                    *enters.add(place) = *enters.add(place - 1);
+                    *references.add(place) = *references.add(place - 1);
                     place -= 1;
                 }
-                *stack.enter(place) = distances[child];
-                *stack.reference(place) = reference(node, child);
+                *enters.add(place) = distances[child];
+                *references.add(place) = reference(node, child).0;
             }
+            stack.grow(size);
         }
     }
 
-    // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
         let mut left = mask;

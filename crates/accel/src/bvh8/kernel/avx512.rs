@@ -79,10 +79,9 @@ impl Level for Avx512 {
             }
             let references = _mm256_load_si256(node.add(192).cast());
             let sorted = _mm256_permutevar8x32_epi32(references, keys);
-            let top = stack.height;
-            _mm256_storeu_si256(stack.reference(top).cast(), sorted);
-            _mm256_storeu_si256(stack.enter(top).cast(), keys);
-            stack.height = top + size as usize;
+            _mm256_storeu_si256(stack.references().cast(), sorted);
+            _mm256_storeu_si256(stack.distances().cast(), keys);
+            stack.grow(size as usize);
         }
     }
 
@@ -93,8 +92,8 @@ impl Level for Avx512 {
         unsafe {
             let references = _mm256_load_si256(node.add(192).cast());
             let kept = _mm256_maskz_compress_epi32(mask as u8, references);
-            _mm256_storeu_si256(stack.reference(stack.height).cast(), kept);
-            stack.height += mask.count_ones() as usize;
+            _mm256_storeu_si256(stack.references().cast(), kept);
+            stack.grow(mask.count_ones() as usize);
         }
     }
 }

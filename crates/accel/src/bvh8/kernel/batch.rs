@@ -2,7 +2,7 @@
 //!
 //! A step takes a ray through one node or leaf, asks for what comes next, and hands over to the next ray.
 
-use super::body::{BLOCK_BYTES, Level, Stack, choose, test};
+use super::body::{BLOCK_BYTES, Level, Room, Stack, choose, test};
 use super::tame::TameRay;
 use super::{View, plain};
 use crate::bvh8::layout::Ref;
@@ -37,13 +37,14 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
 ) {
     let base = view.units.as_ptr().cast::<u8>();
     let mut waiting = rays.iter().enumerate();
+    let mut rooms = [const { Room::uninit() }; WAYS];
     let mut walks: Vec<Walk> = Vec::with_capacity(WAYS);
     let mut way = 0;
     // SAFETY: as the caller promises.
     unsafe {
-        while walks.len() < WAYS {
+        for room in &mut rooms {
             let Some((index, ray)) = next::<ANY>(&view, &mut waiting, query, &mut answer) else { break };
-            walks.push(Walk::new(&view, ray, index));
+            walks.push(Walk::new(&view, ray, index, Stack::new(room)));
         }
         while !walks.is_empty() {
             way = if way < walks.len() { way } else { 0 };
@@ -86,17 +87,18 @@ unsafe fn next<'r, const ANY: bool>(
 
 impl Walk {
     #[inline(always)]
-    fn new(view: &View<'_>, ray: TameRay, index: usize) -> Walk {
+    fn new(view: &View<'_>, ray: TameRay, index: usize, stack: Stack) -> Walk {
         let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
         let limit_bits = ray.limit_bits(nearest.t);
-        Walk { index, ray, nearest, limit_bits, current: view.root, stack: Stack::new() }
+        Walk { index, ray, nearest, limit_bits, current: view.root, stack }
     }
 
     #[inline(always)]
     fn restart(&mut self, view: &View<'_>, ray: TameRay, index: usize) {
         self.nearest = Hit { t: ray.t_max, primitive: u32::MAX, ..self.nearest };
         self.limit_bits = ray.limit_bits(ray.t_max);
-        (self.index, self.ray, self.current, self.stack.height) = (index, ray, view.root, 0);
+        (self.index, self.ray, self.current) = (index, ray, view.root);
+        self.stack.clear();
     }
 
     /// One node or leaf; false when there is none left.
@@ -153,11 +155,12 @@ impl Walk {
     /// As for [`each`].
     #[inline(always)]
     unsafe fn next<const ANY: bool>(&mut self, base: *const u8) -> bool {
-        while self.stack.height > 0 {
+        while !self.stack.is_empty() {
             // SAFETY: something is there; what any hit puts there has no distance.
             unsafe {
-                let enter = if ANY { 0 } else { *self.stack.enter(self.stack.height - 1) };
-                self.current = self.stack.take_reference();
+                let (reference, enter) =
+                    if ANY { (self.stack.take_reference(), 0) } else { self.stack.take() };
+                self.current = reference;
                 if enter <= self.limit_bits | 7 {
                     prefetch(base, self.current);
                     return true;

@@ -102,7 +102,10 @@ impl BlockRay {
     ) -> Crossings {
         // SAFETY: as the caller promises; a block holds its primitives behind nine rows of four numbers.
         unsafe {
-            let [x, y, z] = corners.map(|row| row.map(|v| _mm256_cvtps_pd(v)));
+            // Not `map`, which would be compiled without the instructions of the level, and called.
+            let wide = |[a, b, c]: [__m128; 3]| [_mm256_cvtps_pd(a), _mm256_cvtps_pd(b), _mm256_cvtps_pd(c)];
+            let [x, y, z] = corners;
+            let (x, y, z) = (wide(x), wide(y), wide(z));
             let edge =
                 |p: usize, q: usize| _mm256_sub_pd(_mm256_mul_pd(x[p], y[q]), _mm256_mul_pd(y[p], x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
@@ -153,7 +156,10 @@ impl Crossings {
     #[inline(always)]
     pub(super) unsafe fn weights(&self) -> [[f32; LANES]; 2] {
         // SAFETY: as the caller promises; both are 16 bytes.
-        unsafe { [self.v, self.w].map(|x| std::mem::transmute(_mm256_cvtpd_ps(_mm256_div_pd(x, self.det)))) }
+        unsafe {
+            let over = |x| std::mem::transmute(_mm256_cvtpd_ps(_mm256_div_pd(x, self.det)));
+            [over(self.v), over(self.w)]
+        }
     }
 }
 

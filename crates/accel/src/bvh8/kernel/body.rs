@@ -40,58 +40,86 @@ pub(super) fn lanes(distances: __m256i) -> [u32; WIDTH] {
 /// Every node on the way down leaves at most seven others behind; a whole vector is written at the top.
 const ROOM: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
+/// Where a stack lies: first the references, then where the ray enters each. Not written before it is used: to clear
+/// it would take as long as a short ray.
+pub(super) type Room = MaybeUninit<[u32; 2 * ROOM]>;
+
 /// What is still to be visited, and the bits of where the ray enters it, the last three of no meaning.
+#[derive(Clone, Copy)]
 pub(super) struct Stack {
-    references: MaybeUninit<[Ref; ROOM]>,
-    enter: MaybeUninit<[u32; ROOM]>,
-    pub(super) height: usize,
+    base: *mut u32,
+    top: *mut u32,
 }
 
 impl Stack {
+    /// An empty one, that must not be used longer than its room.
     #[inline(always)]
-    pub(super) fn new() -> Stack {
-        Stack { references: MaybeUninit::uninit(), enter: MaybeUninit::uninit(), height: 0 }
+    pub(super) fn new(room: &mut Room) -> Stack {
+        let base = room.as_mut_ptr().cast();
+        Stack { base, top: base }
     }
 
-    /// Where reference number `place` is, or is to be.
+    #[inline(always)]
+    pub(super) fn is_empty(&self) -> bool {
+        self.top == self.base
+    }
+
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.top = self.base;
+    }
+
+    /// Where the next reference goes, and those behind it.
+    #[inline(always)]
+    pub(super) fn references(&self) -> *mut u32 {
+        self.top
+    }
+
+    /// Where the distance of the next reference goes.
+    #[inline(always)]
+    pub(super) fn distances(&self) -> *mut u32 {
+        self.top.wrapping_add(ROOM)
+    }
+
+    /// What was written behind the top belongs to the stack.
     ///
     /// # Safety
-    /// There must be so many places, as for all that follows.
+    /// It must have been written, and there must be room for [`WIDTH`] more.
     #[inline(always)]
-    pub(super) unsafe fn reference(&mut self, place: usize) -> *mut Ref {
+    pub(super) unsafe fn grow(&mut self, by: usize) {
         // SAFETY: the tree is not deeper than there is room for.
-        unsafe { self.references.as_mut_ptr().cast::<Ref>().add(place) }
+        self.top = unsafe { self.top.add(by) };
     }
 
-    /// Where distance number `place` is, or is to be.
-    #[inline(always)]
-    pub(super) unsafe fn enter(&mut self, place: usize) -> *mut u32 {
-        // SAFETY: as above.
-        unsafe { self.enter.as_mut_ptr().cast::<u32>().add(place) }
-    }
-
+    /// # Safety
+    /// As for [`Stack::grow`].
     #[inline(always)]
     pub(super) unsafe fn put(&mut self, reference: Ref, enter: u32) {
         // SAFETY: as above.
         unsafe {
-            self.reference(self.height).write(reference);
-            self.enter(self.height).write(enter);
+            self.references().write(reference.0);
+            self.distances().write(enter);
+            self.grow(1);
         }
-        self.height += 1;
     }
 
+    /// # Safety
+    /// The stack must not be empty.
     #[inline(always)]
     pub(super) unsafe fn take_reference(&mut self) -> Ref {
-        self.height -= 1;
-        // SAFETY: everything below the height has been written.
-        unsafe { self.reference(self.height).read() }
+        // SAFETY: everything below the top has been written.
+        unsafe {
+            self.top = self.top.sub(1);
+            Ref(self.top.read())
+        }
     }
 
+    /// # Safety
+    /// The stack must not be empty, and hold distances.
     #[inline(always)]
-    unsafe fn take(&mut self) -> (Ref, u32) {
-        self.height -= 1;
-        // SAFETY: everything below the height has been written.
-        unsafe { (self.reference(self.height).read(), self.enter(self.height).read()) }
+    pub(super) unsafe fn take(&mut self) -> (Ref, u32) {
+        // SAFETY: as above.
+        unsafe { (self.take_reference(), self.distances().read()) }
     }
 }
 
@@ -143,7 +171,8 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
         let Some(tame) = TameRay::new(ray, &view) else { return plain::closest(view, ray, query, count) };
         let base = view.units.as_ptr().cast::<u8>();
         let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
-        let mut stack = Stack::new();
+        let mut room = Room::uninit();
+        let mut stack = Stack::new(&mut room);
         let mut current = view.root;
         let mut limit_bits = tame.limit_bits(nearest.t);
         let mut limit = L::splat(limit_bits);
@@ -169,7 +198,7 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
                 }
             }
             loop {
-                if stack.height == 0 {
+                if stack.is_empty() {
                     return (nearest.primitive != u32::MAX).then_some(nearest);
                 }
                 let (reference, enter) = stack.take();
@@ -228,7 +257,8 @@ pub(super) unsafe fn any<L: Level, C: Count>(
     unsafe {
         let Some(tame) = TameRay::new(ray, &view) else { return plain::any(view, ray, query, count) };
         let base = view.units.as_ptr().cast::<u8>();
-        let mut stack = Stack::new();
+        let mut room = Room::uninit();
+        let mut stack = Stack::new(&mut room);
         let mut current = view.root;
         let limit = L::splat(tame.limit_bits(ray.t_max));
         loop {
@@ -251,7 +281,7 @@ pub(super) unsafe fn any<L: Level, C: Count>(
                     }
                 }
             }
-            if stack.height == 0 {
+            if stack.is_empty() {
                 return false;
             }
             current = stack.take_reference();
