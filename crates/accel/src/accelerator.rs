@@ -3,6 +3,8 @@
 use crate::counters::{Count, Counters, Nothing};
 use crate::ray::{Hit, Query, Ray};
 use bilux_math::Aabb;
+use std::cmp::Ordering;
+use std::sync::{Mutex, PoisonError};
 
 /// A structure over triangles that answers rays. Made by [`crate::build`]; implemented through [`Traverse`].
 ///
@@ -19,6 +21,27 @@ pub trait Accelerator: Send + Sync {
     fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]);
     /// As [`Accelerator::closest_hit`], counting what it took.
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit>;
+    /// Every hit along the ray that the query keeps, the nearest first, of equals that of the lowest instance and
+    /// primitive; each once, whatever the structure had to cut.
+    fn all_hits(&self, ray: &Ray, query: &Query) -> Vec<Hit> {
+        let found = Mutex::new(Vec::new());
+        let note = |hit: &Hit| {
+            if query.keeps(hit) {
+                found.lock().unwrap_or_else(PoisonError::into_inner).push(*hit);
+            }
+            // Nothing counts, so that the search goes on to the end of the ray.
+            false
+        };
+        self.closest_hit(ray, &Query { filter: Some(&note), ..*query });
+        let mut hits = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+        hits.sort_unstable_by(|a, b| {
+            let primitives = |hit: &Hit| (hit.instance, hit.primitive);
+            // Zero of either sign is one distance; what is not a number is never hit.
+            a.t.partial_cmp(&b.t).unwrap_or(Ordering::Equal).then(primitives(a).cmp(&primitives(b)))
+        });
+        hits.dedup();
+        hits
+    }
     /// As [`Accelerator::any_hit`], counting what it took.
     fn any_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> bool;
     /// The box around everything.

@@ -40,7 +40,7 @@ impl Traverse for BruteForce {
         count.triangles(self.mesh.len());
         let mut nearest = Nearest::new(&ray.ray);
         for (index, triangle) in self.mesh.triangles().iter().enumerate() {
-            nearest.test(&ray, query.culling, triangle, index as u32);
+            nearest.test(&ray, query, triangle, index as u32);
         }
         nearest.hit()
     }
@@ -48,7 +48,7 @@ impl Traverse for BruteForce {
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
         let Some(ray) = PreparedRay::new(ray) else { return false };
-        let hit = |(index, triangle)| hits(&ray, query.culling, triangle, index as u32);
+        let hit = |(index, triangle)| hits(&ray, query, triangle, index as u32);
         let found = self.mesh.triangles().iter().enumerate().position(hit);
         count.triangles(found.map_or(self.mesh.len(), |index| index + 1));
         found.is_some()

@@ -33,6 +33,15 @@ pub struct Instance {
     pub accelerator: Arc<dyn Accelerator>,
     /// How it lies in the world.
     pub motion: Motion,
+    /// Which rays can meet it: those that share a bit with it.
+    pub mask: u32,
+}
+
+impl Instance {
+    /// One that all rays can meet.
+    pub fn new(accelerator: Arc<dyn Accelerator>, motion: Motion) -> Instance {
+        Instance { accelerator, motion, mask: u32::MAX }
+    }
 }
 
 /// How the instances that a ray may meet are found. The answers are the same.
@@ -62,6 +71,7 @@ enum Top {
 struct Placed {
     accelerator: Arc<dyn Accelerator>,
     place: Place,
+    mask: u32,
 }
 
 enum Place {
@@ -171,8 +181,13 @@ impl Traverse for TwoLevel {
         let mut nearest: Option<Hit> = None;
         let mut t_max = ray.t_max;
         self.visit(ray, count, |index, count| {
+            let Placed { accelerator, mask, .. } = &self.placed[index as usize];
+            if mask & ray.mask == 0 {
+                return ControlFlow::Continue(t_max);
+            }
             let local = self.local_ray(index, ray, t_max);
-            let accelerator = &self.placed[index as usize].accelerator;
+            let keeps = |hit: &Hit| query.keeps(&Hit { instance: index, ..*hit });
+            let query = &Query { filter: query.filter.and(Some(&keeps)), ..*query };
             let hit = match count.counters() {
                 Some(counters) => {
                     uncounted_ray(counters, |c| accelerator.closest_hit_counted(&local, query, c))
@@ -199,8 +214,13 @@ impl Traverse for TwoLevel {
         }
         let mut found = false;
         self.visit(ray, count, |index, count| {
+            let Placed { accelerator, mask, .. } = &self.placed[index as usize];
+            if mask & ray.mask == 0 {
+                return ControlFlow::Continue(ray.t_max);
+            }
             let local = self.local_ray(index, ray, ray.t_max);
-            let accelerator = &self.placed[index as usize].accelerator;
+            let keeps = |hit: &Hit| query.keeps(&Hit { instance: index, ..*hit });
+            let query = &Query { filter: query.filter.and(Some(&keeps)), ..*query };
             found = match count.counters() {
                 Some(counters) => uncounted_ray(counters, |c| accelerator.any_hit_counted(&local, query, c)),
                 None => accelerator.any_hit(&local, query),
@@ -246,14 +266,14 @@ fn uncounted_ray<R>(counters: &mut crate::Counters, ask: impl FnOnce(&mut crate:
 
 impl Placed {
     fn new(instance: Instance, shutter: [f32; 2]) -> Placed {
-        let Instance { accelerator, motion } = instance;
+        let Instance { accelerator, motion, mask } = instance;
         let place = if motion.is_still_over(shutter) {
             let transform = motion.at(shutter[0]);
             if transform.is_identity() { Place::Identity } else { Place::Still(IntoLocal::new(&transform)) }
         } else {
             Place::Moving(motion)
         };
-        Placed { accelerator, place }
+        Placed { accelerator, place, mask }
     }
 }
 
@@ -351,7 +371,7 @@ mod tests {
     fn two_levels(motions: Vec<Motion>) -> [TwoLevel; 2] {
         let shape = triangle();
         let instances: Vec<Instance> =
-            motions.into_iter().map(|motion| Instance { accelerator: Arc::clone(&shape), motion }).collect();
+            motions.into_iter().map(|motion| Instance::new(Arc::clone(&shape), motion)).collect();
         [TopLevel::List, TopLevel::Bvh].map(|top| TwoLevel::new(instances.clone(), [0.0, 1.0], top))
     }
 

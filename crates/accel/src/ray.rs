@@ -1,5 +1,7 @@
 //! Rays, what is asked of them, and what they hit.
 
+use std::fmt;
+
 /// A half-line, or a piece of one: points `origin + t * direction` for `t_min <= t <= t_max`.
 ///
 /// The direction need not be of unit length; `t` counts in its lengths. A ray whose origin or direction
@@ -18,12 +20,15 @@ pub struct Ray {
     pub time: f32,
     /// The primitive that it leaves, which it therefore cannot hit: planes do not meet a line twice.
     pub exclude: Primitive,
+    /// Which instances it can meet: those that share a bit with it.
+    pub mask: u32,
 }
 
 impl Ray {
     /// A ray from `origin` that goes on for ever.
     pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Ray {
-        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0, exclude: Primitive::NONE }
+        let (exclude, mask) = (Primitive::NONE, u32::MAX);
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0, exclude, mask }
     }
 
     /// The point at `t`.
@@ -78,12 +83,19 @@ pub enum Culling {
     Back,
 }
 
-/// What is asked of a structure. The switches below `culling` change how much work an answer takes,
-/// never the answer; they are there so that what each saves can be measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Query {
-    /// Which side of triangles can be hit. Part of the question.
+/// Says of a hit whether it counts: false lets the ray pass, as through the holes of a leaf that is drawn on a
+/// square. It must answer the same whenever it is asked of the same hit: structures look at hits in any order,
+/// some twice, and others not at all.
+pub type Filter<'a> = &'a (dyn Fn(&Hit) -> bool + Sync);
+
+/// What is asked of a structure: the first two are part of the question. The switches below them change how much
+/// work an answer takes, never the answer; they are there so that what each saves can be measured.
+#[derive(Clone, Copy)]
+pub struct Query<'a> {
+    /// Which side of triangles can be hit.
     pub culling: Culling,
+    /// Which hits count; all, where there is none.
+    pub filter: Option<Filter<'a>>,
     /// End the search at the first hit that nothing nearer can beat (on by default).
     pub early_out: bool,
     /// With [`Culling::Back`], reject back faces by the side of their partition plane where the tree
@@ -91,8 +103,27 @@ pub struct Query {
     pub cull_by_partition: bool,
 }
 
-impl Default for Query {
-    fn default() -> Query {
-        Query { culling: Culling::None, early_out: true, cull_by_partition: true }
+impl Default for Query<'_> {
+    fn default() -> Self {
+        Query { culling: Culling::None, filter: None, early_out: true, cull_by_partition: true }
+    }
+}
+
+impl Query<'_> {
+    /// True when the filter lets a hit count.
+    #[inline(always)]
+    pub(crate) fn keeps(&self, hit: &Hit) -> bool {
+        self.filter.is_none_or(|filter| filter(hit))
+    }
+}
+
+impl fmt::Debug for Query<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Query")
+            .field("culling", &self.culling)
+            .field("filter", &self.filter.map(|_| "…"))
+            .field("early_out", &self.early_out)
+            .field("cull_by_partition", &self.cull_by_partition)
+            .finish()
     }
 }

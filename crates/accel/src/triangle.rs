@@ -18,7 +18,7 @@
 //! Two triangles that share an edge see the same sheared vertices, hence opposite signs there: no ray
 //! passes between them.
 
-use crate::ray::{Culling, Hit, Ray};
+use crate::ray::{Culling, Hit, Query, Ray};
 use bilux_math::Aabb;
 
 /// A ray with what the triangle test needs of it, computed once.
@@ -150,26 +150,22 @@ impl Nearest {
 
     /// Tests a triangle and keeps its hit if it is nearer, or as near and of a lower index.
     #[inline(always)]
-    pub fn test(&mut self, ray: &PreparedRay, culling: Culling, triangle: &[[f32; 3]; 3], primitive: u32) {
+    pub fn test(&mut self, ray: &PreparedRay, query: &Query, triangle: &[[f32; 3]; 3], primitive: u32) {
         if let Some(crossing) = ray.cross(triangle) {
-            self.offer(ray, culling, crossing, primitive);
+            self.offer(ray, query, crossing, primitive);
         }
     }
 
     /// The rules of [`Nearest::test`] for a crossing that is known already.
     #[inline]
-    pub fn offer(&mut self, ray: &PreparedRay, culling: Culling, crossing: Crossing, primitive: u32) {
-        if !counts(ray, culling, &crossing, primitive, self.t) {
-            return;
-        }
+    pub fn offer(&mut self, ray: &PreparedRay, query: &Query, crossing: Crossing, primitive: u32) {
+        let Some(found) = counts(ray, query, &crossing, primitive, self.t) else { return };
         let wins = match self.hit {
-            Some(hit) => crossing.t < hit.t || primitive < hit.primitive,
+            Some(hit) => found.t < hit.t || primitive < hit.primitive,
             None => true,
         };
-        if wins {
-            let Crossing { t, u, v, .. } = crossing;
-            self.t = t;
-            self.hit = Some(Hit { t, u, v, primitive, instance: 0 });
+        if wins && query.keeps(&found) {
+            (self.t, self.hit) = (found.t, Some(found));
         }
     }
 
@@ -182,23 +178,22 @@ impl Nearest {
 
 /// True when a ray hits a triangle anywhere between its ends.
 #[inline(always)]
-pub fn hits(ray: &PreparedRay, culling: Culling, triangle: &[[f32; 3]; 3], primitive: u32) -> bool {
-    ray.cross(triangle).is_some_and(|crossing| counts(ray, culling, &crossing, primitive, ray.ray.t_max))
+pub fn hits(ray: &PreparedRay, query: &Query, triangle: &[[f32; 3]; 3], primitive: u32) -> bool {
+    ray.cross(triangle)
+        .and_then(|crossing| counts(ray, query, &crossing, primitive, ray.ray.t_max))
+        .is_some_and(|hit| query.keeps(&hit))
 }
 
-/// True when a crossing is between the ends of the ray that count, and on a side that does.
+/// The hit, when a crossing is between the ends of the ray that count, and on a side that does. The filter
+/// is not asked.
 #[inline(always)]
-pub(crate) fn counts(
-    ray: &PreparedRay,
-    culling: Culling,
-    crossing: &Crossing,
-    primitive: u32,
-    t_max: f32,
-) -> bool {
-    crossing.t >= ray.ray.t_min
-        && crossing.t <= t_max
+fn counts(ray: &PreparedRay, query: &Query, crossing: &Crossing, primitive: u32, t_max: f32) -> Option<Hit> {
+    let Crossing { t, u, v, back } = *crossing;
+    let counts = t >= ray.ray.t_min
+        && t <= t_max
         && primitive != ray.ray.exclude.index
-        && !(crossing.back && culling == Culling::Back)
+        && !(back && query.culling == Culling::Back);
+    counts.then_some(Hit { t, u, v, primitive, instance: 0 })
 }
 
 #[cfg(test)]

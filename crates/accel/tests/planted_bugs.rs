@@ -6,7 +6,7 @@ use bilux_accel::accelerator::{Traverse, TreeShape};
 use bilux_accel::counters::Count;
 use bilux_accel::slab::SlabRay;
 use bilux_accel::triangle::{Crossing, Nearest, PreparedRay};
-use bilux_accel::{BuildOptions, Culling, Hit, Query, Ray, TriangleMesh};
+use bilux_accel::{BuildOptions, Hit, Query, Ray, TriangleMesh};
 use bilux_math::Aabb;
 use std::sync::Arc;
 use support::{Truth, build_variant, closed, meshes, rays};
@@ -43,7 +43,7 @@ impl Traverse for Boxes {
                 continue;
             }
             for i in group {
-                nearest.test(&prepared, query.culling, &self.mesh.triangles()[i], i as u32);
+                nearest.test(&prepared, query, &self.mesh.triangles()[i], i as u32);
             }
         }
         nearest.hit()
@@ -92,13 +92,13 @@ fn pruning_what_is_as_near_is_found() {
 /// A loop over all triangles with a test of one's own.
 struct Loop<F>(Arc<TriangleMesh>, F);
 
-impl<F: Fn(&mut Nearest, &PreparedRay, Culling, &[[f32; 3]; 3], u32) + Send + Sync> Traverse for Loop<F> {
+impl<F: Fn(&mut Nearest, &PreparedRay, &Query, &[[f32; 3]; 3], u32) + Send + Sync> Traverse for Loop<F> {
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
         count.ray();
         let prepared = PreparedRay::new(ray)?;
         let mut nearest = Nearest::new(ray);
         for (index, triangle) in self.0.triangles().iter().enumerate() {
-            (self.1)(&mut nearest, &prepared, query.culling, triangle, index as u32);
+            (self.1)(&mut nearest, &prepared, query, triangle, index as u32);
         }
         nearest.hit()
     }
@@ -118,12 +118,12 @@ impl<F: Fn(&mut Nearest, &PreparedRay, Culling, &[[f32; 3]; 3], u32) + Send + Sy
 
 #[test]
 fn ties_to_the_highest_index_are_found() {
-    let highest = |nearest: &mut Nearest, ray: &PreparedRay, culling, triangle: &_, index: u32| {
+    let highest = |nearest: &mut Nearest, ray: &PreparedRay, query: &Query, triangle: &_, index: u32| {
         let mut alone = *nearest;
         if let Some(hit) = alone.hit() {
             alone = Nearest::new(&Ray { t_max: hit.t, ..ray.ray });
         }
-        alone.test(ray, culling, triangle, index);
+        alone.test(ray, query, triangle, index);
         if alone.hit().is_some() {
             *nearest = alone;
         }

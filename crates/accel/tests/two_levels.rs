@@ -78,6 +78,7 @@ fn both_top_levels_give_the_same_hits_over_every_structure() {
         let world = |accelerator: &str, options: &BuildOptions, top| {
             let built: Vec<_> = shapes.iter().map(|mesh| build_variant(accelerator, options, mesh)).collect();
             let place = |(shape, motion): &(usize, Motion)| Instance {
+                mask: u32::MAX,
                 accelerator: Arc::clone(&built[*shape]),
                 motion: motion.clone(),
             };
@@ -110,7 +111,7 @@ fn an_identity_transform_changes_no_bit() {
     let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, 500, 1));
     for top in [TopLevel::List, TopLevel::Bvh] {
         let motion = Motion::still(Transform::IDENTITY);
-        let world = TwoLevel::new(vec![Instance { accelerator: brute.clone(), motion }], SHUTTER, top);
+        let world = TwoLevel::new(vec![Instance::new(brute.clone(), motion)], SHUTTER, top);
         assert!(truth.differences(&world).is_empty());
     }
 }

@@ -231,6 +231,7 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         culling: if reader.text("culling") == "back" { Culling::Back } else { Culling::None },
         early_out: reader.bool("early_out"),
         cull_by_partition: reader.bool("cull_by_partition"),
+        filter: None,
     };
     Ok(choice)
 }

@@ -70,7 +70,7 @@ pub struct AccelChoice {
     /// How it is built.
     pub options: BuildOptions,
     /// How it is asked.
-    pub query: Query,
+    pub query: Query<'static>,
 }
 
 impl Default for AccelChoice {

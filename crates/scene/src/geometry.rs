@@ -64,7 +64,7 @@ impl Geometry {
             let mesh = TriangleMesh::from_corners(corners).and_then(|m| m.with_groups(groups));
             let mesh = Arc::new(mesh.map_err(|e| failed(&e))?);
             let motion = Motion::still(Transform::IDENTITY);
-            instances.push(Instance { accelerator: make(mesh.clone())?, motion });
+            instances.push(Instance::new(make(mesh.clone())?, motion));
             instance_objects.push(u32::MAX);
             Some(mesh)
         };
@@ -81,7 +81,7 @@ impl Geometry {
                     tree
                 }
             };
-            instances.push(Instance { accelerator: tree, motion: object.motion.clone() });
+            instances.push(Instance::new(tree, object.motion.clone()));
             instance_objects.push(i as u32);
         }
         Ok(Geometry { objects, still, still_objects, instance_objects, instances })

@@ -77,7 +77,7 @@ impl SceneParts {
 pub struct Scene {
     parts: Arc<SceneParts>,
     accelerator: TwoLevel,
-    query: Query,
+    query: Query<'static>,
     shutter: [f32; 2],
 }
 

@@ -73,7 +73,7 @@ impl Traverse for BruteSimd {
         count.triangles(self.mesh.len());
         let mut nearest = Nearest::new(&ray.ray);
         self.survivors(&ray, |triangle, index| {
-            nearest.test(&ray, query.culling, triangle, index);
+            nearest.test(&ray, query, triangle, index);
             true
         });
         nearest.hit()
@@ -84,7 +84,7 @@ impl Traverse for BruteSimd {
         let Some(ray) = PreparedRay::new(ray) else { return false };
         let (mut found, mut tested) = (false, self.mesh.len());
         self.survivors(&ray, |triangle, index| {
-            found = hits(&ray, query.culling, triangle, index);
+            found = hits(&ray, query, triangle, index);
             if found {
                 tested = index as usize + 1;
             }

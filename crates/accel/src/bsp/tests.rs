@@ -187,11 +187,12 @@ fn rays(mesh: &TriangleMesh, count: usize) -> Vec<Ray> {
         .collect()
 }
 
-fn queries() -> impl Iterator<Item = Query> {
+fn queries() -> impl Iterator<Item = Query<'static>> {
     (0..8).map(|bits| Query {
         culling: if bits & 1 == 0 { Culling::None } else { Culling::Back },
         early_out: bits & 2 == 0,
         cull_by_partition: bits & 4 == 0,
+        ..Query::default()
     })
 }
 

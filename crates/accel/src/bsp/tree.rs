@@ -302,7 +302,7 @@ impl Traverse for BspTree {
         self.walk(&ray, query, count, |references, count| {
             count.triangles(references.len());
             for reference in references {
-                nearest.test(&ray, query.culling, &reference.corners, reference.primitive);
+                nearest.test(&ray, query, &reference.corners, reference.primitive);
             }
             ControlFlow::Continue(nearest.t)
         });
@@ -316,7 +316,7 @@ impl Traverse for BspTree {
         self.walk(&ray, query, count, |references, count| {
             for reference in references {
                 count.triangles(1);
-                if hits(&ray, query.culling, &reference.corners, reference.primitive) {
+                if hits(&ray, query, &reference.corners, reference.primitive) {
                     found = true;
                     return ControlFlow::Break(());
                 }

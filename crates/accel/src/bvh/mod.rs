@@ -90,7 +90,7 @@ impl Traverse for Bvh {
             count.triangles(leaf.len());
             let before = nearest.t;
             for triangle in &self.triangles[leaf] {
-                nearest.test(&ray, query.culling, &triangle.corners, triangle.primitive);
+                nearest.test(&ray, query, &triangle.corners, triangle.primitive);
             }
             if query.early_out && nearest.t < before {
                 limit = slabs.limit(nearest.t);
@@ -108,7 +108,7 @@ impl Traverse for Bvh {
         self.tree.walk(&slabs, limit, count, |leaf, count| {
             for triangle in &self.triangles[leaf] {
                 count.triangles(1);
-                if hits(&ray, query.culling, &triangle.corners, triangle.primitive) {
+                if hits(&ray, query, &triangle.corners, triangle.primitive) {
                     found = true;
                     return ControlFlow::Break(());
                 }

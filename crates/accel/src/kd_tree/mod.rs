@@ -82,7 +82,7 @@ impl Traverse for KdTree {
             let before = nearest.t;
             for &place in references {
                 let triangle = &self.triangles[place as usize];
-                nearest.test(&ray, query.culling, &triangle.corners, triangle.primitive);
+                nearest.test(&ray, query, &triangle.corners, triangle.primitive);
             }
             if query.early_out && nearest.t < before {
                 limit = slabs.limit(nearest.t);
@@ -101,7 +101,7 @@ impl Traverse for KdTree {
             for &place in references {
                 count.triangles(1);
                 let triangle = &self.triangles[place as usize];
-                if hits(&ray, query.culling, &triangle.corners, triangle.primitive) {
+                if hits(&ray, query, &triangle.corners, triangle.primitive) {
                     found = true;
                     return ControlFlow::Break(());
                 }

@@ -5,6 +5,7 @@ pub mod closed;
 pub mod meshes;
 pub mod rays;
 
+use bilux_accel::ray::Filter;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{
     ACCELERATORS, Accelerator, BuildOptions, Counters, CpuLevel, Culling, Hit, Primitive, Query, Ray,
@@ -73,7 +74,7 @@ pub fn build_variant(name: &str, options: &BuildOptions, mesh: &Arc<TriangleMesh
 #[derive(Debug)]
 pub struct Difference {
     pub ray: Ray,
-    pub query: Query,
+    pub query: Query<'static>,
     pub truth: Option<Hit>,
     pub answer: Option<Hit>,
 }
@@ -82,14 +83,19 @@ pub fn bits(hit: Option<Hit>) -> Option<[u32; 5]> {
     hit.map(|h| [h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.primitive, h.instance])
 }
 
+/// A filter with holes in triangles, and triangles that are holes.
+pub const SIEVE: Filter<'static> = &|hit| hit.primitive % 3 != 1 && hit.u < 0.6;
+
 /// The questions asked for each ray.
-pub fn queries() -> [Query; 4] {
+pub fn queries() -> [Query<'static>; 6] {
     let plain = Query::default();
     [
         plain,
         Query { culling: Culling::Back, ..plain },
         Query { early_out: false, ..plain },
         Query { culling: Culling::Back, cull_by_partition: false, ..plain },
+        Query { filter: Some(SIEVE), ..plain },
+        Query { filter: Some(SIEVE), culling: Culling::Back, ..plain },
     ]
 }
 
@@ -106,7 +112,8 @@ fn sharpened(ray: &Ray, hit: &Hit) -> [Ray; 5] {
 
 /// Answers of the truth, for [`differences`].
 pub struct Truth {
-    cases: Vec<(Ray, Query, Option<Hit>)>,
+    /// Each with the number of its query.
+    cases: Vec<(Ray, usize, Option<Hit>)>,
 }
 
 impl Truth {
@@ -114,12 +121,11 @@ impl Truth {
         let mut cases = Vec::new();
         for ray in rays {
             let first = truth.closest_hit(ray, &Query::default());
-            for query in queries() {
-                cases.push((*ray, query, truth.closest_hit(ray, &query)));
+            for (number, query) in queries().iter().enumerate() {
+                cases.push((*ray, number, truth.closest_hit(ray, query)));
             }
             for sharp in first.iter().flat_map(|hit| sharpened(ray, hit)) {
-                let query = Query::default();
-                cases.push((sharp, query, truth.closest_hit(&sharp, &query)));
+                cases.push((sharp, 0, truth.closest_hit(&sharp, &queries()[0])));
             }
         }
         Truth { cases }
@@ -132,8 +138,8 @@ impl Truth {
     /// The same questions asked in batches: all that share a query at once, and a few, and none.
     fn differences_in_batches(&self, other: &dyn Accelerator) -> Vec<Difference> {
         let mut found = Vec::new();
-        for query in queries() {
-            let cases: Vec<_> = self.cases.iter().filter(|case| case.1 == query).collect();
+        for (number, query) in queries().into_iter().enumerate() {
+            let cases: Vec<_> = self.cases.iter().filter(|case| case.1 == number).collect();
             let rays: Vec<Ray> = cases.iter().map(|case| case.0).collect();
             let (mut hits, mut any) = (vec![None; rays.len()], vec![false; rays.len()]);
             let few = rays.len().min(3);
@@ -141,7 +147,7 @@ impl Truth {
             other.closest_hits(&rays[few..], &query, &mut hits[few..]);
             other.closest_hits(&[], &query, &mut hits);
             other.any_hits(&rays, &query, &mut any);
-            for ((&&(ray, query, truth), answer), any) in cases.iter().zip(hits).zip(any) {
+            for ((&&(ray, _, truth), answer), any) in cases.iter().zip(hits).zip(any) {
                 if bits(answer) != bits(truth) || any != truth.is_some() {
                     found.push(Difference { ray, query, truth, answer });
                 }
@@ -153,7 +159,8 @@ impl Truth {
     /// Where a structure does not agree: on the nearest hit, on whether there is any, or with counting on.
     pub fn differences(&self, other: &dyn Accelerator) -> Vec<Difference> {
         let mut found = Vec::new();
-        for (ray, query, truth) in &self.cases {
+        for (ray, number, truth) in &self.cases {
+            let query = &queries()[*number];
             let mut counters = Counters::default();
             let answer = other.closest_hit(ray, query);
             let same = bits(answer) == bits(*truth)

@@ -1,5 +1,6 @@
 //! The body of the wide kernels, which is the same for all levels.
 
+use super::block::Crossings;
 use super::tame::{BoxRay, TameRay};
 use super::{View, plain};
 use crate::bvh8::build::binary::MAX_DEPTH;
@@ -236,10 +237,28 @@ pub(super) unsafe fn test(ray: &TameRay, block: *const u8, query: &Query, neares
             left &= left - 1;
             let primitive = primitive(block, lane);
             if t[lane] < nearest.t || (t[lane] == nearest.t && primitive < nearest.primitive) {
-                *nearest = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
+                let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
+                if query.keeps(&hit) {
+                    *nearest = hit;
+                }
             }
         }
     }
+}
+
+/// True when the filter lets one of the crossings count.
+///
+/// # Safety
+/// As for [`test`].
+#[inline(never)]
+unsafe fn keeps_any(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
+    // SAFETY: as the caller promises.
+    let (t, [u, v]) = unsafe { (crossings.t(), crossings.weights()) };
+    (0..LANES).filter(|lane| crossings.mask >> lane & 1 == 1).any(|lane| {
+        // SAFETY: as above.
+        let primitive = unsafe { primitive(block, lane) };
+        query.keeps(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
+    })
 }
 
 /// See [`super::any`].
@@ -276,7 +295,12 @@ pub(super) unsafe fn any<L: Level, C: Count>(
                     count.triangles(LANES);
                     let block = place.add(index * BLOCK_BYTES);
                     let signs = tame.blocks.signs(block);
-                    if signs.0 != 0 && tame.blocks.cross(block, signs, ray.t_max, query).mask != 0 {
+                    if signs.0 == 0 {
+                        continue;
+                    }
+                    let crossings = tame.blocks.cross(block, signs, ray.t_max, query);
+                    if crossings.mask != 0 && (query.filter.is_none() || keeps_any(block, &crossings, query))
+                    {
                         return true;
                     }
                 }

@@ -20,7 +20,7 @@ pub(super) fn closest<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count:
         let before = nearest.t;
         for (block, lane) in places(leaf) {
             let (corners, primitive) = triangle(block, lane);
-            nearest.test(&prepared, query.culling, &corners, primitive);
+            nearest.test(&prepared, query, &corners, primitive);
         }
         count.triangles(leaf.len() / BLOCK_UNITS * LANES);
         if query.early_out && nearest.t < before {
@@ -40,7 +40,7 @@ pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mu
         for (block, lane) in places(leaf) {
             count.triangles(1);
             let (corners, primitive) = triangle(block, lane);
-            if hits(&prepared, query.culling, &corners, primitive) {
+            if hits(&prepared, query, &corners, primitive) {
                 found = true;
                 return ControlFlow::Break(());
             }
