@@ -30,6 +30,7 @@ pub mod cpu_level;
 pub mod instancing;
 pub mod kd_tree;
 pub mod mesh;
+pub mod primitives;
 pub mod ray;
 pub mod registry;
 pub mod slab;
@@ -44,6 +45,7 @@ pub use cpu_level::CpuLevel;
 pub use instancing::{Instance, TopLevel, TwoLevel};
 pub use kd_tree::KdTree;
 pub use mesh::{MeshError, TriangleMesh};
+pub use primitives::{PrimitiveTree, Primitives};
 pub use ray::{Culling, Hit, Primitive, Query, Ray};
 pub use registry::{ACCELERATORS, AcceleratorEntry, BuildError, BuildOptions, build};
 

@@ -1,0 +1,37 @@
+//! Flat discs.
+
+use super::{Crossing, outwards, wide};
+use crate::ray::Ray;
+use bilux_math::glam::DVec3;
+
+/// A flat disc; its front is where the normal points. Of a hit, `u` is the distance from the centre in radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// The middle.
+    pub centre: [f32; 3],
+    /// Of any length but zero.
+    pub normal: [f32; 3],
+    /// Of a radius that is not positive nothing is met.
+    pub radius: f32,
+}
+
+impl Disc {
+    /// Least and greatest corner of the box around it.
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        let normal = wide(self.normal).normalize_or_zero();
+        let reach = (DVec3::ONE - normal * normal).max(DVec3::ZERO).to_array().map(f64::sqrt);
+        let (centre, reach) = (wide(self.centre), DVec3::from(reach) * f64::from(self.radius));
+        outwards(centre - reach, centre + reach)
+    }
+
+    pub(super) fn crossings(&self, ray: &Ray, visit: &mut dyn FnMut(Crossing)) {
+        let (origin, direction) = (wide(ray.origin), wide(ray.direction));
+        let (centre, normal) = (wide(self.centre), wide(self.normal));
+        let steepness = direction.dot(normal);
+        let t = (centre - origin).dot(normal) / steepness;
+        let from_centre = (origin + direction * t - centre).length() / f64::from(self.radius);
+        if steepness != 0.0 && self.radius > 0.0 && from_centre <= 1.0 {
+            visit(Crossing { t: t as f32, u: from_centre as f32, v: 0.0, back: steepness > 0.0 });
+        }
+    }
+}

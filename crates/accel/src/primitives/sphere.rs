@@ -1,0 +1,39 @@
+//! Spheres.
+
+use super::roots::{roots, without_origin};
+use super::{Crossing, outwards, wide};
+use crate::ray::Ray;
+use bilux_math::glam::DVec3;
+
+/// A whole sphere; outside is the front. Hits have no `u` and `v` (both 0).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// The middle.
+    pub centre: [f32; 3],
+    /// Of a radius that is not positive nothing is met.
+    pub radius: f32,
+}
+
+impl Sphere {
+    /// Least and greatest corner of the box around it.
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        let (centre, radius) = (wide(self.centre), DVec3::splat(f64::from(self.radius)));
+        outwards(centre - radius, centre + radius)
+    }
+
+    /// By the distance of the centre from the line, which keeps its digits however far away the ray starts.
+    /// [Haines 2019, section 2]
+    pub(super) fn crossings(&self, ray: &Ray, leaves: bool, visit: &mut dyn FnMut(Crossing)) {
+        let (direction, radius) = (wide(ray.direction), f64::from(self.radius));
+        let from = wide(ray.origin) - wide(self.centre);
+        let (a, h) = (direction.length_squared(), from.dot(direction));
+        let beside = from - direction * (h / a);
+        let c = from.length_squared() - radius * radius;
+        let discriminant = a * (radius * radius - beside.length_squared());
+        let found = if radius > 0.0 { roots(a, h, c, discriminant) } else { None };
+        let Some([first, second]) = found else { return };
+        let [enter, leave] = if leaves { without_origin([first, second]) } else { [first, second] };
+        visit(Crossing { t: enter as f32, u: 0.0, v: 0.0, back: false });
+        visit(Crossing { t: leave as f32, u: 0.0, v: 0.0, back: true });
+    }
+}

@@ -1,0 +1,108 @@
+//! A tree of boxes over anything that has boxes and crossings.
+
+use super::{Crossing, Primitives, aabb};
+use crate::accelerator::{Traverse, TreeShape};
+use crate::bvh::tree::Tree;
+use crate::counters::Count;
+use crate::ray::{Culling, Hit, Query, Ray};
+use crate::slab::SlabRay;
+use crate::triangle::PreparedRay;
+use bilux_math::Aabb;
+use std::ops::ControlFlow;
+
+/// Boxes in boxes, two by two, over [`Primitives`].
+///
+/// The nearest hit counts, of equals that of the lowest index: the same that a loop over all of them finds.
+#[derive(Clone, Debug)]
+pub struct PrimitiveTree<P> {
+    primitives: P,
+    tree: Tree,
+    /// In the order of the leaves.
+    order: Vec<u32>,
+}
+
+impl<P: Primitives> PrimitiveTree<P> {
+    /// Builds one. The same tree whatever the number of threads.
+    pub fn new(primitives: P) -> PrimitiveTree<P> {
+        let len = primitives.len().min(u32::MAX as usize - 1);
+        let (tree, order) = Tree::over(len, |index| aabb(primitives.bounds(index)));
+        PrimitiveTree { primitives, tree, order }
+    }
+
+    /// What it was built over.
+    pub fn primitives(&self) -> &P {
+        &self.primitives
+    }
+
+    fn slabs(&self, ray: &Ray) -> Option<SlabRay> {
+        let pad = PreparedRay::new(ray)?.pad(&self.tree.bounds());
+        Some(SlabRay::new(ray.origin, ray.direction, ray.t_min, pad))
+    }
+
+    /// Crossings that count, as hits.
+    #[inline(always)]
+    fn hits(&self, index: u32, ray: &Ray, query: &Query, mut visit: impl FnMut(Hit)) {
+        self.primitives.crossings(index, ray, &mut |Crossing { t, u, v, back }| {
+            let seen = !(back && query.culling == Culling::Back);
+            if t >= ray.t_min && t <= ray.t_max && seen {
+                visit(Hit { t, u, v, primitive: index, instance: 0 });
+            }
+        });
+    }
+}
+
+impl<P: Primitives> Traverse for PrimitiveTree<P> {
+    fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
+        count.ray();
+        let slabs = self.slabs(ray)?;
+        let mut nearest: Option<Hit> = None;
+        let mut limit = slabs.limit(ray.t_max);
+        self.tree.walk(&slabs, limit, count, |leaf, count| {
+            count.triangles(leaf.len());
+            for &index in &self.order[leaf] {
+                self.hits(index, ray, query, |hit| {
+                    let wins = |best: &Hit| hit.t < best.t || (hit.t == best.t && index < best.primitive);
+                    if nearest.as_ref().is_none_or(wins) && query.keeps(&hit) {
+                        nearest = Some(hit);
+                    }
+                });
+            }
+            if let Some(hit) = nearest.filter(|_| query.early_out) {
+                limit = slabs.limit(hit.t);
+            }
+            ControlFlow::Continue(limit)
+        });
+        nearest
+    }
+
+    fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
+        count.ray();
+        let Some(slabs) = self.slabs(ray) else { return false };
+        let limit = slabs.limit(ray.t_max);
+        let mut found = false;
+        self.tree.walk(&slabs, limit, count, |leaf, count| {
+            for &index in &self.order[leaf] {
+                count.triangles(1);
+                self.hits(index, ray, query, |hit| found = found || query.keeps(&hit));
+                if found {
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(limit)
+        });
+        found
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.tree.bounds()
+    }
+
+    /// Of the tree; what the primitives take, they know.
+    fn memory_bytes(&self) -> usize {
+        self.tree.memory_bytes() + size_of_val(self.order.as_slice())
+    }
+
+    fn shape(&self) -> TreeShape {
+        self.tree.shape()
+    }
+}
