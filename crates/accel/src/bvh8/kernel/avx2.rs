@@ -88,6 +88,7 @@ impl Level for Avx2 {
         }
     }
 
+    // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
         let mut left = mask;
