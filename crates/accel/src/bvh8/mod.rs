@@ -6,6 +6,10 @@
 mod build;
 mod kernel;
 mod layout;
+mod mapped;
+mod near;
+mod overlap;
+mod storage;
 #[cfg(test)]
 mod tests;
 
@@ -17,7 +21,11 @@ use crate::ray::{Hit, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, Vec3, registry::Entry};
 use kernel::View;
-use layout::{Ref, Unit};
+use layout::Ref;
+use mapped::Units;
+
+pub use near::NearestPoint;
+pub use storage::StorageError;
 
 /// Row of [`crate::ACCELERATORS`].
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
@@ -33,7 +41,7 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 /// Boxes around boxes around triangles, eight by eight.
 #[derive(Clone, Debug)]
 pub struct Bvh8 {
-    units: Vec<Unit>,
+    units: Units,
     root: Ref,
     /// Of the box around everything; the fourth numbers are zero.
     corners: [[f32; 4]; 2],
@@ -48,7 +56,8 @@ impl Bvh8 {
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Bvh8, BuildError> {
         let built = build::build(mesh)?;
         let corners = built.planes.map(|[x, y, z]| [x, y, z, 0.0]);
-        Ok(Bvh8 { units: built.units, root: built.root, corners, level: options.cpu_level.available() })
+        let units = Units::from(built.units);
+        Ok(Bvh8 { units, root: built.root, corners, level: options.cpu_level.available() })
     }
 
     #[inline(always)]
@@ -91,7 +100,7 @@ impl Traverse for Bvh8 {
     }
 
     fn memory_bytes(&self) -> usize {
-        size_of_val(self.units.as_slice())
+        size_of_val(&*self.units)
     }
 
     fn shape(&self) -> TreeShape {

@@ -87,7 +87,7 @@ fn trees_do_not_depend_on_the_number_of_threads() {
         pool.install(|| build(triangles.clone()))
     };
     let (one, three) = (with(1), with(3));
-    assert!(one.root == three.root && one.units == three.units);
+    assert!(one.root == three.root && *one.units == *three.units);
 }
 
 #[test]
@@ -110,4 +110,46 @@ fn all_levels_count_the_same_hits() {
         assert!(count.nodes.abs_diff(counts[0].nodes) < counts[0].nodes / 100);
         assert!(count.nodes > 500 && count.triangles > 500);
     }
+}
+
+fn saved(tree: &Bvh8) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    tree.save(&mut bytes).expect("memory can be written");
+    bytes
+}
+
+#[test]
+fn forged_trees_are_refused_or_harmless() {
+    let tree = build((0..200).map(small).collect());
+    let bytes = saved(&tree);
+    let (mut refused, mut harmless) = (0, 0);
+    for i in 0..4000u64 {
+        let mut forged = bytes.clone();
+        for k in 0..1 + i % 3 {
+            let at = 8 + (hash_words([i, k, 0]) % (forged.len() as u64 - 8)) as usize;
+            forged[at] = hash_words([i, k, 1]) as u8;
+        }
+        // As a forger would: with the right checksum.
+        let units: Vec<layout::Unit> = forged[64..]
+            .chunks_exact(32)
+            .map(|unit| {
+                let word = |k: usize| [unit[4 * k], unit[4 * k + 1], unit[4 * k + 2], unit[4 * k + 3]];
+                layout::Unit(std::array::from_fn(|k| u32::from_le_bytes(word(k))))
+            })
+            .collect();
+        let sum = storage::checksum(&forged[..56], &units);
+        forged[56..64].copy_from_slice(&sum.to_le_bytes());
+        let Ok(tree) = Bvh8::load(&*forged) else {
+            refused += 1;
+            continue;
+        };
+        harmless += 1;
+        for j in 0..20 {
+            let v = |n: usize| std::array::from_fn(|k| number(40 + n as u64, j * 3 + k) * 2.0 - 0.5);
+            crate::Accelerator::closest_hit(&tree, &Ray::new(v(0), v(1)), &Query::default());
+            crate::Accelerator::any_hit(&tree, &Ray::new(v(0), v(1)), &Query::default());
+            tree.nearest_point(v(0), f32::INFINITY);
+        }
+    }
+    assert!(refused > 100 && harmless > 100, "{refused} {harmless}");
 }

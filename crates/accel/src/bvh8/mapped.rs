@@ -1,0 +1,70 @@
+//! Units in memory, or in a file that is mapped into it.
+#![allow(unsafe_code)] // Mapping, and reading mapped bytes as units; each block says why it is sound.
+
+use super::Bvh8;
+use super::layout::Unit;
+use super::storage::{HEADER, Header, StorageError};
+use memmap2::Mmap;
+use std::fs::File;
+use std::ops::Deref;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Where the units of a tree lie.
+#[derive(Clone, Debug)]
+pub(super) struct Units(Place);
+
+#[derive(Clone, Debug)]
+enum Place {
+    Memory(Vec<Unit>),
+    /// From byte [`HEADER`] on; the length was found to be a whole number of units.
+    File(Arc<Mmap>),
+}
+
+impl From<Vec<Unit>> for Units {
+    fn from(units: Vec<Unit>) -> Units {
+        Units(Place::Memory(units))
+    }
+}
+
+impl Deref for Units {
+    type Target = [Unit];
+
+    #[inline(always)]
+    fn deref(&self) -> &[Unit] {
+        match &self.0 {
+            Place::Memory(units) => units,
+            Place::File(map) => {
+                let bytes = &map[HEADER..];
+                // SAFETY: a map begins at a page, so that byte 64 is aligned as units are; every pattern of bits is
+                // a unit, and only whole ones are counted.
+                unsafe { std::slice::from_raw_parts(bytes.as_ptr().cast(), bytes.len() / size_of::<Unit>()) }
+            }
+        }
+    }
+}
+
+impl Bvh8 {
+    /// A tree that was saved, as it lies in its file: nothing is copied, so that several processes share it and what is
+    /// not asked for leaves memory again. All of it is read once, to be checked.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is not what [`Bvh8::save`] wrote; on machines that are not little-endian.
+    ///
+    /// # Safety
+    /// Nobody may change or cut off the file while the tree or a clone of it lives.
+    pub unsafe fn map(path: impl AsRef<Path>) -> Result<Bvh8, StorageError> {
+        if cfg!(target_endian = "big") {
+            return Err(StorageError::Damaged("only little-endian machines can map trees: load it"));
+        }
+        let file = File::open(path)?;
+        // SAFETY: the caller promises that the file stays as it is.
+        let map = unsafe { Mmap::map(&file) }?;
+        let header = map.first_chunk::<HEADER>().ok_or(StorageError::NotATree)?;
+        let header = Header::read(header)?;
+        if map.len() as u64 != header.bytes() {
+            return Err(StorageError::Length { expected: header.bytes(), found: map.len() as u64 });
+        }
+        Bvh8::trust(&header, Units(Place::File(Arc::new(map))))
+    }
+}

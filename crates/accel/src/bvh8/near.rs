@@ -1,0 +1,141 @@
+//! Which point of a mesh is nearest to a given one.
+
+use super::Bvh8;
+use super::layout::{self, BLOCK_UNITS, LANES, Planes, Ref};
+use bilux_math::glam::DVec3;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A point of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestPoint {
+    /// How far away it is.
+    pub distance: f32,
+    /// Where it is.
+    pub point: [f32; 3],
+    /// Barycentric weight of the triangle's second vertex, 0..=1.
+    pub u: f32,
+    /// Barycentric weight of the triangle's third vertex, 0..=1.
+    pub v: f32,
+    /// Index of the triangle within its mesh.
+    pub primitive: u32,
+}
+
+/// A subtree still to be looked at, the nearest first.
+struct Waiting {
+    squared: f64,
+    reference: Ref,
+}
+
+impl Bvh8 {
+    /// The point of the mesh that is nearest to `point`, of equals that of the lowest primitive; `None` where all is
+    /// farther away than `within` (which may be infinite), and for points that are not finite.
+    ///
+    /// Computed in f64. To know on which side of a closed mesh the point lies, ask [`crate::Accelerator::all_hits`] of
+    /// any ray from it, and count.
+    pub fn nearest_point(&self, point: [f32; 3], within: f32) -> Option<NearestPoint> {
+        let at = DVec3::from(point.map(f64::from));
+        // Written so that a reach that is not a number reaches nothing.
+        if self.units.is_empty() || !at.is_finite() || within.is_nan() || within < 0.0 {
+            return None;
+        }
+        let mut best = Best { squared: f64::from(within) * f64::from(within), at: None };
+        let mut waiting = BinaryHeap::from([Waiting { squared: 0.0, reference: self.root }]);
+        while let Some(Waiting { squared, reference }) = waiting.pop() {
+            if squared > best.squared {
+                break;
+            }
+            if reference.is_node() {
+                for (planes, child) in layout::children(&self.units[reference.unit()..]) {
+                    let squared = to_box(at, &planes);
+                    if squared <= best.squared {
+                        waiting.push(Waiting { squared, reference: child });
+                    }
+                }
+            } else {
+                for block in self.units[reference.leaf_units()].chunks_exact(BLOCK_UNITS) {
+                    for (corners, primitive) in (0..LANES).map(|lane| layout::triangle(block, lane)) {
+                        best.offer(at, corners.map(|p| DVec3::from(p.map(f64::from))), primitive);
+                    }
+                }
+            }
+        }
+        best.found()
+    }
+}
+
+/// The square of the distance to a box, never more than that to anything in it as it is computed below.
+fn to_box(at: DVec3, [low, high]: &Planes) -> f64 {
+    let [low, high] = [low, high].map(|p| DVec3::from(p.map(f64::from)));
+    at.distance_squared(at.clamp(low, high)) * (1.0 - 1e-12)
+}
+
+struct Best {
+    squared: f64,
+    at: Option<([f64; 2], DVec3, u32)>,
+}
+
+impl Best {
+    fn offer(&mut self, at: DVec3, triangle: [DVec3; 3], primitive: u32) {
+        let (weights, point) = nearest_of_triangle(at, triangle);
+        let squared = at.distance_squared(point);
+        let lower = self.at.is_none_or(|(.., best)| primitive < best);
+        if squared < self.squared || (squared == self.squared && lower) {
+            (self.squared, self.at) = (squared, Some((weights, point, primitive)));
+        }
+    }
+
+    fn found(self) -> Option<NearestPoint> {
+        let ([u, v], point, primitive) = self.at?;
+        let distance = self.squared.sqrt() as f32;
+        Some(NearestPoint {
+            distance,
+            point: point.as_vec3().to_array(),
+            u: u as f32,
+            v: v as f32,
+            primitive,
+        })
+    }
+}
+
+/// The nearest point of a triangle, whatever its shape, and the weights of its second and third vertex.
+fn nearest_of_triangle(at: DVec3, [a, b, c]: [DVec3; 3]) -> ([f64; 2], DVec3) {
+    let (ab, ac, ap) = (b - a, c - a, at - a);
+    let normal = ab.cross(ac);
+    let area = normal.length_squared();
+    let (u, v) = (ap.cross(ac).dot(normal) / area, ab.cross(ap).dot(normal) / area);
+    if area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+        return ([u, v], a + ab * u + ac * v);
+    }
+    let on_edge = |from: DVec3, to: DVec3| {
+        let (along, length) = ((at - from).dot(to - from), (to - from).length_squared());
+        let w = if length > 0.0 { (along / length).clamp(0.0, 1.0) } else { 0.0 };
+        (w, from + (to - from) * w)
+    };
+    let ((p, on_ab), (q, on_ac), (r, on_bc)) = (on_edge(a, b), on_edge(a, c), on_edge(b, c));
+    let candidates = [([p, 0.0], on_ab), ([0.0, q], on_ac), ([1.0 - r, r], on_bc)];
+    let nearer = |x: ([f64; 2], DVec3), y: ([f64; 2], DVec3)| {
+        if at.distance_squared(y.1) < at.distance_squared(x.1) { y } else { x }
+    };
+    nearer(nearer(candidates[0], candidates[1]), candidates[2])
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Waiting) -> Ordering {
+        other.squared.total_cmp(&self.squared).then(other.reference.0.cmp(&self.reference.0))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Waiting) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Waiting) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Waiting {}

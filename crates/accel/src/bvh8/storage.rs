@@ -1,0 +1,208 @@
+//! Trees as files: written once, read or mapped by whoever needs them next.
+//!
+//! A file is a header of 64 bytes and then the units as they lie in memory, all little-endian: `BILUXBV8`, the
+//! version, the root, the number of units (u64), the corners of the box around everything (6 f32), zeros, and a
+//! checksum of all but itself (u64). Nothing of a file is trusted before all of it was looked at.
+
+use super::Bvh8;
+use super::build::binary::MAX_DEPTH;
+use super::layout::{self, BLOCK_UNITS, LANES, MAX_BLOCKS, MAX_UNITS, NODE_UNITS, Ref, Unit, WIDTH};
+use super::mapped::Units;
+use crate::cpu_level::CpuLevel;
+use bilux_math::hash::mix64;
+use std::io::{self, Read, Write};
+
+const MAGIC: &[u8; 8] = b"BILUXBV8";
+const VERSION: u32 = 1;
+pub(super) const HEADER: usize = 64;
+const UNIT: usize = size_of::<Unit>();
+
+/// Why a file is no tree.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StorageError {
+    /// It cannot be read.
+    #[error("cannot read the tree: {0}")]
+    Io(#[from] io::Error),
+    /// It begins otherwise.
+    #[error("this is no tree of bvh8: it does not begin with BILUXBV8")]
+    NotATree,
+    /// It was written by another version.
+    #[error("the tree has version {0}, and this library reads {VERSION}: build it anew")]
+    Version(u32),
+    /// It ends too soon, or goes on.
+    #[error("the tree has {found} bytes, and its header says {expected}")]
+    Length {
+        /// What the header says.
+        expected: u64,
+        /// What there is.
+        found: u64,
+    },
+    /// Its bytes are not those that were written.
+    #[error("the tree is damaged: {0}")]
+    Damaged(&'static str),
+}
+
+/// What stands before the units.
+pub(super) struct Header {
+    root: Ref,
+    units: usize,
+    corners: [[f32; 4]; 2],
+    checksum: u64,
+    /// All but the checksum, as read.
+    front: [u8; HEADER - 8],
+}
+
+impl Bvh8 {
+    /// Writes the tree, with its triangles; [`Bvh8::load`] and [`Bvh8::map`] read it.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn save(&self, mut to: impl Write) -> io::Result<()> {
+        let mut header = Vec::with_capacity(HEADER);
+        header.extend(MAGIC);
+        header.extend(VERSION.to_le_bytes());
+        header.extend(self.root.0.to_le_bytes());
+        header.extend((self.units.len() as u64).to_le_bytes());
+        for corner in self.corners {
+            header.extend(corner[..3].iter().flat_map(|x| x.to_le_bytes()));
+        }
+        header.resize(HEADER - 8, 0);
+        header.extend(checksum(&header, &self.units).to_le_bytes());
+        to.write_all(&header)?;
+        for chunk in self.units.chunks(1 << 12) {
+            let bytes: Vec<u8> = chunk.iter().flat_map(|unit| unit.0).flat_map(u32::to_le_bytes).collect();
+            to.write_all(&bytes)?;
+        }
+        to.flush()
+    }
+
+    /// Reads a tree that was saved, for this machine's instructions.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is not what [`Bvh8::save`] wrote.
+    pub fn load(mut from: impl Read) -> Result<Bvh8, StorageError> {
+        let mut header = [0; HEADER];
+        read_whole(&mut from, &mut header)?;
+        let header = Header::read(&header)?;
+        let mut units = Vec::new();
+        let mut bytes = vec![0; UNIT << 12];
+        while units.len() < header.units {
+            // Memory grows with what was read, not with what is promised.
+            let chunk = (header.units - units.len()).min(1 << 12);
+            let bytes = &mut bytes[..chunk * UNIT];
+            read_whole(&mut from, bytes)?;
+            let words = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+            let mut words = words;
+            units.extend((0..chunk).map(|_| Unit(std::array::from_fn(|_| words.next().unwrap_or(0)))));
+        }
+        if from.read(&mut [0])? > 0 {
+            let expected = header.bytes();
+            return Err(StorageError::Length { expected, found: expected + 1 });
+        }
+        Bvh8::trust(&header, Units::from(units))
+    }
+
+    /// A tree of what was read, once all of it makes sense.
+    pub(super) fn trust(header: &Header, units: Units) -> Result<Bvh8, StorageError> {
+        if checksum(&header.front, &units) != header.checksum {
+            return Err(StorageError::Damaged("its checksum is another"));
+        }
+        check(&units, header.root)?;
+        let level = CpuLevel::default().available();
+        Ok(Bvh8 { units, root: header.root, corners: header.corners, level })
+    }
+}
+
+impl Header {
+    pub(super) fn read(bytes: &[u8; HEADER]) -> Result<Header, StorageError> {
+        let word = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+        let long = |at: usize| u64::from(word(at)) | u64::from(word(at + 4)) << 32;
+        if &bytes[..8] != MAGIC {
+            return Err(StorageError::NotATree);
+        }
+        if word(8) != VERSION {
+            return Err(StorageError::Version(word(8)));
+        }
+        let units = long(16);
+        if units > MAX_UNITS as u64 {
+            return Err(StorageError::Damaged("it has more units than can be numbered"));
+        }
+        let corner = |at: usize| [0, 4, 8].map(|k| f32::from_bits(word(at + k)));
+        let corners = [corner(24), corner(36)].map(|[x, y, z]| [x, y, z, 0.0]);
+        let front = std::array::from_fn(|i| bytes[i]);
+        Ok(Header { root: Ref(word(12)), units: units as usize, corners, checksum: long(HEADER - 8), front })
+    }
+
+    /// Of the whole file.
+    pub(super) fn bytes(&self) -> u64 {
+        (HEADER + self.units * UNIT) as u64
+    }
+}
+
+fn read_whole(from: &mut impl Read, bytes: &mut [u8]) -> Result<(), StorageError> {
+    let mut found = 0;
+    while found < bytes.len() {
+        match from.read(&mut bytes[found..]) {
+            Ok(0) if found == 0 && bytes.len() == HEADER => return Err(StorageError::NotATree),
+            Ok(0) => {
+                let expected = bytes.len() as u64;
+                return Err(StorageError::Length { expected, found: found as u64 });
+            }
+            Ok(n) => found += n,
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(e.into()),
+        }
+    }
+    Ok(())
+}
+
+/// Of what stands before it, and of the units: four sums side by side, each of mixed words.
+pub(super) fn checksum(front: &[u8], units: &[Unit]) -> u64 {
+    let mut sums = [0u64; 4];
+    for unit in units {
+        for (k, sum) in sums.iter_mut().enumerate() {
+            let word = u64::from(unit.0[2 * k]) | u64::from(unit.0[2 * k + 1]) << 32;
+            *sum = (sum.rotate_left(23) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        }
+    }
+    let front = front.iter().fold(0, |all, &byte| mix64(all ^ u64::from(byte)));
+    sums.iter().fold(front, |all, &sum| mix64(all ^ sum))
+}
+
+/// Follows every reference once: nothing may be reached twice or lie outside, no way may be longer than the stacks of
+/// the kernels, and leaves hold finite triangles.
+fn check(units: &[Unit], root: Ref) -> Result<(), StorageError> {
+    let mut reached = vec![false; units.len()];
+    let mut stack = if units.is_empty() { Vec::new() } else { vec![(root, 1)] };
+    while let Some((reference, depth)) = stack.pop() {
+        let blocks = if reference.is_node() { 0 } else { reference.blocks() };
+        let size = if reference.is_node() { NODE_UNITS } else { blocks * BLOCK_UNITS };
+        let range = reference.unit()..reference.unit() + size;
+        let Some(own) = reached.get_mut(range.clone()) else {
+            return Err(StorageError::Damaged("a reference leads out of it"));
+        };
+        if own.contains(&true) {
+            return Err(StorageError::Damaged("two references lead to one place"));
+        }
+        own.fill(true);
+        if depth > MAX_DEPTH || blocks > MAX_BLOCKS {
+            return Err(StorageError::Damaged("it is deeper, or has larger leaves, than any that is built"));
+        }
+        if reference.is_node() {
+            let node = &units[range];
+            let children =
+                (0..WIDTH).map(|child| Ref(node[NODE_UNITS - 1].0[child])).filter(|r| *r != Ref::EMPTY);
+            stack.extend(children.map(|child| (child, depth + 1)));
+        } else {
+            for block in units[range].chunks_exact(BLOCK_UNITS) {
+                for (corners, primitive) in (0..LANES).map(|lane| layout::triangle(block, lane)) {
+                    if primitive == u32::MAX || corners.iter().flatten().any(|x| !x.is_finite()) {
+                        return Err(StorageError::Damaged("a leaf holds what is no triangle"));
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
