@@ -37,7 +37,7 @@ const STEEPEST: f32 = (1u64 << 40) as f32;
 const UNIT: f32 = 1.0 / 16_777_216.0;
 
 /// For the roundings of the products below.
-const SLACK: f32 = 4.0 * UNIT;
+pub(crate) const SLACK: f32 = 4.0 * UNIT;
 
 /// See [`SlabRay::limit`].
 #[inline(always)]

@@ -3,6 +3,7 @@
 use super::body::{self, Level, Stack, lanes, reference};
 use super::tame::BoxRay;
 use super::{View, batch};
+use crate::bvh8::layout::Ref;
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::*;
@@ -53,13 +54,23 @@ pub(super) unsafe fn any_each(view: View<'_>, rays: &[Ray], query: &Query, hits:
 struct Avx2;
 
 impl Level for Avx2 {
+    type Wide = __m256;
+
+    #[inline(always)]
+    unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32 {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let misses = _mm256_castsi256_ps(_mm256_cmpgt_epi32(enter, leave));
+            _mm256_movemask_ps(misses) as u32 ^ 0xff
+        }
+    }
+
     #[inline(always)]
     unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i) {
         // SAFETY: as the trait demands.
         unsafe {
             let (enter, leave) = ray.span(node, limit);
-            let misses = _mm256_castsi256_ps(_mm256_cmpgt_epi32(enter, leave));
-            (_mm256_movemask_ps(misses) as u32 ^ 0xff, enter)
+            (Self::at_most(enter, leave), enter)
         }
     }
 
@@ -88,7 +99,32 @@ impl Level for Avx2 {
         }
     }
 
-    // SAFETY: the trait says what is asked for.
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let distances = lanes(enter);
+            let (references, keys) = (stack.references(), stack.distances());
+            let (mut left, mut size) = (mask, 0);
+            while left != 0 {
+                let child = left.trailing_zeros() & 7;
+                left &= left - 1;
+                let key = distances[child as usize] & !7 | child;
+                let mut place = size;
+                while place > 0 && *keys.add(place - 1) < key {
+                    *keys.add(place) = *keys.add(place - 1);
+                    place -= 1;
+                }
+                *keys.add(place) = key;
+                *references.add(size) = node.0;
+                size += 1;
+            }
+            stack.grow(size);
+        }
+    }
+
+    // SAFETY: as the trait demands.
     #[inline(always)]
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
         let mut left = mask;

@@ -3,6 +3,7 @@
 use super::body::{self, Level, Stack};
 use super::tame::BoxRay;
 use super::{View, batch};
+use crate::bvh8::layout::Ref;
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::*;
@@ -53,39 +54,48 @@ pub(super) unsafe fn any_each(view: View<'_>, rays: &[Ray], query: &Query, hits:
 struct Avx512;
 
 impl Level for Avx512 {
+    type Wide = __m512;
+
+    #[inline(always)]
+    unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32 {
+        // SAFETY: as the trait demands.
+        unsafe { u32::from(_mm256_cmple_epi32_mask(enter, leave)) }
+    }
+
     #[inline(always)]
     unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i) {
         // SAFETY: as the trait demands.
         unsafe {
             let (enter, leave) = ray.span(node, limit);
-            (u32::from(_mm256_cmple_epi32_mask(enter, leave)), enter)
+            (Self::at_most(enter, leave), enter)
         }
     }
 
-    /// Distances with the lane in their last three bits, sorted by a network of six stages.
     #[inline(always)]
     unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
-            let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-            let keys = _mm256_ternarylogic_epi32::<0xf8>(lanes, enter, _mm256_set1_epi32(!7));
-            // Those that do not count are less than all others, and come last.
-            let mut keys = _mm256_mask_compress_epi32(_mm256_set1_epi32(-1), mask as u8, keys);
-            let size = mask.count_ones();
-            if size > 4 {
-                keys = sort8(keys);
-            } else {
-                keys = sort4(keys);
-            }
+            let keys = sorted(mask, enter);
             let references = _mm256_load_si256(node.add(192).cast());
             let sorted = _mm256_permutevar8x32_epi32(references, keys);
             _mm256_storeu_si256(stack.references().cast(), sorted);
             _mm256_storeu_si256(stack.distances().cast(), keys);
-            stack.grow(size as usize);
+            stack.grow(mask.count_ones() as usize);
         }
     }
 
     // SAFETY: the trait says what is asked for.
+    #[inline(always)]
+    unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let keys = if mask & (mask - 1) == 0 { compressed(mask, enter) } else { sorted(mask, enter) };
+            _mm256_storeu_si256(stack.references().cast(), _mm256_set1_epi32(node.0 as i32));
+            _mm256_storeu_si256(stack.distances().cast(), keys);
+            stack.grow(mask.count_ones() as usize);
+        }
+    }
+
     #[inline(always)]
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
         // SAFETY: as the trait demands.
@@ -95,6 +105,28 @@ impl Level for Avx512 {
             _mm256_storeu_si256(stack.references().cast(), kept);
             stack.grow(mask.count_ones() as usize);
         }
+    }
+}
+
+/// The distances of a mask with their lane in the last three bits; those that do not count come last.
+#[inline(always)]
+unsafe fn compressed(mask: u32, enter: __m256i) -> __m256i {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let keys = _mm256_ternarylogic_epi32::<0xf8>(lanes, enter, _mm256_set1_epi32(!7));
+        // Less than all others.
+        _mm256_mask_compress_epi32(_mm256_set1_epi32(-1), mask as u8, keys)
+    }
+}
+
+/// The same in descending order, by a network of three stages or six.
+#[inline(always)]
+unsafe fn sorted(mask: u32, enter: __m256i) -> __m256i {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let keys = compressed(mask, enter);
+        if mask.count_ones() > 4 { sort8(keys) } else { sort4(keys) }
     }
 }
 

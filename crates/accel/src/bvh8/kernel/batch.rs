@@ -3,6 +3,7 @@
 //! A step takes a ray through one node or leaf, asks for what comes next, and hands over to the next ray.
 
 use super::body::{BLOCK_BYTES, Level, Room, Stack, choose, test};
+use super::packet::{self, Packet};
 use super::tame::TameRay;
 use super::{View, plain};
 use crate::bvh8::layout::Ref;
@@ -35,6 +36,32 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
     query: &Query,
     mut answer: impl FnMut(usize, Option<Hit>),
 ) {
+    let mut packet = Packet::new();
+    // SAFETY: as the caller promises.
+    unsafe {
+        for (number, chunk) in rays.chunks(packet::RAYS).enumerate() {
+            let first = number * packet::RAYS;
+            expect(rays.as_ptr().wrapping_add(first + packet::RAYS));
+            let rays = chunk;
+            let mut answer = |index: usize, hit: Option<Hit>| answer(first + index, hit);
+            if !packet::each::<L, ANY>(view, &mut packet, rays, query, &mut answer) {
+                apart::<L, ANY>(view, rays, query, &mut answer);
+            }
+        }
+    }
+}
+
+/// Answers rays that have nothing to do with each other.
+///
+/// # Safety
+/// As for [`each`].
+#[inline(always)]
+unsafe fn apart<L: Level, const ANY: bool>(
+    view: View<'_>,
+    rays: &[Ray],
+    query: &Query,
+    answer: &mut impl FnMut(usize, Option<Hit>),
+) {
     let base = view.units.as_ptr().cast::<u8>();
     let mut waiting = rays.iter().enumerate();
     let mut rooms = [const { Room::uninit() }; WAYS];
@@ -43,7 +70,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
     // SAFETY: as the caller promises.
     unsafe {
         for room in &mut rooms {
-            let Some((index, ray)) = next::<ANY>(&view, &mut waiting, query, &mut answer) else { break };
+            let Some((index, ray)) = next::<ANY>(&view, &mut waiting, query, answer) else { break };
             walks.push(Walk::new(&view, ray, index, Stack::new(room)));
         }
         while !walks.is_empty() {
@@ -54,7 +81,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
                 continue;
             }
             answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
-            match next::<ANY>(&view, &mut waiting, query, &mut answer) {
+            match next::<ANY>(&view, &mut waiting, query, answer) {
                 Some((index, ray)) => walk.restart(&view, ray, index),
                 None => drop(walks.swap_remove(way)),
             }
@@ -168,6 +195,18 @@ impl Walk {
             }
         }
         false
+    }
+}
+
+/// Asks for the lines of the next rays.
+///
+/// # Safety
+/// None is needed: a prefetch reads nothing.
+#[inline(always)]
+unsafe fn expect(rays: *const Ray) {
+    for line in 0..size_of::<Ray>() * packet::RAYS / 64 {
+        // SAFETY: a prefetch reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(rays.cast::<i8>().wrapping_add(line * 64)) };
     }
 }
 

@@ -1,6 +1,7 @@
 //! The body of the wide kernels, which is the same for all levels.
 
 use super::block::Crossings;
+use super::packet::Wide;
 use super::tame::{BoxRay, TameRay};
 use super::{View, plain};
 use crate::bvh8::build::binary::MAX_DEPTH;
@@ -17,10 +18,19 @@ use std::mem::MaybeUninit;
 /// Functions must be called only on machines that have the level, with pointers to whole nodes and stacks
 /// with room for [`WIDTH`] more.
 pub(super) trait Level {
+    /// What holds a group of rays.
+    type Wide: Wide;
+    /// A bit for each lane where the first is not greater.
+    unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32;
     /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
     unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i);
+    // SAFETY: as the trait says.
     /// Puts the children of the mask on the stack, the nearest on top.
     unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack);
+    /// Puts the node on the stack once for each child of the mask, the nearest on top; the last three bits of the
+    /// distance say which child.
+    unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack);
+    // SAFETY: as the trait says.
     /// Puts the children of the mask on the stack, in any order.
     unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack);
     /// The same distance for all.

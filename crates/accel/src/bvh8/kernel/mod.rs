@@ -14,6 +14,8 @@ mod batch;
 mod block;
 #[cfg(target_arch = "x86_64")]
 mod body;
+#[cfg(target_arch = "x86_64")]
+mod packet;
 mod plain;
 #[cfg(target_arch = "x86_64")]
 mod tame;

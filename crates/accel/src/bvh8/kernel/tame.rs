@@ -40,10 +40,10 @@ pub(super) struct TameRay {
 }
 
 /// 16 and 4 units of f32 rounding: the pad of the lemma, and what is added to it here.
-const PAD: f32 = 16.0 / 16_777_216.0;
-const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
+pub(super) const PAD: f32 = 16.0 / 16_777_216.0;
+pub(super) const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
 /// As in [`crate::slab`].
-const STEEPEST: f32 = (1u64 << 40) as f32;
+pub(super) const STEEPEST: f32 = (1u64 << 40) as f32;
 
 impl TameRay {
     /// `None` for rays that are not tame, or can hit nothing.

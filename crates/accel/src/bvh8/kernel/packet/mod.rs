@@ -1,0 +1,204 @@
+//! Rays that run side by side, as from a camera or to a lamp: up to 64 of them on one way through the tree.
+//!
+//! At a node, all boxes are held against the *frustum*, the least and greatest of what the rays have on each axis: eight
+//! boxes at once, whatever the number of rays. A child is held against the rays themselves only when its turn comes, by
+//! then often behind what they have hit; of a node, one group of rays that meets it is enough. Triangles are tested one
+//! by one, by a group of rays at a time [Wald 2001], [Overbeck 2008].
+//!
+//! All of this only leaves out what [`super::body`] would leave out too, or less; the triangle test is the same
+//! operation by operation. So the hits are.
+
+mod frustum;
+mod rays;
+mod triangle;
+mod wide;
+
+pub(super) use rays::{Packet, RAYS};
+pub(super) use wide::Wide;
+
+use super::View;
+use super::body::{BLOCK_BYTES, Level, Room, Stack, reference};
+use crate::bvh8::layout::{LANES, Ref};
+use crate::ray::{Hit, Query, Ray};
+use frustum::Frustum;
+use triangle::Group;
+
+/// A packet on its way.
+struct Walk<'p> {
+    packet: &'p mut Packet,
+    frustum: Frustum,
+    query: &'p Query<'p>,
+    /// Lanes in use, a whole number of groups.
+    lanes: usize,
+    /// A bit for each ray that has nothing more to find.
+    done: u64,
+}
+
+/// Answers some rays, at most [`RAYS`], if they run side by side; else does nothing and returns false.
+///
+/// # Safety
+/// The machine must have the level, and the view must be sound.
+#[inline(always)]
+pub(super) unsafe fn each<L: Level, const ANY: bool>(
+    view: View<'_>,
+    packet: &mut Packet,
+    rays: &[Ray],
+    query: &Query,
+    answer: &mut impl FnMut(usize, Option<Hit>),
+) -> bool {
+    let lanes = rays.len().next_multiple_of(L::Wide::LANES);
+    if !view.root.is_node() || !frustum::alike(rays) {
+        return false;
+    }
+    packet.fill(rays, lanes);
+    // SAFETY: as the caller promises.
+    unsafe {
+        let Some(frustum) = Frustum::new::<L::Wide>(packet, lanes, &rays[0], &view) else { return false };
+        let done = if rays.len() == 64 { 0 } else { u64::MAX << rays.len() };
+        let mut walk = Walk { packet, frustum, query, lanes, done };
+        walk.run::<L, ANY>(&view);
+        let (packet, done) = (&walk.packet, walk.done);
+        for lane in 0..rays.len() {
+            let primitive = *packet.primitive.at(lane);
+            if ANY {
+                let hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
+                answer(lane, (done >> lane & 1 == 1).then_some(hit));
+            } else if primitive == u32::MAX {
+                answer(lane, None);
+            } else {
+                let (t, u, v) = (*packet.t.at(lane), *packet.u.at(lane), *packet.v.at(lane));
+                answer(lane, Some(Hit { t, u, v, primitive, instance: 0 }));
+            }
+        }
+    }
+    true
+}
+
+impl Walk<'_> {
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn run<L: Level, const ANY: bool>(&mut self, view: &View<'_>) {
+        let base = view.units.as_ptr().cast::<u8>();
+        let mut room = Room::uninit();
+        let mut stack = Stack::new(&mut room);
+        let mut current = view.root;
+        let mut limit_bits = self.frustum.limit.to_bits();
+        // SAFETY: as the caller promises; references lead to whole nodes and leaves.
+        unsafe {
+            loop {
+                let (mask, enter) = self.frustum.meet::<L>(base.add(current.byte()), L::splat(limit_bits));
+                if mask != 0 {
+                    L::push_children(current, mask, enter, &mut stack);
+                }
+                loop {
+                    if stack.is_empty() || (ANY && self.done == u64::MAX) {
+                        return;
+                    }
+                    let (parent, key) = stack.take();
+                    if key > limit_bits | 7 {
+                        continue;
+                    }
+                    let (node, child) = (base.add(parent.byte()), key as usize & 7);
+                    let reference = reference(node, child);
+                    if !reference.is_node() {
+                        if self.leaf::<L::Wide, ANY>(base, node, child, reference) {
+                            limit_bits = self.limit::<L::Wide>().to_bits();
+                        }
+                    } else if self.meets_any::<L::Wide>(node, child) {
+                        current = reference;
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    /// How far the ray looks that looks farthest.
+    ///
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn limit<W: Wide>(&self) -> f32 {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let mut limit = W::load(self.packet.limit.at(0));
+            for group in 1..self.lanes / W::LANES {
+                limit = limit.max(W::load(self.packet.limit.at(group * W::LANES)));
+            }
+            limit.greatest_lane()
+        }
+    }
+
+    /// The rays of a group that still look for something.
+    #[inline(always)]
+    fn looking<W: Wide>(&self, from: usize) -> u32 {
+        (!self.done >> from) as u32 & ((1 << W::LANES) - 1)
+    }
+
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn meets_any<W: Wide>(&self, node: *const u8, child: usize) -> bool {
+        let mut from = 0;
+        while from < self.lanes {
+            // SAFETY: as the caller promises.
+            let mask = unsafe { self.packet.meet::<W>(from, &self.frustum, node, child) };
+            if mask & self.looking::<W>(from) != 0 {
+                return true;
+            }
+            from += W::LANES;
+        }
+        false
+    }
+
+    /// Tests a leaf by the groups that meet it; true when a limit has changed.
+    ///
+    /// # Safety
+    /// As for [`each`].
+    #[inline(always)]
+    unsafe fn leaf<W: Wide, const ANY: bool>(
+        &mut self,
+        base: *const u8,
+        node: *const u8,
+        child: usize,
+        leaf: Ref,
+    ) -> bool {
+        let mut changed = false;
+        for group in 0..self.lanes / W::LANES {
+            let from = group * W::LANES;
+            // SAFETY: as the caller promises.
+            unsafe {
+                let mut mask =
+                    self.packet.meet::<W>(from, &self.frustum, node, child) & self.looking::<W>(from);
+                if mask == 0 {
+                    continue;
+                }
+                let mut group = Group::<W>::new(self.packet, &self.frustum, self.query, from);
+                let mut hits = 0;
+                for index in 0..leaf.blocks() {
+                    let block = base.add(leaf.byte() + index * BLOCK_BYTES);
+                    let primitives = block.add(9 * LANES * 4).cast::<u32>();
+                    for lane in 0..LANES {
+                        // The last triangle fills a block.
+                        if lane > 0 && *primitives.add(lane) == *primitives.add(lane - 1) {
+                            break;
+                        }
+                        let hit = group.test::<ANY>(block, lane, mask);
+                        hits |= hit;
+                        if ANY {
+                            mask &= !hit;
+                        }
+                    }
+                }
+                if ANY {
+                    self.done |= u64::from(hits) << from;
+                } else if hits != 0 {
+                    group.finish();
+                    changed = true;
+                }
+            }
+        }
+        changed
+    }
+}

@@ -1,0 +1,197 @@
+//! One triangle and a group of rays, operation by operation as in [`super::super::block`].
+
+use super::frustum::Frustum;
+use super::rays::{Packet, RAYS};
+use super::wide::{Half, Narrow, Wide};
+use crate::bvh8::layout::LANES;
+use crate::ray::{Culling, Hit, Query};
+
+/// A group of rays at a leaf. How near its hits are stays in registers from triangle to triangle.
+pub(super) struct Group<'p, W: Wide> {
+    packet: &'p mut Packet,
+    frustum: &'p Frustum,
+    query: &'p Query<'p>,
+    /// Its first ray.
+    from: usize,
+    limit: W,
+    nearest: [Float<W>; 2],
+}
+
+type Float<W> = <<W as Wide>::Half as Half>::Narrow;
+
+/// Corners in sheared space: `[axis][corner]`.
+type Sheared<V> = [[V; 3]; 3];
+
+impl<'p, W: Wide> Group<'p, W> {
+    /// # Safety
+    /// The machine must have the level, and the group must have been prepared.
+    #[inline(always)]
+    pub(super) unsafe fn new(
+        packet: &'p mut Packet,
+        frustum: &'p Frustum,
+        query: &'p Query<'p>,
+        from: usize,
+    ) -> Group<'p, W> {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let limit = W::load(packet.limit.at(from));
+            let nearest =
+                [Float::<W>::load(packet.t.at(from)), Float::<W>::load(packet.t.at(from + W::LANES / 2))];
+            Group { packet, frustum, query, from, limit, nearest }
+        }
+    }
+
+    /// Tests a triangle of a block by the rays of a mask; returns which hit it. The nearer hits are kept, but where
+    /// any will do.
+    ///
+    /// # Safety
+    /// As for [`Group::new`]; `block` must point to a block.
+    #[inline(always)]
+    pub(super) unsafe fn test<const ANY: bool>(&mut self, block: *const u8, lane: usize, mask: u32) -> u32 {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let [x, y, z] = self.shear(block, lane);
+            let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
+            let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
+            let zero = W::splat(0.0);
+            // Where one of the three is not a number, this rejects less; what is left is looked at again.
+            let mixed = u.min(v).min(w).lt(zero) & zero.lt(u.max(v).max(w));
+            // What lies wholly behind what a ray has hit: the exact distance is a mean of those of the corners.
+            let near = if self.frustum.down[self.frustum.axes[2]] {
+                zero.sub(z[0].max(z[1]).max(z[2]))
+            } else {
+                z[0].min(z[1]).min(z[2])
+            };
+            let mask = mask & !mixed & near.le(self.limit);
+            if mask == 0 {
+                return 0;
+            }
+            let half = W::LANES / 2;
+            let lower = mask & ((1 << half) - 1);
+            let mut hits = 0;
+            if lower != 0 {
+                let wide = |v: [W; 3]| [v[0].lower_half(), v[1].lower_half(), v[2].lower_half()];
+                hits = self.cross::<0, ANY>([wide(x), wide(y), wide(z)], block, lane, lower);
+            }
+            if mask >> half != 0 {
+                let wide = |v: [W; 3]| [v[0].upper_half(), v[1].upper_half(), v[2].upper_half()];
+                hits |= self.cross::<1, ANY>([wide(x), wide(y), wide(z)], block, lane, mask >> half) << half;
+            }
+            hits
+        }
+    }
+
+    /// # Safety
+    /// As for [`Group::test`].
+    #[inline(always)]
+    unsafe fn shear(&self, block: *const u8, lane: usize) -> Sheared<W> {
+        let (axes, packet, from) = (self.frustum.axes, &*self.packet, self.from);
+        // SAFETY: as the caller promises; a block holds nine rows of four numbers.
+        unsafe {
+            let corner = |axis: usize, corner: usize| {
+                let row = block.add(axes[axis] * 3 * LANES * 4).cast::<f32>();
+                let origin = W::load(packet.origin[axes[axis]].at(from));
+                W::splat(*row.add(corner * LANES + lane)).sub(origin)
+            };
+            let z = [corner(2, 0), corner(2, 1), corner(2, 2)];
+            let lean =
+                |axis: usize, k: usize| corner(axis, k).sub(W::load(packet.shear[axis].at(from)).mul(z[k]));
+            [[lean(0, 0), lean(0, 1), lean(0, 2)], [lean(1, 0), lean(1, 1), lean(1, 2)], z]
+        }
+    }
+
+    /// The exact stage by half the group, and all that decides whether a hit counts.
+    ///
+    /// # Safety
+    /// As for [`Group::test`].
+    #[inline(always)]
+    unsafe fn cross<const HALF: usize, const ANY: bool>(
+        &mut self,
+        [x, y, z]: Sheared<W::Half>,
+        block: *const u8,
+        lane: usize,
+        mask: u32,
+    ) -> u32 {
+        let from = self.from + HALF * W::LANES / 2;
+        // SAFETY: as the caller promises; a block holds its primitives behind nine rows of four numbers.
+        unsafe {
+            let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
+            let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
+            let zero = W::Half::splat(0.0);
+            let mixed = (u.lt(zero) | v.lt(zero) | w.lt(zero)) & (zero.lt(u) | zero.lt(v) | zero.lt(w));
+            let det = u.add(v).add(w);
+            let infinity = W::Half::splat(f64::INFINITY);
+            let (below, above) = (det.lt(zero), zero.lt(det));
+            // Neither zero nor infinite, and a number.
+            let sound = (below & zero.sub(infinity).lt(det)) | (above & det.lt(infinity));
+            let along = u.mul(z[0]).add(v.mul(z[1])).add(w.mul(z[2]));
+            let steep = self.frustum.axes[2];
+            let depth = W::Half::widen(Float::<W>::load(self.packet.direction[steep].at(from)));
+            let t = along.div(det.mul(depth)).narrow();
+            let primitive = *block.add((9 * LANES + lane) * 4).cast::<u32>();
+            let nearest = self.nearest[HALF];
+            let mut mask = mask & sound & !mixed & t.le(nearest);
+            mask &= Float::<W>::load(self.packet.t_min.at(from)).le(t);
+            mask &= !Float::<W>::places(primitive, self.packet.exclude.at(from));
+            if self.query.culling == Culling::Back {
+                mask &= if self.frustum.down[steep] { below } else { !below };
+            }
+            if mask != 0 && self.query.filter.is_some() {
+                mask = self.sift(primitive, t, v.div(det).narrow(), w.div(det).narrow(), mask);
+            }
+            if ANY || mask == 0 {
+                return mask;
+            }
+            let mut ties = mask & t.eq(nearest);
+            while ties != 0 {
+                let ray = ties.trailing_zeros() as usize;
+                ties &= ties - 1;
+                if *self.packet.primitive.at(from + ray) <= primitive {
+                    mask &= !(1 << ray);
+                }
+            }
+            self.nearest[HALF] = nearest.blend(mask, t);
+            v.div(det).narrow().store_some(mask, self.packet.u.at_mut(from));
+            w.div(det).narrow().store_some(mask, self.packet.v.at_mut(from));
+            Float::<W>::put(primitive, mask, self.packet.primitive.at_mut(from));
+            mask
+        }
+    }
+
+    /// Those of a mask whose hits the filter lets count.
+    ///
+    /// # Safety
+    /// As for [`Group::test`].
+    #[inline(never)]
+    unsafe fn sift(&self, primitive: u32, t: Float<W>, u: Float<W>, v: Float<W>, mask: u32) -> u32 {
+        let (mut ts, mut us, mut vs) = ([0.0; RAYS], [0.0; RAYS], [0.0; RAYS]);
+        // SAFETY: as the caller promises; a group is no larger than a packet.
+        unsafe {
+            t.store(ts.as_mut_ptr());
+            u.store(us.as_mut_ptr());
+            v.store(vs.as_mut_ptr());
+        }
+        let keeps = |ray: usize| {
+            self.query.keeps(&Hit { t: ts[ray], u: us[ray], v: vs[ray], primitive, instance: 0 })
+        };
+        (0..W::LANES / 2)
+            .filter(|&ray| mask >> ray & 1 == 1 && keeps(ray))
+            .fold(0, |kept, ray| kept | 1 << ray)
+    }
+
+    /// Gives what it has found back to the packet.
+    ///
+    /// # Safety
+    /// As for [`Group::new`].
+    #[inline(always)]
+    pub(super) unsafe fn finish(self) {
+        // SAFETY: as the caller promises.
+        unsafe {
+            self.nearest[0].store(self.packet.t.at_mut(self.from));
+            self.nearest[1].store(self.packet.t.at_mut(self.from + W::LANES / 2));
+            if self.query.early_out {
+                self.packet.set_limits::<W>(self.from);
+            }
+        }
+    }
+}
