@@ -5,6 +5,7 @@
 mod cpu_levels;
 mod dist;
 mod docs;
+mod instructions;
 mod licences;
 mod process;
 mod test;
@@ -27,6 +28,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "licences", summary: "every package that we build on is permissive", run: licences::run },
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
     Chore { name: "dist", summary: "what is released: the binary, its pages, a checksum", run: dist::run },
+    Chore { name: "instructions", summary: "how many instructions a ray takes", run: instructions::run },
     Chore {
         name: "cpu-levels",
         summary: "the same pictures at every CPU level (minutes)",
@@ -54,7 +56,7 @@ fn main() -> ExitCode {
 fn usage(trouble: &str) -> ExitCode {
     eprintln!("xtask: {trouble}\n\nusage: cargo xtask CHORE\n");
     for chore in CHORES {
-        eprintln!("  {:<11} {}", chore.name, chore.summary);
+        eprintln!("  {:<12} {}", chore.name, chore.summary);
     }
     ExitCode::from(2)
 }

@@ -16,6 +16,7 @@ const STEPS: &[Step] = &[
     Step { name: "licences", run: |_| crate::licences::run(&[]) },
     Step { name: "clippy", run: clippy },
     Step { name: "test", run: tests },
+    Step { name: "instructions", run: |_| crate::instructions::run(&[]) },
     Step { name: "reference", run: |_| crate::docs::check_reference() },
     Step { name: "doc", run: |_| crate::docs::library() },
 ];
@@ -43,10 +44,10 @@ pub(crate) fn run(names: &[String]) -> Result<()> {
 fn summarise(reports: &[(&str, Duration, bool)], totals: Totals) -> Result<()> {
     println!();
     for (name, time, ok) in reports {
-        println!("{name:<9} {:>7.1} s  {}", time.as_secs_f64(), if *ok { "ok" } else { "FAILED" });
+        println!("{name:<12} {:>7.1} s  {}", time.as_secs_f64(), if *ok { "ok" } else { "FAILED" });
     }
     let all: Duration = reports.iter().map(|(_, time, _)| *time).sum();
-    println!("{:<9} {:>7.1} s", "all", all.as_secs_f64());
+    println!("{:<12} {:>7.1} s", "all", all.as_secs_f64());
     println!("{} passed, {} failed", totals.passed, totals.failed);
     let failed: Vec<_> = reports.iter().filter(|report| !report.2).map(|report| report.0).collect();
     if failed.is_empty() { Ok(()) } else { bail!("failed: {}", failed.join(", ")) }
