@@ -112,6 +112,9 @@ pub struct Render {
     /// What finds the triangles that rays hit (`bilux list accels`)
     #[arg(long, value_name = "NAME")]
     pub accel: Option<String>,
+    /// Time that it may take to build: a picture of many samples is worth the best
+    #[arg(long, value_name = "fast|balanced|best")]
+    pub build: Option<String>,
     /// Width and height
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,

@@ -13,6 +13,7 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
     let flags = [
         ("integrator", "--integrator", text(&a.integrator)),
         ("accel", "--accel", text(&a.accel)),
+        ("build", "--build", text(&a.build)),
         ("size", "--size", text(&a.size)),
         ("spp", "--spp", whole(a.spp.map(u64::from))),
         ("seed", "--seed", whole(a.seed)),

@@ -5,7 +5,9 @@
 //! - A *leaf* is one to [`MAX_BLOCKS`] blocks of 5 units: for each axis the coordinates of the three
 //!   corners of four triangles, then the primitives of the four. Places without a triangle repeat the first one.
 //!
-//! Nodes stand before their children, and the leaves of a node behind it.
+//! Nodes stand before their children, subtrees one behind the other. In a leaf each triangle stands once; in a tree
+//! whose builder cuts triangles it may stand in several leaves, whose boxes then hold only a piece of it each. All
+//! give the same hit, since the whole triangle is tested; who gathers hits may meet one more than once.
 
 use std::ops::Range;
 

@@ -27,6 +27,19 @@ impl From<Vec<Unit>> for Units {
     }
 }
 
+impl Units {
+    /// Changes units: those in memory, or a copy there of what is mapped.
+    pub(super) fn change<T>(&mut self, work: impl FnOnce(&mut [Unit]) -> T) -> T {
+        let mut units = match std::mem::replace(&mut self.0, Place::Memory(Vec::new())) {
+            Place::Memory(units) => units,
+            mapped @ Place::File(_) => Units(mapped).to_vec(),
+        };
+        let result = work(&mut units);
+        self.0 = Place::Memory(units);
+        result
+    }
+}
+
 impl Deref for Units {
     type Target = [Unit];
 

@@ -9,6 +9,7 @@ mod layout;
 mod mapped;
 mod near;
 mod overlap;
+mod refit;
 mod storage;
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ use layout::Ref;
 use mapped::Units;
 
 pub use near::NearestPoint;
+pub use refit::RefitError;
 pub use storage::StorageError;
 
 /// Row of [`crate::ACCELERATORS`].
@@ -54,7 +56,7 @@ impl Bvh8 {
     /// # Errors
     /// When it would take more than 8 GiB.
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Bvh8, BuildError> {
-        let built = build::build(mesh)?;
+        let built = build::build(mesh, options.quality)?;
         let corners = built.planes.map(|[x, y, z]| [x, y, z, 0.0]);
         let units = Units::from(built.units);
         Ok(Bvh8 { units, root: built.root, corners, level: options.cpu_level.available() })

@@ -3,6 +3,7 @@
 use super::build::binary::MAX_DEPTH;
 use super::layout::{self, BLOCK_UNITS, LANES, Planes, Ref};
 use super::*;
+use crate::registry::Quality;
 use bilux_math::hash::{hash_words, unit_f32};
 
 type Triangle = [[f32; 3]; 3];
@@ -17,14 +18,17 @@ fn small(i: usize) -> Triangle {
     })
 }
 
-fn build(triangles: Vec<Triangle>) -> Bvh8 {
-    let mesh = TriangleMesh::from_corners(triangles).expect("few triangles");
-    Bvh8::new(&mesh, &BuildOptions::default()).expect("few nodes")
+const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Balanced, Quality::Best];
+
+fn build(triangles: &[Triangle], quality: Quality) -> Bvh8 {
+    let mesh = TriangleMesh::from_corners(triangles.to_vec()).expect("few triangles");
+    Bvh8::new(&mesh, &BuildOptions { quality, ..BuildOptions::default() }).expect("few nodes")
 }
 
-/// Checks that each child lies in its parent's box and each of `count` triangles in one leaf; returns the depth.
-fn validate(tree: &Bvh8, count: usize) -> usize {
-    let mut seen = vec![0; count];
+/// Checks that each child lies in its parent's box and each triangle in one leaf, or that of one in several there is
+/// no point in none; returns the depth, and whether any is in several.
+fn validate(tree: &Bvh8, triangles: &[Triangle]) -> (usize, bool) {
+    let mut seen: Vec<Vec<Planes>> = vec![Vec::new(); triangles.len()];
     let corners = tree.corners.map(|[x, y, z, _]| [x, y, z]);
     let mut deepest = 0;
     let mut stack: Vec<(Planes, Ref, usize)> = vec![(corners, tree.root, 1)];
@@ -44,28 +48,61 @@ fn validate(tree: &Bvh8, count: usize) -> usize {
             let mut last = None;
             for lane in 0..LANES {
                 let (triangle, primitive) = layout::triangle(block, lane);
-                assert!(triangle.iter().all(|p| within(&planes, &[*p, *p])));
+                assert_eq!(triangle, triangles[primitive as usize]);
                 if last != Some(primitive) {
-                    seen[primitive as usize] += 1;
+                    seen[primitive as usize].push(planes);
                 }
                 last = Some(primitive);
             }
         }
     }
-    assert!(seen.iter().all(|&times| times == 1), "a triangle is lost, or there twice");
-    deepest
+    for (i, (boxes, triangle)) in seen.iter().zip(triangles).enumerate() {
+        let holds = |p: &[f32; 3]| boxes.iter().any(|planes| within(planes, &[*p, *p]));
+        assert!(triangle.iter().all(holds), "a corner is lost");
+        if boxes.len() == 1 {
+            continue;
+        }
+        for k in 0..16 {
+            let (a, b) = (f64::from(number(31, i * 16 + k)), f64::from(number(32, i * 16 + k)));
+            let (a, b) = if a + b > 1.0 { (1.0 - a, 1.0 - b) } else { (a, b) };
+            let at = |axis: usize| {
+                let [p, q, r] = triangle.map(|corner| f64::from(corner[axis]));
+                p + (q - p) * a + (r - p) * b
+            };
+            let is_in = |planes: &Planes| {
+                // A few roundings in f64 may put the point beside the triangle.
+                let slack =
+                    |axis: usize| 1e-14 * triangle.iter().fold(0.0, |m, p| f64::from(p[axis].abs()).max(m));
+                (0..3).all(|axis| {
+                    let (low, high) = (f64::from(planes[0][axis]), f64::from(planes[1][axis]));
+                    low - slack(axis) <= at(axis) && at(axis) <= high + slack(axis)
+                })
+            };
+            assert!(boxes.iter().any(is_in), "a point of triangle {i} is lost");
+        }
+    }
+    (deepest, seen.iter().any(|boxes| boxes.len() > 1))
 }
 
 #[test]
 fn trees_are_sound_and_shallow_over_what_makes_builders_slow() {
-    const N: usize = 100_000;
+    const N: usize = 50_000;
     let equal_centres = |i: usize| {
         let r = 1.0 + number(1, i);
         [[-r, -r, -r], [r, -r, r], [0.0, r, 0.0]]
     };
     let huge = [[-1e6, -1e6, 0.5], [1e6, -1e6, 0.5], [0.0, 1e6, 0.5]];
     let far = |i: usize| small(i).map(|p| p.map(|x| x * f32::from_bits((64 + i as u32 % 128) << 23)));
-    let cases: [(&str, Vec<Triangle>); 5] = [
+    // As long as the whole, in all directions: what cuts are made for.
+    let long = |i: usize| -> Triangle {
+        let from: [f32; 3] = std::array::from_fn(|k| number(k as u64, i));
+        let to = std::array::from_fn(|k| number(k as u64 + 3, i));
+        [from, to, from.map(|x| x + 0.01)]
+    };
+    let on_a_line = |i: usize| small(i).map(|p| [p[0], 0.25, 0.25]);
+    let cases: [(&str, Vec<Triangle>); 7] = [
+        ("long", (0..N / 10).map(long).collect()),
+        ("on a line", (0..N).map(on_a_line).collect()),
         ("small", (0..N).map(small).collect()),
         ("copies", vec![small(7); N]),
         ("equal centres", (0..N).map(equal_centres).collect()),
@@ -73,26 +110,34 @@ fn trees_are_sound_and_shallow_over_what_makes_builders_slow() {
         ("all scales", (0..N).map(far).collect()),
     ];
     for (name, triangles) in cases {
-        let depth = validate(&build(triangles), N);
-        // What the stack of the kernels has room for.
-        assert!(depth <= MAX_DEPTH, "{name} is {depth} deep");
+        for quality in QUALITIES {
+            let tree = build(&triangles, quality);
+            let (depth, has_pieces) = validate(&tree, &triangles);
+            // What the stack of the kernels has room for.
+            assert!(depth <= MAX_DEPTH, "{name} by {quality:?} is {depth} deep");
+            let is_cut = quality == Quality::Best && name == "long";
+            assert!(!is_cut || has_pieces, "{name}");
+            assert!(quality == Quality::Best || !has_pieces, "{name} by {quality:?}");
+        }
     }
 }
 
 #[test]
 fn trees_do_not_depend_on_the_number_of_threads() {
     let triangles: Vec<Triangle> = (0..150_000).map(small).collect();
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| build(triangles.clone()))
-    };
-    let (one, three) = (with(1), with(3));
-    assert!(one.root == three.root && *one.units == *three.units);
+    for quality in QUALITIES {
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| build(&triangles, quality))
+        };
+        let (one, three) = (with(1), with(3));
+        assert!(one.root == three.root && *one.units == *three.units);
+    }
 }
 
 #[test]
 fn all_levels_count_the_same_hits() {
-    let tree = build((0..2000).map(small).collect());
+    let tree = build(&(0..2000).map(small).collect::<Vec<_>>(), Quality::Balanced);
     let mut counts = Vec::new();
     for level in CpuLevel::ALL.into_iter().filter(|&level| level <= CpuLevel::detect()) {
         let tree = Bvh8 { level, ..tree.clone() };
@@ -120,7 +165,7 @@ fn saved(tree: &Bvh8) -> Vec<u8> {
 
 #[test]
 fn forged_trees_are_refused_or_harmless() {
-    let tree = build((0..200).map(small).collect());
+    let tree = build(&(0..200).map(small).collect::<Vec<_>>(), Quality::Balanced);
     let bytes = saved(&tree);
     let (mut refused, mut harmless) = (0, 0);
     for i in 0..4000u64 {

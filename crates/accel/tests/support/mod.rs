@@ -54,16 +54,27 @@ pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
             "bsp-sah" => [Quality::Fast, Quality::Balanced, Quality::Best]
                 .map(|quality| ("quality", BuildOptions { quality, ..plain.clone() }))
                 .to_vec(),
-            "brute-simd" | "bvh8" => CpuLevel::ALL
-                .iter()
-                .filter(|&&level| level <= CpuLevel::detect())
-                .map(|&cpu_level| (cpu_level.name(), BuildOptions { cpu_level, ..plain.clone() }))
+            "brute-simd" => levels()
+                .map(|cpu_level| (cpu_level.name(), BuildOptions { cpu_level, ..plain.clone() }))
+                .collect(),
+            "bvh8" => levels()
+                .flat_map(|cpu_level| {
+                    [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("best", Quality::Best)]
+                        .map(|(name, quality)| (name, BuildOptions { cpu_level, quality, ..plain.clone() }))
+                })
                 .collect(),
             _ => vec![("", plain.clone())],
         };
-        all.extend(options.into_iter().map(|(suffix, options)| (format!("{name} {suffix}"), name, options)));
+        all.extend(options.into_iter().map(|(suffix, options)| {
+            (format!("{name} {suffix} {}", options.cpu_level.name()), name, options)
+        }));
     }
     all
+}
+
+/// Those that the machine has.
+fn levels() -> impl Iterator<Item = CpuLevel> {
+    CpuLevel::ALL.into_iter().filter(|&level| level <= CpuLevel::detect())
 }
 
 pub fn build_variant(name: &str, options: &BuildOptions, mesh: &Arc<TriangleMesh>) -> Arc<dyn Accelerator> {

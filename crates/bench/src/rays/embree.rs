@@ -8,6 +8,7 @@ use bilux::Error;
 use bilux::accel::{Hit, Ray, TriangleMesh};
 use libloading::Library;
 use std::ffi::{c_char, c_void};
+use std::mem::ManuallyDrop;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 use std::rc::Rc;
@@ -132,7 +133,8 @@ pub(super) struct Embree {
     device: Pointer,
     /// Bytes that Embree holds.
     held: Box<AtomicIsize>,
-    _library: Library,
+    /// Never closed: its threads outlive the device.
+    _library: ManuallyDrop<Library>,
 }
 
 /// # Safety
@@ -167,7 +169,7 @@ impl Embree {
         let counter: Pointer = std::ptr::from_ref(&*held).cast_mut().cast();
         // SAFETY: `held` outlives the device; `count` has the type that is asked for.
         unsafe { (functions.rtcSetDeviceMemoryMonitorFunction)(device, count, counter) };
-        Ok(Rc::new(Embree { functions, device, held, _library: library }))
+        Ok(Rc::new(Embree { functions, device, held, _library: ManuallyDrop::new(library) }))
     }
 }
 

@@ -8,6 +8,7 @@ use bilux::accel::{
     ACCELERATORS, Accelerator, AcceleratorEntry, BuildError, BuildOptions, Bvh, Bvh8, Hit, Query, Ray,
     TriangleMesh,
 };
+use rayon::ThreadPool;
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -65,18 +66,21 @@ pub(super) struct Named {
     pub(super) engine: Box<dyn Engine>,
 }
 
-/// Builds every engine over a mesh: ours, those behind the feature `peers`, and Embree from the libraries given.
+/// Builds every engine over a mesh, on one thread: ours, those behind the feature `peers`, and Embree from the
+/// libraries given.
 pub(super) fn build(
     mesh: &Arc<TriangleMesh>,
     accels: &[String],
     against: &[Rc<Embree>],
 ) -> Result<Vec<Named>, Error> {
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let alone = alone.map_err(|e| Error::Settings(format!("no thread can be had: {e}")))?;
     let mut engines = Vec::new();
     for name in accels {
-        engines.extend(ours(name, mesh)?);
+        engines.extend(ours(name, mesh, &alone)?);
     }
     #[cfg(feature = "peers")]
-    engines.extend(super::peers::build(mesh));
+    engines.extend(super::peers::build(mesh, &alone));
     for embree in against {
         for kind in KINDS {
             let tree = Rc::new(Tree::build(embree, kind, mesh)?);
@@ -113,24 +117,25 @@ pub(super) fn own(name: &str) -> Option<(&'static AcceleratorEntry, BuildOptions
 
 /// Ours, ray by ray and, where a structure has a way of its own for many, in batches. Those that are asked for
 /// their speed are called through their own types, so that the query is compiled into the loop.
-fn ours(name: &str, mesh: &Arc<TriangleMesh>) -> Result<Vec<Named>, Error> {
+fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<Named>, Error> {
     let failed = |e: BuildError| Error::Settings(e.to_string());
     let (row, options) = own(name).ok_or_else(|| failed(BuildError::UnknownName(name.to_owned())))?;
     let named = |engine: Box<dyn Engine>| Named { name: name.to_owned(), ours: true, engine };
     let begun = Instant::now();
     Ok(match row.entry.name {
         "bvh" => {
-            let tree = Rc::new(Bvh::new(mesh));
+            let tree = Rc::new(alone.install(|| Bvh::new(mesh)));
             vec![named(Box::new(Ours::new(&tree, begun)))]
         }
         "bvh8" => {
-            let tree = Rc::new(Bvh8::new(mesh, &options).map_err(failed)?);
+            let tree = Rc::new(alone.install(|| Bvh8::new(mesh, &options)).map_err(failed)?);
             let single = Ours::new(&tree, begun);
             let batches = Batches { tree, build_seconds: single.build_seconds };
             vec![named(Box::new(single)), named(Box::new(batches))]
         }
         _ => {
-            let tree: Rc<dyn Accelerator> = (row.build)(mesh.clone(), &options).map_err(failed)?.into();
+            let tree = alone.install(|| (row.build)(mesh.clone(), &options)).map_err(failed)?;
+            let tree: Rc<dyn Accelerator> = tree.into();
             vec![named(Box::new(Ours::new(&tree, begun)))]
         }
     })

@@ -13,16 +13,17 @@ use obvhs::rt_triangle::RtTriangle;
 use obvhs::triangle::Triangle;
 use parry3d::math::Vector;
 use parry3d::shape::{CompositeShapeRef, TriMesh};
+use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
 /// Builds all of them.
-pub(super) fn build(mesh: &TriangleMesh) -> Vec<Named> {
+pub(super) fn build(mesh: &TriangleMesh, alone: &ThreadPool) -> Vec<Named> {
     let named = |name: &str, engine: Box<dyn Engine>| Named { name: name.to_owned(), ours: false, engine };
     let mut all = vec![
-        named("obvhs-cwbvh", Box::new(Obvhs::new(mesh, cwbvh))),
-        named("obvhs-bvh2", Box::new(Obvhs::new(mesh, bvh2))),
+        named("obvhs-cwbvh", Box::new(alone.install(|| Obvhs::new(mesh, cwbvh)))),
+        named("obvhs-bvh2", Box::new(alone.install(|| Obvhs::new(mesh, bvh2)))),
     ];
-    all.extend(Parry::new(mesh).map(|parry| named("parry3d", Box::new(parry))));
+    all.extend(alone.install(|| Parry::new(mesh)).map(|parry| named("parry3d", Box::new(parry))));
     all
 }
 

@@ -5,7 +5,8 @@
 
 use super::collapse::{Costs, costs_of_inner, costs_of_leaf};
 use super::item::{Bounds, Item};
-use super::split::{Halves, best_split, halve, partition};
+use super::spatial::Cutter;
+use super::split::{Halves, around, best_split, halve, partition};
 use crate::bvh8::layout::{LANES, Planes};
 use std::ops::Range;
 
@@ -18,10 +19,10 @@ const PARALLEL: usize = 4096;
 /// the number of the pair of children (0 for a leaf), and [`Costs`]. A plain array of numbers, so that room
 /// for many takes no memory until it is used.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node([f32; 16]);
+pub(super) struct Node(pub(super) [f32; 16]);
 
 impl Node {
-    fn new(bounds: &Bounds, items: Range<u32>, pair: Option<u32>, costs: Costs) -> Node {
+    pub(super) fn new(bounds: &Bounds, items: Range<u32>, pair: Option<u32>, costs: Costs) -> Node {
         let [[a, b, c], [d, e, f]] = bounds.planes();
         let [first, count, pair] =
             [items.start, items.len() as u32, pair.map_or(0, |pair| pair + 1)].map(f32::from_bits);
@@ -64,18 +65,24 @@ impl Node {
 pub(super) struct Binary {
     pub(super) root: Node,
     /// Siblings side by side: the pair of number `i` at `2i` and `2i + 1`. Not all are in use.
-    nodes: Vec<[f32; 16]>,
+    pub(super) nodes: Vec<[f32; 16]>,
+    /// Whether some triangle stands in it more than once.
+    pub(super) has_pieces: bool,
 }
 
 impl Binary {
-    /// Sorts items into a tree whose leaves hold one block at most, each a range of the new order.
-    pub(super) fn over(items: &mut [Item]) -> Binary {
-        let bounds = Bounds::of(items);
-        let centres = items.iter().fold(Bounds::EMPTY, |all, item| all.with_point(item.centre()));
+    /// Sorts items into a tree whose leaves hold one block at most, each a range of the new order. Those that are
+    /// below a node that is none need not stand side by side. With a cutter, triangles may be cut, and there
+    /// may be `room` more items at last.
+    pub(super) fn over(items: &mut Vec<Item>, cutter: Option<(&Cutter<'_>, usize)>) -> Binary {
+        let (bounds, centres, count) = (Bounds::of(items), around(items), items.len());
+        if let Some((_, room)) = cutter {
+            items.resize(count + room, items[0]);
+        }
         let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
-        let task = Task { items, first_item: 0, room: &mut nodes, first_pair: 0, depth: 1 };
-        let root = subtree(task, &bounds, &centres);
-        Binary { root, nodes }
+        let task = Task { items, count, first_item: 0, room: &mut nodes, first_pair: 0, depth: 1 };
+        let root = subtree(task, &bounds, &centres, cutter.map(|(cutter, _)| cutter));
+        Binary { root, nodes, has_pieces: root.count() > count }
     }
 
     /// The children of a node that is not a leaf.
@@ -85,43 +92,94 @@ impl Binary {
     }
 }
 
-/// Items to put under one node, and room for the pairs below it: one less than there are items.
+/// Items to put under one node, room behind them for more, and for the pairs below: one less than there may be
+/// items.
 struct Task<'a> {
     items: &'a mut [Item],
+    count: usize,
     first_item: u32,
     room: &'a mut [[f32; 16]],
     first_pair: u32,
     depth: usize,
 }
 
-fn subtree(task: Task<'_>, bounds: &Bounds, centres: &Bounds) -> Node {
-    let Task { items, first_item, room, first_pair, depth } = task;
-    let range = first_item..first_item + items.len() as u32;
-    if items.len() <= LANES {
-        return Node::new(bounds, range, None, costs_of_leaf(bounds));
+impl<'a> Task<'a> {
+    /// Two tasks, the second from item `middle` on, with shares of the room by their numbers of items; and the pair
+    /// for their nodes.
+    fn in_two(self, middle: usize) -> (Task<'a>, Task<'a>, &'a mut [[f32; 16]]) {
+        let Task { items, count, first_item, room, first_pair, depth } = self;
+        let spare = items.len() - count;
+        let share = (spare as u64 * middle as u64 / count as u64) as usize;
+        // As many of the second as are in the way of the first's share go behind the others.
+        let moved = share.min(count - middle);
+        items.copy_within(middle..middle + moved, count + share - moved);
+        let (pair, room) = room.split_at_mut(2);
+        let place = middle + share;
+        let (left, right) = items.split_at_mut(place);
+        let (left_room, right_room) = room.split_at_mut(2 * (place - 1));
+        let depth = depth + 1;
+        (
+            Task {
+                items: left,
+                count: middle,
+                first_item,
+                room: left_room,
+                first_pair: first_pair + 1,
+                depth,
+            },
+            Task {
+                items: right,
+                count: count - middle,
+                first_item: first_item + place as u32,
+                room: right_room,
+                first_pair: first_pair + place as u32,
+                depth,
+            },
+            pair,
+        )
     }
-    let split = best_split(items, centres).filter(|split| depth_allows(depth, split.counts));
-    let Halves { middle, bounds: halves, centres } = match split {
-        Some(split) => partition(items, &split),
-        None => halve(items, centres),
-    };
-    let (pair, room) = room.split_at_mut(2);
-    let (left_items, right_items) = items.split_at_mut(middle);
-    let (left_room, right_room) = room.split_at_mut(2 * (middle - 1));
-    let depth = depth + 1;
-    let right_pair = first_pair + middle as u32;
-    let right_item = first_item + middle as u32;
-    let left = Task { items: left_items, first_item, room: left_room, first_pair: first_pair + 1, depth };
-    let right =
-        Task { items: right_items, first_item: right_item, room: right_room, first_pair: right_pair, depth };
-    let (a, b) = if range.len() >= PARALLEL {
-        rayon::join(|| subtree(left, &halves[0], &centres[0]), || subtree(right, &halves[1], &centres[1]))
+
+    fn halve(&mut self, bounds: &Bounds, centres: &Bounds, cutter: Option<&Cutter<'_>>) -> Halves {
+        let (items, depth) = (&self.items[..self.count], self.depth);
+        let split = best_split(items, centres).filter(|split| depth_allows(depth, split.counts));
+        if let Some(cutter) = cutter {
+            let halves = split.as_ref().map(|split| (&split.bounds, split.cost));
+            let cut = cutter.best(items, bounds, halves, self.items.len() - self.count);
+            let cut = cut.filter(|cut| depth_allows(depth, cut.counts));
+            if let Some((halves, count)) = cut.and_then(|cut| cutter.apply(self.items, self.count, &cut)) {
+                self.count = count;
+                return halves;
+            }
+        }
+        let items = &mut self.items[..self.count];
+        match split {
+            Some(split) => partition(items, &split),
+            None => halve(items, centres),
+        }
+    }
+}
+
+fn subtree(mut task: Task<'_>, bounds: &Bounds, centres: &Bounds, cutter: Option<&Cutter<'_>>) -> Node {
+    let first = task.first_item;
+    if task.count <= LANES {
+        return Node::new(bounds, first..first + task.count as u32, None, costs_of_leaf(bounds));
+    }
+    let Halves { middle, bounds: halves, centres } = task.halve(bounds, centres, cutter);
+    let (count, first_pair) = (task.count, task.first_pair);
+    let (left, right, pair) = task.in_two(middle);
+    let (a, b) = if count >= PARALLEL {
+        rayon::join(
+            || subtree(left, &halves[0], &centres[0], cutter),
+            || subtree(right, &halves[1], &centres[1], cutter),
+        )
     } else {
-        (subtree(left, &halves[0], &centres[0]), subtree(right, &halves[1], &centres[1]))
+        (subtree(left, &halves[0], &centres[0], cutter), subtree(right, &halves[1], &centres[1], cutter))
     };
     (pair[0], pair[1]) = (a.0, b.0);
-    let costs = costs_of_inner(bounds, range.len(), &a.costs(), &b.costs());
-    Node::new(bounds, range, Some(first_pair), costs)
+    // Cuts below may have made more.
+    let count = a.count() + b.count();
+    let costs = costs_of_inner(bounds, count, &a.costs(), &b.costs());
+    Node::new(bounds, first..first + count as u32, Some(first_pair), costs)
 }
 
 /// True when both children of a node at this depth can still be halved down to single items in time.

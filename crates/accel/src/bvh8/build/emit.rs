@@ -19,29 +19,8 @@ struct Plan {
     parts: Vec<Plan>,
 }
 
-fn plan(binary: &Binary, node: &Node) -> Plan {
-    if node.count() < PARALLEL {
-        return Plan { units: measure(binary, node, &mut Vec::new()), parts: Vec::new() };
-    }
-    let mut children = Vec::new();
-    children_of(binary, node, &mut children);
-    let parts: Vec<Plan> = children.par_iter().map(|child| plan(binary, child)).collect();
-    Plan { units: NODE_UNITS + parts.iter().map(|part| part.units).sum::<usize>(), parts }
-}
-
-fn leaf_units(node: &Node) -> usize {
-    node.count().div_ceil(LANES) * BLOCK_UNITS
-}
-
-fn measure(binary: &Binary, node: &Node, children: &mut Vec<Node>) -> usize {
-    children_of(binary, node, children);
-    if children.is_empty() {
-        return leaf_units(node);
-    }
-    let mut below = [*node; WIDTH];
-    let count = children.len();
-    below[..count].copy_from_slice(children);
-    NODE_UNITS + below[..count].iter().map(|child| measure(binary, child, children)).sum::<usize>()
+fn leaf_units(triangles: usize) -> usize {
+    triangles.div_ceil(LANES) * BLOCK_UNITS
 }
 
 /// The tree in its final form, and the root.
@@ -50,12 +29,12 @@ pub(super) fn emit(
     items: &[Item],
     mesh: &TriangleMesh,
 ) -> Result<(Vec<Unit>, Ref), BuildError> {
-    let plan = plan(binary, &binary.root);
+    let writer = Writer { binary, items, triangles: mesh.triangles() };
+    let plan = writer.plan(&binary.root);
     if plan.units > MAX_UNITS {
         return Err(BuildError::TooManyNodes);
     }
     let mut units = vec![Unit::default(); plan.units];
-    let writer = Writer { binary, items, triangles: mesh.triangles() };
     let (_, root) = writer.write(&binary.root, &plan, &mut units, 0);
     Ok((units, root))
 }
@@ -66,11 +45,58 @@ struct Writer<'a> {
     triangles: &'a [[[f32; 3]; 3]],
 }
 
+/// Room that is used again and again.
+#[derive(Default)]
+struct Scratch {
+    children: Vec<Node>,
+    primitives: Vec<u32>,
+}
+
 impl Writer<'_> {
+    fn plan(&self, node: &Node) -> Plan {
+        if node.count() < PARALLEL {
+            return Plan { units: self.measure(node, &mut Scratch::default()), parts: Vec::new() };
+        }
+        let mut children = Vec::new();
+        children_of(self.binary, node, &mut children);
+        let parts: Vec<Plan> = children.par_iter().map(|child| self.plan(child)).collect();
+        Plan { units: NODE_UNITS + parts.iter().map(|part| part.units).sum::<usize>(), parts }
+    }
+
+    fn measure(&self, node: &Node, scratch: &mut Scratch) -> usize {
+        children_of(self.binary, node, &mut scratch.children);
+        if scratch.children.is_empty() {
+            return leaf_units(self.triangles_below(node, &mut scratch.primitives));
+        }
+        let mut below = [*node; WIDTH];
+        let count = scratch.children.len();
+        below[..count].copy_from_slice(&scratch.children);
+        NODE_UNITS + below[..count].iter().map(|child| self.measure(child, scratch)).sum::<usize>()
+    }
+
+    /// How many triangles a leaf made of a binary subtree has, and which; each once, whatever pieces there are.
+    fn triangles_below(&self, node: &Node, primitives: &mut Vec<u32>) -> usize {
+        primitives.clear();
+        self.collect(node, primitives);
+        if self.binary.has_pieces {
+            primitives.sort_unstable();
+            primitives.dedup();
+        }
+        primitives.len()
+    }
+
+    fn collect(&self, node: &Node, primitives: &mut Vec<u32>) {
+        if node.is_leaf() {
+            primitives.extend(self.items[node.items()].iter().map(Item::index));
+        } else {
+            self.binary.children(node).iter().for_each(|child| self.collect(child, primitives));
+        }
+    }
+
     /// Writes a wide subtree into the whole of `units`, the first of which has the number `at`.
     fn write(&self, node: &Node, plan: &Plan, units: &mut [Unit], at: usize) -> (Planes, Ref) {
         if plan.parts.is_empty() {
-            return self.write_small(node, units, at, &mut Vec::new()).0;
+            return self.write_small(node, units, at, &mut Scratch::default()).0;
         }
         let mut children = Vec::new();
         children_of(self.binary, node, &mut children);
@@ -96,23 +122,22 @@ impl Writer<'_> {
         node: &Node,
         units: &mut [Unit],
         at: usize,
-        children: &mut Vec<Node>,
+        scratch: &mut Scratch,
     ) -> ((Planes, Ref), usize) {
-        children_of(self.binary, node, children);
-        if children.is_empty() {
-            let size = leaf_units(node);
-            let indices = self.items[node.items()].iter().map(Item::index);
-            let triangles = indices.map(|index| (self.triangles[index as usize], index));
+        children_of(self.binary, node, &mut scratch.children);
+        if scratch.children.is_empty() {
+            let size = leaf_units(self.triangles_below(node, &mut scratch.primitives));
+            let triangles = scratch.primitives.iter().map(|&index| (self.triangles[index as usize], index));
             write_leaf(&mut units[..size], triangles);
             return ((node.planes(), Ref::leaf(at, size / BLOCK_UNITS)), size);
         }
         let mut below = [*node; WIDTH];
-        let count = children.len();
-        below[..count].copy_from_slice(children);
+        let count = scratch.children.len();
+        below[..count].copy_from_slice(&scratch.children);
         let mut written = [(node.planes(), Ref::EMPTY); WIDTH];
         let mut end = NODE_UNITS;
         for (child, written) in below[..count].iter().zip(&mut written) {
-            let (entry, size) = self.write_small(child, &mut units[end..], at + end, children);
+            let (entry, size) = self.write_small(child, &mut units[end..], at + end, scratch);
             *written = entry;
             end += size;
         }

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// would be denormal numbers, which are slow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
-    low: Vec4,
-    high: Vec4,
+    pub(super) low: Vec4,
+    pub(super) high: Vec4,
 }
 
 impl Item {
@@ -22,6 +22,17 @@ impl Item {
 
     pub(super) fn index(&self) -> u32 {
         self.low.w as u32 | (self.high.w as u32) << 16
+    }
+
+    /// What of it lies in a box.
+    pub(super) fn within(&self, bounds: &Bounds) -> Item {
+        let (low, high) = (self.low.max(bounds.low), self.high.min(bounds.high));
+        Item { low: low.truncate().extend(self.low.w), high: high.truncate().extend(self.high.w) }
+    }
+
+    /// True when nothing is in its box.
+    pub(super) fn is_nothing(&self) -> bool {
+        (0..3).any(|k| self.low[k] > self.high[k])
     }
 
     #[inline(always)]
@@ -63,6 +74,12 @@ impl Bounds {
     pub(super) fn half_area(&self) -> f32 {
         let e = self.high - self.low;
         e.x * (e.y + e.z) + e.y * e.z
+    }
+
+    /// Of what two boxes share.
+    pub(super) fn shared_half_area(&self, other: &Bounds) -> f32 {
+        let (low, high) = (self.low.max(other.low), self.high.min(other.high));
+        if (0..3).all(|k| low[k] <= high[k]) { Bounds { low, high }.half_area() } else { 0.0 }
     }
 
     pub(super) fn planes(&self) -> Planes {

@@ -4,12 +4,16 @@ pub(super) mod binary;
 mod collapse;
 mod emit;
 mod item;
+mod reinsert;
+mod spatial;
 mod split;
 
-use super::layout::{EMPTY, Planes, Ref, Unit};
+use super::layout::{BLOCK_UNITS, EMPTY, LANES, MAX_UNITS, Planes, Ref, Unit};
 use crate::mesh::TriangleMesh;
-use crate::registry::BuildError;
+use crate::registry::{BuildError, Quality};
 use binary::Binary;
+use item::Bounds;
+use spatial::Cutter;
 
 /// A tree in its final form.
 pub(super) struct Built {
@@ -19,12 +23,23 @@ pub(super) struct Built {
 }
 
 /// Builds a tree over the triangles that are finite. The same tree whatever the number of threads.
-pub(super) fn build(mesh: &TriangleMesh) -> Result<Built, BuildError> {
+pub(super) fn build(mesh: &TriangleMesh, quality: Quality) -> Result<Built, BuildError> {
     let mut items = item::items_of(mesh);
     if items.is_empty() {
         return Ok(Built { units: Vec::new(), root: Ref::EMPTY, planes: EMPTY });
     }
-    let binary = Binary::over(&mut items);
+    // More than can be numbered in the end, whatever the tree.
+    if items.len() > MAX_UNITS / BLOCK_UNITS * LANES {
+        return Err(BuildError::TooManyNodes);
+    }
+    let binary = if quality == Quality::Best {
+        let cutter = Cutter::new(mesh.triangles(), &Bounds::of(&items));
+        // Cuts may make them twice as many; few scenes come halfway.
+        let room = items.len();
+        reinsert::improve(Binary::over(&mut items, Some((&cutter, room))))
+    } else {
+        Binary::over(&mut items, None)
+    };
     let (units, root) = emit::emit(&binary, &items, mesh)?;
     Ok(Built { units, root, planes: binary.root.planes() })
 }

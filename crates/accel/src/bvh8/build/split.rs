@@ -18,6 +18,7 @@ pub(super) struct Split {
     axis: usize,
     /// The first bin that goes to the right.
     bin: u32,
+    pub(super) cost: f32,
     pub(super) counts: [usize; 2],
     pub(super) bounds: [Bounds; 2],
 }
@@ -72,11 +73,11 @@ pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
     } else {
         fill(items, &grid)
     };
-    let mut best: Option<(f32, Split)> = None;
+    let mut best = None;
     for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
         sweep(&bins[axis], grid, axis, &mut best);
     }
-    best.map(|(_, split)| split)
+    best
 }
 
 #[inline]
@@ -106,7 +107,7 @@ pub(super) fn blocks(count: u32) -> f32 {
     count.div_ceil(LANES as u32) as f32
 }
 
-fn sweep(bins: &[(Bounds, u32); BINS], grid: Grid, axis: usize, best: &mut Option<(f32, Split)>) {
+fn sweep(bins: &[(Bounds, u32); BINS], grid: Grid, axis: usize, best: &mut Option<Split>) {
     let mut right = [(Bounds::EMPTY, 0, 0.0f32); BINS];
     let (mut bounds, mut count) = NO_ITEMS;
     for bin in (1..grid.bins).rev() {
@@ -120,10 +121,9 @@ fn sweep(bins: &[(Bounds, u32); BINS], grid: Grid, axis: usize, best: &mut Optio
         let cost = bounds.half_area() * blocks(count) + right_cost;
         // Costs beyond all numbers say nothing; empty sides make such too.
         let usable = count > 0 && right_count > 0 && cost < f32::INFINITY;
-        if usable && best.as_ref().is_none_or(|(least, _)| cost < *least) {
+        if usable && best.as_ref().is_none_or(|best| cost < best.cost) {
             let counts = [count as usize, right_count as usize];
-            let split = Split { grid, axis, bin: bin as u32, counts, bounds: [bounds, right_bounds] };
-            *best = Some((cost, split));
+            *best = Some(Split { grid, axis, bin: bin as u32, cost, counts, bounds: [bounds, right_bounds] });
         }
     }
 }
@@ -177,6 +177,10 @@ pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
         });
     }
     let (left, right) = items.split_at(middle);
-    let around = |items: &[Item]| items.iter().fold(Bounds::EMPTY, |all, item| all.with_point(item.centre()));
     Halves { middle, bounds: [Bounds::of(left), Bounds::of(right)], centres: [around(left), around(right)] }
+}
+
+/// Around the centres of items.
+pub(super) fn around(items: &[Item]) -> Bounds {
+    items.iter().fold(Bounds::EMPTY, |all, item| all.with_point(item.centre()))
 }
