@@ -2,12 +2,12 @@
 
 mod support;
 
-use bilux_accel::{BuildOptions, Instance, Ray, TopLevel, TriangleMesh, TwoLevel};
+use bilux_accel::{Accelerator, BuildOptions, Instance, Query, Ray, TopLevel, TriangleMesh, TwoLevel};
 use bilux_math::glam::{DMat4, Quat};
 use bilux_math::{Motion, MotionKey, Transform, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
-use support::{Numbers, Truth, build_variant, meshes, rays, variants};
+use support::{Numbers, Truth, build_variant, closed, meshes, rays, variants};
 
 const SHUTTER: [f32; 2] = [0.25, 0.75];
 
@@ -113,5 +113,30 @@ fn an_identity_transform_changes_no_bit() {
         let motion = Motion::still(Transform::IDENTITY);
         let world = TwoLevel::new(vec![Instance::new(brute.clone(), motion)], SHUTTER, top);
         assert!(truth.differences(&world).is_empty());
+    }
+}
+
+#[test]
+fn a_billion_triangles_take_a_few_hundred_megabytes() {
+    const SIDE: usize = 390;
+    let mesh = Arc::new(closed::all().into_iter().find(|c| c.name == "sphere").expect("it is there").mesh());
+    let tree = build_variant("bvh8", &BuildOptions::default(), &mesh);
+    let place = |i: usize| [(i % SIDE) as f64 * 3.0, 0.0, (i / SIDE) as f64 * 3.0];
+    let instance = |i: usize| {
+        let matrix = DMat4::from_translation(place(i).into());
+        Instance::new(tree.clone(), Motion::still(Transform::from_matrix(matrix).expect("a shift")))
+    };
+    let world = TwoLevel::new((0..SIDE * SIDE).map(instance).collect(), SHUTTER, TopLevel::Bvh);
+    let triangles = mesh.len() * world.len();
+    assert!(triangles > 1_000_000_000, "{triangles}");
+    assert!(world.memory_bytes() < 300_000_000, "{}", world.memory_bytes());
+    let mut numbers = Numbers::new(11);
+    for _ in 0..2000 {
+        let i = numbers.below(world.len());
+        let [x, _, z] = place(i).map(|x| x as f32);
+        let above = |y: f32| Ray::new([x + 0.1, y, z - 0.2], [0.0, -1.0, 0.0]);
+        let hit = world.closest_hit(&above(9.0), &Query::default()).expect("a sphere");
+        assert_eq!(hit.instance as usize, i);
+        assert!((hit.t - 8.0253).abs() < 0.01, "{hit:?}");
     }
 }

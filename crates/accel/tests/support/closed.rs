@@ -17,6 +17,8 @@ pub struct Closed {
 }
 
 const GRID: f64 = 1_048_576.0;
+/// Nearly: a power of two, so that scaling rounds nothing.
+const MILLION: f32 = 1_048_576.0;
 
 fn on_grid(p: [f64; 3]) -> [f32; 3] {
     p.map(|x| ((x * GRID).round() / GRID) as f32)
@@ -53,6 +55,11 @@ impl Closed {
             }
         }
         closed
+    }
+
+    fn scaled(mut self, by: f32) -> Closed {
+        self.positions.iter_mut().chain(&mut self.inside).flatten().for_each(|x| *x *= by);
+        self
     }
 
     pub fn mesh(&self) -> TriangleMesh {
@@ -189,6 +196,10 @@ pub fn all() -> Vec<Closed> {
         make("blob with slivers", cube(30, slivers)),
         make("needle", needle),
         make("torus", (ring.clone(), tube.clone())),
+        make("sphere, a millionth", cube(12, unit)).scaled(1.0 / MILLION),
+        make("sphere, a millionth, far for its size", cube(12, |p| far(unit(p)))).scaled(1.0 / MILLION),
+        make("sphere, a million times", cube(12, unit)).scaled(MILLION),
+        make("blob with slivers, a million times", cube(12, slivers)).scaled(MILLION),
         make("torus, turned, far away", (ring.into_iter().map(far).collect(), tube)),
     ]
 }
