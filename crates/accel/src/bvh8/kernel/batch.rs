@@ -2,7 +2,8 @@
 //!
 //! A step takes a ray through one node or leaf, asks for what comes next, and hands over to the next ray.
 
-use super::body::{BLOCK_BYTES, Level, Room, Stack, choose, test};
+use super::body::{Level, Room, Stack, choose};
+use super::leaf;
 use super::packet::{self, Packet};
 use super::tame::TameRay;
 use super::{View, plain};
@@ -15,10 +16,11 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 const WAYS: usize = 4;
 
 /// A ray on its way.
-struct Walk {
+struct Walk<'r> {
     /// Its number.
     index: usize,
-    ray: TameRay,
+    ray: &'r Ray,
+    tame: TameRay,
     nearest: Hit,
     limit_bits: u32,
     current: Ref,
@@ -65,13 +67,13 @@ unsafe fn apart<L: Level, const ANY: bool>(
     let base = view.units.as_ptr().cast::<u8>();
     let mut waiting = rays.iter().enumerate();
     let mut rooms = [const { Room::uninit() }; WAYS];
-    let mut walks: Vec<Walk> = Vec::with_capacity(WAYS);
+    let mut walks: Vec<Walk<'_>> = Vec::with_capacity(WAYS);
     let mut way = 0;
     // SAFETY: as the caller promises.
     unsafe {
         for room in &mut rooms {
-            let Some((index, ray)) = next::<ANY>(&view, &mut waiting, query, answer) else { break };
-            walks.push(Walk::new(&view, ray, index, Stack::new(room)));
+            let Some(ray) = next::<ANY>(&view, &mut waiting, query, answer) else { break };
+            walks.push(Walk::new(&view, ray, Stack::new(room)));
         }
         while !walks.is_empty() {
             way = if way < walks.len() { way } else { 0 };
@@ -82,7 +84,7 @@ unsafe fn apart<L: Level, const ANY: bool>(
             }
             answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
             match next::<ANY>(&view, &mut waiting, query, answer) {
-                Some((index, ray)) => walk.restart(&view, ray, index),
+                Some(ray) => walk.restart(&view, ray),
                 None => drop(walks.swap_remove(way)),
             }
         }
@@ -99,12 +101,12 @@ unsafe fn next<'r, const ANY: bool>(
     waiting: &mut impl Iterator<Item = (usize, &'r Ray)>,
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
-) -> Option<(usize, TameRay)> {
+) -> Option<(usize, &'r Ray, TameRay)> {
     const SOMETHING: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
     for (index, ray) in waiting {
         // SAFETY: as the caller promises.
         match unsafe { TameRay::new(ray, view) } {
-            Some(tame) => return Some((index, tame)),
+            Some(tame) => return Some((index, ray, tame)),
             None if ANY => answer(index, plain::any(*view, ray, query, &mut Nothing).then_some(SOMETHING)),
             None => answer(index, plain::closest(*view, ray, query, &mut Nothing)),
         }
@@ -112,19 +114,19 @@ unsafe fn next<'r, const ANY: bool>(
     None
 }
 
-impl Walk {
+impl<'r> Walk<'r> {
     #[inline(always)]
-    fn new(view: &View<'_>, ray: TameRay, index: usize, stack: Stack) -> Walk {
+    fn new(view: &View<'_>, (index, ray, tame): (usize, &'r Ray, TameRay), stack: Stack) -> Walk<'r> {
         let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
-        let limit_bits = ray.limit_bits(nearest.t);
-        Walk { index, ray, nearest, limit_bits, current: view.root, stack }
+        let limit_bits = tame.limit_bits(nearest.t);
+        Walk { index, ray, tame, nearest, limit_bits, current: view.root, stack }
     }
 
     #[inline(always)]
-    fn restart(&mut self, view: &View<'_>, ray: TameRay, index: usize) {
+    fn restart(&mut self, view: &View<'_>, (index, ray, tame): (usize, &'r Ray, TameRay)) {
         self.nearest = Hit { t: ray.t_max, primitive: u32::MAX, ..self.nearest };
-        self.limit_bits = ray.limit_bits(ray.t_max);
-        (self.index, self.ray, self.current) = (index, ray, view.root);
+        self.limit_bits = tame.limit_bits(ray.t_max);
+        (self.index, self.ray, self.tame, self.current) = (index, ray, tame, view.root);
         self.stack.clear();
     }
 
@@ -138,7 +140,7 @@ impl Walk {
         unsafe {
             let place = base.add(self.current.byte());
             if self.current.is_node() {
-                let (mask, enter) = L::meet(&self.ray.boxes, place, L::splat(self.limit_bits));
+                let (mask, enter) = L::meet(&self.tame.boxes, place, L::splat(self.limit_bits));
                 if mask != 0 {
                     self.current = if ANY {
                         L::push(place, mask, &mut self.stack);
@@ -149,7 +151,7 @@ impl Walk {
                     prefetch(base, self.current);
                     return true;
                 }
-            } else if self.leaf::<ANY>(place, query) {
+            } else if self.leaf::<L, ANY>(place, query) {
                 return false;
             }
             self.next::<ANY>(base)
@@ -161,17 +163,20 @@ impl Walk {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn leaf<const ANY: bool>(&mut self, place: *const u8, query: &Query) -> bool {
+    unsafe fn leaf<L: Level, const ANY: bool>(&mut self, place: *const u8, query: &Query) -> bool {
         let before = self.nearest.t;
-        for index in 0..self.current.blocks() {
-            // SAFETY: as the caller promises.
-            unsafe { test(&self.ray, place.add(index * BLOCK_BYTES), query, &mut self.nearest) };
-            if ANY && self.nearest.primitive != u32::MAX {
-                return true;
+        let leaf = (place, self.current.blocks());
+        // SAFETY: as the caller promises.
+        unsafe {
+            if ANY {
+                let found = leaf::any(self.ray, self.tame.steepest, leaf, query);
+                self.nearest.primitive = if found { 0 } else { u32::MAX };
+                return found;
             }
+            leaf::closest(self.ray, self.tame.steepest, leaf, query, &mut self.nearest);
         }
-        if !ANY && query.early_out && self.nearest.t < before {
-            self.limit_bits = self.ray.limit_bits(self.nearest.t);
+        if query.early_out && self.nearest.t < before {
+            self.limit_bits = self.tame.limit_bits(self.nearest.t);
         }
         false
     }

@@ -5,6 +5,7 @@
 
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Query, Ray};
+use crate::slab::{least_of, limit_of};
 use std::arch::x86_64::*;
 
 /// A ray with a lane for each triangle. Axes are those of sheared space.
@@ -34,23 +35,23 @@ pub(super) struct Crossings {
 }
 
 impl BlockRay {
-    /// `steepest` is the axis along which the direction is greatest, the last of equals.
+    /// `steepest` has a bit for each axis along which the direction is greatest, of which the last counts.
     ///
     /// # Safety
     /// The machine must have AVX.
     #[inline(always)]
-    pub(super) unsafe fn new(ray: &Ray, origin: __m128, direction: __m128, steepest: u32) -> BlockRay {
-        let axes = AXES[steepest as usize % 3];
-        // SAFETY: as the caller promises.
+    pub(super) unsafe fn new(ray: &Ray, steepest: u32) -> BlockRay {
+        let axes = AXES[steepest as usize & 7];
+        // SAFETY: as the caller promises; axes are less than three.
         unsafe {
-            let lane = |v: __m128, axis: u32| _mm_permutevar_ps(v, _mm_set1_epi32(axis as i32));
-            let depth = lane(direction, axes[2]);
-            let slopes = _mm_div_ps(direction, depth);
+            let origin = |k: usize| _mm_set1_ps(*ray.origin.get_unchecked(axes[k]));
+            let direction = |k: usize| *ray.direction.get_unchecked(axes[k]);
+            let depth = direction(2);
             BlockRay {
-                rows: axes.map(|axis| axis as usize * 3 * LANES * 4),
-                origin: axes.map(|axis| lane(origin, axis)),
-                shear: [lane(slopes, axes[0]), lane(slopes, axes[1])],
-                depth: _mm_cvtss_f32(depth),
+                rows: [axes[0] * ROW_BYTES, axes[1] * ROW_BYTES, axes[2] * ROW_BYTES],
+                origin: [origin(0), origin(1), origin(2)],
+                shear: [_mm_set1_ps(direction(0) / depth), _mm_set1_ps(direction(1) / depth)],
+                depth,
                 t_min: ray.t_min,
                 exclude: ray.exclude.index,
             }
@@ -85,6 +86,26 @@ impl BlockRay {
             let mixed =
                 _mm_and_ps(either(below(u), below(v), below(w)), either(above(u), above(v), above(w)));
             (_mm_movemask_ps(mixed) as u32 ^ 15, [x, y, z])
+        }
+    }
+
+    /// A bit for each triangle that does not lie wholly behind `t`: the exact distance is a mean of those of the corners.
+    ///
+    /// # Safety
+    /// The machine must have AVX.
+    #[inline(always)]
+    pub(super) unsafe fn not_behind(&self, [_, _, [a, b, c]]: &Sheared, t: f32) -> u32 {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let pace = self.depth.abs();
+            let limit = _mm_set1_ps(limit_of(t, pace, least_of(pace)));
+            let near = if self.depth < 0.0 {
+                _mm_sub_ps(_mm_setzero_ps(), _mm_max_ps(_mm_max_ps(*a, *b), *c))
+            } else {
+                _mm_min_ps(_mm_min_ps(*a, *b), *c)
+            };
+            // What is not a number is left to the exact stage.
+            _mm_movemask_ps(_mm_cmpngt_ps(near, limit)) as u32
         }
     }
 
@@ -163,5 +184,11 @@ impl Crossings {
     }
 }
 
-/// Which axes of space are x, y and z of sheared space, by the last.
-const AXES: [[u32; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+/// Of three corners along one axis.
+const ROW_BYTES: usize = 3 * LANES * 4;
+
+/// Which axes of space are x, y and z of sheared space, by the last of a mask.
+const AXES: [[usize; 3]; 8] = {
+    let (x, y, z) = ([1, 2, 0], [2, 0, 1], [0, 1, 2]);
+    [x, x, y, y, z, z, z, z]
+};

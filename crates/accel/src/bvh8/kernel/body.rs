@@ -1,11 +1,11 @@
 //! The body of the wide kernels, which is the same for all levels.
 
-use super::block::Crossings;
+use super::leaf;
 use super::packet::Wide;
 use super::tame::{BoxRay, TameRay};
 use super::{View, plain};
 use crate::bvh8::build::binary::MAX_DEPTH;
-use crate::bvh8::layout::{BLOCK_UNITS, LANES, Ref, Unit, WIDTH};
+use crate::bvh8::layout::{LANES, Ref, WIDTH};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::__m256i;
@@ -200,9 +200,7 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
             } else {
                 count.triangles(current.blocks() * LANES);
                 let before = nearest.t;
-                for index in 0..current.blocks() {
-                    test(&tame, place.add(index * BLOCK_BYTES), query, &mut nearest);
-                }
+                leaf::closest(ray, tame.steepest, (place, current.blocks()), query, &mut nearest);
                 if query.early_out && nearest.t < before {
                     limit_bits = tame.limit_bits(nearest.t);
                     limit = L::splat(limit_bits);
@@ -221,54 +219,6 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
             }
         }
     }
-}
-
-/// Tests a block and keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive
-/// as high as that of no hit.
-///
-/// # Safety
-/// The machine must have the level, and `block` must point to a block.
-#[inline(always)]
-pub(super) unsafe fn test(ray: &TameRay, block: *const u8, query: &Query, nearest: &mut Hit) {
-    // SAFETY: as the caller promises.
-    unsafe {
-        let signs = ray.blocks.signs(block);
-        if signs.0 == 0 {
-            return;
-        }
-        let crossings = ray.blocks.cross(block, signs, nearest.t, query);
-        let mut left = crossings.mask;
-        if left == 0 {
-            return;
-        }
-        let (t, [u, v]) = (crossings.t(), crossings.weights());
-        while left != 0 {
-            let lane = left.trailing_zeros() as usize & (LANES - 1);
-            left &= left - 1;
-            let primitive = primitive(block, lane);
-            if t[lane] < nearest.t || (t[lane] == nearest.t && primitive < nearest.primitive) {
-                let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
-                if query.keeps(&hit) {
-                    *nearest = hit;
-                }
-            }
-        }
-    }
-}
-
-/// True when the filter lets one of the crossings count.
-///
-/// # Safety
-/// As for [`test`].
-#[inline(never)]
-unsafe fn keeps_any(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
-    // SAFETY: as the caller promises.
-    let (t, [u, v]) = unsafe { (crossings.t(), crossings.weights()) };
-    (0..LANES).filter(|lane| crossings.mask >> lane & 1 == 1).any(|lane| {
-        // SAFETY: as above.
-        let primitive = unsafe { primitive(block, lane) };
-        query.keeps(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
-    })
 }
 
 /// See [`super::any`].
@@ -301,18 +251,9 @@ pub(super) unsafe fn any<L: Level, C: Count>(
                     continue;
                 }
             } else {
-                for index in 0..current.blocks() {
-                    count.triangles(LANES);
-                    let block = place.add(index * BLOCK_BYTES);
-                    let signs = tame.blocks.signs(block);
-                    if signs.0 == 0 {
-                        continue;
-                    }
-                    let crossings = tame.blocks.cross(block, signs, ray.t_max, query);
-                    if crossings.mask != 0 && (query.filter.is_none() || keeps_any(block, &crossings, query))
-                    {
-                        return true;
-                    }
+                count.triangles(current.blocks() * LANES);
+                if leaf::any(ray, tame.steepest, (place, current.blocks()), query) {
+                    return true;
                 }
             }
             if stack.is_empty() {
@@ -321,18 +262,6 @@ pub(super) unsafe fn any<L: Level, C: Count>(
             current = stack.take_reference();
         }
     }
-}
-
-pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
-
-/// The primitive of a triangle.
-///
-/// # Safety
-/// `block` must point to a block, and `lane` be below [`LANES`].
-#[inline(always)]
-unsafe fn primitive(block: *const u8, lane: usize) -> u32 {
-    // SAFETY: a block holds its primitives behind nine rows of 4 numbers.
-    unsafe { *block.cast::<u32>().add(9 * LANES + lane) }
 }
 
 /// Subtrees left out because a hit is nearer, where anybody wants to know.

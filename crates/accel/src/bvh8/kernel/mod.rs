@@ -15,6 +15,8 @@ mod block;
 #[cfg(target_arch = "x86_64")]
 mod body;
 #[cfg(target_arch = "x86_64")]
+mod leaf;
+#[cfg(target_arch = "x86_64")]
 mod packet;
 mod plain;
 #[cfg(target_arch = "x86_64")]

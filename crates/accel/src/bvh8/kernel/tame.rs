@@ -11,9 +11,8 @@
 //! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
 
 use super::View;
-use super::block::BlockRay;
 use crate::ray::Ray;
-use crate::slab::{least_of, limit_of};
+use crate::slab::{SLACK, least_of, limit_of};
 use std::arch::x86_64::*;
 
 /// A ray with a lane for each child of a node.
@@ -28,13 +27,12 @@ pub(super) struct BoxRay {
     nearest: __m256i,
 }
 
-/// A ray for boxes and triangles.
+/// A ray for boxes, and which axis of it matters to triangles.
 #[derive(Clone, Copy)]
 pub(super) struct TameRay {
     pub(super) boxes: BoxRay,
-    pub(super) blocks: BlockRay,
-    /// As the ray has it.
-    pub(super) t_max: f32,
+    /// A bit for each axis along which the direction is greatest.
+    pub(super) steepest: u32,
     /// The greatest component of the direction, without its sign.
     pace: f32,
 }
@@ -65,12 +63,13 @@ impl TameRay {
                 _mm_add_ps(_mm_mul_ps(far, _mm_set1_ps(PAD)), _mm_set1_ps(4.0 * f32::MIN_POSITIVE)),
                 _mm_mul_ps(size(origin), _mm_set1_ps(BIAS_PAD)),
             );
-            let (upper, lower) = (_mm_add_ps(origin, pad), _mm_sub_ps(origin, pad));
             let steepest = _mm_set1_ps(STEEPEST);
             let inverse = _mm_div_ps(pace, direction);
             let inverse = _mm_min_ps(_mm_max_ps(inverse, _mm_or_ps(minus, steepest)), steepest);
-            let enter = _mm_mul_ps(_mm_blendv_ps(upper, lower, direction), inverse);
-            let leave = _mm_mul_ps(_mm_blendv_ps(lower, upper, direction), inverse);
+            // Rays come in where planes are farther, and go out where they are nearer.
+            let pad = _mm_or_ps(pad, _mm_and_ps(direction, minus));
+            let enter = _mm_mul_ps(_mm_add_ps(origin, pad), inverse);
+            let leave = _mm_mul_ps(_mm_sub_ps(origin, pad), inverse);
             // Sums of sizes are finite when all of them are; no comparison holds for what is not a number.
             let sum = _mm_add_ps(_mm_add_ps(size(enter), size(leave)), sizes);
             let finite = _mm_movemask_ps(_mm_cmplt_ps(sum, _mm_set1_ps(f32::INFINITY))) & 7 == 7;
@@ -79,12 +78,13 @@ impl TameRay {
             if !(finite && ends && length > 0.0) {
                 return None;
             }
-            let least = -limit_of(-ray.t_min, length, least_of(length));
+            let s = ray.t_min * length;
+            let least = s - s * SLACK - least_of(length);
+            // What is not a number comes from infinities only.
             let least = if least > 0.0 { least } else { 0.0 };
-            let steep_axes = _mm_movemask_ps(_mm_cmpge_ps(sizes, pace)) as u32 & 7;
+            let steepest = _mm_movemask_ps(_mm_cmpge_ps(sizes, pace)) as u32 & 7;
             let boxes = BoxRay::new(direction, inverse, enter, leave, least);
-            let blocks = BlockRay::new(ray, origin, direction, 31 - steep_axes.leading_zeros());
-            Some(TameRay { boxes, blocks, t_max: ray.t_max, pace: length })
+            Some(TameRay { boxes, steepest, pace: length })
         }
     }
 
@@ -109,23 +109,31 @@ unsafe fn greatest(v: __m128) -> __m128 {
     }
 }
 
+/// Bytes from the front of a node to the planes where a ray comes in, and goes out, by the signs of its direction.
+const ROWS: [[[usize; 3]; 2]; 8] = {
+    let mut rows = [[[0; 3]; 2]; 8];
+    let mut place = 0;
+    while place < 8 * 2 * 3 {
+        let (down, side, axis) = (place / 6, place / 3 % 2, place % 3);
+        rows[down][side][axis] = ((down >> axis & 1 ^ side) * 3 + axis) * 32;
+        place += 1;
+    }
+    rows
+};
+
 impl BoxRay {
     #[inline(always)]
     unsafe fn new(direction: __m128, inverse: __m128, enter: __m128, leave: __m128, least: f32) -> BoxRay {
         // SAFETY: as the caller promises.
         unsafe {
-            let down = _mm_movemask_ps(direction) as usize;
-            let enter_rows = std::array::from_fn(|k| ((down >> k & 1) * 3 + k) * 32);
-            let spread = |v: __m128| {
-                [
-                    _mm256_broadcastss_ps(v),
-                    _mm256_broadcastss_ps(_mm_shuffle_ps::<0b01_01_01_01>(v, v)),
-                    _mm256_broadcastss_ps(_mm_shuffle_ps::<0b10_10_10_10>(v, v)),
-                ]
+            let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
+            let lane = |v: __m128, lane: i32| {
+                _mm256_permutevar8x32_ps(_mm256_castps128_ps256(v), _mm256_set1_epi32(lane))
             };
+            let spread = |v: __m128| [_mm256_broadcastss_ps(v), lane(v, 1), lane(v, 2)];
             BoxRay {
                 enter_rows,
-                leave_rows: std::array::from_fn(|k| (k * 2 + 3) * 32 - enter_rows[k]),
+                leave_rows,
                 inverse: spread(inverse),
                 enter_bias: spread(enter),
                 leave_bias: spread(leave),

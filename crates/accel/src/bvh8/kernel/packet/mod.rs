@@ -17,7 +17,8 @@ pub(super) use rays::{Packet, RAYS};
 pub(super) use wide::Wide;
 
 use super::View;
-use super::body::{BLOCK_BYTES, Level, Room, Stack, reference};
+use super::body::{Level, Room, Stack, reference};
+use super::leaf::BLOCK_BYTES;
 use crate::bvh8::layout::{LANES, Ref};
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;

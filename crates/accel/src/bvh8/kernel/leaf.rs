@@ -1,0 +1,118 @@
+//! A ray at a leaf.
+//!
+//! What triangles want of a ray is made ready here, each time: many rays see no leaf, and most see one. The black box
+//! keeps the compiler from doing it before it is known.
+
+use super::block::{BlockRay, Crossings};
+use crate::bvh8::layout::{BLOCK_UNITS, LANES, Unit};
+use crate::ray::{Hit, Query, Ray};
+use std::hint::black_box;
+
+/// Where a leaf is, and how many blocks it has.
+pub(super) type Leaf = (*const u8, usize);
+
+pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
+
+/// Keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive as high as that of no hit.
+///
+/// # Safety
+/// The machine must have AVX2, the ray be tame with `steepest` as of [`BlockRay::new`], and the leaf be one.
+#[inline(always)]
+pub(super) unsafe fn closest(
+    ray: &Ray,
+    steepest: u32,
+    (leaf, blocks): Leaf,
+    query: &Query,
+    nearest: &mut Hit,
+) {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let ray = BlockRay::new(black_box(ray), steepest);
+        for index in 0..blocks {
+            let block = leaf.add(index * BLOCK_BYTES);
+            let mut signs = ray.signs(block);
+            if signs.0 != 0 {
+                signs.0 &= ray.not_behind(&signs.1, nearest.t);
+            }
+            if signs.0 == 0 {
+                continue;
+            }
+            let crossings = ray.cross(block, signs, nearest.t, query);
+            if crossings.mask != 0 {
+                keep(block, &crossings, query, nearest);
+            }
+        }
+    }
+}
+
+/// # Safety
+/// As for [`closest`].
+#[inline(always)]
+unsafe fn keep(block: *const u8, crossings: &Crossings, query: &Query, nearest: &mut Hit) {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let mut left = crossings.mask;
+        let (t, [u, v]) = (crossings.t(), crossings.weights());
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize & (LANES - 1);
+            left &= left - 1;
+            let primitive = primitive(block, lane);
+            if t[lane] < nearest.t || (t[lane] == nearest.t && primitive < nearest.primitive) {
+                let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
+                if query.keeps(&hit) {
+                    *nearest = hit;
+                }
+            }
+        }
+    }
+}
+
+/// Whether there is any hit.
+///
+/// # Safety
+/// As for [`closest`].
+#[inline(always)]
+pub(super) unsafe fn any(ray: &Ray, steepest: u32, (leaf, blocks): Leaf, query: &Query) -> bool {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let t_max = ray.t_max;
+        let ray = BlockRay::new(black_box(ray), steepest);
+        for index in 0..blocks {
+            let block = leaf.add(index * BLOCK_BYTES);
+            let signs = ray.signs(block);
+            if signs.0 == 0 {
+                continue;
+            }
+            let crossings = ray.cross(block, signs, t_max, query);
+            if crossings.mask != 0 && (query.filter.is_none() || keeps_any(block, &crossings, query)) {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// True when the filter lets one of the crossings count.
+///
+/// # Safety
+/// As for [`closest`].
+#[inline(never)]
+unsafe fn keeps_any(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
+    // SAFETY: as the caller promises.
+    let (t, [u, v]) = unsafe { (crossings.t(), crossings.weights()) };
+    (0..LANES).filter(|lane| crossings.mask >> lane & 1 == 1).any(|lane| {
+        // SAFETY: as above.
+        let primitive = unsafe { primitive(block, lane) };
+        query.keeps(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
+    })
+}
+
+/// The primitive of a triangle.
+///
+/// # Safety
+/// `block` must point to a block, and `lane` be below [`LANES`].
+#[inline(always)]
+unsafe fn primitive(block: *const u8, lane: usize) -> u32 {
+    // SAFETY: a block holds its primitives behind nine rows of 4 numbers.
+    unsafe { *block.cast::<u32>().add(9 * LANES + lane) }
+}
