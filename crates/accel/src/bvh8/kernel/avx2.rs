@@ -1,7 +1,6 @@
 //! AVX2 and FMA on eight lanes.
 
 use super::body::{self, Level, Stack, lanes, reference};
-use super::tame::BoxRay;
 use super::{View, batch};
 use crate::bvh8::layout::Ref;
 use crate::counters::Count;
@@ -62,15 +61,6 @@ impl Level for Avx2 {
         unsafe {
             let misses = _mm256_castsi256_ps(_mm256_cmpgt_epi32(enter, leave));
             _mm256_movemask_ps(misses) as u32 ^ 0xff
-        }
-    }
-
-    #[inline(always)]
-    unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i) {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let (enter, leave) = ray.span(node, limit);
-            (Self::at_most(enter, leave), enter)
         }
     }
 

@@ -1,7 +1,6 @@
 //! AVX-512 on eight lanes: masks, and compression for more than two children.
 
 use super::body::{self, Level, Stack};
-use super::tame::BoxRay;
 use super::{View, batch};
 use crate::bvh8::layout::Ref;
 use crate::counters::Count;
@@ -60,15 +59,6 @@ impl Level for Avx512 {
     unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32 {
         // SAFETY: as the trait demands.
         unsafe { u32::from(_mm256_cmple_epi32_mask(enter, leave)) }
-    }
-
-    #[inline(always)]
-    unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i) {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let (enter, leave) = ray.span(node, limit);
-            (Self::at_most(enter, leave), enter)
-        }
     }
 
     #[inline(always)]

@@ -35,13 +35,13 @@ pub(super) struct Crossings {
 }
 
 impl BlockRay {
-    /// `steepest` has a bit for each axis along which the direction is greatest, of which the last counts.
-    ///
     /// # Safety
     /// The machine must have AVX.
     #[inline(always)]
-    pub(super) unsafe fn new(ray: &Ray, steepest: u32) -> BlockRay {
-        let axes = AXES[steepest as usize & 7];
+    pub(super) unsafe fn new(ray: &Ray) -> BlockRay {
+        let [x, y, z] = [ray.direction[0].abs(), ray.direction[1].abs(), ray.direction[2].abs()];
+        // Without branches, as nobody could foresee them.
+        let axes = AXES[usize::from(y >= x) | (usize::from(z >= x) & usize::from(z >= y)) << 1];
         // SAFETY: as the caller promises; axes are less than three.
         unsafe {
             let origin = |k: usize| _mm_set1_ps(*ray.origin.get_unchecked(axes[k]));
@@ -187,8 +187,5 @@ impl Crossings {
 /// Of three corners along one axis.
 const ROW_BYTES: usize = 3 * LANES * 4;
 
-/// Which axes of space are x, y and z of sheared space, by the last of a mask.
-const AXES: [[usize; 3]; 8] = {
-    let (x, y, z) = ([1, 2, 0], [2, 0, 1], [0, 1, 2]);
-    [x, x, y, y, z, z, z, z]
-};
+/// Which axes of space are x, y and z of sheared space: the last is the steepest, and the last of equals.
+const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];

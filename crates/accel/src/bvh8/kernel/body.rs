@@ -2,7 +2,7 @@
 
 use super::leaf;
 use super::packet::Wide;
-use super::tame::{BoxRay, TameRay};
+use super::tame::{Boxes, TameRay};
 use super::{View, plain};
 use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{LANES, Ref, WIDTH};
@@ -23,7 +23,14 @@ pub(super) trait Level {
     /// A bit for each lane where the first is not greater.
     unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32;
     /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
-    unsafe fn meet(ray: &BoxRay, node: *const u8, limit: __m256i) -> (u32, __m256i);
+    #[inline(always)]
+    unsafe fn meet<B: Boxes>(ray: &B, node: *const u8, limit: __m256i) -> (u32, __m256i) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let (enter, leave) = ray.span(node, limit);
+            (Self::at_most(enter, leave), enter)
+        }
+    }
     // SAFETY: as the trait says.
     /// Puts the children of the mask on the stack, the nearest on top.
     unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack);
@@ -75,9 +82,10 @@ impl Stack {
         self.top == self.base
     }
 
+    /// The same without anything on it.
     #[inline(always)]
-    pub(super) fn clear(&mut self) {
-        self.top = self.base;
+    pub(super) fn cleared(&self) -> Stack {
+        Stack { base: self.base, top: self.base }
     }
 
     /// Where the next reference goes, and those behind it.
@@ -179,7 +187,26 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
 ) -> Option<Hit> {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
-        let Some(tame) = TameRay::new(ray, &view) else { return plain::closest(view, ray, query, count) };
+        match TameRay::new(ray, &view) {
+            Some(tame) => search::<L, C>(view, (ray, &tame), query, count),
+            None => plain::closest(view, ray, query, count),
+        }
+    }
+}
+
+/// The nearest hit of a ray that is ready for boxes.
+///
+/// # Safety
+/// As for [`closest`]; the ray must be tame.
+#[inline(always)]
+pub(super) unsafe fn search<L: Level, C: Count>(
+    view: View<'_>,
+    (ray, tame): (&Ray, &impl Boxes),
+    query: &Query,
+    count: &mut C,
+) -> Option<Hit> {
+    // SAFETY: as the caller promises; references lead to whole nodes and leaves.
+    unsafe {
         let base = view.units.as_ptr().cast::<u8>();
         let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
         let mut room = Room::uninit();
@@ -191,8 +218,8 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
             count.node();
             let place = base.add(current.byte());
             if current.is_node() {
-                let (mask, enter) = L::meet(&tame.boxes, place, limit);
-                count_early_outs::<L, C>(&tame.boxes, place, mask, count);
+                let (mask, enter) = L::meet(tame, place, limit);
+                count_early_outs::<L, C>(tame, place, mask, count);
                 if mask != 0 {
                     current = choose::<L>(place, mask, enter, &mut stack);
                     continue;
@@ -200,7 +227,7 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
             } else {
                 count.triangles(current.blocks() * LANES);
                 let before = nearest.t;
-                leaf::closest(ray, tame.steepest, (place, current.blocks()), query, &mut nearest);
+                leaf::closest(ray, (place, current.blocks()), query, &mut nearest);
                 if query.early_out && nearest.t < before {
                     limit_bits = tame.limit_bits(nearest.t);
                     limit = L::splat(limit_bits);
@@ -234,7 +261,26 @@ pub(super) unsafe fn any<L: Level, C: Count>(
 ) -> bool {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
-        let Some(tame) = TameRay::new(ray, &view) else { return plain::any(view, ray, query, count) };
+        match TameRay::new(ray, &view) {
+            Some(tame) => search_any::<L, C>(view, (ray, &tame), query, count),
+            None => plain::any(view, ray, query, count),
+        }
+    }
+}
+
+/// Whether a ray that is ready for boxes hits anything.
+///
+/// # Safety
+/// As for [`search`].
+#[inline(always)]
+pub(super) unsafe fn search_any<L: Level, C: Count>(
+    view: View<'_>,
+    (ray, tame): (&Ray, &impl Boxes),
+    query: &Query,
+    count: &mut C,
+) -> bool {
+    // SAFETY: as the caller promises; references lead to whole nodes and leaves.
+    unsafe {
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
@@ -244,7 +290,7 @@ pub(super) unsafe fn any<L: Level, C: Count>(
             count.node();
             let place = base.add(current.byte());
             if current.is_node() {
-                let (mask, _) = L::meet(&tame.boxes, place, limit);
+                let (mask, _) = L::meet(tame, place, limit);
                 if mask != 0 {
                     L::push(place, mask, &mut stack);
                     current = stack.take_reference();
@@ -252,7 +298,7 @@ pub(super) unsafe fn any<L: Level, C: Count>(
                 }
             } else {
                 count.triangles(current.blocks() * LANES);
-                if leaf::any(ray, tame.steepest, (place, current.blocks()), query) {
+                if leaf::any(ray, (place, current.blocks()), query) {
                     return true;
                 }
             }
@@ -265,8 +311,16 @@ pub(super) unsafe fn any<L: Level, C: Count>(
 }
 
 /// Subtrees left out because a hit is nearer, where anybody wants to know.
+///
+/// # Safety
+/// As for [`closest`].
 #[inline(always)]
-unsafe fn count_early_outs<L: Level, C: Count>(boxes: &BoxRay, node: *const u8, mask: u32, count: &mut C) {
+unsafe fn count_early_outs<L: Level, C: Count>(
+    boxes: &impl Boxes,
+    node: *const u8,
+    mask: u32,
+    count: &mut C,
+) {
     if count.counters().is_some() {
         // SAFETY: as the caller promises.
         let (all, _) = unsafe { L::meet(boxes, node, L::splat(f32::INFINITY.to_bits())) };

@@ -16,18 +16,12 @@ pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
 /// Keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive as high as that of no hit.
 ///
 /// # Safety
-/// The machine must have AVX2, the ray be tame with `steepest` as of [`BlockRay::new`], and the leaf be one.
+/// The machine must have AVX2, the ray be tame, and the leaf be one.
 #[inline(always)]
-pub(super) unsafe fn closest(
-    ray: &Ray,
-    steepest: u32,
-    (leaf, blocks): Leaf,
-    query: &Query,
-    nearest: &mut Hit,
-) {
+pub(super) unsafe fn closest(ray: &Ray, (leaf, blocks): Leaf, query: &Query, nearest: &mut Hit) {
     // SAFETY: as the caller promises.
     unsafe {
-        let ray = BlockRay::new(black_box(ray), steepest);
+        let ray = BlockRay::new(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
             let mut signs = ray.signs(block);
@@ -72,11 +66,11 @@ unsafe fn keep(block: *const u8, crossings: &Crossings, query: &Query, nearest: 
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any(ray: &Ray, steepest: u32, (leaf, blocks): Leaf, query: &Query) -> bool {
+pub(super) unsafe fn any(ray: &Ray, (leaf, blocks): Leaf, query: &Query) -> bool {
     // SAFETY: as the caller promises.
     unsafe {
         let t_max = ray.t_max;
-        let ray = BlockRay::new(black_box(ray), steepest);
+        let ray = BlockRay::new(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
             let signs = ray.signs(block);

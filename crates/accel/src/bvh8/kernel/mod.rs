@@ -20,6 +20,8 @@ mod leaf;
 mod packet;
 mod plain;
 #[cfg(target_arch = "x86_64")]
+mod stream;
+#[cfg(target_arch = "x86_64")]
 mod tame;
 
 use super::layout::{Ref, Unit};

@@ -17,7 +17,7 @@ use std::arch::x86_64::*;
 
 /// A ray with a lane for each child of a node.
 #[derive(Clone, Copy)]
-pub(super) struct BoxRay {
+struct BoxRay {
     /// Bytes from the front of a node to the planes where the ray comes in, and goes out.
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
@@ -27,12 +27,10 @@ pub(super) struct BoxRay {
     nearest: __m256i,
 }
 
-/// A ray for boxes, and which axis of it matters to triangles.
+/// A ray for boxes, and for how far it looks.
 #[derive(Clone, Copy)]
 pub(super) struct TameRay {
-    pub(super) boxes: BoxRay,
-    /// A bit for each axis along which the direction is greatest.
-    pub(super) steepest: u32,
+    boxes: BoxRay,
     /// The greatest component of the direction, without its sign.
     pace: f32,
 }
@@ -82,16 +80,9 @@ impl TameRay {
             let least = s - s * SLACK - least_of(length);
             // What is not a number comes from infinities only.
             let least = if least > 0.0 { least } else { 0.0 };
-            let steepest = _mm_movemask_ps(_mm_cmpge_ps(sizes, pace)) as u32 & 7;
             let boxes = BoxRay::new(direction, inverse, enter, leave, least);
-            Some(TameRay { boxes, steepest, pace: length })
+            Some(TameRay { boxes, pace: length })
         }
-    }
-
-    /// The bits of the least `s` that no hit at `t` or before can exceed; `t` is not negative.
-    #[inline(always)]
-    pub(super) fn limit_bits(&self, t: f32) -> u32 {
-        limit_of(t, self.pace, least_of(self.pace)).to_bits()
     }
 }
 
@@ -110,7 +101,7 @@ unsafe fn greatest(v: __m128) -> __m128 {
 }
 
 /// Bytes from the front of a node to the planes where a ray comes in, and goes out, by the signs of its direction.
-const ROWS: [[[usize; 3]; 2]; 8] = {
+pub(super) const ROWS: [[[usize; 3]; 2]; 8] = {
     let mut rows = [[[0; 3]; 2]; 8];
     let mut place = 0;
     while place < 8 * 2 * 3 {
@@ -122,6 +113,8 @@ const ROWS: [[[usize; 3]; 2]; 8] = {
 };
 
 impl BoxRay {
+    /// # Safety
+    /// The machine must have AVX2.
     #[inline(always)]
     unsafe fn new(direction: __m128, inverse: __m128, enter: __m128, leave: __m128, least: f32) -> BoxRay {
         // SAFETY: as the caller promises.
@@ -141,27 +134,63 @@ impl BoxRay {
             }
         }
     }
+}
 
+impl Boxes for TameRay {
+    // SAFETY: the trait says what is asked for.
+    #[inline(always)]
+    unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let BoxRay { inverse, enter_bias, leave_bias, nearest, .. } = self.boxes;
+            let rows = (&self.boxes.enter_rows, &self.boxes.leave_rows);
+            span(node, rows, inverse, (enter_bias, leave_bias), (nearest, limit))
+        }
+    }
+
+    #[inline(always)]
+    fn limit_bits(&self, t: f32) -> u32 {
+        limit_of(t, self.pace, least_of(self.pace)).to_bits()
+    }
+}
+
+/// A ray that can be held against boxes.
+pub(super) trait Boxes {
     /// Where the ray enters the children of a node, and where it leaves them or reaches the limit.
-    ///
-    /// Minima and maxima of whole numbers are right because what decides is not negative: a negative entry never
-    /// beats `nearest`, and a negative exit is below it.
     ///
     /// # Safety
     /// The machine must have AVX2 and FMA, and `node` must point to a node.
-    #[inline(always)]
-    pub(super) unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
-        // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
-        unsafe {
-            let distance = |row: usize, k: usize, bias: __m256| {
-                let planes = _mm256_load_ps(node.add(row).cast());
-                _mm256_castps_si256(_mm256_fmsub_ps(planes, self.inverse[k], bias))
-            };
-            let enter = |k: usize| distance(self.enter_rows[k], k, self.enter_bias[k]);
-            let leave = |k: usize| distance(self.leave_rows[k], k, self.leave_bias[k]);
-            let (a, b) = (_mm256_max_epi32(enter(0), enter(1)), _mm256_max_epi32(enter(2), self.nearest));
-            let (c, d) = (_mm256_min_epi32(leave(0), leave(1)), _mm256_min_epi32(leave(2), limit));
-            (_mm256_max_epi32(a, b), _mm256_min_epi32(c, d))
-        }
+    unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i);
+
+    /// The bits of the least `s` that no hit at `t` or before can exceed; `t` is not negative.
+    fn limit_bits(&self, t: f32) -> u32;
+}
+
+/// See [`Boxes::span`].
+///
+/// Minima and maxima of whole numbers are right because what decides is not negative: a negative entry never
+/// beats `nearest`, and a negative exit is below it.
+///
+/// # Safety
+/// As for [`Boxes::span`].
+#[inline(always)]
+pub(super) unsafe fn span(
+    node: *const u8,
+    (enter_rows, leave_rows): (&[usize; 3], &[usize; 3]),
+    inverse: [__m256; 3],
+    (enter_bias, leave_bias): ([__m256; 3], [__m256; 3]),
+    (nearest, limit): (__m256i, __m256i),
+) -> (__m256i, __m256i) {
+    // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
+    unsafe {
+        let distance = |row: usize, k: usize, bias: __m256| {
+            let planes = _mm256_load_ps(node.add(row).cast());
+            _mm256_castps_si256(_mm256_fmsub_ps(planes, inverse[k], bias))
+        };
+        let enter = |k: usize| distance(enter_rows[k], k, enter_bias[k]);
+        let leave = |k: usize| distance(leave_rows[k], k, leave_bias[k]);
+        let (a, b) = (_mm256_max_epi32(enter(0), enter(1)), _mm256_max_epi32(enter(2), nearest));
+        let (c, d) = (_mm256_min_epi32(leave(0), leave(1)), _mm256_min_epi32(leave(2), limit));
+        (_mm256_max_epi32(a, b), _mm256_min_epi32(c, d))
     }
 }

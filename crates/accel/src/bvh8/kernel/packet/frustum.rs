@@ -3,11 +3,10 @@
 
 use super::super::View;
 use super::super::body::Level;
-use super::super::tame::{BIAS_PAD, PAD, STEEPEST};
 use super::rays::{Packet, Row};
+use super::ready::Ready;
 use super::wide::Wide;
 use crate::ray::Ray;
-use crate::slab::SLACK;
 use std::arch::x86_64::*;
 
 /// The least and the greatest of what rays have that go the same way on every axis, a lane for each child of a node.
@@ -57,35 +56,32 @@ struct Extremes<W> {
 }
 
 impl Frustum {
-    /// Prepares the rays of a packet as [`super::super::tame::TameRay`] does. `None` where one of them is not tame, does
-    /// not go the way of the first, or is too far from the others.
+    /// `None` where one ray is not tame, does not go the way of the first, or is too far from the others.
     ///
     /// # Safety
-    /// The machine must have the level, and the packet must be filled up to `lanes`.
+    /// The machine must have the level, and the packet must be ready.
     #[inline(always)]
     pub(super) unsafe fn new<W: Wide>(
         packet: &mut Packet,
-        lanes: usize,
+        ready: &Ready,
         first: &Ray,
         view: &View<'_>,
     ) -> Option<Frustum> {
         let (down, steep) = way(first);
+        let same = |k: usize| ready.down[k] == if down[k] { ready.used } else { 0 };
+        if ready.wild != 0 || !same(0) || !same(1) || !same(2) {
+            return None;
+        }
         let axes = [(steep + 1) % 3, (steep + 2) % 3, steep];
         // SAFETY: as the caller promises.
         unsafe {
-            let mut all = group::<W>(packet, 0, down, axes, view)?;
-            for number in 1..lanes / W::LANES {
-                all.join(&group::<W>(packet, number * W::LANES, down, axes, view)?, down);
+            let mut all = group::<W>(packet, 0, axes)?;
+            for number in 1..ready.lanes / W::LANES {
+                all.join(&group::<W>(packet, number * W::LANES, axes)?, down);
             }
             if !all.are_near(down, axes, view) {
                 return None;
             }
-            let wide = |x: f32| _mm256_set1_ps(x);
-            let bound = |x: &[W; 3], greatest: bool, k: usize| {
-                wide(if greatest { x[k].greatest_lane() } else { x[k].least_lane() })
-            };
-            let inverse =
-                |k: usize| [wide(all.inverse[k][0].least_lane()), wide(all.inverse[k][1].greatest_lane())];
             let row = |k: usize, upper: bool| (usize::from(upper) * 3 + k) * 32;
             Some(Frustum {
                 enter_rows: [row(0, down[0]), row(1, down[1]), row(2, down[2])],
@@ -94,17 +90,17 @@ impl Frustum {
                 down,
                 limit: all.limit.greatest_lane(),
                 enter: [
-                    bound(&all.enter, !down[0], 0),
-                    bound(&all.enter, !down[1], 1),
-                    bound(&all.enter, !down[2], 2),
+                    bound(all.enter[0], !down[0]),
+                    bound(all.enter[1], !down[1]),
+                    bound(all.enter[2], !down[2]),
                 ],
                 leave: [
-                    bound(&all.leave, down[0], 0),
-                    bound(&all.leave, down[1], 1),
-                    bound(&all.leave, down[2], 2),
+                    bound(all.leave[0], down[0]),
+                    bound(all.leave[1], down[1]),
+                    bound(all.leave[2], down[2]),
                 ],
-                inverse: [inverse(0), inverse(1), inverse(2)],
-                nearest: wide(all.nearest.least_lane()),
+                inverse: [ends(all.inverse[0]), ends(all.inverse[1]), ends(all.inverse[2])],
+                nearest: bound(all.nearest, false),
             })
         }
     }
@@ -191,72 +187,57 @@ impl<W: Wide> Extremes<W> {
     }
 }
 
-/// Prepares a group. The numbers are those of [`super::super::tame::TameRay::new`]; `None` where one ray is not tame or goes
-/// another way.
+/// The greatest lane or the least, in all lanes.
+///
+/// # Safety
+/// The machine must have the level.
+#[inline(always)]
+unsafe fn bound<W: Wide>(x: W, greatest: bool) -> __m256 {
+    // SAFETY: as the caller promises.
+    unsafe { _mm256_set1_ps(if greatest { x.greatest_lane() } else { x.least_lane() }) }
+}
+
+/// The least lane of the first and the greatest of the second.
+///
+/// # Safety
+/// The machine must have the level.
+#[inline(always)]
+unsafe fn ends<W: Wide>([low, high]: [W; 2]) -> [__m256; 2] {
+    // SAFETY: as the caller promises.
+    unsafe { [bound(low, false), bound(high, true)] }
+}
+
+/// What a group has. `None` where one ray has another steepest axis.
 ///
 /// # Safety
 /// As for [`Frustum::new`].
 #[inline(always)]
-unsafe fn group<W: Wide>(
-    packet: &mut Packet,
-    from: usize,
-    down: [bool; 3],
-    axes: [usize; 3],
-    view: &View<'_>,
-) -> Option<Extremes<W>> {
-    let full = (1u32 << W::LANES) - 1;
+unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, axes: [usize; 3]) -> Option<Extremes<W>> {
     // SAFETY: as the caller promises.
     unsafe {
-        let load3 = |rows: &[Row<f32>; 3]| {
+        let load = |rows: &[Row<f32>; 3]| {
             [W::load(rows[0].at(from)), W::load(rows[1].at(from)), W::load(rows[2].at(from))]
         };
-        let (origin, direction) = (load3(&packet.origin), load3(&packet.direction));
-        let sizes = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
-        let pace = sizes[0].max(sizes[1]).max(sizes[2]);
-        let steep = axes[2];
-        let mut good = full;
+        let direction = load(&packet.direction);
+        let (steep, size) = (axes[2], direction[axes[2]].abs());
+        let mut good = u32::MAX;
         for k in 0..3 {
-            good &= if down[k] { direction[k].signs() } else { !direction[k].signs() };
-            good &= if k <= steep { sizes[k].le(sizes[steep]) } else { sizes[k].lt(sizes[steep]) };
+            let other = direction[k].abs();
+            good &= if k <= steep { other.le(size) } else { other.lt(size) };
         }
-        let mut far = W::splat(0.0);
-        for k in 0..3 {
-            let to = |side: usize| W::splat(view.corners[side][k]).sub(origin[k]).abs();
-            far = to(0).max(to(1)).max(far);
-        }
-        let pad = far.mul(W::splat(PAD)).add(W::splat(4.0 * f32::MIN_POSITIVE));
-        let (mut enter, mut leave, mut inverse) = (origin, origin, direction);
-        for k in 0..3 {
-            let pad = pad.add(origin[k].abs().mul(W::splat(BIAS_PAD)));
-            let (upper, lower) = (origin[k].add(pad), origin[k].sub(pad));
-            (enter[k], leave[k]) = if down[k] { (lower, upper) } else { (upper, lower) };
-            inverse[k] = pace.div(direction[k]).max(W::splat(-STEEPEST)).min(W::splat(STEEPEST));
-            let bias = [enter[k].mul(inverse[k]), leave[k].mul(inverse[k])];
-            good &= bias[0].abs().add(bias[1].abs()).add(sizes[k]).lt(W::splat(f32::INFINITY));
-            inverse[k].store(packet.inverse[k].at_mut(from));
-            bias[0].store(packet.enter_bias[k].at_mut(from));
-            bias[1].store(packet.leave_bias[k].at_mut(from));
-        }
-        let (t_min, t_max) = (W::load(packet.t_min.at(from)), W::load(packet.t.at(from)));
-        good &= W::splat(0.0).le(t_min) & t_min.le(t_max) & W::splat(0.0).lt(pace);
-        if good & full != full {
+        if good != (1u32 << W::LANES) - 1 {
             return None;
         }
         let shear = [direction[axes[0]].div(direction[steep]), direction[axes[1]].div(direction[steep])];
-        pace.store(packet.pace.at_mut(from));
         shear[0].store(packet.shear[0].at_mut(from));
         shear[1].store(packet.shear[1].at_mut(from));
-        let s = t_min.mul(pace);
-        let least = pace.max(W::splat(1.0)).mul(W::splat(f32::MIN_POSITIVE));
-        let nearest = s.sub(s.mul(W::splat(SLACK))).sub(least).max(W::splat(0.0));
-        nearest.store(packet.nearest.at_mut(from));
-        packet.set_limits::<W>(from);
+        let inverse = load(&packet.inverse);
         Some(Extremes {
-            enter,
-            leave,
+            enter: load(&packet.enter),
+            leave: load(&packet.leave),
             inverse: [[inverse[0]; 2], [inverse[1]; 2], [inverse[2]; 2]],
             shear: [[shear[0]; 2], [shear[1]; 2]],
-            nearest,
+            nearest: W::load(packet.nearest.at(from)),
             limit: W::load(packet.limit.at(from)),
         })
     }

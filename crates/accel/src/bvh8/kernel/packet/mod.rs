@@ -10,10 +10,12 @@
 
 mod frustum;
 mod rays;
+mod ready;
 mod triangle;
 mod wide;
 
 pub(super) use rays::{Packet, RAYS};
+pub(super) use ready::{Lane, Ready};
 pub(super) use wide::Wide;
 
 use super::View;
@@ -38,25 +40,23 @@ struct Walk<'p> {
 /// Answers some rays, at most [`RAYS`], if they run side by side; else does nothing and returns false.
 ///
 /// # Safety
-/// The machine must have the level, and the view must be sound.
+/// The machine must have the level, the view must be sound, and the packet ready.
 #[inline(always)]
 pub(super) unsafe fn each<L: Level, const ANY: bool>(
     view: View<'_>,
-    packet: &mut Packet,
+    (packet, ready): (&mut Packet, &Ready),
     rays: &[Ray],
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) -> bool {
-    let lanes = rays.len().next_multiple_of(L::Wide::LANES);
     if !view.root.is_node() || !frustum::alike(rays) {
         return false;
     }
-    packet.fill(rays, lanes);
     // SAFETY: as the caller promises.
     unsafe {
-        let Some(frustum) = Frustum::new::<L::Wide>(packet, lanes, &rays[0], &view) else { return false };
+        let Some(frustum) = Frustum::new::<L::Wide>(packet, ready, &rays[0], &view) else { return false };
         let done = if rays.len() == 64 { 0 } else { u64::MAX << rays.len() };
-        let mut walk = Walk { packet, frustum, query, lanes, done };
+        let mut walk = Walk { packet, frustum, query, lanes: ready.lanes, done };
         walk.run::<L, ANY>(&view);
         let (packet, done) = (&walk.packet, walk.done);
         for lane in 0..rays.len() {

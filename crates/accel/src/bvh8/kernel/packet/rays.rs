@@ -36,6 +36,9 @@ pub(in crate::bvh8::kernel) struct Packet {
     /// As of [`super::super::tame::TameRay`].
     pub(super) pace: Row<f32>,
     pub(super) inverse: [Row<f32>; 3],
+    /// Origins as planes see them where the ray comes in, and goes out.
+    pub(super) enter: [Row<f32>; 3],
+    pub(super) leave: [Row<f32>; 3],
     pub(super) enter_bias: [Row<f32>; 3],
     pub(super) leave_bias: [Row<f32>; 3],
     pub(super) nearest: Row<f32>,

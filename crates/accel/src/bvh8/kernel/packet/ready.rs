@@ -1,0 +1,134 @@
+//! Rays made ready for boxes, a group at a time.
+#![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
+
+use super::super::View;
+use super::super::body::Level;
+use super::super::tame::{BIAS_PAD, Boxes, PAD, ROWS, STEEPEST, span};
+use super::rays::{Packet, Row};
+use super::wide::Wide;
+use crate::ray::Ray;
+use crate::slab::{SLACK, least_of, limit_of};
+use std::arch::x86_64::*;
+
+/// What is known of the rays of a packet; masks have a bit for each.
+pub(in crate::bvh8::kernel) struct Ready {
+    /// Lanes in use, a whole number of groups.
+    pub(super) lanes: usize,
+    /// The same as a mask.
+    pub(super) used: u64,
+    pub(in crate::bvh8::kernel) tame: u64,
+    /// Those that are not tame.
+    pub(in crate::bvh8::kernel) wild: u64,
+    /// Those that run downwards along each axis.
+    pub(super) down: [u64; 3],
+}
+
+/// A ray of a packet.
+#[derive(Clone, Copy)]
+pub(in crate::bvh8::kernel) struct Lane<'p> {
+    packet: &'p Packet,
+    lane: usize,
+    rows: &'static [[usize; 3]; 2],
+}
+
+impl Packet {
+    /// Takes rays over, and makes them ready as [`super::super::tame::TameRay::new`] does.
+    ///
+    /// # Safety
+    /// The machine must have the level; there must be at least one ray, and at most [`super::RAYS`].
+    #[inline(always)]
+    pub(in crate::bvh8::kernel) unsafe fn prepare<L: Level>(
+        &mut self,
+        rays: &[Ray],
+        view: &View<'_>,
+    ) -> Ready {
+        let lanes = rays.len().next_multiple_of(L::Wide::LANES);
+        self.fill(rays, lanes);
+        let used = u64::MAX >> (64 - lanes);
+        let mut ready = Ready { lanes, used, tame: 0, wild: 0, down: [0; 3] };
+        for number in 0..lanes / L::Wide::LANES {
+            // SAFETY: as the caller promises.
+            unsafe { group::<L::Wide>(self, number * L::Wide::LANES, view, &mut ready) };
+        }
+        ready.wild = !ready.tame & u64::MAX >> (64 - rays.len());
+        ready
+    }
+
+    /// One of the rays.
+    #[inline(always)]
+    pub(in crate::bvh8::kernel) fn lane(&self, lane: usize, ready: &Ready) -> Lane<'_> {
+        let [x, y, z] = ready.down;
+        let down = (x >> lane & 1) | (y >> lane & 1) << 1 | (z >> lane & 1) << 2;
+        Lane { packet: self, lane, rows: &ROWS[down as usize] }
+    }
+}
+
+impl Boxes for Lane<'_> {
+    // SAFETY: the trait says what is asked for.
+    #[inline(always)]
+    unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+        // SAFETY: as the trait demands; the packet is ready.
+        unsafe {
+            let all = |row: &Row<f32>| _mm256_set1_ps(*row.at(self.lane));
+            let three = |rows: &[Row<f32>; 3]| [all(&rows[0]), all(&rows[1]), all(&rows[2])];
+            let packet = self.packet;
+            let bias = (three(&packet.enter_bias), three(&packet.leave_bias));
+            let nearest = _mm256_castps_si256(all(&packet.nearest));
+            let [enter_rows, leave_rows] = self.rows;
+            span(node, (enter_rows, leave_rows), three(&packet.inverse), bias, (nearest, limit))
+        }
+    }
+
+    #[inline(always)]
+    fn limit_bits(&self, t: f32) -> u32 {
+        // SAFETY: the packet is ready.
+        let pace = unsafe { *self.packet.pace.at(self.lane) };
+        limit_of(t, pace, least_of(pace)).to_bits()
+    }
+}
+
+/// # Safety
+/// As for [`Packet::prepare`], and the packet must be filled.
+#[inline(always)]
+unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &View<'_>, ready: &mut Ready) {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let load = |rows: &[Row<f32>; 3]| {
+            [W::load(rows[0].at(from)), W::load(rows[1].at(from)), W::load(rows[2].at(from))]
+        };
+        let (origin, direction) = (load(&packet.origin), load(&packet.direction));
+        let sizes = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+        let pace = sizes[0].max(sizes[1]).max(sizes[2]);
+        let mut far = W::splat(0.0);
+        for k in 0..3 {
+            let to = |side: usize| W::splat(view.corners[side][k]).sub(origin[k]).abs();
+            far = to(0).max(to(1)).max(far);
+        }
+        let pad = far.mul(W::splat(PAD)).add(W::splat(4.0 * f32::MIN_POSITIVE));
+        let (t_min, t_max) = (W::load(packet.t_min.at(from)), W::load(packet.t.at(from)));
+        let zero = W::splat(0.0);
+        let mut good = zero.le(t_min) & t_min.le(t_max) & zero.lt(pace);
+        for k in 0..3 {
+            // Rays come in where planes are farther, and go out where they are nearer.
+            let pad = pad.add(origin[k].abs().mul(W::splat(BIAS_PAD))).copy_sign(direction[k]);
+            let (enter, leave) = (origin[k].add(pad), origin[k].sub(pad));
+            let inverse = pace.div(direction[k]).max(W::splat(-STEEPEST)).min(W::splat(STEEPEST));
+            let bias = [enter.mul(inverse), leave.mul(inverse)];
+            good &= bias[0].abs().add(bias[1].abs()).add(sizes[k]).lt(W::splat(f32::INFINITY));
+            enter.store(packet.enter[k].at_mut(from));
+            leave.store(packet.leave[k].at_mut(from));
+            inverse.store(packet.inverse[k].at_mut(from));
+            bias[0].store(packet.enter_bias[k].at_mut(from));
+            bias[1].store(packet.leave_bias[k].at_mut(from));
+            ready.down[k] |= u64::from(direction[k].signs()) << from;
+        }
+        ready.tame |= u64::from(good) << from;
+        pace.store(packet.pace.at_mut(from));
+        let s = t_min.mul(pace);
+        let least = pace.max(W::splat(1.0)).mul(W::splat(f32::MIN_POSITIVE));
+        // What is not a number comes from infinities only.
+        let nearest = s.sub(s.mul(W::splat(SLACK))).sub(least).max(zero);
+        nearest.store(packet.nearest.at_mut(from));
+        packet.set_limits::<W>(from);
+    }
+}
