@@ -58,8 +58,9 @@ pub struct BuildOptions {
     pub cpu_level: CpuLevel,
 }
 
-/// How much time a builder may take for a better structure. `bsp-sah` weighs planes of any orientation for no
-/// partition, small ones, or larger ones too.
+/// How much time a builder may take for a better structure. `bvh8` sorts along a curve, weighs cuts by area, or
+/// cuts triangles and moves subtrees too; `bsp-sah` weighs planes of any orientation for no partition, small ones, or
+/// larger ones too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
     /// Ready soon.

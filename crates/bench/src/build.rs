@@ -1,60 +1,93 @@
 //! How fast trees are built over teapots, and how large they become.
 
+use crate::accels::{find, threads};
 use crate::{Options, Report, Tell, median, table, timed};
 use bilux::Error;
-use bilux::accel::{BuildOptions, TriangleMesh};
+use bilux::accel::{ACCELERATORS, Accelerator, TriangleMesh};
 use bilux::math::Vec3;
 use bilux::scene::SceneError;
-use serde_json::json;
+use rayon::ThreadPool;
+use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// Builds every accelerator over every number of teapots.
+/// Builds every accelerator over every number of teapots, on one thread and on all.
 ///
 /// # Errors
 /// When an accelerator is not known.
 pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![1, 5, 25] } else { options.counts.clone() };
-    let all = || bilux::accel::ACCELERATORS.iter().map(|row| row.entry.name.to_owned()).collect();
+    let all = || {
+        let names = ACCELERATORS.iter().map(|row| row.entry.name.to_owned());
+        names.chain(["bvh8-fast".to_owned(), "bvh8-best".to_owned()]).collect()
+    };
     let accels: Vec<String> = if options.accels.is_empty() { all() } else { options.accels.clone() };
+    let pools = [threads(1)?, threads(0)?];
     let (mut rows, mut cells) = (Vec::new(), Vec::new());
     for &count in &counts {
         let mesh = mesh(count, &options.layout)?;
         for accel in &accels {
             tell(&format!("{accel} over {} triangles", mesh.len()));
-            let build = || {
-                bilux::accel::build(accel, mesh.clone(), &BuildOptions::default())
-                    .map_err(|e| Error::Settings(e.to_string()))
-            };
-            let mut seconds = Vec::new();
-            let mut tree = None;
-            for _ in 0..options.repeats.max(1) {
-                let (taken, built) = timed(build)?;
-                seconds.push(taken);
-                tree = Some(built);
-            }
-            let Some(tree) = tree else { continue };
-            let (shape, seconds) = (tree.shape(), median(seconds));
-            let bytes = tree.memory_bytes() as f64 / mesh.len() as f64;
-            let references = shape.references as f64 / mesh.len() as f64;
-            rows.push(json!({
-                "accel": accel, "triangles": mesh.len(), "build_seconds": seconds,
-                "bytes_per_triangle": bytes, "references_per_triangle": references,
-                "nodes": shape.nodes, "leaves": shape.leaves, "depth": shape.depth,
-                "imbalance": shape.imbalance(), "leaf_sizes": shape.leaf_sizes,
-            }));
+            let Some((seconds, tree)) = one(accel, &mesh, options.repeats, &pools)? else { continue };
+            rows.push(json(accel, mesh.len(), seconds, &*tree, &pools));
+            let shape = tree.shape();
             cells.push(vec![
                 mesh.len().to_string(),
                 accel.clone(),
-                format!("{seconds:.4}"),
-                format!("{bytes:.0}"),
-                format!("{references:.2}"),
+                format!("{:.4}", seconds[0]),
+                format!("{:.4}", seconds[1]),
+                format!("{:.0}", tree.memory_bytes() as f64 / mesh.len() as f64),
+                format!("{:.2}", shape.references as f64 / mesh.len() as f64),
                 shape.depth.to_string(),
                 format!("{:.2}", shape.imbalance()),
             ]);
         }
     }
-    let header = ["triangles", "accel", "seconds", "bytes/tri", "refs/tri", "depth", "imbalance"];
-    Ok(Report { rows, text: table("Building trees over teapots", &header, &cells), picture: None })
+    let all = format!("on {}", pools[1].current_num_threads());
+    let header = ["triangles", "accel", "seconds", &all, "bytes/tri", "refs/tri", "depth", "imbalance"];
+    let title = "Building trees over teapots: seconds on one thread, and on all";
+    Ok(Report { rows, text: table(title, &header, &cells), picture: None })
+}
+
+/// Median seconds on one thread and on all, in turns, and the tree.
+#[allow(clippy::type_complexity, reason = "said above")]
+fn one(
+    accel: &str,
+    mesh: &Arc<TriangleMesh>,
+    repeats: u32,
+    pools: &[ThreadPool; 2],
+) -> Result<Option<([f64; 2], Box<dyn Accelerator>)>, Error> {
+    let (row, options) = find(accel)?;
+    let build = || (row.build)(mesh.clone(), &options).map_err(|e| Error::Settings(format!("{accel}: {e}")));
+    let mut seconds = [Vec::new(), Vec::new()];
+    let mut tree: Option<Box<dyn Accelerator>> = None;
+    for _ in 0..repeats.max(1) {
+        for (pool, seconds) in pools.iter().zip(&mut seconds) {
+            // What is taken down is not timed.
+            drop(tree.take());
+            let (taken, built) = pool.install(|| timed(build))?;
+            seconds.push(taken);
+            tree = Some(built);
+        }
+    }
+    Ok(tree.map(|tree| (seconds.map(median), tree)))
+}
+
+fn json(
+    accel: &str,
+    triangles: usize,
+    seconds: [f64; 2],
+    tree: &dyn Accelerator,
+    pools: &[ThreadPool; 2],
+) -> Value {
+    let shape = tree.shape();
+    json!({
+        "accel": accel, "triangles": triangles, "build_seconds": seconds[0],
+        "build_seconds_on_all": seconds[1], "threads": pools[1].current_num_threads(),
+        "bytes_per_triangle": tree.memory_bytes() as f64 / triangles as f64,
+        "references_per_triangle": shape.references as f64 / triangles as f64,
+        "nodes": shape.nodes, "leaves": shape.leaves, "depth": shape.depth,
+        "imbalance": shape.imbalance(), "leaf_sizes": shape.leaf_sizes,
+    })
 }
 
 /// All triangles of a scene of teapots, in world space, with the objects as groups.

@@ -2,6 +2,7 @@
 //!
 //! A speed is a ratio taken in one run: rivals take turns, and medians count.
 
+mod accels;
 pub mod build;
 pub mod frames;
 pub mod paper;

@@ -293,13 +293,15 @@ pub struct List {
     bilux bench rays                                  on our own scenes\n  \
     bilux bench rays room.toml --accel bvh,kd --json\n  \
     bilux bench rays --against embree=libembree4.so.4  beside Embree\n  \
+    bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
     bilux bench rays teapots3 --dump batches           meshes and rays for other programs\n  \
     bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit")]
 pub struct Bench {
     /// What to measure
     #[arg(value_enum)]
     pub kind: BenchKind,
-    /// `rays`: scene files, or teapots3, interior, scan, teapot1m; all four of these if none is given
+    /// `rays`: scene files, or teapots3, interior, scan, teapot1m, which are all four traced if none is given, or
+    /// teapot1k, teapot10k, teapot100k, teapots10m
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// As JSON

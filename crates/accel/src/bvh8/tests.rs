@@ -113,7 +113,8 @@ fn trees_are_sound_and_shallow_over_what_makes_builders_slow() {
         for quality in QUALITIES {
             let tree = build(&triangles, quality);
             let (depth, has_pieces) = validate(&tree, &triangles);
-            // What the stack of the kernels has room for.
+            // What the stack of the kernels has room for, and what bounds the work: every item is looked at a fixed
+            // number of times on each level.
             assert!(depth <= MAX_DEPTH, "{name} by {quality:?} is {depth} deep");
             let is_cut = quality == Quality::Best && name == "long";
             assert!(!is_cut || has_pieces, "{name}");

@@ -2,12 +2,9 @@
 
 use super::embree::{Asked, Embree, KINDS, Packets, Tree};
 use super::{Batch, Mode};
+use crate::accels::{find, threads};
 use bilux::Error;
-use bilux::accel::registry::Quality;
-use bilux::accel::{
-    ACCELERATORS, Accelerator, AcceleratorEntry, BuildError, BuildOptions, Bvh, Bvh8, Hit, Query, Ray,
-    TriangleMesh,
-};
+use bilux::accel::{Accelerator, BuildError, Bvh, Bvh8, Hit, Query, Ray, TriangleMesh};
 use rayon::ThreadPool;
 use std::hint::black_box;
 use std::path::PathBuf;
@@ -73,8 +70,7 @@ pub(super) fn build(
     accels: &[String],
     against: &[Rc<Embree>],
 ) -> Result<Vec<Named>, Error> {
-    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let alone = alone.map_err(|e| Error::Settings(format!("no thread can be had: {e}")))?;
+    let alone = threads(1)?;
     let mut engines = Vec::new();
     for name in accels {
         engines.extend(ours(name, mesh, &alone)?);
@@ -104,22 +100,11 @@ pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Err
     against.iter().map(load).collect()
 }
 
-/// What our structures are told to be built with: the name of a structure, and behind a hyphen how much time its
-/// builder may take; balanced where nothing is said.
-pub(super) fn own(name: &str) -> Option<(&'static AcceleratorEntry, BuildOptions)> {
-    let row = |name: &str| ACCELERATORS.iter().find(|row| row.entry.name == name);
-    if let Some(row) = row(name) {
-        return Some((row, BuildOptions::default()));
-    }
-    let (name, quality) = name.rsplit_once('-')?;
-    Some((row(name)?, BuildOptions { quality: Quality::from_name(quality)?, ..BuildOptions::default() }))
-}
-
 /// Ours, ray by ray and, where a structure has a way of its own for many, in batches. Those that are asked for
 /// their speed are called through their own types, so that the query is compiled into the loop.
 fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<Named>, Error> {
     let failed = |e: BuildError| Error::Settings(e.to_string());
-    let (row, options) = own(name).ok_or_else(|| failed(BuildError::UnknownName(name.to_owned())))?;
+    let (row, options) = find(name)?;
     let named = |engine: Box<dyn Engine>| Named { name: name.to_owned(), ours: true, engine };
     let begun = Instant::now();
     Ok(match row.entry.name {

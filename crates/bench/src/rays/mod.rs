@@ -14,10 +14,11 @@ mod peers;
 mod report;
 mod scenes;
 
+use crate::accels::find;
 use crate::{Report, Tell, median};
 use bilux::Error;
 use bilux::accel::registry::AUTO;
-use bilux::accel::{ACCELERATORS, Bvh, Query, Ray};
+use bilux::accel::{Bvh, Query, Ray};
 use bilux::formats::ReadOptions;
 use engines::{Answers, Named};
 use report::Row;
@@ -97,13 +98,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
         accels = vec!["bvh".to_owned(), AUTO.to_owned()];
         accels.dedup();
     }
-    if let Some(unknown) = accels.iter().find(|name| engines::own(name).is_none()) {
-        let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
-        return Err(Error::Settings(format!(
-            "there is no accelerator '{unknown}': there are {}, each also with -fast or -best behind it",
-            names.join(", ")
-        )));
-    }
+    accels.iter().try_for_each(|name| find(name).map(|_| ()))?;
     let mut rows = Vec::new();
     for source in scenes::sources(options)? {
         tell(&format!("{}: rays", source.name()));
@@ -117,7 +112,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
     }
     Ok(Report {
         rows: rows.iter().map(Row::json).collect(),
-        text: report::text(&rows, options),
+        text: report::text(&rows, options) + &report::curve(&rows),
         picture: None,
     })
 }

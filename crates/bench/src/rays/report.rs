@@ -87,3 +87,35 @@ fn of_one(scene: &str, rows: &[&Row], options: &Options) -> String {
     );
     table(&title, &header, &cells)
 }
+
+/// What a ray costs as scenes grow, where there are several.
+pub(super) fn curve(rows: &[Row]) -> String {
+    let mut sizes: Vec<(usize, &str)> = rows.iter().map(|row| (row.triangles, &*row.scene)).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    if sizes.len() < 3 {
+        return String::new();
+    }
+    let mut lines: Vec<(&str, Mode, &str)> = Vec::new();
+    for row in rows.iter().filter(|row| row.ours) {
+        let line = (&*row.engine, row.mode, &*row.class);
+        if !lines.contains(&line) {
+            lines.push(line);
+        }
+    }
+    let cost = |&(engine, mode, class): &(&str, Mode, &str), scene: &str| {
+        let is_it = |r: &&Row| r.scene == scene && r.engine == engine && r.mode == mode && r.class == class;
+        rows.iter().find(is_it).map_or_else(|| "-".to_owned(), |row| format!("{:.0}", 1e3 / row.mrays))
+    };
+    let cells: Vec<Vec<String>> = lines
+        .iter()
+        .map(|line| {
+            let names = [line.0, line.1.name(), line.2].map(str::to_owned);
+            names.into_iter().chain(sizes.iter().map(|(_, scene)| cost(line, scene))).collect()
+        })
+        .collect();
+    let sizes: Vec<String> = sizes.iter().map(|(triangles, _)| triangles.to_string()).collect();
+    let header: Vec<&str> =
+        ["engine", "mode", "class"].into_iter().chain(sizes.iter().map(|s| &**s)).collect();
+    format!("\n{}", table("Nanoseconds a ray, by triangles", &header, &cells))
+}

@@ -24,13 +24,20 @@ pub(super) enum Source {
 /// Name, generator, and its parameters.
 type Own = (&'static str, &'static str, &'static [(&'static str, i64)]);
 
-/// Our own: small and large, even and uneven.
-const OWN: [Own; 4] = [
+/// Our own: small and large, even and uneven. Those behind [`USUAL`] are traced when they are named: one figure
+/// from a thousand triangles to ten million.
+const OWN: [Own; 8] = [
     ("teapots3", "teapots", &[("count", 3), ("tessellation", 8)]),
     ("interior", "interior", &[("detail", 2)]),
     ("scan", "scan", &[("detail", 252)]),
     ("teapot1m", "teapots", &[("count", 1), ("tessellation", 128)]),
+    ("teapot1k", "teapots", &[("count", 1), ("tessellation", 4)]),
+    ("teapot10k", "teapots", &[("count", 1), ("tessellation", 13)]),
+    ("teapot100k", "teapots", &[("count", 1), ("tessellation", 40)]),
+    ("teapots10m", "teapots", &[("count", 10), ("tessellation", 125)]),
 ];
+/// How many are traced unless others are named.
+const USUAL: usize = 4;
 
 /// What the options ask for. A name of one of our own scenes stands for it where there is no such file.
 pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
@@ -49,7 +56,7 @@ pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
         ));
     }
     if options.scenes.is_empty() {
-        return Ok(OWN.iter().map(own).collect());
+        return Ok(OWN[..USUAL].iter().map(own).collect());
     }
     let find = |path: &PathBuf| match OWN.iter().find(|row| path.as_os_str() == row.0 && !path.exists()) {
         Some(row) => own(row),

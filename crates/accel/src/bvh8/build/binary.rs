@@ -13,7 +13,7 @@ use std::ops::Range;
 /// No way from the root to a leaf has more nodes than this.
 pub(in crate::bvh8) const MAX_DEPTH: usize = 64;
 /// Below this many items a subtree is built on one thread.
-const PARALLEL: usize = 4096;
+pub(super) const PARALLEL: usize = 4096;
 
 /// A box, what is in it, and what it costs: the planes, the first item, how many there are, one more than
 /// the number of the pair of children (0 for a leaf), and [`Costs`]. A plain array of numbers, so that room
@@ -50,6 +50,11 @@ impl Node {
         self.0[8].to_bits() == 0
     }
 
+    /// The number of the first of two children.
+    pub(super) fn first_child(&self) -> u32 {
+        (self.0[8].to_bits() - 1) * 2
+    }
+
     pub(super) fn costs(&self) -> Costs {
         std::array::from_fn(|i| self.0[9 + i])
     }
@@ -68,6 +73,8 @@ pub(super) struct Binary {
     pub(super) nodes: Vec<[f32; 16]>,
     /// Whether some triangle stands in it more than once.
     pub(super) has_pieces: bool,
+    /// Whether the items below any node stand side by side.
+    pub(super) in_order: bool,
 }
 
 impl Binary {
@@ -80,63 +87,66 @@ impl Binary {
             items.resize(count + room, items[0]);
         }
         let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
-        let task = Task { items, count, first_item: 0, room: &mut nodes, first_pair: 0, depth: 1 };
-        let root = subtree(task, &bounds, &centres, cutter.map(|(cutter, _)| cutter));
-        Binary { root, nodes, has_pieces: root.count() > count }
+        let task = Task { items, count, first_item: 0, depth: 1 };
+        let room = Room { nodes: &mut nodes, first_pair: 0 };
+        let (root, _) = subtree(task, room, &bounds, &centres, cutter.map(|(cutter, _)| cutter));
+        Binary { root, nodes, has_pieces: root.count() > count, in_order: cutter.is_none() }
+    }
+
+    /// A node other than the root, by its number.
+    pub(super) fn node(&self, number: u32) -> Node {
+        Node(self.nodes[number as usize])
     }
 
     /// The children of a node that is not a leaf.
     pub(super) fn children(&self, node: &Node) -> [Node; 2] {
-        let first = (node.0[8].to_bits() as usize - 1) * 2;
-        [Node(self.nodes[first]), Node(self.nodes[first + 1])]
+        [self.node(node.first_child()), self.node(node.first_child() + 1)]
     }
 }
 
-/// Items to put under one node, room behind them for more, and for the pairs below: one less than there may be
-/// items.
+/// Items to put under one node, and room behind them for more.
 struct Task<'a> {
     items: &'a mut [Item],
     count: usize,
     first_item: u32,
-    room: &'a mut [[f32; 16]],
-    first_pair: u32,
     depth: usize,
 }
 
+/// Room for pairs of nodes: one less than there may be items.
+pub(super) struct Room<'a> {
+    pub(super) nodes: &'a mut [[f32; 16]],
+    pub(super) first_pair: u32,
+}
+
+impl<'a> Room<'a> {
+    /// The first so many pairs, and the rest.
+    pub(super) fn split(self, pairs: usize) -> (Room<'a>, Room<'a>) {
+        let (front, back) = self.nodes.split_at_mut(2 * pairs);
+        let first_pair = self.first_pair;
+        (Room { nodes: front, first_pair }, Room { nodes: back, first_pair: first_pair + pairs as u32 })
+    }
+
+    pub(super) fn lend(&mut self) -> Room<'_> {
+        Room { nodes: self.nodes, first_pair: self.first_pair }
+    }
+}
+
 impl<'a> Task<'a> {
-    /// Two tasks, the second from item `middle` on, with shares of the room by their numbers of items; and the pair
-    /// for their nodes.
-    fn in_two(self, middle: usize) -> (Task<'a>, Task<'a>, &'a mut [[f32; 16]]) {
-        let Task { items, count, first_item, room, first_pair, depth } = self;
+    /// Two tasks, the second from item `middle` on, with shares of the room by their numbers of items.
+    fn in_two(self, middle: usize) -> [Task<'a>; 2] {
+        let Task { items, count, first_item, depth } = self;
         let spare = items.len() - count;
         let share = (spare as u64 * middle as u64 / count as u64) as usize;
         // As many of the second as are in the way of the first's share go behind the others.
         let moved = share.min(count - middle);
         items.copy_within(middle..middle + moved, count + share - moved);
-        let (pair, room) = room.split_at_mut(2);
         let place = middle + share;
         let (left, right) = items.split_at_mut(place);
-        let (left_room, right_room) = room.split_at_mut(2 * (place - 1));
         let depth = depth + 1;
-        (
-            Task {
-                items: left,
-                count: middle,
-                first_item,
-                room: left_room,
-                first_pair: first_pair + 1,
-                depth,
-            },
-            Task {
-                items: right,
-                count: count - middle,
-                first_item: first_item + place as u32,
-                room: right_room,
-                first_pair: first_pair + place as u32,
-                depth,
-            },
-            pair,
-        )
+        let left = Task { items: left, count: middle, first_item, depth };
+        let right =
+            Task { items: right, count: count - middle, first_item: first_item + place as u32, depth };
+        [left, right]
     }
 
     fn halve(&mut self, bounds: &Bounds, centres: &Bounds, cutter: Option<&Cutter<'_>>) -> Halves {
@@ -159,31 +169,45 @@ impl<'a> Task<'a> {
     }
 }
 
-fn subtree(mut task: Task<'_>, bounds: &Bounds, centres: &Bounds, cutter: Option<&Cutter<'_>>) -> Node {
+/// Gives the node, and how many pairs of the room were used, from its front on.
+fn subtree(
+    mut task: Task<'_>,
+    room: Room<'_>,
+    bounds: &Bounds,
+    centres: &Bounds,
+    cutter: Option<&Cutter<'_>>,
+) -> (Node, usize) {
     let first = task.first_item;
     if task.count <= LANES {
-        return Node::new(bounds, first..first + task.count as u32, None, costs_of_leaf(bounds));
+        return (Node::new(bounds, first..first + task.count as u32, None, costs_of_leaf(bounds)), 0);
     }
     let Halves { middle, bounds: halves, centres } = task.halve(bounds, centres, cutter);
-    let (count, first_pair) = (task.count, task.first_pair);
-    let (left, right, pair) = task.in_two(middle);
-    let (a, b) = if count >= PARALLEL {
-        rayon::join(
-            || subtree(left, &halves[0], &centres[0], cutter),
-            || subtree(right, &halves[1], &centres[1], cutter),
-        )
+    let (count, first_pair) = (task.count, room.first_pair);
+    let [left, right] = task.in_two(middle);
+    let (pair, mut rest) = room.split(1);
+    let (a, b, used) = if count >= PARALLEL {
+        let (left_room, right_room) = rest.split(left.items.len() - 1);
+        let used = left_room.nodes.len() / 2 + right_room.nodes.len() / 2;
+        let (a, b) = rayon::join(
+            || subtree(left, left_room, &halves[0], &centres[0], cutter),
+            || subtree(right, right_room, &halves[1], &centres[1], cutter),
+        );
+        (a.0, b.0, used)
     } else {
-        (subtree(left, &halves[0], &centres[0], cutter), subtree(right, &halves[1], &centres[1], cutter))
+        // Side by side, so that no more memory is touched than is used.
+        let (a, used) = subtree(left, rest.lend(), &halves[0], &centres[0], cutter);
+        let (b, more) = subtree(right, rest.split(used).1, &halves[1], &centres[1], cutter);
+        (a, b, used + more)
     };
-    (pair[0], pair[1]) = (a.0, b.0);
+    (pair.nodes[0], pair.nodes[1]) = (a.0, b.0);
     // Cuts below may have made more.
     let count = a.count() + b.count();
     let costs = costs_of_inner(bounds, count, &a.costs(), &b.costs());
-    Node::new(bounds, first..first + count as u32, Some(first_pair), costs)
+    (Node::new(bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
 }
 
 /// True when both children of a node at this depth can still be halved down to single items in time.
-fn depth_allows(depth: usize, counts: [usize; 2]) -> bool {
+pub(super) fn depth_allows(depth: usize, counts: [usize; 2]) -> bool {
     let levels = |count: usize| count.next_power_of_two().ilog2() as usize;
     counts.iter().all(|&count| depth + 1 + levels(count) <= MAX_DEPTH)
 }

@@ -23,11 +23,24 @@ pub(super) fn costs_of_leaf(bounds: &Bounds) -> Costs {
 }
 
 /// Of a node with some items below, from what its children cost.
+#[inline(always)]
 pub(super) fn costs_of_inner(bounds: &Bounds, count: usize, left: &Costs, right: &Costs) -> Costs {
+    // Of one place less than the number to a node's whole width; written so that vectors do it.
+    let mut shifted = [f32::INFINITY; 2 * WIDTH];
+    shifted[WIDTH..2 * WIDTH - 1].copy_from_slice(right);
+    let mut shared = [f32::INFINITY; WIDTH];
+    for (k, &left) in left.iter().enumerate() {
+        let right = &shifted[WIDTH - 1 - k..2 * WIDTH - 1 - k];
+        for (shared, &right) in shared.iter_mut().zip(right) {
+            let cost = left + right;
+            *shared = if cost < *shared { cost } else { *shared };
+        }
+    }
+    let half_area = bounds.half_area();
     let mut costs = [0.0; WIDTH - 1];
-    costs[0] = as_leaf(bounds.half_area(), count).min(as_node(bounds.half_area(), left, right));
+    costs[0] = as_leaf(half_area, count).min(half_area * NODE_COST + shared[WIDTH - 1]);
     for i in 1..WIDTH - 1 {
-        costs[i] = costs[i - 1].min(share(i + 1, left, right).1);
+        costs[i] = costs[i - 1].min(shared[i]);
     }
     costs
 }
@@ -36,53 +49,52 @@ fn as_leaf(half_area: f32, count: usize) -> f32 {
     if count <= LARGEST_LEAF { half_area * blocks(count as u32) } else { f32::INFINITY }
 }
 
-fn as_node(half_area: f32, left: &Costs, right: &Costs) -> f32 {
-    half_area * NODE_COST + share(WIDTH, left, right).1
-}
-
 /// How many of `places` go to the left at best, and the cost of that.
 #[inline(always)]
 fn share(places: usize, left: &Costs, right: &Costs) -> (usize, f32) {
-    let mut best = (1, left[0] + right[places - 2]);
+    let (mut best, mut least) = (1, left[0] + right[places - 2]);
     for k in 2..places {
         let cost = left[k - 1] + right[places - k - 1];
-        if cost < best.1 {
-            best = (k, cost);
-        }
+        // Nobody can foretell this: no branch.
+        let better = cost < least;
+        best = if better { k } else { best };
+        least = if better { cost } else { least };
     }
-    best
+    (best, least)
 }
 
-/// The children of a wide node, or none if a leaf is cheaper.
-pub(super) fn children_of(binary: &Binary, node: &Node, children: &mut Vec<Node>) {
+/// The children of a wide node, by their numbers, or none if a leaf is cheaper.
+pub(super) fn children_of(binary: &Binary, node: &Node, children: &mut Vec<u32>) {
     children.clear();
     if node.is_leaf() {
         return;
     }
     let [left, right] = binary.children(node);
     let (costs, half_area) = ([left.costs(), right.costs()], node.half_area());
-    let cheap = as_leaf(half_area, node.count()) <= as_node(half_area, &costs[0], &costs[1]);
-    if cheap && node.count() <= LARGEST_LEAF {
+    let (k, shared) = share(WIDTH, &costs[0], &costs[1]);
+    if node.count() <= LARGEST_LEAF && as_leaf(half_area, node.count()) <= half_area * NODE_COST + shared {
         return;
     }
-    let (k, _) = share(WIDTH, &costs[0], &costs[1]);
-    collect(binary, &left, k, children);
-    collect(binary, &right, WIDTH - k, children);
+    let first = node.first_child();
+    collect(binary, first, k, children);
+    collect(binary, first + 1, WIDTH - k, children);
 }
 
 /// The wide subtrees that show a subtree at the least cost, at most so many.
-fn collect(binary: &Binary, node: &Node, places: usize, children: &mut Vec<Node>) {
+fn collect(binary: &Binary, number: u32, places: usize, children: &mut Vec<u32>) {
+    let node = binary.node(number);
     let costs = node.costs();
     let mut places = places;
     while places > 1 && costs[places - 2] <= costs[places - 1] {
         places -= 1;
     }
     if places == 1 || node.is_leaf() {
-        children.push(*node);
+        children.push(number);
         return;
     }
-    let [left, right] = binary.children(node);
+    let [left, right] = binary.children(&node);
     let (k, _) = share(places, &left.costs(), &right.costs());
-    collect(binary, &left, k, children);
-    collect(binary, &right, places - k, children);
+    let first = node.first_child();
+    collect(binary, first, k, children);
+    collect(binary, first + 1, places - k, children);
 }

@@ -13,10 +13,13 @@ use rayon::prelude::*;
 /// From this many items on, a subtree is measured and written by many threads.
 const PARALLEL: usize = 1 << 14;
 
-/// How many units a wide subtree takes; of large ones, its parts too.
+/// How many units a wide subtree takes; of large ones, its children and their plans; of others, for each node in
+/// the order of writing how many children it has (none for a leaf), and all children.
 struct Plan {
     units: usize,
-    parts: Vec<Plan>,
+    parts: Vec<(Node, Plan)>,
+    counts: Vec<u8>,
+    children: Vec<u32>,
 }
 
 fn leaf_units(triangles: usize) -> usize {
@@ -45,33 +48,36 @@ struct Writer<'a> {
     triangles: &'a [[[f32; 3]; 3]],
 }
 
-/// Room that is used again and again.
-#[derive(Default)]
-struct Scratch {
-    children: Vec<Node>,
-    primitives: Vec<u32>,
-}
-
 impl Writer<'_> {
     fn plan(&self, node: &Node) -> Plan {
-        if node.count() < PARALLEL {
-            return Plan { units: self.measure(node, &mut Scratch::default()), parts: Vec::new() };
-        }
+        let mut plan = Plan { units: 0, parts: Vec::new(), counts: Vec::new(), children: Vec::new() };
         let mut children = Vec::new();
+        if node.count() < PARALLEL {
+            plan.units = self.measure(node, &mut plan, &mut children);
+            return plan;
+        }
         children_of(self.binary, node, &mut children);
-        let parts: Vec<Plan> = children.par_iter().map(|child| self.plan(child)).collect();
-        Plan { units: NODE_UNITS + parts.iter().map(|part| part.units).sum::<usize>(), parts }
+        let part = |&child: &u32| {
+            let child = self.binary.node(child);
+            (child, self.plan(&child))
+        };
+        plan.parts = children.par_iter().map(part).collect();
+        plan.units = NODE_UNITS + plan.parts.iter().map(|(_, part)| part.units).sum::<usize>();
+        plan
     }
 
-    fn measure(&self, node: &Node, scratch: &mut Scratch) -> usize {
-        children_of(self.binary, node, &mut scratch.children);
-        if scratch.children.is_empty() {
-            return leaf_units(self.triangles_below(node, &mut scratch.primitives));
+    fn measure(&self, node: &Node, plan: &mut Plan, scratch: &mut Vec<u32>) -> usize {
+        children_of(self.binary, node, scratch);
+        plan.counts.push(scratch.len() as u8);
+        if scratch.is_empty() {
+            let count = if self.binary.in_order { node.count() } else { self.triangles_below(node, scratch) };
+            return leaf_units(count);
         }
-        let mut below = [*node; WIDTH];
-        let count = scratch.children.len();
-        below[..count].copy_from_slice(&scratch.children);
-        NODE_UNITS + below[..count].iter().map(|child| self.measure(child, scratch)).sum::<usize>()
+        let first = plan.children.len();
+        plan.children.extend_from_slice(scratch);
+        let below = first..plan.children.len();
+        NODE_UNITS
+            + below.map(|k| self.measure(&self.binary.node(plan.children[k]), plan, scratch)).sum::<usize>()
     }
 
     /// How many triangles a leaf made of a binary subtree has, and which; each once, whatever pieces there are.
@@ -86,7 +92,7 @@ impl Writer<'_> {
     }
 
     fn collect(&self, node: &Node, primitives: &mut Vec<u32>) {
-        if node.is_leaf() {
+        if self.binary.in_order || node.is_leaf() {
             primitives.extend(self.items[node.items()].iter().map(Item::index));
         } else {
             self.binary.children(node).iter().for_each(|child| self.collect(child, primitives));
@@ -96,14 +102,14 @@ impl Writer<'_> {
     /// Writes a wide subtree into the whole of `units`, the first of which has the number `at`.
     fn write(&self, node: &Node, plan: &Plan, units: &mut [Unit], at: usize) -> (Planes, Ref) {
         if plan.parts.is_empty() {
-            return self.write_small(node, units, at, &mut Scratch::default()).0;
+            let mut writing =
+                Writing { counts: plan.counts.iter(), children: &plan.children, scratch: Vec::new() };
+            return self.write_small(node, &mut writing, units, at).0;
         }
-        let mut children = Vec::new();
-        children_of(self.binary, node, &mut children);
         let (own, mut rest) = units.split_at_mut(NODE_UNITS);
         let mut at_child = at + NODE_UNITS;
         let mut tasks = Vec::new();
-        for (child, part) in children.iter().zip(&plan.parts) {
+        for (child, part) in &plan.parts {
             let (stretch, behind) = rest.split_at_mut(part.units);
             tasks.push((child, part, stretch, at_child));
             (rest, at_child) = (behind, at_child + part.units);
@@ -120,28 +126,36 @@ impl Writer<'_> {
     fn write_small(
         &self,
         node: &Node,
+        writing: &mut Writing<'_>,
         units: &mut [Unit],
         at: usize,
-        scratch: &mut Scratch,
     ) -> ((Planes, Ref), usize) {
-        children_of(self.binary, node, &mut scratch.children);
-        if scratch.children.is_empty() {
-            let size = leaf_units(self.triangles_below(node, &mut scratch.primitives));
-            let triangles = scratch.primitives.iter().map(|&index| (self.triangles[index as usize], index));
+        let count = writing.counts.next().map_or(0, |&count| usize::from(count));
+        if count == 0 {
+            let primitives = &mut writing.scratch;
+            let size = leaf_units(self.triangles_below(node, primitives));
+            let triangles = primitives.iter().map(|&index| (self.triangles[index as usize], index));
             write_leaf(&mut units[..size], triangles);
             return ((node.planes(), Ref::leaf(at, size / BLOCK_UNITS)), size);
         }
-        let mut below = [*node; WIDTH];
-        let count = scratch.children.len();
-        below[..count].copy_from_slice(&scratch.children);
+        let (below, rest) = writing.children.split_at(count);
+        writing.children = rest;
         let mut written = [(node.planes(), Ref::EMPTY); WIDTH];
         let mut end = NODE_UNITS;
-        for (child, written) in below[..count].iter().zip(&mut written) {
-            let (entry, size) = self.write_small(child, &mut units[end..], at + end, scratch);
+        for (&child, written) in below.iter().zip(&mut written) {
+            let child = self.binary.node(child);
+            let (entry, size) = self.write_small(&child, writing, &mut units[end..], at + end);
             *written = entry;
             end += size;
         }
         write_node(&mut units[..NODE_UNITS], &written[..count]);
         ((node.planes(), Ref::node(at)), end)
     }
+}
+
+/// What is left of a plan.
+struct Writing<'a> {
+    counts: std::slice::Iter<'a, u8>,
+    children: &'a [u32],
+    scratch: Vec<u32>,
 }

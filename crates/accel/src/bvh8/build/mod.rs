@@ -1,9 +1,12 @@
-//! Building: a binary tree by the surface-area heuristic, from it the wide one of least cost, from that the units.
+//! Building: a binary tree, from it the wide one of least cost, from that the units. The binary tree comes from a
+//! curve through space (fast), from the surface-area heuristic (balanced), or from that with triangles cut and
+//! subtrees moved afterwards (best). What was tried stands in `docs/adr/0009-builders.md`.
 
 pub(super) mod binary;
 mod collapse;
 mod emit;
 mod item;
+mod morton;
 mod reinsert;
 mod spatial;
 mod split;
@@ -32,13 +35,15 @@ pub(super) fn build(mesh: &TriangleMesh, quality: Quality) -> Result<Built, Buil
     if items.len() > MAX_UNITS / BLOCK_UNITS * LANES {
         return Err(BuildError::TooManyNodes);
     }
-    let binary = if quality == Quality::Best {
-        let cutter = Cutter::new(mesh.triangles(), &Bounds::of(&items));
-        // Cuts may make them twice as many; few scenes come halfway.
-        let room = items.len();
-        reinsert::improve(Binary::over(&mut items, Some((&cutter, room))))
-    } else {
-        Binary::over(&mut items, None)
+    let binary = match quality {
+        Quality::Fast => morton::along_a_curve(&mut items),
+        Quality::Balanced => Binary::over(&mut items, None),
+        Quality::Best => {
+            let cutter = Cutter::new(mesh.triangles(), &Bounds::of(&items));
+            // Cuts may make them twice as many; few scenes come halfway.
+            let room = items.len();
+            reinsert::improve(Binary::over(&mut items, Some((&cutter, room))))
+        }
     };
     let (units, root) = emit::emit(&binary, &items, mesh)?;
     Ok(Built { units, root, planes: binary.root.planes() })

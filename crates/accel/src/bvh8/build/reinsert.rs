@@ -241,6 +241,6 @@ impl Tree {
             let pair = (below != 0).then_some(below as u32 / 2);
             nodes[at] = Node::new(&bounds, first..first + count, pair, costs).0;
         }
-        Binary { root: Node(nodes[0]), nodes, has_pieces: before.has_pieces }
+        Binary { root: Node(nodes[0]), nodes, has_pieces: before.has_pieces, in_order: false }
     }
 }

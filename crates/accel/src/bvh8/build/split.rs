@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 /// Bins an axis, for many items.
 pub(super) const BINS: usize = 16;
+/// And for few.
+const FEW: usize = 8;
 /// From this many items on, one pass over them is shared by threads.
 const PARALLEL_PASS: usize = 1 << 16;
 /// Items that a thread takes of such a pass.
@@ -52,12 +54,23 @@ impl Grid {
     #[inline(always)]
     fn bins_of(&self, item: &Item) -> [usize; 3] {
         let place = (item.centre() - self.least) * self.scale - Vec4::splat(0.5) + Vec4::splat(WHOLE);
-        let bin = |x: f32| (x.to_bits() as usize & 0xff).min(self.bins - 1);
-        [bin(place.x), bin(place.y), bin(place.z)]
+        [self.whole(place.x), self.whole(place.y), self.whole(place.z)]
+    }
+
+    /// The same on one axis.
+    #[inline(always)]
+    fn bin_of(&self, item: &Item, axis: usize) -> u32 {
+        let place = (item.centre() - self.least) * self.scale - Vec4::splat(0.5) + Vec4::splat(WHOLE);
+        self.whole(place[axis]) as u32
+    }
+
+    #[inline(always)]
+    fn whole(&self, x: f32) -> usize {
+        (x.to_bits() as usize & 0xff).min(self.bins - 1)
     }
 }
 
-type Bins = [[(Bounds, u32); BINS]; 3];
+type Bins<const N: usize> = [[(Bounds, u32); N]; 3];
 
 const NO_ITEMS: (Bounds, u32) = (Bounds::EMPTY, 0);
 
@@ -67,22 +80,20 @@ pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
     if grid.scale == Vec4::ZERO {
         return None;
     }
-    let bins = if items.len() >= PARALLEL_PASS {
-        let parts = items.par_chunks(CHUNK).map(|items| Box::new(fill(items, &grid)));
-        *parts.reduce(|| Box::new([[NO_ITEMS; BINS]; 3]), merge)
+    if items.len() >= PARALLEL_PASS {
+        let parts = items.par_chunks(CHUNK).map(|items| Box::new(fill::<BINS>(items, &grid)));
+        cheapest(&parts.reduce(|| Box::new([[NO_ITEMS; BINS]; 3]), merge), grid)
+    } else if grid.bins <= FEW {
+        // Most nodes are small, and to make ready many bins would take more time than to fill them.
+        cheapest(&fill::<FEW>(items, &grid), grid)
     } else {
-        fill(items, &grid)
-    };
-    let mut best = None;
-    for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
-        sweep(&bins[axis], grid, axis, &mut best);
+        cheapest(&fill::<BINS>(items, &grid), grid)
     }
-    best
 }
 
 #[inline]
-fn fill(items: &[Item], grid: &Grid) -> Bins {
-    let mut bins = [[NO_ITEMS; BINS]; 3];
+fn fill<const N: usize>(items: &[Item], grid: &Grid) -> Bins<N> {
+    let mut bins = [[NO_ITEMS; N]; 3];
     for item in items {
         let places = grid.bins_of(item);
         for (axis, bins) in bins.iter_mut().enumerate() {
@@ -94,7 +105,7 @@ fn fill(items: &[Item], grid: &Grid) -> Bins {
     bins
 }
 
-fn merge(mut a: Box<Bins>, b: Box<Bins>) -> Box<Bins> {
+fn merge(mut a: Box<Bins<BINS>>, b: Box<Bins<BINS>>) -> Box<Bins<BINS>> {
     for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
         *a = (a.0.union(b.0), a.1 + b.1);
     }
@@ -107,8 +118,16 @@ pub(super) fn blocks(count: u32) -> f32 {
     count.div_ceil(LANES as u32) as f32
 }
 
-fn sweep(bins: &[(Bounds, u32); BINS], grid: Grid, axis: usize, best: &mut Option<Split>) {
-    let mut right = [(Bounds::EMPTY, 0, 0.0f32); BINS];
+fn cheapest<const N: usize>(bins: &Bins<N>, grid: Grid) -> Option<Split> {
+    let mut best = None;
+    for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+        sweep(&bins[axis], grid, axis, &mut best);
+    }
+    best
+}
+
+fn sweep<const N: usize>(bins: &[(Bounds, u32); N], grid: Grid, axis: usize, best: &mut Option<Split>) {
+    let mut right = [(Bounds::EMPTY, 0, 0.0f32); N];
     let (mut bounds, mut count) = NO_ITEMS;
     for bin in (1..grid.bins).rev() {
         (bounds, count) = (bounds.union(bins[bin].0), count + bins[bin].1);
@@ -137,33 +156,16 @@ pub(super) struct Halves {
     pub(super) centres: [Bounds; 2],
 }
 
-/// Moves the items of the left side to the front.
+/// Moves the items of the left side to the front. Without a branch on the side, which nobody can foretell.
 pub(super) fn partition(items: &mut [Item], split: &Split) -> Halves {
-    let is_left = |item: &Item| split.grid.bins_of(item)[split.axis] < split.bin as usize;
-    let [mut left, mut right] = [Bounds::EMPTY; 2];
-    let (mut front, mut back) = (0, items.len());
-    loop {
-        while front < back && is_left(&items[front]) {
-            left = left.with_point(items[front].centre());
-            front += 1;
-        }
-        if front == back {
-            break;
-        }
-        right = right.with_point(items[front].centre());
-        back -= 1;
-        while front < back && !is_left(&items[back]) {
-            right = right.with_point(items[back].centre());
-            back -= 1;
-        }
-        if front == back {
-            break;
-        }
-        left = left.with_point(items[back].centre());
-        items.swap(front, back);
-        front += 1;
+    let mut middle = 0;
+    for i in 0..items.len() {
+        let is_left = split.grid.bin_of(&items[i], split.axis) < split.bin;
+        items.swap(i, middle);
+        middle += usize::from(is_left);
     }
-    Halves { middle: front, bounds: split.bounds, centres: [left, right] }
+    let (left, right) = items.split_at(middle);
+    Halves { middle, bounds: split.bounds, centres: [around(left), around(right)] }
 }
 
 /// Cuts by number, along the axis on which centres are furthest apart.
@@ -182,5 +184,13 @@ pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
 
 /// Around the centres of items.
 pub(super) fn around(items: &[Item]) -> Bounds {
-    items.iter().fold(Bounds::EMPTY, |all, item| all.with_point(item.centre()))
+    let mut some = [Bounds::EMPTY; 4];
+    let mut fours = items.chunks_exact(4);
+    for four in &mut fours {
+        for (some, item) in some.iter_mut().zip(four) {
+            *some = some.with_point(item.centre());
+        }
+    }
+    let rest = fours.remainder().iter().fold(some[0], |all, item| all.with_point(item.centre()));
+    rest.union(some[1]).union(some[2].union(some[3]))
 }

@@ -1,0 +1,121 @@
+//! Soon ready: items in the order of a curve through space, cut where its highest bits change [Lauterbach 2009].
+
+use super::binary::{Binary, Node, PARALLEL, Room, depth_allows};
+use super::collapse::{costs_of_inner, costs_of_leaf};
+use super::item::{Bounds, Item};
+use super::split::around;
+use crate::bvh8::layout::LANES;
+use bilux_math::glam::Vec4;
+use rayon::prelude::*;
+
+/// Bits an axis: cells a millionth as wide as everything, so that small things in large scenes are told apart.
+const BITS: u32 = 20;
+
+/// Up to this many items are cut between blocks.
+const FEW: usize = 4 * LANES;
+
+/// Where a centre lies on the curve, and its item.
+type Place = (u64, u32);
+
+/// Sorts items into a tree whose leaves hold one block at most, each a range of the new order.
+pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
+    let centres = around(items);
+    let extent = centres.high * 0.5 - centres.low * 0.5;
+    let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
+    let scale = Vec4::splat((1u32 << (BITS - 1)) as f32 * 0.999_999) / extent;
+    let scale = Vec4::new(sound(scale.x), sound(scale.y), sound(scale.z), 0.0);
+    let place = |(k, item): (usize, &Item)| {
+        let cell = (item.centre() * 0.5 - centres.low * 0.5) * scale * 2.0;
+        let spread = |x: f32| spread((x as u32).min((1 << BITS) - 1));
+        (spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z), k as u32)
+    };
+    let mut places: Vec<Place> = items.par_iter().enumerate().with_min_len(4096).map(place).collect();
+    places.par_sort_unstable();
+    *items = places.par_iter().with_min_len(4096).map(|&(_, k)| items[k as usize]).collect();
+    let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
+    let room = Room { nodes: &mut nodes, first_pair: 0 };
+    let (_, root, _) = subtree(items, &places, 0, room, 1);
+    Binary { root, nodes, has_pieces: false, in_order: true }
+}
+
+/// Puts two zeros before each of the bits.
+fn spread(x: u32) -> u64 {
+    let mut x = u64::from(x);
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        x = (x | x << shift) & mask;
+    }
+    x
+}
+
+/// Gives the box, the node, and how many pairs of the room were used, from its front on.
+fn subtree(
+    items: &[Item],
+    places: &[Place],
+    first: u32,
+    room: Room<'_>,
+    depth: usize,
+) -> (Bounds, Node, usize) {
+    let count = items.len();
+    if count <= LANES {
+        let bounds = Bounds::of(items);
+        return (bounds, Node::new(&bounds, first..first + count as u32, None, costs_of_leaf(&bounds)), 0);
+    }
+    let middle = middle_of(places, depth);
+    let (left, right) = (items.split_at(middle), places.split_at(middle));
+    let first_pair = room.first_pair;
+    let (pair, mut rest) = room.split(1);
+    let next = first + middle as u32;
+    let (a, b, used) = if count >= PARALLEL {
+        let (left_room, right_room) = rest.split(middle - 1);
+        let used = count - 2;
+        let (a, b) = rayon::join(
+            || subtree(left.0, right.0, first, left_room, depth + 1),
+            || subtree(left.1, right.1, next, right_room, depth + 1),
+        );
+        (a, b, used)
+    } else {
+        let a = subtree(left.0, right.0, first, rest.lend(), depth + 1);
+        let used = a.2;
+        let b = subtree(left.1, right.1, next, rest.split(used).1, depth + 1);
+        let more = b.2;
+        (a, b, used + more)
+    };
+    (pair.nodes[0], pair.nodes[1]) = (a.1.0, b.1.0);
+    let bounds = a.0.union(b.0);
+    let costs = costs_of_inner(&bounds, count, &a.1.costs(), &b.1.costs());
+    (bounds, Node::new(&bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
+}
+
+/// Where the highest bit changes that is not the same in all; by number where none does, or the tree grew too deep.
+fn middle_of(places: &[Place], depth: usize) -> usize {
+    let count = places.len();
+    let (low, high) = (places[0].0, places[count - 1].0);
+    if low == high {
+        return count / 2;
+    }
+    let bit = 1u64 << (63 - (low ^ high).leading_zeros());
+    let middle = places.partition_point(|place| place.0 & bit == 0);
+    // Blocks that are full are worth more than the best place.
+    let whole = |n: usize| n / LANES * LANES;
+    let middle = if count <= FEW { whole(middle + LANES / 2).clamp(LANES, whole(count - 1)) } else { middle };
+    if depth_allows(depth, [middle, count - middle]) { middle } else { count / 2 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BITS, spread};
+
+    #[test]
+    fn bits_are_spread_by_three() {
+        for bit in 0..BITS {
+            assert_eq!(spread(1 << bit), 1 << (3 * bit));
+        }
+        assert_eq!(spread((1 << BITS) - 1).count_ones(), BITS);
+    }
+}

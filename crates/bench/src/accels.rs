@@ -1,0 +1,31 @@
+//! Structures by the names that benchmarks know them by.
+
+use bilux::Error;
+use bilux::accel::registry::Quality;
+use bilux::accel::{ACCELERATORS, AcceleratorEntry, BuildOptions};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// The name of a structure, and behind a hyphen how much time its builder may take (`bvh8-best`); balanced where
+/// nothing is said.
+pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOptions), Error> {
+    let row = |name: &str| ACCELERATORS.iter().find(|row| row.entry.name == name);
+    if let Some(row) = row(name) {
+        return Ok((row, BuildOptions::default()));
+    }
+    let with_quality = name.rsplit_once('-').and_then(|(name, quality)| {
+        Some((row(name)?, BuildOptions { quality: Quality::from_name(quality)?, ..BuildOptions::default() }))
+    });
+    with_quality.ok_or_else(|| {
+        let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
+        Error::Settings(format!(
+            "there is no accelerator '{name}': there are {}, each also with -fast or -best behind it",
+            names.join(", ")
+        ))
+    })
+}
+
+/// So many threads, or all that there are for 0.
+pub(crate) fn threads(number: usize) -> Result<ThreadPool, Error> {
+    let pool = ThreadPoolBuilder::new().num_threads(number).build();
+    pool.map_err(|e| Error::Settings(format!("no threads can be had: {e}")))
+}
