@@ -37,7 +37,9 @@ pub(super) fn emit(
     if plan.units > MAX_UNITS {
         return Err(BuildError::TooManyNodes);
     }
-    let mut units = vec![Unit::default(); plan.units];
+    // By all threads, since memory costs most where it is touched first.
+    let mut units: Vec<Unit> =
+        (0..plan.units).into_par_iter().with_min_len(1 << 14).map(|_| Unit::default()).collect();
     let (_, root) = writer.write(&binary.root, &plan, &mut units, 0);
     Ok((units, root))
 }

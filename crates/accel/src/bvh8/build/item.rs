@@ -41,6 +41,9 @@ impl Item {
     }
 }
 
+/// Items that one thread looks at.
+const MANY: usize = 1 << 14;
+
 /// A box that grows; the fourth numbers mean nothing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
@@ -52,6 +55,9 @@ impl Bounds {
     pub(super) const EMPTY: Bounds = Bounds { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
 
     pub(super) fn of(items: &[Item]) -> Bounds {
+        if items.len() > MANY {
+            return items.par_chunks(MANY).map(Bounds::of).reduce(|| Bounds::EMPTY, Bounds::union);
+        }
         items.iter().fold(Bounds::EMPTY, |all, item| all.with(item))
     }
 

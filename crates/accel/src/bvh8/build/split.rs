@@ -184,6 +184,9 @@ pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
 
 /// Around the centres of items.
 pub(super) fn around(items: &[Item]) -> Bounds {
+    if items.len() >= PARALLEL_PASS {
+        return items.par_chunks(CHUNK).map(around).reduce(|| Bounds::EMPTY, Bounds::union);
+    }
     let mut some = [Bounds::EMPTY; 4];
     let mut fours = items.chunks_exact(4);
     for four in &mut fours {
