@@ -62,6 +62,15 @@ impl Level for Avx512 {
     }
 
     #[inline(always)]
+    unsafe fn column(masks: &[u64; 8], bit: usize) -> u32 {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let masks = _mm512_loadu_si512(masks.as_ptr().cast());
+            u32::from(_mm512_test_epi64_mask(masks, _mm512_set1_epi64(1 << bit)))
+        }
+    }
+
+    #[inline(always)]
     unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {

@@ -5,7 +5,6 @@ use super::packet::{self, Packet};
 use super::{View, body, plain, stream};
 use crate::counters::Nothing;
 use crate::ray::{Hit, Query, Ray};
-use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
 /// Fewer rays than these are sooner asked one by one.
 const FEW: usize = 8;
@@ -28,7 +27,6 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
     let mut begin = 0;
     while begin < rays.len() {
         let chunk = &rays[begin..rays.len().min(begin + packet::RAYS)];
-        expect(rays.as_ptr().wrapping_add(begin + chunk.len()));
         let mut answer = |index: usize, hit: Option<Hit>| answer(begin + index, hit);
         // SAFETY: as the caller promises.
         unsafe {
@@ -80,14 +78,5 @@ fn wild<const ANY: bool>(
         } else {
             answer(index, plain::closest(view, &rays[index], query, &mut Nothing));
         }
-    }
-}
-
-/// Asks for the lines of the next rays.
-#[inline(always)]
-fn expect(rays: *const Ray) {
-    for line in 0..size_of::<Ray>() * packet::RAYS / 64 {
-        // SAFETY: a prefetch reads nothing.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(rays.cast::<i8>().wrapping_add(line * 64)) };
     }
 }

@@ -8,8 +8,7 @@ use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{LANES, Ref, WIDTH};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
-use std::arch::x86_64::__m256i;
-use std::arch::x86_64::_mm256_set1_epi32;
+use std::arch::x86_64::{__m256i, _MM_HINT_T0, _mm_prefetch, _mm256_set1_epi32};
 use std::mem::MaybeUninit;
 
 /// What a level of instructions does with a node. Distances are the bits of floats that are not negative.
@@ -22,6 +21,8 @@ pub(super) trait Level {
     type Wide: Wide;
     /// A bit for each lane where the first is not greater.
     unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32;
+    /// One bit of each of eight masks.
+    unsafe fn column(masks: &[u64; WIDTH], bit: usize) -> u32;
     /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
     #[inline(always)]
     unsafe fn meet<B: Boxes>(ray: &B, node: *const u8, limit: __m256i) -> (u32, __m256i) {
@@ -149,9 +150,25 @@ pub(super) unsafe fn reference(node: *const u8, child: usize) -> Ref {
     unsafe { Ref(*node.add(192 + child * 4).cast::<u32>()) }
 }
 
+/// Asks for the lines of a node, or of the first block of a leaf, so that they are there when their turn comes.
+#[inline(always)]
+pub(super) fn prefetch(base: *const u8, reference: Ref) {
+    let place = base.wrapping_add(reference.byte()).cast::<i8>();
+    for line in 0..4 {
+        // SAFETY: a prefetch reads nothing.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.wrapping_add(line * 64)) };
+    }
+}
+
 /// The nearest of the children of a mask that is not zero; the others go to the stack, the nearer on top.
 #[inline(always)]
-pub(super) unsafe fn choose<L: Level>(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) -> Ref {
+pub(super) unsafe fn choose<L: Level>(
+    base: *const u8,
+    node: *const u8,
+    mask: u32,
+    enter: __m256i,
+    stack: &mut Stack,
+) -> Ref {
     // SAFETY: as the caller promises.
     unsafe {
         let first = mask.trailing_zeros() as usize;
@@ -166,10 +183,16 @@ pub(super) unsafe fn choose<L: Level>(node: *const u8, mask: u32, enter: __m256i
             let (a, b) = (reference(node, first), reference(node, second));
             let (near, far) = (distances[first & 7], distances[second & 7]);
             let swap = far < near;
-            stack.put(if swap { a } else { b }, if swap { near } else { far });
+            let later = if swap { a } else { b };
+            prefetch(base, later);
+            stack.put(later, if swap { near } else { far });
             return if swap { b } else { a };
         }
+        let before = stack.references();
         L::push_sorted(node, mask, enter, stack);
+        for later in 0..mask.count_ones() as usize - 1 {
+            prefetch(base, Ref(*before.add(later)));
+        }
         stack.take_reference()
     }
 }
@@ -188,20 +211,21 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match TameRay::new(ray, &view) {
-            Some(tame) => search::<L, C>(view, (ray, &tame), query, count),
+            Some(tame) => search::<L, C>(view, (ray, &tame, 0), query, count),
             None => plain::closest(view, ray, query, count),
         }
     }
 }
 
-/// The nearest hit of a ray that is ready for boxes.
+/// The nearest hit of a ray that is ready for boxes. `met` says which children of the root it meets; 0 that nobody
+/// has looked.
 ///
 /// # Safety
 /// As for [`closest`]; the ray must be tame.
 #[inline(always)]
 pub(super) unsafe fn search<L: Level, C: Count>(
     view: View<'_>,
-    (ray, tame): (&Ray, &impl Boxes),
+    (ray, tame, met): (&Ray, &impl Boxes, u32),
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
@@ -211,7 +235,7 @@ pub(super) unsafe fn search<L: Level, C: Count>(
         let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = view.root;
+        let mut current = start(base, view.root, met);
         let mut limit_bits = tame.limit_bits(nearest.t);
         let mut limit = L::splat(limit_bits);
         loop {
@@ -221,7 +245,7 @@ pub(super) unsafe fn search<L: Level, C: Count>(
                 let (mask, enter) = L::meet(tame, place, limit);
                 count_early_outs::<L, C>(tame, place, mask, count);
                 if mask != 0 {
-                    current = choose::<L>(place, mask, enter, &mut stack);
+                    current = choose::<L>(base, place, mask, enter, &mut stack);
                     continue;
                 }
             } else {
@@ -248,6 +272,35 @@ pub(super) unsafe fn search<L: Level, C: Count>(
     }
 }
 
+/// Where a search begins: at the root, or at the only child that is met.
+///
+/// # Safety
+/// The root must be one.
+#[inline(always)]
+pub(super) unsafe fn start(base: *const u8, root: Ref, met: u32) -> Ref {
+    if met != 0 && met & (met - 1) == 0 {
+        // SAFETY: only of nodes is it known what is met.
+        return unsafe { reference(base.add(root.byte()), met.trailing_zeros() as usize) };
+    }
+    root
+}
+
+/// The same where any order will do.
+///
+/// # Safety
+/// The machine must have the level, and the root must be one.
+#[inline(always)]
+pub(super) unsafe fn start_any<L: Level>(base: *const u8, root: Ref, met: u32, stack: &mut Stack) -> Ref {
+    if met == 0 {
+        return root;
+    }
+    // SAFETY: as above.
+    unsafe {
+        L::push(base.add(root.byte()), met, stack);
+        stack.take_reference()
+    }
+}
+
 /// See [`super::any`].
 ///
 /// # Safety
@@ -262,20 +315,20 @@ pub(super) unsafe fn any<L: Level, C: Count>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match TameRay::new(ray, &view) {
-            Some(tame) => search_any::<L, C>(view, (ray, &tame), query, count),
+            Some(tame) => search_any::<L, C>(view, (ray, &tame, 0), query, count),
             None => plain::any(view, ray, query, count),
         }
     }
 }
 
-/// Whether a ray that is ready for boxes hits anything.
+/// Whether a ray that is ready for boxes hits anything; `met` as of [`search`].
 ///
 /// # Safety
 /// As for [`search`].
 #[inline(always)]
 pub(super) unsafe fn search_any<L: Level, C: Count>(
     view: View<'_>,
-    (ray, tame): (&Ray, &impl Boxes),
+    (ray, tame, met): (&Ray, &impl Boxes, u32),
     query: &Query,
     count: &mut C,
 ) -> bool {
@@ -284,7 +337,7 @@ pub(super) unsafe fn search_any<L: Level, C: Count>(
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = view.root;
+        let mut current = start_any::<L>(base, view.root, met, &mut stack);
         let limit = L::splat(tame.limit_bits(ray.t_max));
         loop {
             count.node();

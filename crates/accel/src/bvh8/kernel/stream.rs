@@ -4,14 +4,13 @@
 //! node or leaf, asks for what comes next, and hands over to the next ray, which goes on while the first would wait.
 
 use super::batch::SOMETHING;
-use super::body::{self, Level, Room, Stack, choose};
+use super::body::{self, Level, Room, Stack, choose, prefetch, start, start_any};
 use super::packet::{Lane, Packet, Ready};
 use super::tame::Boxes;
 use super::{View, leaf};
-use crate::bvh8::layout::Ref;
+use crate::bvh8::layout::{Ref, WIDTH};
 use crate::counters::Nothing;
 use crate::ray::{Hit, Query, Ray};
-use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
 /// Rays on the way at once.
 const WAYS: usize = 4;
@@ -31,25 +30,39 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) {
-    let mut left = ready.tame;
-    let mut next = || {
-        let index = left.trailing_zeros() as usize;
-        left &= left.wrapping_sub(1);
-        (index < rays.len()).then(|| (index, &rays[index], packet.lane(index, ready)))
-    };
+    let base = view.units.as_ptr().cast::<u8>();
+    let mut left = ready.tame & ready.asked;
+    let mut children = [0; WIDTH];
     // SAFETY: as the caller promises.
     unsafe {
+        if view.root.is_node() {
+            // The root by all of them at once.
+            children = packet.meet_children::<L::Wide>(base.add(view.root.byte()), ready);
+            let [a, b, c, d, e, f, g, h] = children;
+            let mut misses = left & !(a | b | c | d | e | f | g | h);
+            left &= !misses;
+            while misses != 0 {
+                answer(misses.trailing_zeros() as usize, None);
+                misses &= misses - 1;
+            }
+        }
+        let mut next = || {
+            let index = left.trailing_zeros() as usize;
+            left &= left.wrapping_sub(1);
+            let lane = |index| (packet.lane(index, ready), L::column(&children, index));
+            (index < rays.len()).then(|| (index, &rays[index], lane(index)))
+        };
         if view.units.len() > NEAR_UNITS {
             return interleaved::<L, ANY>(view, &mut next, query, answer);
         }
-        while let Some((index, ray, lane)) = next() {
+        while let Some((index, ray, (lane, met))) = next() {
             answer(
                 index,
                 if ANY {
-                    let found = body::search_any::<L, Nothing>(view, (ray, &lane), query, &mut Nothing);
+                    let found = body::search_any::<L, Nothing>(view, (ray, &lane, met), query, &mut Nothing);
                     found.then_some(SOMETHING)
                 } else {
-                    body::search::<L, Nothing>(view, (ray, &lane), query, &mut Nothing)
+                    body::search::<L, Nothing>(view, (ray, &lane, met), query, &mut Nothing)
                 },
             );
         }
@@ -61,7 +74,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
 #[inline(always)]
 unsafe fn interleaved<'r, L: Level, const ANY: bool>(
     view: View<'_>,
-    next: &mut impl FnMut() -> Option<(usize, &'r Ray, Lane<'r>)>,
+    next: &mut impl FnMut() -> Option<Next<'r>>,
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) {
@@ -71,7 +84,8 @@ unsafe fn interleaved<'r, L: Level, const ANY: bool>(
     let mut active = 0;
     for room in &mut rooms {
         let Some(ray) = next() else { break };
-        walks[active] = Some(Walk::new(&view, ray, Stack::new(room)));
+        // SAFETY: as the caller promises.
+        walks[active] = Some(unsafe { Walk::new::<L, ANY>(&view, ray, Stack::new(room)) });
         active += 1;
     }
     let mut way = 0;
@@ -85,7 +99,8 @@ unsafe fn interleaved<'r, L: Level, const ANY: bool>(
         }
         answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
         match next() {
-            Some(ray) => *walk = Walk::new(&view, ray, walk.stack.cleared()),
+            // SAFETY: as the caller promises.
+            Some(ray) => *walk = unsafe { Walk::new::<L, ANY>(&view, ray, walk.stack.cleared()) },
             None => {
                 active -= 1;
                 walks.swap(way, active);
@@ -93,6 +108,9 @@ unsafe fn interleaved<'r, L: Level, const ANY: bool>(
         }
     }
 }
+
+/// A ray's number, itself, ready for boxes, and which children of the root it meets.
+type Next<'r> = (usize, &'r Ray, (Lane<'r>, u32));
 
 /// A ray on its way.
 struct Walk<'r> {
@@ -107,11 +125,22 @@ struct Walk<'r> {
 }
 
 impl<'r> Walk<'r> {
+    /// # Safety
+    /// As for [`each`].
     #[inline(always)]
-    fn new(view: &View<'_>, (index, ray, lane): (usize, &'r Ray, Lane<'r>), stack: Stack) -> Walk<'r> {
+    unsafe fn new<L: Level, const ANY: bool>(
+        view: &View<'_>,
+        (index, ray, (lane, met)): Next<'r>,
+        mut stack: Stack,
+    ) -> Walk<'r> {
         let nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
         let limit_bits = lane.limit_bits(nearest.t);
-        Walk { index, ray, lane, nearest, limit_bits, current: view.root, stack }
+        // SAFETY: as the caller promises.
+        let current = unsafe {
+            let base = view.units.as_ptr().cast::<u8>();
+            if ANY { start_any::<L>(base, view.root, met, &mut stack) } else { start(base, view.root, met) }
+        };
+        Walk { index, ray, lane, nearest, limit_bits, current, stack }
     }
 
     /// One node or leaf; false when there is none left.
@@ -130,7 +159,7 @@ impl<'r> Walk<'r> {
                         L::push(place, mask, &mut self.stack);
                         self.stack.take_reference()
                     } else {
-                        choose::<L>(place, mask, enter, &mut self.stack)
+                        choose::<L>(base, place, mask, enter, &mut self.stack)
                     };
                     prefetch(base, self.current);
                     return true;
@@ -184,15 +213,5 @@ impl<'r> Walk<'r> {
             }
         }
         false
-    }
-}
-
-/// Asks for the lines of a node, or of the first block of a leaf.
-#[inline(always)]
-fn prefetch(base: *const u8, reference: Ref) {
-    let place = base.wrapping_add(reference.byte()).cast::<i8>();
-    for line in 0..4 {
-        // SAFETY: a prefetch reads nothing.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.wrapping_add(line * 64)) };
     }
 }

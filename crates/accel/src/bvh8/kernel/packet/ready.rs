@@ -6,6 +6,7 @@ use super::super::body::Level;
 use super::super::tame::{BIAS_PAD, Boxes, PAD, ROWS, STEEPEST, span};
 use super::rays::{Packet, Row};
 use super::wide::Wide;
+use crate::bvh8::layout::WIDTH;
 use crate::ray::Ray;
 use crate::slab::{SLACK, least_of, limit_of};
 use std::arch::x86_64::*;
@@ -16,6 +17,8 @@ pub(in crate::bvh8::kernel) struct Ready {
     pub(super) lanes: usize,
     /// The same as a mask.
     pub(super) used: u64,
+    /// Those that are answered.
+    pub(in crate::bvh8::kernel) asked: u64,
     pub(in crate::bvh8::kernel) tame: u64,
     /// Those that are not tame.
     pub(in crate::bvh8::kernel) wild: u64,
@@ -45,13 +48,51 @@ impl Packet {
         let lanes = rays.len().next_multiple_of(L::Wide::LANES);
         self.fill(rays, lanes);
         let used = u64::MAX >> (64 - lanes);
-        let mut ready = Ready { lanes, used, tame: 0, wild: 0, down: [0; 3] };
+        let asked = u64::MAX >> (64 - rays.len());
+        let mut ready = Ready { lanes, used, asked, tame: 0, wild: 0, down: [0; 3] };
         for number in 0..lanes / L::Wide::LANES {
             // SAFETY: as the caller promises.
             unsafe { group::<L::Wide>(self, number * L::Wide::LANES, view, &mut ready) };
         }
-        ready.wild = !ready.tame & u64::MAX >> (64 - rays.len());
+        ready.wild = !ready.tame & asked;
         ready
+    }
+
+    /// For each child of a node, a bit for each ray that meets its box.
+    ///
+    /// # Safety
+    /// The machine must have the level, the packet must be ready, and `node` must point to a node.
+    #[inline(always)]
+    pub(in crate::bvh8::kernel) unsafe fn meet_children<W: Wide>(
+        &self,
+        node: *const u8,
+        ready: &Ready,
+    ) -> [u64; WIDTH] {
+        let mut children = [0; WIDTH];
+        // SAFETY: as the caller promises.
+        unsafe {
+            for number in 0..ready.lanes / W::LANES {
+                let from = number * W::LANES;
+                let load = |row: &Row<f32>| W::load(row.at(from));
+                let three = |rows: &[Row<f32>; 3]| [load(&rows[0]), load(&rows[1]), load(&rows[2])];
+                let (direction, inverse) = (three(&self.direction), three(&self.inverse));
+                let (enter_bias, leave_bias) = (three(&self.enter_bias), three(&self.leave_bias));
+                let (nearest, limit) = (load(&self.nearest), load(&self.limit));
+                for child in 0..WIDTH {
+                    let plane = |row: usize| W::splat(*node.add(row * 32 + child * 4).cast::<f32>());
+                    let (mut enter, mut leave) = (nearest, limit);
+                    for k in 0..3 {
+                        let (low, high) = (plane(k), plane(k + 3));
+                        let (first, last) =
+                            (direction[k].by_sign(low, high), direction[k].by_sign(high, low));
+                        enter = enter.max(first.fmsub(inverse[k], enter_bias[k]));
+                        leave = leave.min(last.fmsub(inverse[k], leave_bias[k]));
+                    }
+                    children[child] |= u64::from(enter.le(leave)) << from;
+                }
+            }
+        }
+        children
     }
 
     /// One of the rays.

@@ -42,6 +42,8 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
         abs(self) -> Self;
         // With the sign of the other, if its own is positive.
         copy_sign(self, of: Self) -> Self;
+        // The second where this is negative, else the first.
+        by_sign(self, plus: Self, minus: Self) -> Self;
         // Where the sign bit is set.
         signs(self) -> u32;
         lt(self, other: Self) -> u32;
@@ -111,6 +113,8 @@ impl Wide for __m512 {
         fmsub(self, by: Self, less: Self) -> Self = _mm512_fmsub_ps(self, by, less);
         abs(self) -> Self = _mm512_abs_ps(self);
         copy_sign(self, of: Self) -> Self = _mm512_or_ps(self, _mm512_and_ps(of, _mm512_set1_ps(-0.0)));
+        by_sign(self, plus: Self, minus: Self) -> Self =
+            _mm512_mask_blend_ps(_mm512_movepi32_mask(_mm512_castps_si512(self)), plus, minus);
         signs(self) -> u32 = u32::from(_mm512_movepi32_mask(_mm512_castps_si512(self)));
         lt(self, other: Self) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self, other));
         le(self, other: Self) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(self, other));
@@ -168,6 +172,7 @@ impl Wide for __m256 {
         fmsub(self, by: Self, less: Self) -> Self = _mm256_fmsub_ps(self, by, less);
         abs(self) -> Self = _mm256_andnot_ps(_mm256_set1_ps(-0.0), self);
         copy_sign(self, of: Self) -> Self = _mm256_or_ps(self, _mm256_and_ps(of, _mm256_set1_ps(-0.0)));
+        by_sign(self, plus: Self, minus: Self) -> Self = _mm256_blendv_ps(plus, minus, self);
         signs(self) -> u32 = _mm256_movemask_ps(self) as u32;
         lt(self, other: Self) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self, other)) as u32;
         le(self, other: Self) -> u32 = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self, other)) as u32;
