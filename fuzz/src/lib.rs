@@ -1,5 +1,9 @@
 //! What the targets have in common: read any bytes, within bounded memory, without a panic.
 
+/// Meshes and rays, for every structure to agree on.
+#[path = "../../crates/accel/tests/support/fuzzed.rs"]
+pub mod rays;
+
 use bilux_formats::ReadOptions;
 use bilux_pictures::{Limits, format_named};
 use bilux_scene::AccelChoice;

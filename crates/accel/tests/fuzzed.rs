@@ -1,0 +1,38 @@
+//! Every structure agrees on any bytes, a mesh and rays made of them: seeds, and as many at random as there is time for.
+//! `fuzz/run.sh rays` goes on from here.
+
+#[path = "support/fuzzed.rs"]
+mod fuzzed;
+
+use bilux_math::hash::hash_words;
+use rayon::prelude::*;
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn every_structure_agrees_on_the_seeds() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/rays");
+    let seeds: Vec<_> =
+        fs::read_dir(folder).expect("seeds").map(|entry| entry.expect("a seed").path()).collect();
+    assert!(seeds.len() >= 5);
+    for seed in seeds {
+        assert!(fuzzed::agree(&fs::read(&seed).expect("a seed")) > 0, "{} hits nothing", seed.display());
+    }
+}
+
+#[test]
+fn every_structure_agrees_on_random_bytes() {
+    let found: usize = (0..1500u64)
+        .into_par_iter()
+        .map(|seed| {
+            let len = 200 + hash_words([seed, 0]) % 1500;
+            let byte = |i: u64| {
+                let byte = hash_words([seed, i, 1]) as u8;
+                // Numbers on the lattice more often, or little would be hit.
+                if seed % 4 > 0 && hash_words([seed, i, 2]) % 16 > 0 { byte & 127 } else { byte }
+            };
+            fuzzed::agree(&(0..len).map(byte).collect::<Vec<u8>>())
+        })
+        .sum();
+    assert!(found > 1500, "{found}");
+}
