@@ -4,7 +4,8 @@ use super::frustum::Frustum;
 use super::wide::Wide;
 use crate::ray::Ray;
 use crate::slab::SLACK;
-use std::mem::MaybeUninit;
+use std::arch::x86_64::*;
+use std::mem::{MaybeUninit, offset_of};
 
 /// The most rays of a packet.
 pub(in crate::bvh8::kernel) const RAYS: usize = 64;
@@ -57,21 +58,37 @@ impl Packet {
         unsafe { MaybeUninit::uninit().assume_init() }
     }
 
-    /// Takes rays over; the last fills the lanes that are left.
+    /// Takes rays over, `lanes` being a multiple of eight; the last ray fills the lanes that are left.
+    ///
+    /// # Safety
+    /// The machine must have AVX2.
     #[inline(always)]
-    pub(super) fn fill(&mut self, rays: &[Ray], lanes: usize) {
-        for lane in 0..lanes {
-            let ray = &rays[lane.min(rays.len() - 1)];
+    pub(super) unsafe fn fill(&mut self, rays: &[Ray], lanes: usize) {
+        for number in 0..lanes / 8 {
+            let from = number * 8;
+            let ray = |k: usize| &rays[(from + k).min(rays.len() - 1)];
             // SAFETY: there is a place for each of the lanes, whose number is at most `RAYS`.
             unsafe {
-                for axis in 0..3 {
-                    *self.origin[axis].at_mut(lane) = ray.origin[axis];
-                    *self.direction[axis].at_mut(lane) = ray.direction[axis];
+                let [x, y, z, dx, dy, dz, t_min, t_max] = transposed([
+                    numbers(ray(0)),
+                    numbers(ray(1)),
+                    numbers(ray(2)),
+                    numbers(ray(3)),
+                    numbers(ray(4)),
+                    numbers(ray(5)),
+                    numbers(ray(6)),
+                    numbers(ray(7)),
+                ]);
+                for (axis, (origin, direction)) in [(x, dx), (y, dy), (z, dz)].into_iter().enumerate() {
+                    _mm256_store_ps(self.origin[axis].at_mut(from), origin);
+                    _mm256_store_ps(self.direction[axis].at_mut(from), direction);
                 }
-                *self.t_min.at_mut(lane) = ray.t_min;
-                *self.t.at_mut(lane) = ray.t_max;
-                *self.exclude.at_mut(lane) = ray.exclude.index;
-                *self.primitive.at_mut(lane) = u32::MAX;
+                _mm256_store_ps(self.t_min.at_mut(from), t_min);
+                _mm256_store_ps(self.t.at_mut(from), t_max);
+                _mm256_store_si256(self.primitive.at_mut(from).cast(), _mm256_set1_epi32(-1));
+                for k in 0..8 {
+                    *self.exclude.at_mut(from + k) = ray(k).exclude.index;
+                }
             }
         }
     }
@@ -119,5 +136,56 @@ impl Packet {
             let limit = s.add(s.abs().mul(W::splat(SLACK))).add(least);
             limit.min(W::splat(f32::INFINITY)).store(self.limit.at_mut(from));
         }
+    }
+}
+
+/// Origin, direction and ends of a ray.
+///
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn numbers(ray: &Ray) -> __m256 {
+    const FIRST: usize = offset_of!(Ray, origin);
+    const IN_ORDER: bool = offset_of!(Ray, direction) == FIRST + 12
+        && offset_of!(Ray, t_min) == FIRST + 24
+        && offset_of!(Ray, t_max) == FIRST + 28;
+    // SAFETY: where they stand in order, all eight belong to the ray.
+    unsafe {
+        if IN_ORDER {
+            return _mm256_loadu_ps(std::ptr::from_ref(ray).cast::<u8>().add(FIRST).cast());
+        }
+        let ([x, y, z], [dx, dy, dz]) = (ray.origin, ray.direction);
+        _mm256_setr_ps(x, y, z, dx, dy, dz, ray.t_min, ray.t_max)
+    }
+}
+
+/// Rows for columns.
+///
+/// # Safety
+/// The machine must have AVX2.
+#[inline(always)]
+unsafe fn transposed([a, b, c, d, e, f, g, h]: [__m256; 8]) -> [__m256; 8] {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let pairs = |a, b| (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+        let (ab, cd, ef, gh) = (pairs(a, b), pairs(c, d), pairs(e, f), pairs(g, h));
+        let low = |a, b| _mm256_shuffle_ps::<0b01_00_01_00>(a, b);
+        let high = |a, b| _mm256_shuffle_ps::<0b11_10_11_10>(a, b);
+        let (p, q) = (low(ab.0, cd.0), low(ef.0, gh.0));
+        let (r, s) = (high(ab.0, cd.0), high(ef.0, gh.0));
+        let (t, u) = (low(ab.1, cd.1), low(ef.1, gh.1));
+        let (v, w) = (high(ab.1, cd.1), high(ef.1, gh.1));
+        let first = |a, b| _mm256_permute2f128_ps::<0x20>(a, b);
+        let second = |a, b| _mm256_permute2f128_ps::<0x31>(a, b);
+        [
+            first(p, q),
+            first(r, s),
+            first(t, u),
+            first(v, w),
+            second(p, q),
+            second(r, s),
+            second(t, u),
+            second(v, w),
+        ]
     }
 }

@@ -46,7 +46,8 @@ impl Packet {
         view: &View<'_>,
     ) -> Ready {
         let lanes = rays.len().next_multiple_of(L::Wide::LANES);
-        self.fill(rays, lanes);
+        // SAFETY: as the caller promises.
+        unsafe { self.fill(rays, lanes) };
         let used = u64::MAX >> (64 - lanes);
         let asked = u64::MAX >> (64 - rays.len());
         let mut ready = Ready { lanes, used, asked, tame: 0, wild: 0, down: [0; 3] };
