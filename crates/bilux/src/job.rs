@@ -57,7 +57,9 @@ impl Job {
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
         let completed = crate::presets::completed(scene);
         let aspect = settings.width as f32 / settings.height as f32;
-        let built = completed.build(&settings.accel, shutter_at(&settings, settings.time), aspect)?;
+        let triangles = completed.objects.iter().map(|object| object.mesh.triangles.len()).sum();
+        let accel = settings.accel_for(triangles);
+        let built = completed.build(&accel, shutter_at(&settings, settings.time), aspect)?;
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
         let integrator = (settings.integrator.build)(&reader)?;
         let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
@@ -66,7 +68,7 @@ impl Job {
             camera,
             render: render_settings(&settings)?,
             fingerprint: fingerprint(&completed, &settings),
-            accel: settings.accel.clone(),
+            accel,
             scene: built,
             integrator,
             settings,

@@ -35,7 +35,12 @@ pub const RENDER: Entry = Entry {
         text("tonemap", "the curve for pictures for a display", "none"),
         choice("transfer", "how light becomes bytes", &["srgb", "linear"], "srgb"),
         choice("culling", "back faces of closed, opaque meshes", &["none", "back"], "none"),
-        choice("build", "time that a tree may take", &["fast", "balanced", "best"], "balanced"),
+        choice(
+            "build",
+            "time that a tree may take; auto is best for bvh8 where there are 64 samples a triangle, else balanced",
+            &["auto", "fast", "balanced", "best"],
+            "auto",
+        ),
         choice("cpu", "instructions that kernels may use", &["auto", "baseline", "avx2", "avx512"], "auto"),
         choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"),
         choice("bsp_group", "what bsp keeps together", &["polygons", "objects"], "polygons"),
@@ -91,6 +96,8 @@ pub struct Settings {
     pub integrator_parameters: Spec,
     /// Which structure answers the rays.
     pub accel: AccelChoice,
+    /// How long it may take to build is left to [`Settings::accel_for`].
+    pub build_by_size: bool,
     /// Columns of the picture.
     pub width: u32,
     /// Rows of the picture.
@@ -147,6 +154,7 @@ impl Settings {
             integrator,
             integrator_parameters,
             accel: accel_choice(&reader)?,
+            build_by_size: reader.text("build") == "auto",
             width,
             height,
             spp,
@@ -209,6 +217,23 @@ fn integrator_parameters(
     Ok(spec)
 }
 
+/// From so many samples a triangle on, the best tree pays: in interiors from about four, and so late a few times over;
+/// where it saves nothing, it then costs a fiftieth of the time of the rays.
+const WORTH_THE_BEST: u64 = 64;
+
+impl Settings {
+    /// The structure for a scene of so many triangles.
+    pub(crate) fn accel_for(&self, triangles: usize) -> AccelChoice {
+        let mut accel = self.accel.clone();
+        let samples = u64::from(self.width) * u64::from(self.height) * u64::from(self.spp);
+        let is_wide = matches!(accel.name.as_str(), "auto" | "bvh8");
+        if self.build_by_size && is_wide && samples / WORTH_THE_BEST >= triangles as u64 {
+            accel.options.quality = Quality::Best;
+        }
+        accel
+    }
+}
+
 fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
     let name = reader.text("accel");
     let names = || bilux_accel::ACCELERATORS.iter().map(|row| row.entry.name).chain(["auto"]);
@@ -220,11 +245,8 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         if reader.text("bsp_split") == "fuchs" { BspSplit::Fuchs } else { BspSplit::Mean };
     choice.options.bsp_group =
         if reader.text("bsp_group") == "objects" { BspGroup::Objects } else { BspGroup::Polygons };
-    choice.options.quality = match reader.text("build").as_str() {
-        "fast" => Quality::Fast,
-        "best" => Quality::Best,
-        _ => Quality::Balanced,
-    };
+    // `auto` is none of them.
+    choice.options.quality = Quality::from_name(&reader.text("build")).unwrap_or_default();
     let wanted = CpuLevel::ALL.into_iter().find(|level| level.name() == reader.text("cpu"));
     choice.options.cpu_level = wanted.unwrap_or_default();
     choice.query = Query {
@@ -234,4 +256,27 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         filter: None,
     };
     Ok(choice)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Parameters, Quality, Settings};
+    use bilux_scene::Value;
+
+    #[test]
+    fn many_samples_are_worth_the_best_tree_unless_another_is_asked_for() {
+        let quality = |pairs: &[(&str, &str)], triangles: usize| {
+            let mut parameters = Parameters::default();
+            parameters.set("size", Value::Text("100x64".to_owned()));
+            parameters.set("spp", Value::Integer(10));
+            pairs.iter().for_each(|(key, value)| parameters.set(key, Value::Text((*value).to_owned())));
+            Settings::resolve(&parameters).unwrap().accel_for(triangles).options.quality
+        };
+        assert_eq!(quality(&[], 1000), Quality::Best);
+        assert_eq!(quality(&[], 1001), Quality::Balanced);
+        assert_eq!(quality(&[("build", "fast")], 10), Quality::Fast);
+        assert_eq!(quality(&[("build", "balanced")], 10), Quality::Balanced);
+        assert_eq!(quality(&[("build", "best")], 1001), Quality::Best);
+        assert_eq!(quality(&[("accel", "bsp-sah")], 10), Quality::Balanced);
+    }
 }

@@ -112,7 +112,7 @@ pub struct Render {
     /// What finds the triangles that rays hit (`bilux list accels`)
     #[arg(long, value_name = "NAME")]
     pub accel: Option<String>,
-    /// Time that it may take to build: a picture of many samples is worth the best
+    /// Time that it may take to build [default: auto, by samples a triangle]
     #[arg(long, value_name = "fast|balanced|best")]
     pub build: Option<String>,
     /// Width and height
