@@ -13,7 +13,7 @@ use crate::counters::Nothing;
 use crate::ray::{Hit, Query, Ray};
 
 /// Rays on the way at once.
-const WAYS: usize = 4;
+const WAYS: usize = 8;
 
 /// Units of a tree that the near caches hold: a megabyte and a half.
 const NEAR_UNITS: usize = 3 << 14;
