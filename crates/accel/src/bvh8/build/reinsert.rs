@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const ROUNDS: usize = 3;
 const TRIED: usize = 5;
 /// A search looks at no more nodes than this.
-const MOST_STEPS: usize = 512;
+const MOST_STEPS: usize = 256;
 /// No children below.
 const LEAF: u32 = 0;
 

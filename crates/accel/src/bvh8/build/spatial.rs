@@ -108,8 +108,8 @@ impl<'a> Cutter<'a> {
                 cost * MOST_COST
             }
             Some(_) => return None,
-            // Nothing is gained by halves in the same box.
-            None => bounds.half_area() * blocks(items.len() as u32) * MOST_COST,
+            // Copies of one triangle, and what else has one centre: all of it would be cut again and again.
+            None => return None,
         };
         let grid = Grid::new(bounds, items.len());
         let bins = if items.len() >= PARALLEL_PASS {
