@@ -17,7 +17,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         source,
         cursor: Cursor::joining_lines(source.bytes),
         places: Places::new(source.name, source.bytes),
-        soup: Soup::default(),
+        soup: Soup { first_vertex: 1, ..Soup::default() },
         scene: SceneBuilder::default(),
         materials: HashMap::new(),
         oddities: Oddities::default(),

@@ -62,8 +62,9 @@ fn check_indices(soup: &mut Soup, places: &Places, oddities: &mut Oddities) -> R
     let place = |corner: usize| places.at(offsets[ends.partition_point(|&end| end as usize <= corner)]);
     for (i, corner) in soup.corners.iter_mut().enumerate() {
         if corner[0] >= counts[0] {
-            let (named, count) = (u64::from(corner[0]) + 1, counts[0]);
-            let message = format!("this face names vertex {named}, but the file has only {count}");
+            let (named, count) = (u64::from(corner[0]) + u64::from(soup.first_vertex), counts[0]);
+            let from = if soup.first_vertex == 0 { ", counted from 0" } else { "" };
+            let message = format!("this face names vertex {named}, but the file has only {count}{from}");
             return Err(FormatError::malformed(message, place(i)));
         }
         for part in [1, 2] {

@@ -30,6 +30,8 @@ pub(crate) struct Soup {
     pub(crate) offsets: Vec<usize>,
     pub(crate) smoothing: Vec<Smoothing>,
     pub(crate) runs: Vec<Run>,
+    /// What the format calls its first vertex: 1 in OBJ, 0 elsewhere.
+    pub(crate) first_vertex: u32,
 }
 
 /// Faces one after another that have the same name and material.

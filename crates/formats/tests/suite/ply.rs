@@ -92,7 +92,7 @@ fn broken_files_are_refused_with_their_place() {
         (good.replace("vertex_indices", "corners"), "no list 'vertex_indices'"),
         (
             good.replace("0 1 2 3", "0 1 2 4"),
-            "scene.ply:16:1: this face names vertex 5, but the file has only 4",
+            "scene.ply:16:1: this face names vertex 4, but the file has only 4, counted from 0",
         ),
         (good.replace("0 1 2 3", "0 1 2 -1"), "scene.ply:16:1: this face names vertex -1"),
         (good.replace("1 1 0", "1 one 0"), "scene.ply:14:3: 'one' is no number"),
