@@ -47,6 +47,8 @@ const PICTURES: &[Picture] = &[
     Picture { name: "path-kd", scene: CORNELL, render: &["-i", "path", "--accel", "kd"] },
     Picture { name: "path-bvh", scene: CORNELL, render: &["-i", "path", "--accel", "bvh"] },
     Picture { name: "path-bsp", scene: CORNELL, render: &["-i", "path", "--accel", "bsp"] },
+    Picture { name: "path-bvh8", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8"] },
+    Picture { name: "cast-simd", scene: TEAPOTS, render: &["-i", "cast", "--accel", "brute-simd"] },
 ];
 
 const TEAPOTS: &[&str] = &["teapots", "--count", "2"];

@@ -45,11 +45,12 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         return fs::write(&path, table(&compiler, &counted)).with_context(|| format!("cannot write {TABLE}"));
     }
     let known = fs::read_to_string(&path).with_context(|| format!("cannot read {TABLE}"))?;
-    let slower = compare(&known, &counted);
     if !known.lines().any(|line| line == compiler) {
-        println!("counted by another compiler than {compiler}: not compared");
+        println!("the table is of another compiler than {compiler}, so nothing is compared:");
+        print!("{}", table(&compiler, &counted));
         return Ok(());
     }
+    let slower = compare(&known, &counted);
     if slower.is_empty() {
         return Ok(());
     }

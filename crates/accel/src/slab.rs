@@ -31,7 +31,7 @@ pub struct SlabRay {
 }
 
 /// Directions closer than this to a plane are tilted to it: over any distance the tilt is far less than the pad.
-const STEEPEST: f32 = (1u64 << 40) as f32;
+pub(crate) const STEEPEST: f32 = (1u64 << 40) as f32;
 
 /// One unit of f32 rounding.
 const UNIT: f32 = 1.0 / 16_777_216.0;

@@ -131,7 +131,7 @@ impl PreparedRay {
 }
 
 /// 16 units of f32 rounding: twice what the proof asks for.
-const PAD: f32 = 16.0 / 16_777_216.0;
+pub(crate) const PAD: f32 = 16.0 / 16_777_216.0;
 
 /// The nearest hit so far.
 #[derive(Clone, Copy, Debug)]

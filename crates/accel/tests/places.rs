@@ -162,6 +162,11 @@ fn damaged_trees_are_refused() {
         damaged[at] ^= 16;
         refuses(&damaged);
     }
+    let expected = bytes.len();
+    assert!(
+        refuses(&bytes[..expected - 5])
+            .contains(&format!("has {} bytes, and its header says {expected}", expected - 5))
+    );
     let mut longer = bytes.clone();
     longer.push(0);
     assert!(refuses(&longer).contains("bytes"));

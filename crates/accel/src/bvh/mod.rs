@@ -103,19 +103,10 @@ impl Traverse for Bvh {
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
         let Some((ray, slabs)) = self.prepare(ray) else { return false };
-        let limit = slabs.limit(ray.ray.t_max);
-        let mut found = false;
-        self.tree.walk(&slabs, limit, count, |leaf, count| {
-            for triangle in &self.triangles[leaf] {
-                count.triangles(1);
-                if hits(&ray, query, &triangle.corners, triangle.primitive) {
-                    found = true;
-                    return ControlFlow::Break(());
-                }
-            }
-            ControlFlow::Continue(limit)
-        });
-        found
+        self.tree.find(&slabs, slabs.limit(ray.ray.t_max), count, |slot| {
+            let triangle = &self.triangles[slot];
+            hits(&ray, query, &triangle.corners, triangle.primitive)
+        })
     }
 
     fn bounds(&self) -> Aabb {

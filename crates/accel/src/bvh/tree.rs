@@ -58,6 +58,26 @@ impl Tree {
         build::build(len, bounds)
     }
 
+    /// Whether `hits` is true of any slot of the order that the ray comes by up to `limit`.
+    #[inline(always)]
+    pub(crate) fn find<C: Count>(
+        &self,
+        ray: &SlabRay,
+        limit: f32,
+        count: &mut C,
+        mut hits: impl FnMut(usize) -> bool,
+    ) -> bool {
+        let mut found = false;
+        self.walk(ray, limit, count, |mut leaf, count| {
+            found = leaf.any(|slot| {
+                count.triangles(1);
+                hits(slot)
+            });
+            if found { ControlFlow::Break(()) } else { ControlFlow::Continue(limit) }
+        });
+        found
+    }
+
     /// Goes through the leaves that the ray meets up to `limit` (an `s` of [`SlabRay`]), the nearer
     /// sibling first. `leaf` gets a range of the order and returns the limit from there on, or a break.
     #[inline(always)]
@@ -182,7 +202,7 @@ fn count_early_outs<C: Count>(count: &mut C, meets: [bool; 2], visits: [bool; 2]
 }
 
 #[inline(always)]
-pub(super) fn union(a: &[[f32; 3]; 2], b: &[[f32; 3]; 2]) -> [[f32; 3]; 2] {
+pub(crate) fn union(a: &[[f32; 3]; 2], b: &[[f32; 3]; 2]) -> [[f32; 3]; 2] {
     let low = std::array::from_fn(|k| if b[0][k] < a[0][k] { b[0][k] } else { a[0][k] });
     let high = std::array::from_fn(|k| if b[1][k] > a[1][k] { b[1][k] } else { a[1][k] });
     [low, high]

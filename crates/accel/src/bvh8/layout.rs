@@ -3,7 +3,8 @@
 //! - A *node* is 7 units: the lower and the upper planes of its eight children, axis by axis, then eight
 //!   references to them. A place without a child has an empty box and the reference [`Ref::EMPTY`].
 //! - A *leaf* is one to [`MAX_BLOCKS`] blocks of 5 units: for each axis the coordinates of the three
-//!   corners of four triangles, then the primitives of the four. Places without a triangle repeat the first one.
+//!   corners of four triangles, then the primitives of the four. Places without a triangle
+//!   repeat the last one.
 //!
 //! Nodes stand before their children, subtrees one behind the other. In a leaf each triangle stands once; in a tree
 //! whose builder cuts triangles it may stand in several leaves, whose boxes then hold only a piece of it each. All

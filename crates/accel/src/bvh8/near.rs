@@ -3,7 +3,7 @@
 use super::Bvh8;
 use super::layout::{self, BLOCK_UNITS, LANES, Planes, Ref};
 use bilux_math::glam::DVec3;
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// A point of a triangle.
@@ -21,12 +21,6 @@ pub struct NearestPoint {
     pub primitive: u32,
 }
 
-/// A subtree still to be looked at, the nearest first.
-struct Waiting {
-    squared: f64,
-    reference: Ref,
-}
-
 impl Bvh8 {
     /// The point of the mesh that is nearest to `point`, of equals that of the lowest primitive; `None` where all is
     /// farther away than `within` (which may be infinite), and for points that are not finite.
@@ -40,16 +34,18 @@ impl Bvh8 {
             return None;
         }
         let mut best = Best { squared: f64::from(within) * f64::from(within), at: None };
-        let mut waiting = BinaryHeap::from([Waiting { squared: 0.0, reference: self.root }]);
-        while let Some(Waiting { squared, reference }) = waiting.pop() {
-            if squared > best.squared {
+        // Subtrees, the nearest first: the bits of distances that are not negative are in their order.
+        let mut waiting = BinaryHeap::from([Reverse((0, self.root.0))]);
+        while let Some(Reverse((squared, reference))) = waiting.pop() {
+            let reference = Ref(reference);
+            if f64::from_bits(squared) > best.squared {
                 break;
             }
             if reference.is_node() {
                 for (planes, child) in layout::children(&self.units[reference.unit()..]) {
                     let squared = to_box(at, &planes);
                     if squared <= best.squared {
-                        waiting.push(Waiting { squared, reference: child });
+                        waiting.push(Reverse((squared.to_bits(), child.0)));
                     }
                 }
             } else {
@@ -119,23 +115,3 @@ fn nearest_of_triangle(at: DVec3, [a, b, c]: [DVec3; 3]) -> ([f64; 2], DVec3) {
     };
     nearer(nearer(candidates[0], candidates[1]), candidates[2])
 }
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Waiting) -> Ordering {
-        other.squared.total_cmp(&self.squared).then(other.reference.0.cmp(&self.reference.0))
-    }
-}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Waiting) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Waiting {
-    fn eq(&self, other: &Waiting) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Waiting {}

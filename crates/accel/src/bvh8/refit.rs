@@ -5,6 +5,7 @@ use super::layout::{
     BLOCK_UNITS, EMPTY, LANES, NODE_UNITS, Planes, Ref, Unit, WIDTH, children, triangle, write_leaf,
     write_node,
 };
+use crate::bvh::tree::union;
 use crate::mesh::TriangleMesh;
 
 /// Why a tree cannot be fitted to a mesh.
@@ -20,9 +21,8 @@ pub enum RefitError {
 }
 
 impl Bvh8 {
-    /// Fits the tree to triangles that have moved, in about a third of the time of building on one
-    /// thread. The further triangles have left
-    /// their neighbours, the slower rays become.
+    /// Fits the tree to triangles that have moved, in about a third of the time of building on one thread. The
+    /// further triangles have left their neighbours, the slower rays become.
     ///
     /// # Errors
     /// When the finite triangles of the mesh are not those that the tree has, by number, or when it was built with
@@ -97,9 +97,4 @@ fn fit_leaf(units: &mut [Unit], triangles: &[[[f32; 3]; 3]]) -> Planes {
         write_leaf(block, moved.into_iter());
     }
     planes
-}
-
-fn union(a: &Planes, b: &Planes) -> Planes {
-    let side = |f: fn(f32, f32) -> f32, side: usize| std::array::from_fn(|k| f(a[side][k], b[side][k]));
-    [side(f32::min, 0), side(f32::max, 1)]
 }

@@ -83,21 +83,26 @@ impl Bvh8 {
     /// When it cannot be read, or is not what [`Bvh8::save`] wrote.
     pub fn load(mut from: impl Read) -> Result<Bvh8, StorageError> {
         let mut header = [0; HEADER];
-        read_whole(&mut from, &mut header)?;
+        if fill(&mut from, &mut header)? < HEADER {
+            return Err(StorageError::NotATree);
+        }
         let header = Header::read(&header)?;
+        let expected = header.bytes();
         let mut units = Vec::new();
         let mut bytes = vec![0; UNIT << 12];
         while units.len() < header.units {
             // Memory grows with what was read, not with what is promised.
             let chunk = (header.units - units.len()).min(1 << 12);
             let bytes = &mut bytes[..chunk * UNIT];
-            read_whole(&mut from, bytes)?;
-            let words = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-            let mut words = words;
+            let read = fill(&mut from, bytes)?;
+            if read < bytes.len() {
+                let found = (HEADER + units.len() * UNIT + read) as u64;
+                return Err(StorageError::Length { expected, found });
+            }
+            let mut words = bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
             units.extend((0..chunk).map(|_| Unit(std::array::from_fn(|_| words.next().unwrap_or(0)))));
         }
         if from.read(&mut [0])? > 0 {
-            let expected = header.bytes();
             return Err(StorageError::Length { expected, found: expected + 1 });
         }
         Bvh8::trust(&header, Units::from(units))
@@ -140,21 +145,18 @@ impl Header {
     }
 }
 
-fn read_whole(from: &mut impl Read, bytes: &mut [u8]) -> Result<(), StorageError> {
+/// Reads until the room is full or nothing is left; says how much that was.
+fn fill(from: &mut impl Read, room: &mut [u8]) -> io::Result<usize> {
     let mut found = 0;
-    while found < bytes.len() {
-        match from.read(&mut bytes[found..]) {
-            Ok(0) if found == 0 && bytes.len() == HEADER => return Err(StorageError::NotATree),
-            Ok(0) => {
-                let expected = bytes.len() as u64;
-                return Err(StorageError::Length { expected, found: found as u64 });
-            }
+    while found < room.len() {
+        match from.read(&mut room[found..]) {
+            Ok(0) => break,
             Ok(n) => found += n,
             Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
-            Err(e) => return Err(e.into()),
+            Err(e) => return Err(e),
         }
     }
-    Ok(())
+    Ok(found)
 }
 
 /// Of what stands before it, and of the units: four sums side by side, each of mixed words.

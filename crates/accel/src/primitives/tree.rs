@@ -78,19 +78,11 @@ impl<P: Primitives> Traverse for PrimitiveTree<P> {
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
         let Some(slabs) = self.slabs(ray) else { return false };
-        let limit = slabs.limit(ray.t_max);
-        let mut found = false;
-        self.tree.walk(&slabs, limit, count, |leaf, count| {
-            for &index in &self.order[leaf] {
-                count.triangles(1);
-                self.hits(index, ray, query, |hit| found = found || query.keeps(&hit));
-                if found {
-                    return ControlFlow::Break(());
-                }
-            }
-            ControlFlow::Continue(limit)
-        });
-        found
+        self.tree.find(&slabs, slabs.limit(ray.t_max), count, |slot| {
+            let mut found = false;
+            self.hits(self.order[slot], ray, query, |hit| found = found || query.keeps(&hit));
+            found
+        })
     }
 
     fn bounds(&self) -> Aabb {

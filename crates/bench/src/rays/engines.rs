@@ -105,42 +105,48 @@ pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Err
 fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<Named>, Error> {
     let failed = |e: BuildError| Error::Settings(e.to_string());
     let (row, options) = find(name)?;
-    let named = |engine: Box<dyn Engine>| Named { name: name.to_owned(), ours: true, engine };
     let begun = Instant::now();
     Ok(match row.entry.name {
-        "bvh" => {
-            let tree = Rc::new(alone.install(|| Bvh::new(mesh)));
-            vec![named(Box::new(Ours::new(&tree, begun)))]
-        }
+        "bvh" => asked(name, alone.install(|| Bvh::new(mesh)).into(), begun, &[Mode::Single]),
         "bvh8" => {
-            let tree = Rc::new(alone.install(|| Bvh8::new(mesh, &options)).map_err(failed)?);
-            let single = Ours::new(&tree, begun);
-            let batches = Batches { tree, build_seconds: single.build_seconds };
-            vec![named(Box::new(single)), named(Box::new(batches))]
+            let tree = alone.install(|| Bvh8::new(mesh, &options)).map_err(failed)?;
+            asked(name, tree.into(), begun, &[Mode::Single, Mode::Batch])
         }
         _ => {
             let tree = alone.install(|| (row.build)(mesh.clone(), &options)).map_err(failed)?;
-            let tree: Rc<dyn Accelerator> = tree.into();
-            vec![named(Box::new(Ours::new(&tree, begun)))]
+            asked(name, Rc::<dyn Accelerator>::from(tree), begun, &[Mode::Single])
         }
     })
 }
 
-/// Ray by ray.
+/// A tree that has just been built, asked in some ways.
+fn asked<A: Accelerator + ?Sized + 'static>(
+    name: &str,
+    tree: Rc<A>,
+    begun: Instant,
+    modes: &[Mode],
+) -> Vec<Named> {
+    let build_seconds = begun.elapsed().as_secs_f64();
+    let named = |&mode: &Mode| {
+        let engine = Box::new(Ours { tree: tree.clone(), build_seconds, mode });
+        Named { name: name.to_owned(), ours: true, engine }
+    };
+    modes.iter().map(named).collect()
+}
+
+/// One of ours, asked ray by ray or in batches.
 struct Ours<A: ?Sized> {
     tree: Rc<A>,
     build_seconds: f64,
+    mode: Mode,
 }
 
-impl<A: Accelerator + ?Sized> Ours<A> {
-    fn new(tree: &Rc<A>, begun: Instant) -> Ours<A> {
-        Ours { tree: tree.clone(), build_seconds: begun.elapsed().as_secs_f64() }
-    }
-}
+/// Rays of a call that takes a batch.
+const BATCH: usize = 4096;
 
 impl<A: Accelerator + ?Sized> Engine for Ours<A> {
     fn mode(&self) -> Mode {
-        Mode::Single
+        self.mode
     }
 
     fn build_seconds(&self) -> f64 {
@@ -152,45 +158,20 @@ impl<A: Accelerator + ?Sized> Engine for Ours<A> {
     }
 
     fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
-        let query = Query::default();
-        if batch.any {
-            loop_over(batch, answers, |ray| self.tree.any_hit(ray, &query), |&hit| hit.then_some(NOWHERE))
-        } else {
-            loop_over(batch, answers, |ray| self.tree.closest_hit(ray, &query), |&hit| hit)
-        }
-    }
-}
-
-/// Some thousand rays a call, as the integrators have them.
-struct Batches {
-    tree: Rc<Bvh8>,
-    build_seconds: f64,
-}
-
-/// Rays of a call.
-const BATCH: usize = 4096;
-
-impl Engine for Batches {
-    fn mode(&self) -> Mode {
-        Mode::Batch
-    }
-
-    fn build_seconds(&self) -> f64 {
-        self.build_seconds
-    }
-
-    fn bytes(&self) -> usize {
-        self.tree.memory_bytes()
-    }
-
-    fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
-        let query = Query::default();
-        if batch.any {
-            let ask = |rays: &[Ray], hits: &mut [bool]| self.tree.any_hits(rays, &query, hits);
-            batch_by_batch(batch, answers, ask, |&hit| hit.then_some(NOWHERE))
-        } else {
-            let ask = |rays: &[Ray], hits: &mut [Option<Hit>]| self.tree.closest_hits(rays, &query, hits);
-            batch_by_batch(batch, answers, ask, |&hit| hit)
+        let (query, found) = (Query::default(), |&hit: &bool| hit.then_some(NOWHERE));
+        match (self.mode, batch.any) {
+            (Mode::Single, true) => loop_over(batch, answers, |ray| self.tree.any_hit(ray, &query), found),
+            (Mode::Single, false) => {
+                loop_over(batch, answers, |ray| self.tree.closest_hit(ray, &query), |&hit| hit)
+            }
+            (Mode::Batch, true) => {
+                let ask = |rays: &[Ray], hits: &mut [bool]| self.tree.any_hits(rays, &query, hits);
+                timed(batch, BATCH, answers, ask, found)
+            }
+            (Mode::Batch, false) => {
+                let ask = |rays: &[Ray], hits: &mut [Option<Hit>]| self.tree.closest_hits(rays, &query, hits);
+                timed(batch, BATCH, answers, ask, |&hit| hit)
+            }
         }
     }
 }
@@ -213,17 +194,7 @@ pub(super) fn loop_over<T: Clone + Default>(
     timed(batch, batch.rays.len(), answers, each, hit)
 }
 
-/// Times `ask` over all rays, [`BATCH`] at a time.
-fn batch_by_batch<T: Clone + Default>(
-    batch: &Batch,
-    answers: Option<&mut Answers>,
-    ask: impl Fn(&[Ray], &mut [T]),
-    hit: impl Fn(&T) -> Option<Hit>,
-) -> f64 {
-    timed(batch, BATCH, answers, ask, hit)
-}
-
-/// Answers are written into memory that is already there, as Embree's are.
+/// Times `ask` over all rays, so many a call. Answers are written into memory that is already there, as Embree's are.
 #[inline(always)]
 fn timed<T: Clone + Default>(
     batch: &Batch,

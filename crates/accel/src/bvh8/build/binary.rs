@@ -152,9 +152,10 @@ impl<'a> Task<'a> {
     fn halve(&mut self, bounds: &Bounds, centres: &Bounds, cutter: Option<&Cutter<'_>>) -> Halves {
         let (items, depth) = (&self.items[..self.count], self.depth);
         let split = best_split(items, centres).filter(|split| depth_allows(depth, split.counts));
-        if let Some(cutter) = cutter {
-            let halves = split.as_ref().map(|split| (&split.bounds, split.cost));
-            let cut = cutter.best(items, bounds, halves, self.items.len() - self.count);
+        // What has one centre, as copies of a triangle have, is halved: it would be cut again and again.
+        if let (Some(cutter), Some(split)) = (cutter, &split) {
+            let room = self.items.len() - self.count;
+            let cut = cutter.best(items, bounds, (&split.bounds, split.cost), room);
             let cut = cut.filter(|cut| depth_allows(depth, cut.counts));
             if let Some((halves, count)) = cut.and_then(|cut| cutter.apply(self.items, self.count, &cut)) {
                 self.count = count;

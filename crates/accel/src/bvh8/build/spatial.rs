@@ -100,17 +100,13 @@ impl<'a> Cutter<'a> {
         &self,
         items: &[Item],
         bounds: &Bounds,
-        halves: Option<(&[Bounds; 2], f32)>,
+        (halves, cost): (&[Bounds; 2], f32),
         room: usize,
     ) -> Option<Cut> {
-        let least = match halves {
-            Some((halves, cost)) if halves[0].shared_half_area(&halves[1]) > self.least_overlap => {
-                cost * MOST_COST
-            }
-            Some(_) => return None,
-            // Copies of one triangle, and what else has one centre: all of it would be cut again and again.
-            None => return None,
-        };
+        if halves[0].shared_half_area(&halves[1]) <= self.least_overlap {
+            return None;
+        }
+        let least = cost * MOST_COST;
         let grid = Grid::new(bounds, items.len());
         let bins = if items.len() >= PARALLEL_PASS {
             let parts = items.par_chunks(CHUNK).map(|items| Box::new(self.fill(items, &grid)));

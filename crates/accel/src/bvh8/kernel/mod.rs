@@ -4,6 +4,71 @@
 //! comes out in them. Who calls has made sure that the machine has them.
 #![allow(unsafe_code)] // Loads by pointer and instructions of a level; each block says why it is sound.
 
+/// What a level answers: each query compiled for its features, with all of the body in it.
+#[cfg(target_arch = "x86_64")]
+macro_rules! entries {
+    ($level:ty, $features:literal) => {
+        /// See [`super::closest`].
+        ///
+        /// # Safety
+        /// The machine must have the level, and the view must be sound; as for all that follow.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn closest<C: $crate::counters::Count>(
+            view: super::View<'_>,
+            ray: &$crate::Ray,
+            query: &$crate::Query,
+            count: &mut C,
+        ) -> Option<$crate::Hit> {
+            // SAFETY: as the caller promises.
+            unsafe { super::body::closest::<$level, C>(view, ray, query, count) }
+        }
+
+        /// See [`super::any`].
+        // SAFETY: as above.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn any<C: $crate::counters::Count>(
+            view: super::View<'_>,
+            ray: &$crate::Ray,
+            query: &$crate::Query,
+            count: &mut C,
+        ) -> bool {
+            // SAFETY: as the caller promises.
+            unsafe { super::body::any::<$level, C>(view, ray, query, count) }
+        }
+
+        /// See [`super::closest_each`].
+        // SAFETY: as above.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn closest_each(
+            view: super::View<'_>,
+            rays: &[$crate::Ray],
+            query: &$crate::Query,
+            hits: &mut [Option<$crate::Hit>],
+        ) {
+            let rays = &rays[..rays.len().min(hits.len())];
+            // SAFETY: as the caller promises.
+            unsafe { super::batch::each::<$level, false>(view, rays, query, |index, hit| hits[index] = hit) }
+        }
+
+        /// See [`super::any_each`].
+        // SAFETY: as above.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn any_each(
+            view: super::View<'_>,
+            rays: &[$crate::Ray],
+            query: &$crate::Query,
+            hits: &mut [bool],
+        ) {
+            let rays = &rays[..rays.len().min(hits.len())];
+            let note = |index: usize, hit: Option<$crate::Hit>| hits[index] = hit.is_some();
+            // SAFETY: as the caller promises.
+            unsafe { super::batch::each::<$level, true>(view, rays, query, note) }
+        }
+    };
+}
+#[cfg(target_arch = "x86_64")]
+use entries;
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]

@@ -12,7 +12,8 @@
 
 use super::View;
 use crate::ray::Ray;
-use crate::slab::{SLACK, least_of, limit_of};
+use crate::slab::{SLACK, STEEPEST, least_of, limit_of};
+use crate::triangle::PAD;
 use std::arch::x86_64::*;
 
 /// A ray with a lane for each child of a node.
@@ -35,11 +36,8 @@ pub(super) struct TameRay {
     pace: f32,
 }
 
-/// 16 and 4 units of f32 rounding: the pad of the lemma, and what is added to it here.
-pub(super) const PAD: f32 = 16.0 / 16_777_216.0;
+/// 4 units of f32 rounding: what is added to the pad of the lemma here.
 pub(super) const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
-/// As in [`crate::slab`].
-pub(super) const STEEPEST: f32 = (1u64 << 40) as f32;
 
 impl TameRay {
     /// `None` for rays that are not tame, or can hit nothing.

@@ -19,6 +19,7 @@ pub(super) use ready::{Lane, Ready};
 pub(super) use wide::Wide;
 
 use super::View;
+use super::batch::SOMETHING;
 use super::body::{Level, Room, Stack, reference};
 use super::leaf::BLOCK_BYTES;
 use crate::bvh8::layout::{LANES, Ref};
@@ -62,8 +63,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
         for lane in 0..rays.len() {
             let primitive = *packet.primitive.at(lane);
             if ANY {
-                let hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
-                answer(lane, (done >> lane & 1 == 1).then_some(hit));
+                answer(lane, (done >> lane & 1 == 1).then_some(SOMETHING));
             } else if primitive == u32::MAX {
                 answer(lane, None);
             } else {

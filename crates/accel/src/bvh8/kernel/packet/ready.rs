@@ -3,12 +3,13 @@
 
 use super::super::View;
 use super::super::body::Level;
-use super::super::tame::{BIAS_PAD, Boxes, PAD, ROWS, STEEPEST, span};
+use super::super::tame::{BIAS_PAD, Boxes, ROWS, span};
 use super::rays::{Packet, Row};
 use super::wide::Wide;
 use crate::bvh8::layout::WIDTH;
 use crate::ray::Ray;
-use crate::slab::{SLACK, least_of, limit_of};
+use crate::slab::{SLACK, STEEPEST, least_of, limit_of};
+use crate::triangle::PAD;
 use std::arch::x86_64::*;
 
 /// What is known of the rays of a packet; masks have a bit for each.
