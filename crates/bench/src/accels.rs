@@ -3,6 +3,7 @@
 use bilux::Error;
 use bilux::accel::registry::Quality;
 use bilux::accel::{ACCELERATORS, AcceleratorEntry, BuildOptions};
+use bilux::scene::error::nearest_name;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// The name of a structure, and behind a hyphen how much time its builder may take (`bvh8-best`); balanced where
@@ -16,11 +17,12 @@ pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOption
         Some((row(name)?, BuildOptions { quality: Quality::from_name(quality)?, ..BuildOptions::default() }))
     });
     with_quality.ok_or_else(|| {
-        let names: Vec<&str> = ACCELERATORS.iter().map(|row| row.entry.name).collect();
-        Error::Settings(format!(
-            "there is no accelerator '{name}': there are {}, each also with -fast or -best behind it",
-            names.join(", ")
-        ))
+        let names: Vec<String> = ACCELERATORS.iter().map(|row| row.entry.name.to_owned()).collect();
+        let hint = match nearest_name(name, &names) {
+            Some(nearest) => format!("did you mean '{nearest}'?"),
+            None => format!("there are {}, each also with -fast or -best behind it", names.join(", ")),
+        };
+        Error::Settings(format!("there is no accelerator '{name}'; {hint}"))
     })
 }
 

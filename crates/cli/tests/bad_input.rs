@@ -134,3 +134,18 @@ fn little_memory_is_enough_or_is_told() {
     let (code, said) = render(path, "large.obj", &["--max-memory", "1M"]);
     assert_told((code, said), 1, &["large.obj: reading it takes more than", "--max-memory"]);
 }
+
+#[test]
+fn misspelt_words_are_answered_with_what_they_most_likely_mean() {
+    let folder = TempDir::new().unwrap();
+    let answered = |arguments: &[&str], hint: &str| {
+        let mut command = Command::cargo_bin("bilux").expect("the binary is built with its tests");
+        let output = command.current_dir(folder.path()).args(arguments).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(hint), "{arguments:?}: {said}");
+    };
+    std::fs::write(folder.path().join("plain.obj"), PLAIN).unwrap();
+    answered(&["bench", "rays", "teapot3"], "did you mean 'teapots3'?");
+    answered(&["bench", "rays", "--accel", "bhv8"], "did you mean 'bvh8'?");
+    answered(&["render", "plain.obj", "-o", "x.png", "--build", "bets"], "did you mean 'best'?");
+}

@@ -1,6 +1,6 @@
 //! Parameters as scene files write them, and how a row of a table reads them.
 
-use crate::error::SceneError;
+use crate::error::{SceneError, nearest_name};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 use std::fmt;
@@ -285,11 +285,18 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
         ),
         ParameterKind::Choice(words) => (
             matches!(value, Value::Text(t) if words.contains(&t.as_str())),
-            format!("one of {}", words.join(", ")),
+            format!("one of {}{}", words.join(", "), meant(value, words)),
         ),
         ParameterKind::Text => (matches!(value, Value::Text(_)), "text".to_owned()),
     };
     if fits { Ok(()) } else { Err(wanted) }
+}
+
+/// The word that a misspelt one most likely stands for.
+fn meant(value: &Value, words: &[&str]) -> String {
+    let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
+    let nearest = if let Value::Text(text) = value { nearest_name(text, &words) } else { None };
+    nearest.map_or_else(String::new, |word| format!("; did you mean '{word}'?"))
 }
 
 fn describe(value: &Value) -> String {

@@ -3,9 +3,10 @@
 use super::{Batch, Options, classes, files};
 use bilux::accel::TriangleMesh;
 use bilux::math::Vec3;
+use bilux::scene::error::nearest_name;
 use bilux::scene::{Camera, Parameters, SceneBuilder, SceneError, Spec, Value};
 use bilux::{Error, Job};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A mesh with a name.
@@ -58,11 +59,22 @@ pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
     if options.scenes.is_empty() {
         return Ok(OWN[..USUAL].iter().map(own).collect());
     }
-    let find = |path: &PathBuf| match OWN.iter().find(|row| path.as_os_str() == row.0 && !path.exists()) {
-        Some(row) => own(row),
-        None => Source::Scene(path.clone()),
+    let find = |path: &PathBuf| match OWN.iter().find(|row| path.as_os_str() == row.0) {
+        _ if path.exists() => Ok(Source::Scene(path.clone())),
+        Some(row) => Ok(own(row)),
+        None => Err(unknown(path)),
     };
-    Ok(options.scenes.iter().map(find).collect())
+    options.scenes.iter().map(find).collect()
+}
+
+/// Neither a file nor one of our own.
+fn unknown(path: &Path) -> Error {
+    let names = OWN.map(|row| row.0.to_owned());
+    let hint = match nearest_name(&path.to_string_lossy(), &names) {
+        Some(name) => format!("did you mean '{name}'?"),
+        None => format!("scenes of ours are {}", names.join(", ")),
+    };
+    Error::Settings(format!("there is no scene file '{}'; {hint}", path.display()))
 }
 
 impl Source {
