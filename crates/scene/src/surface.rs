@@ -76,8 +76,9 @@ impl Surface {
 }
 
 /// Where a point has no error at all, as on a floor at height 0, its neighbours in the same plane are met at
-/// exactly 0, which therefore does not count.
-const AWAY: f32 = f32::MIN_POSITIVE;
+/// exactly 0, which therefore does not count. 2⁻⁸⁰: nothing beside any length, and yet so large that its products with
+/// the slack of boxes are normal numbers. Others take machines a hundred times as long, once or more for every ray.
+const AWAY: f32 = 1.0 / (1u128 << 80) as f32;
 
 /// `p` moved out of its error bounds along the normal, to the side that `direction` goes to. [pbrt 2023, 6.8.6]
 pub fn offset_origin(p: Vec3, p_error: Vec3, n: Vec3, direction: Vec3) -> Vec3 {
