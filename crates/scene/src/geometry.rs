@@ -36,6 +36,21 @@ pub struct Geometry {
     /// The object of each instance; that of `still` is not looked at.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
+    /// Where each object stands that does not move.
+    places: Vec<Option<Place>>,
+}
+
+/// Where an object stands, as its hits ask.
+#[derive(Clone, Copy)]
+struct Place {
+    to_world: Transform,
+    mirrors: bool,
+}
+
+impl Place {
+    fn new(to_world: Transform) -> Place {
+        Place { to_world, mirrors: to_world.mirrors() }
+    }
 }
 
 impl Geometry {
@@ -84,7 +99,9 @@ impl Geometry {
             instances.push(Instance::new(tree, object.motion.clone()));
             instance_objects.push(i as u32);
         }
-        Ok(Geometry { objects, still, still_objects, instance_objects, instances })
+        let resting = |o: &Placed| o.motion.is_still().then(|| Place::new(o.motion.at(0.0)));
+        let places = objects.iter().map(resting).collect();
+        Ok(Geometry { objects, still, still_objects, instance_objects, instances, places })
     }
 
     /// The top level for a time: cheap, since every tree is shared.
@@ -141,7 +158,14 @@ impl Geometry {
         let placed = &self.objects[object as usize];
         let mesh = &*placed.mesh;
         let indices = mesh.triangles[triangle as usize].map(|i| i as usize);
-        let to_world = placed.motion.at(ray.time);
+        let moving;
+        let Place { to_world, mirrors } = match &self.places[object as usize] {
+            Some(place) => place,
+            None => {
+                moving = Place::new(placed.motion.at(ray.time));
+                &moving
+            }
+        };
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let baked = self.still.as_ref().filter(|_| hit.instance == 0);
         let corners = match baked {
@@ -152,12 +176,11 @@ impl Geometry {
         let (p, p_error) = {
             let p = blend(corners);
             let error = blend(corners.map(Vec3::abs)) * gamma(7);
-            if baked.is_some() { (p, error) } else { transform_with_error(&to_world, p, error) }
+            if baked.is_some() { (p, error) } else { transform_with_error(to_world, p, error) }
         };
         let winding = {
             let [a, b, c] = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
-            let mirrored = to_world.mirrors();
-            unit_or((b - a).cross(c - a), Vec3::Y) * if mirrored { -1.0 } else { 1.0 }
+            unit_or((b - a).cross(c - a), Vec3::Y) * if *mirrors { -1.0 } else { 1.0 }
         };
         let n_shade = if mesh.normals.is_empty() {
             winding
@@ -172,6 +195,9 @@ impl Geometry {
             a * weights[0] + b * weights[1] + c * weights[2]
         };
         let vertex_colour = |colours: &[Rgb]| {
+            if colours.is_empty() {
+                return None;
+            }
             let [a, b, c] = indices.map(|i| colours.get(i).copied());
             Some(a? * weights[0] + b? * weights[1] + c? * weights[2])
         };

@@ -77,6 +77,8 @@ impl SceneParts {
 pub struct Scene {
     parts: Arc<SceneParts>,
     accelerator: TwoLevel,
+    /// The only tree, where there is one alone and it stands in the world as it is: asked without the level above.
+    alone: Option<Arc<dyn Accelerator>>,
     query: Query<'static>,
     shutter: [f32; 2],
 }
@@ -84,7 +86,13 @@ pub struct Scene {
 impl Scene {
     pub(crate) fn new(parts: Arc<SceneParts>, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
         let accelerator = parts.geometry.top_level(accel, shutter);
-        Scene { parts, accelerator, query: accel.query, shutter }
+        let alone = match parts.geometry.instances() {
+            [only] if only.mask == u32::MAX && only.motion.is_still() => {
+                only.motion.at(0.0).is_identity().then(|| only.accelerator.clone())
+            }
+            _ => None,
+        };
+        Scene { parts, accelerator, alone, query: accel.query, shutter }
     }
 
     /// The same scene at another time: only the top level is built anew.
@@ -192,7 +200,10 @@ impl<'s> Tracer<'s> {
             accelerator.closest_hit_counted(ray, query, &mut self.counters)
         } else {
             self.counters.rays += 1;
-            accelerator.closest_hit(ray, query)
+            match &self.scene.alone {
+                Some(tree) if ray.mask != 0 => tree.closest_hit(ray, query),
+                _ => accelerator.closest_hit(ray, query),
+            }
         }?;
         Some(self.scene.parts.geometry.surface(ray, &hit))
     }
@@ -205,7 +216,10 @@ impl<'s> Tracer<'s> {
             accelerator.any_hit_counted(ray, query, &mut self.counters)
         } else {
             self.counters.rays += 1;
-            accelerator.any_hit(ray, query)
+            match &self.scene.alone {
+                Some(tree) if ray.mask != 0 => tree.any_hit(ray, query),
+                _ => accelerator.any_hit(ray, query),
+            }
         }
     }
 

@@ -168,19 +168,19 @@ impl Film {
     /// Adds a sample of radiance to a pixel within the window; beyond it, nothing happens.
     #[inline]
     pub fn add(&mut self, x: u32, y: u32, sample: u32, radiance: Rgb) {
+        const LIMIT: i64 = 1 << SAMPLE_BITS;
         let Some(index) = self.window.index(x, y) else { return };
         if !radiance.is_finite() {
             return self.note_non_finite(index, sample);
         }
         let scale = exp2(self.scale_exponent);
         let dither = hash_words([u64::from(x) << 32 | u64::from(y), u64::from(sample)]);
-        let limit = (1i64 << SAMPLE_BITS) as f64;
         let mut overflowed = false;
         for (channel, value) in radiance.to_array().into_iter().enumerate() {
             let up = (dither >> (21 * channel) & 0x1f_ffff) as f64 * (1.0 / 2_097_152.0);
-            let steps = (f64::from(value) * scale + up).floor();
-            overflowed |= steps.abs() >= limit;
-            self.sums[index][channel] += steps.clamp(1.0 - limit, limit - 1.0) as i64;
+            let steps = floor((f64::from(value) * scale + up).clamp(-(LIMIT as f64), LIMIT as f64));
+            overflowed |= steps.abs() >= LIMIT;
+            self.sums[index][channel] += steps.clamp(1 - LIMIT, LIMIT - 1);
         }
         self.counts[index] += 1;
         if overflowed {
@@ -350,6 +350,13 @@ impl PixelTrouble {
         self.non_finite = self.non_finite.saturating_add(other.non_finite);
         self.overflowed = self.overflowed.saturating_add(other.overflowed);
     }
+}
+
+/// The greatest integer that is not above `x`, for `x` within ±2⁶². On old levels of the machine `f64::floor` is a call.
+#[inline]
+fn floor(x: f64) -> i64 {
+    let towards_zero = x as i64;
+    towards_zero - i64::from((towards_zero as f64) > x)
 }
 
 /// 2 to the power of `exponent`, exact, for exponents within ±1000.

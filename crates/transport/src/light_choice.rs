@@ -47,6 +47,12 @@ impl LightChoice {
         LightChoice { probabilities, cdf, few }
     }
 
+    /// True when all lights are always sampled, whatever number is given.
+    #[inline]
+    pub fn takes_all(&self) -> bool {
+        self.few
+    }
+
     /// Which lights to sample: those of the range whose probability is above 0.
     #[inline]
     pub fn sample(&self, u: f32) -> Range<usize> {

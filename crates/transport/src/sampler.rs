@@ -14,7 +14,8 @@ use bilux_math::hash::{hash_words, mix64, unit_f32};
 #[derive(Clone, Debug)]
 pub struct PixelSampler {
     pixel: u64,
-    index: u32,
+    /// The sample's number, its bits turned around.
+    reversed_index: u32,
     stream: u64,
     dimension: u32,
 }
@@ -23,10 +24,17 @@ impl PixelSampler {
     /// The numbers of one sample.
     pub fn new(seed: u64, x: u32, y: u32, index: u32) -> PixelSampler {
         let pixel = hash_words([seed, u64::from(x) << 32 | u64::from(y)]);
-        PixelSampler { pixel, index, stream: pixel, dimension: 0 }
+        PixelSampler { pixel, reversed_index: index.reverse_bits(), stream: pixel, dimension: 0 }
+    }
+
+    /// Passes over so many numbers or points that nobody asks for: what follows is the same as if they had been drawn.
+    #[inline]
+    pub fn skip(&mut self, draws: u32) {
+        self.dimension += draws;
     }
 
     /// Begins the stream of this number; that of a new sampler is another one.
+    #[inline]
     pub fn enter(&mut self, stream: u64) {
         self.stream = mix64(self.pixel ^ mix64(stream.wrapping_add(0x9e37_79b9_7f4a_7c15)));
         self.dimension = 0;
@@ -36,22 +44,23 @@ impl PixelSampler {
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
         let key = self.key();
-        let index = owen_scramble(self.index, key as u32);
-        unit_f32(owen_scramble(sobol_0(index), (key >> 32) as u32))
+        let index = scramble_reversed(self.reversed_index, key as u32).reverse_bits();
+        unit_f32(scramble_reversed(reversed_sobol_0(index), (key >> 32) as u32).reverse_bits())
     }
 
     /// The next point, `[0, 1)²`.
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         let key = self.key();
-        let index = owen_scramble(self.index, key as u32);
+        let index = scramble_reversed(self.reversed_index, key as u32).reverse_bits();
         let scramble = mix64(key);
         Vec2::new(
-            unit_f32(owen_scramble(sobol_0(index), scramble as u32)),
-            unit_f32(owen_scramble(sobol_1(index), (scramble >> 32) as u32)),
+            unit_f32(scramble_reversed(reversed_sobol_0(index), scramble as u32).reverse_bits()),
+            unit_f32(scramble_reversed(reversed_sobol_1(index), (scramble >> 32) as u32).reverse_bits()),
         )
     }
 
+    #[inline]
     fn key(&mut self) -> u64 {
         self.dimension += 1;
         mix64(self.stream.wrapping_add(u64::from(self.dimension).wrapping_mul(0x9e37_79b9_7f4a_7c15)))
@@ -66,33 +75,34 @@ pub fn regular_pattern(index: u32) -> Vec2 {
     Vec2::new(at(STEP[0]), at(STEP[1]))
 }
 
-/// First dimension of the sequence: the bits of the index turned around. [Sobol 1967]
-fn sobol_0(index: u32) -> u32 {
-    index.reverse_bits()
+/// First dimension of the sequence, its bits turned around: the index itself. [Sobol 1967]
+#[inline]
+fn reversed_sobol_0(index: u32) -> u32 {
+    index
 }
 
-/// Second dimension: the index times Pascal's triangle modulo 2, here in five steps rather than 32.
-fn sobol_1(index: u32) -> u32 {
+/// Second dimension, likewise: the index times Pascal's triangle modulo 2, here in five steps rather than 32.
+#[inline]
+fn reversed_sobol_1(index: u32) -> u32 {
     let mut x = index;
     x ^= x >> 16;
     x ^= (x & 0xff00_ff00) >> 8;
     x ^= (x & 0xf0f0_f0f0) >> 4;
     x ^= (x & 0xcccc_cccc) >> 2;
     x ^= (x & 0xaaaa_aaaa) >> 1;
-    x.reverse_bits()
+    x
 }
 
-/// A nested uniform scrambling: each bit is flipped by a hash of those above it. [Burley 2020, listing 3;
-/// constants of Vegdahl 2021]
+/// A nested uniform scrambling of numbers whose bits are turned around: each bit is flipped by a hash of those below
+/// it. [Burley 2020, listing 3; constants of Vegdahl 2021]
 #[inline]
-fn owen_scramble(x: u32, seed: u32) -> u32 {
-    let mut x = x.reverse_bits();
+fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul(seed >> 16 | 1);
     x ^= x.wrapping_mul(0x0552_6c56);
     x ^= x.wrapping_mul(0x53a2_2864);
-    x.reverse_bits()
+    x
 }
 
 #[cfg(test)]
@@ -116,7 +126,8 @@ mod tests {
     fn the_second_dimension_is_that_of_sobol() {
         for i in 0..10_000u32 {
             let index = i.wrapping_mul(2_654_435_769);
-            assert_eq!(sobol_1(index), sobol_1_by_definition(index), "index {index}");
+            let reversed = sobol_1_by_definition(index).reverse_bits();
+            assert_eq!(reversed_sobol_1(index), reversed, "index {index}");
         }
     }
 
@@ -157,6 +168,16 @@ mod tests {
         // The twin of the test above: what is not a net has to be told from one.
         let singles = |s: &mut PixelSampler| Vec2::new(s.next_1d(), s.next_1d());
         assert!(!fills_elementary_intervals(&points(8, 3, singles), 8));
+    }
+
+    #[test]
+    fn what_is_passed_over_changes_nothing() {
+        let mut drawn = PixelSampler::new(5, 3, 9, 77);
+        let mut skipped = drawn.clone();
+        drawn.next_1d();
+        drawn.next_2d();
+        skipped.skip(2);
+        assert_eq!((drawn.next_1d(), drawn.next_2d()), (skipped.next_1d(), skipped.next_2d()));
     }
 
     #[test]

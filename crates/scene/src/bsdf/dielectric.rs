@@ -36,14 +36,22 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
+    #[inline]
     pub(super) fn eval(&self, _wo: Vec3, _wi: Vec3, _mode: TransportMode) -> Rgb {
         Rgb::BLACK
     }
 
+    #[inline]
     pub(super) fn pdf_solid_angle(&self, _wo: Vec3, _wi: Vec3) -> f32 {
         0.0
     }
 
+    #[inline]
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
     pub(super) fn sample(
         &self,
         wo: Vec3,
@@ -82,6 +90,7 @@ impl Dielectric {
         }
     }
 
+    #[inline]
     pub(super) fn strength(&self) -> f32 {
         self.tint.luminance()
     }

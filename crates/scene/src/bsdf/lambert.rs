@@ -31,14 +31,22 @@ pub struct Lambert {
 }
 
 impl Lambert {
+    #[inline]
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
         if wo.z * wi.z > 0.0 { self.albedo * (FRAC_1_PI * wi.z.abs()) } else { Rgb::BLACK }
     }
 
+    #[inline]
     pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z * wi.z > 0.0 { warp::cosine_hemisphere_pdf_solid_angle(wi.z.abs()) } else { 0.0 }
     }
 
+    #[inline]
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
     pub(super) fn sample(
         &self,
         wo: Vec3,
@@ -60,6 +68,7 @@ impl Lambert {
         })
     }
 
+    #[inline]
     pub(super) fn strength(&self) -> f32 {
         self.albedo.luminance()
     }

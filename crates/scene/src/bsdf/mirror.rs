@@ -25,14 +25,22 @@ pub struct Mirror {
 }
 
 impl Mirror {
+    #[inline]
     pub(super) fn eval(&self, _wo: Vec3, _wi: Vec3, _mode: TransportMode) -> Rgb {
         Rgb::BLACK
     }
 
+    #[inline]
     pub(super) fn pdf_solid_angle(&self, _wo: Vec3, _wi: Vec3) -> f32 {
         0.0
     }
 
+    #[inline]
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
     pub(super) fn sample(
         &self,
         wo: Vec3,
@@ -50,6 +58,7 @@ impl Mirror {
         })
     }
 
+    #[inline]
     pub(super) fn strength(&self) -> f32 {
         self.reflectance.luminance()
     }

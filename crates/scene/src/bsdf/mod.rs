@@ -76,17 +76,26 @@ impl Lobe {
         each_lobe!(self, l => l.pdf_solid_angle(wo, wi))
     }
 
+    /// [`Lobe::eval`] and [`Lobe::pdf_solid_angle`], the same bits: at once they take little more than one of them.
+    #[inline]
+    pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        each_lobe!(self, l => l.eval_and_pdf(wo, wi, mode))
+    }
+
     /// A direction; `None` where nothing is scattered.
+    #[inline]
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
     }
 
     /// True when it has no width.
+    #[inline]
     pub fn is_delta(&self) -> bool {
         matches!(self, Lobe::Mirror(_) | Lobe::Dielectric(_))
     }
 
     /// About how much light it sends on, the weight by which it is chosen.
+    #[inline]
     pub fn strength(&self) -> f32 {
         each_lobe!(self, l => l.strength())
     }
@@ -119,12 +128,14 @@ pub struct Bsdf {
 
 impl Bsdf {
     /// A sum of at most three lobes around a shading normal.
+    #[inline]
     pub fn new(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; 3]) -> Bsdf {
         let total_strength = lobes.iter().flatten().map(Lobe::strength).sum();
         Bsdf { frame: Frame::from_normal(n_shade), n_geom, lobes, total_strength }
     }
 
     /// True when all that it scatters goes into single directions.
+    #[inline]
     pub fn is_delta(&self) -> bool {
         self.lobes.iter().flatten().all(Lobe::is_delta)
     }
@@ -148,7 +159,23 @@ impl Bsdf {
         self.lobes.iter().flatten().map(weighted).sum::<f32>() / self.total_strength
     }
 
+    /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
+    #[inline]
+    pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        let sides_agree = self.sides_agree(wo, wi);
+        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
+        for lobe in self.lobes.iter().flatten() {
+            let (f, p) = lobe.eval_and_pdf(wo, wi, mode);
+            scattered += f;
+            pdf += lobe.strength() * p;
+        }
+        let scattered = if sides_agree { scattered } else { Rgb::BLACK };
+        (scattered, if self.total_strength > 0.0 { pdf / self.total_strength } else { 0.0 })
+    }
+
     /// A direction: `u_choice` picks the lobe (and reflection or refraction in it), `u` the direction.
+    #[inline]
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let (index, u_choice) = self.choose(u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
@@ -161,8 +188,8 @@ impl Bsdf {
         }
         let mut sample = chosen.sample(self.frame.to_local(wo), u_choice, u, mode)?;
         sample.wi = self.frame.to_world(sample.wi).normalize();
-        sample.pdf_solid_angle = self.pdf_solid_angle(wo, sample.wi);
-        sample.weight = self.eval(wo, sample.wi, mode) / sample.pdf_solid_angle;
+        let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
+        (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
         (self.keeps_side(wo, &sample) && sample.pdf_solid_angle > 0.0).then_some(sample)
     }
 
@@ -187,11 +214,13 @@ impl Bsdf {
     }
 
     /// True when what is reflected stays on its side of the triangle, and what is transmitted does not.
+    #[inline]
     fn keeps_side(&self, wo: Vec3, sample: &BsdfSample) -> bool {
         (wo.dot(self.n_geom) * sample.wi.dot(self.n_geom) < 0.0) == sample.transmits
     }
 
     /// A lobe by its share of the strength, and what is left of the random number.
+    #[inline]
     fn choose(&self, u: f32) -> Option<(usize, f32)> {
         let mut rest = u * self.total_strength;
         let mut last = None;
@@ -210,9 +239,34 @@ impl Bsdf {
     }
 
     /// Light must be on the same side of the triangle as of the interpolated surface, or it leaks through.
+    #[inline]
     fn sides_agree(&self, wo: Vec3, wi: Vec3) -> bool {
         let geometric = wo.dot(self.n_geom) * wi.dot(self.n_geom);
         let shading = wo.dot(self.frame.n) * wi.dot(self.frame.n);
         geometric * shading > 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::hash::{hash_words, unit_f32};
+
+    #[test]
+    fn both_at_once_are_the_same_bits() {
+        let number = |i: u64, k: u64| unit_f32(hash_words([i, k]) as u32) * 2.0 - 1.0;
+        let direction = |i, k| Vec3::new(number(i, k), number(i, k + 1), number(i, k + 2)).normalize();
+        let cases: Vec<Lobe> = BSDFS.iter().flat_map(|row| (row.cases)()).map(|(_, lobe)| lobe).collect();
+        for i in 0..2000 {
+            let (wo, wi, n) = (direction(i, 0), direction(i, 3), direction(i, 6));
+            for (a, b) in cases.iter().zip(cases.iter().cycle().skip(i as usize % cases.len())) {
+                let bsdf = Bsdf::new(n, direction(i, 9), [Some(*a), Some(*b), None]);
+                let mode = TransportMode::Importance;
+                let apart = (bsdf.eval(wo, wi, mode), bsdf.pdf_solid_angle(wo, wi));
+                assert_eq!(bsdf.eval_and_pdf(wo, wi, mode), apart);
+                let apart = (a.eval(wo, wi, mode), a.pdf_solid_angle(wo, wi));
+                assert_eq!(a.eval_and_pdf(wo, wi, mode), apart);
+            }
+        }
     }
 }

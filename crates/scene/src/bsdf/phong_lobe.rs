@@ -48,6 +48,16 @@ impl PhongLobe {
         warp::power_cosine_pdf_solid_angle(Vec3::new(-wo.x, -wo.y, wo.z).dot(wi), self.exponent)
     }
 
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> (Rgb, f32) {
+        if wo.z * wi.z <= 0.0 {
+            return (Rgb::BLACK, 0.0);
+        }
+        let cos_alpha = Vec3::new(-wo.x, -wo.y, wo.z).dot(wi);
+        let power = powf(cos_alpha.max(0.0), self.exponent);
+        let scattered = self.reflectance * ((self.exponent + 2.0) / TAU * power * wi.z.abs());
+        (scattered, if cos_alpha <= 0.0 { 0.0 } else { (self.exponent + 1.0) / TAU * power })
+    }
+
     pub(super) fn sample(
         &self,
         wo: Vec3,

@@ -54,7 +54,12 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             .map(|(time, reader)| Ok((*time, Key::read(reader)?)))
             .collect::<Result<Vec<_>, SceneError>>()?;
         let mirrored = keys.first().is_some_and(|(_, key)| key.mirrored);
-        Ok(Arc::new(Perspective { keys, aspect: if mirrored { -aspect } else { aspect } }))
+        let aspect = if mirrored { -aspect } else { aspect };
+        let mut camera = Perspective { keys, aspect, resting: None };
+        if camera.keys.len() == 1 {
+            camera.resting = Some(camera.key_at(0.0));
+        }
+        Ok(Arc::new(camera))
     },
 };
 
@@ -66,6 +71,8 @@ struct Perspective {
     keys: Vec<(f32, Key)>,
     /// Width over height; negative when mirrored.
     aspect: f32,
+    /// What [`Perspective::key_at`] gives at any time, where there is one key only.
+    resting: Option<(Key, [Vec3; 3])>,
 }
 
 #[derive(Clone, Copy)]
@@ -116,6 +123,9 @@ impl Key {
 
 impl Perspective {
     fn key_at(&self, time: f32) -> (Key, [Vec3; 3]) {
+        if let Some(resting) = self.resting {
+            return resting;
+        }
         let (low, high, t) = around(&self.keys, time);
         let key = if t == 0.0 { *low } else { low.lerp(high, t) };
         // Between two sound keyframes the view can pass through a senseless one; the first is sound.

@@ -9,6 +9,7 @@ use std::f32::consts::PI;
 
 /// An emissive object, sampled uniformly by the area that its triangles have in their own space.
 pub struct MeshLight {
+    /// In the world where it rests, else in the object's own space.
     triangles: Vec<[Vec3; 3]>,
     /// `cdf[i]` is the share of the area in triangles `0..=i`; the last is 1.
     cdf: Vec<f32>,
@@ -17,6 +18,7 @@ pub struct MeshLight {
     /// Centre of the area, in the object's own space.
     middle: Vec3,
     motion: Motion,
+    rests: bool,
     radiance: Rgb,
     classic: Option<Rgb>,
 }
@@ -49,7 +51,12 @@ impl MeshLight {
         }
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
-        Some(MeshLight { triangles, cdf, first_primitive, middle, motion, radiance, classic })
+        let rests = motion.is_still();
+        let (place, mut triangles) = (motion.at(0.0), triangles);
+        if rests {
+            triangles.iter_mut().for_each(|t| *t = t.map(|p| place.point(p)));
+        }
+        Some(MeshLight { triangles, cdf, first_primitive, middle, motion, rests, radiance, classic })
     }
 
     fn share(&self, triangle: usize) -> f32 {
@@ -57,8 +64,12 @@ impl MeshLight {
     }
 
     fn corners(&self, triangle: usize, time: f32) -> [Vec3; 3] {
+        let corners = self.triangles[triangle];
+        if self.rests {
+            return corners;
+        }
         let to_world = self.motion.at(time);
-        self.triangles[triangle].map(|p| to_world.point(p))
+        corners.map(|p| to_world.point(p))
     }
 
     /// A point, its normal, its density over area, and its triangle's corners.

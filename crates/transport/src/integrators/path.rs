@@ -175,34 +175,41 @@ impl Path {
 
     /// Lights sampled from a surface: what they send along `wo`.
     fn direct(&self, task: &mut Task, surface: &Surface, bsdf: &Bsdf, wo: Vec3, sigma_a: Rgb) -> Rgb {
-        let u = task.sampler.next_1d();
+        let lights = task.lights;
+        let chosen = if lights.takes_all() {
+            task.sampler.skip(1);
+            lights.sample(0.0)
+        } else {
+            lights.sample(task.sampler.next_1d())
+        };
+        if bsdf.is_delta() {
+            task.sampler.skip(chosen.len() as u32);
+            return Rgb::BLACK;
+        }
         let from = Vertex { surface, bsdf, wo, sigma_a };
-        task.lights.sample(u).fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, &from))
+        chosen.fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, &from))
     }
 
     /// One of them.
     fn light(&self, task: &mut Task, index: usize, from: &Vertex) -> Rgb {
         let Vertex { surface, bsdf, wo, sigma_a } = *from;
-        let (u, probability) = (task.sampler.next_2d(), task.lights.probability(index));
-        if bsdf.is_delta() || probability == 0.0 {
-            return Rgb::BLACK;
-        }
+        let probability = task.lights.probability(index);
         let light = &task.scene().lights()[index].light;
-        if self.sampling == Sampling::Scattering && !light.is_delta() {
+        if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
+            task.sampler.skip(1);
             return Rgb::BLACK;
         }
+        let u = task.sampler.next_2d();
         let Some(sample) = light.sample_li(surface.p, surface.time, u) else {
             return Rgb::BLACK;
         };
-        let scattered = bsdf.eval(wo, sample.wi, TransportMode::Radiance);
+        let (scattered, pdf) = bsdf.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
         if scattered.is_black() {
             return Rgb::BLACK;
         }
         let light_pdf = sample.pdf_solid_angle * probability;
         let weight = match self.sampling {
-            Sampling::Mis if !light.is_delta() => {
-                power_heuristic(light_pdf, bsdf.pdf_solid_angle(wo, sample.wi))
-            }
+            Sampling::Mis if !light.is_delta() => power_heuristic(light_pdf, pdf),
             _ => 1.0,
         };
         if task.tracer.occluded(&surface.spawn_to_light(&sample)) {
@@ -227,10 +234,10 @@ impl Path {
         if walk.beta.is_black() {
             return false;
         }
-        let u = task.sampler.next_1d();
         if walk.depth <= self.roulette_depth {
             return true;
         }
+        let u = task.sampler.next_1d();
         let survival = (walk.beta.max_channel() * walk.eta_scale).min(0.95);
         if u < survival {
             walk.beta = walk.beta / survival;
