@@ -268,6 +268,7 @@ pub(crate) struct Eye<'a> {
     pub(crate) integrator: &'a dyn PixelIntegrator,
     settings: &'a RenderSettings,
     lights: LightChoice,
+    has_lens: bool,
 }
 
 impl<'a> Eye<'a> {
@@ -277,7 +278,8 @@ impl<'a> Eye<'a> {
         integrator: &'a dyn PixelIntegrator,
         settings: &'a RenderSettings,
     ) -> Eye<'a> {
-        Eye { scene, camera, integrator, settings, lights: LightChoice::new(scene) }
+        let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
+        Eye { scene, camera, integrator, settings, lights, has_lens }
     }
 
     /// The camera ray of a sample, and what its integrator works with.
@@ -317,12 +319,17 @@ impl<'a> Eye<'a> {
         };
         let lens = match spread.lens {
             0.0 => Vec2::ZERO,
+            _ if !self.has_lens => {
+                sampler.skip(1);
+                Vec2::ZERO
+            }
             extent => warp::sample_disc(sampler.next_2d()) * extent,
         };
         let [opens, closes] = self.scene.shutter();
         let middle = opens + (closes - opens) * 0.5;
         let time = match spread.shutter {
             0.0 => middle,
+            _ if opens == closes => middle,
             extent => middle + (closes - opens) * (sampler.next_1d() - 0.5) * extent,
         };
         let film = Vec2::new(

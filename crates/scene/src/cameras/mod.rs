@@ -25,6 +25,8 @@ pub struct CameraSample {
 pub trait Camera: Send + Sync {
     /// The ray of a sample; its direction is of unit length.
     fn ray(&self, sample: &CameraSample) -> Ray;
+    /// True when its rays depend on [`CameraSample::lens`].
+    fn has_lens(&self) -> bool;
     /// Where it looks, a unit vector, at a time in seconds.
     fn forward(&self, time: f32) -> Vec3;
 }

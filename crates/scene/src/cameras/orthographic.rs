@@ -68,6 +68,10 @@ impl Camera for Orthographic {
         Ray { time: sample.time, ..Ray::new(origin.to_array(), forward.to_array()) }
     }
 
+    fn has_lens(&self) -> bool {
+        false
+    }
+
     fn forward(&self, time: f32) -> Vec3 {
         around(&self.keys, time).0.axes[2]
     }

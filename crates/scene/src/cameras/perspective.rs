@@ -152,6 +152,10 @@ impl Camera for Perspective {
         Ray { time: sample.time, ..Ray::new(origin.to_array(), direction.normalize().to_array()) }
     }
 
+    fn has_lens(&self) -> bool {
+        self.keys.iter().any(|(_, key)| key.aperture != 0.0)
+    }
+
     fn forward(&self, time: f32) -> Vec3 {
         self.key_at(time).1[2]
     }

@@ -9,7 +9,6 @@ use std::f32::consts::PI;
 
 /// An emissive object, sampled uniformly by the area that its triangles have in their own space.
 pub struct MeshLight {
-    /// In the world where it rests, else in the object's own space.
     triangles: Vec<[Vec3; 3]>,
     /// `cdf[i]` is the share of the area in triangles `0..=i`; the last is 1.
     cdf: Vec<f32>,
@@ -18,10 +17,24 @@ pub struct MeshLight {
     /// Centre of the area, in the object's own space.
     middle: Vec3,
     motion: Motion,
-    rests: bool,
+    /// The triangles where they are; none when they move.
+    resting: Vec<Facet>,
     radiance: Rgb,
     classic: Option<Rgb>,
 }
+
+/// A triangle where it is at a moment.
+#[derive(Clone, Copy)]
+struct Facet {
+    corners: [Vec3; 3],
+    /// Unit, or zero where it has no area.
+    normal: Vec3,
+    /// Density of its points over area.
+    pdf_area: f32,
+}
+
+/// Up to so many triangles, all are compared: that has no branch that nobody can foresee.
+const FEW: usize = 8;
 
 impl MeshLight {
     /// A light from an object's triangles in its own space; `first_primitive` is the index that rays see of the
@@ -51,12 +64,13 @@ impl MeshLight {
         }
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
-        let rests = motion.is_still();
-        let (place, mut triangles) = (motion.at(0.0), triangles);
-        if rests {
-            triangles.iter_mut().for_each(|t| *t = t.map(|p| place.point(p)));
+        let resting = Vec::new();
+        let mut light =
+            MeshLight { triangles, cdf, first_primitive, middle, motion, resting, radiance, classic };
+        if light.motion.is_still() {
+            light.resting = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
-        Some(MeshLight { triangles, cdf, first_primitive, middle, motion, rests, radiance, classic })
+        Some(light)
     }
 
     fn share(&self, triangle: usize) -> f32 {
@@ -64,25 +78,40 @@ impl MeshLight {
     }
 
     fn corners(&self, triangle: usize, time: f32) -> [Vec3; 3] {
-        let corners = self.triangles[triangle];
-        if self.rests {
-            return corners;
-        }
         let to_world = self.motion.at(time);
-        corners.map(|p| to_world.point(p))
+        self.triangles[triangle].map(|p| to_world.point(p))
     }
 
-    /// A point, its normal, its density over area, and its triangle's corners.
-    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Vec3, f32, [Vec3; 3]) {
-        let triangle = self.cdf.partition_point(|&c| c <= u.x).min(self.cdf.len() - 1);
+    fn facet(&self, triangle: usize, time: f32) -> Facet {
+        if let Some(resting) = self.resting.get(triangle) {
+            return *resting;
+        }
+        let corners @ [a, b, c] = self.corners(triangle, time);
+        let normal = (b - a).cross(c - a);
+        let pdf_area = self.share(triangle) / (0.5 * normal.length());
+        Facet { corners, normal: normal.normalize_or_zero(), pdf_area }
+    }
+
+    /// The triangle that a number picks by area.
+    fn choose(&self, u: f32) -> usize {
+        let below = if self.cdf.len() <= FEW {
+            self.cdf.iter().map(|&c| usize::from(c <= u)).sum()
+        } else {
+            self.cdf.partition_point(|&c| c <= u)
+        };
+        below.min(self.cdf.len() - 1)
+    }
+
+    /// A point, and its triangle.
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Facet) {
+        let triangle = self.choose(u.x);
         let share = self.share(triangle);
         let below = self.cdf[triangle] - share;
         let rest = if share > 0.0 { ((u.x - below) / share).clamp(0.0, 1.0) } else { 0.0 };
         let weights = warp::sample_triangle(Vec2::new(rest, u.y));
-        let corners @ [a, b, c] = self.corners(triangle, time);
-        let normal = (b - a).cross(c - a);
-        let point = a * (1.0 - weights.x - weights.y) + b * weights.x + c * weights.y;
-        (point, normal.normalize_or_zero(), share / (0.5 * normal.length()), corners)
+        let facet = self.facet(triangle, time);
+        let [a, b, c] = facet.corners;
+        (a * (1.0 - weights.x - weights.y) + b * weights.x + c * weights.y, facet)
     }
 
     fn middle(&self, time: f32) -> Vec3 {
@@ -102,7 +131,7 @@ fn area(t: &[Vec3; 3]) -> f32 {
 /// corners and the ray's origin are from each other and from the world's origin (the lemma of
 /// [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and so many times `1 / cos` of that along the ray.
 fn clearance(from: Vec3, point: Vec3, corners: &[Vec3; 3], cos: f32) -> f32 {
-    let far = corners.iter().map(|c| c.distance(from)).fold(0.0, f32::max);
+    let far = corners.iter().map(|c| c.distance_squared(from)).fold(0.0, f32::max).sqrt();
     let size = far + from.abs().max_element().max(point.abs().max_element());
     (64.0 * f32::EPSILON * size / (cos * point.distance(from))).min(0.5)
 }
@@ -113,7 +142,7 @@ fn finite_or_zero(x: f64) -> f64 {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (point, normal, pdf_area, corners) = self.sample_point(time, u);
+        let (point, Facet { corners, normal, pdf_area }) = self.sample_point(time, u);
         let to_light = point - from;
         let distance2 = to_light.length_squared();
         let wi = to_light.try_normalize()?;
@@ -135,8 +164,8 @@ impl Light for MeshLight {
         if triangle >= self.triangles.len() {
             return 0.0;
         }
-        let pdf_area = self.share(triangle) / area(&self.corners(triangle, hit.time));
-        let pdf = pdf_area * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
+        let pdf =
+            self.facet(triangle, hit.time).pdf_area * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
@@ -151,7 +180,7 @@ impl Light for MeshLight {
 
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let middle = self.middle(time);
-        let (point, normal, _, corners) = self.sample_point(time, u);
+        let (point, Facet { corners, normal, .. }) = self.sample_point(time, u);
         let position = middle + (point - middle) * extent;
         let wi = (position - from).try_normalize()?;
         let clearance = clearance(from, position, &corners, normal.dot(wi).abs());
