@@ -7,6 +7,7 @@ use std::fmt;
 /// The direction need not be of unit length; `t` counts in its lengths. A ray whose origin or direction
 /// is not finite, or whose direction is zero, hits nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray {
     /// Where it starts.
     pub origin: [f32; 3],
@@ -110,6 +111,12 @@ impl Default for Query<'_> {
 }
 
 impl Query<'_> {
+    /// True of what most are asked: all hits count, and the search may end early.
+    #[inline(always)]
+    pub(crate) fn is_plain(&self) -> bool {
+        self.filter.is_none() && self.culling == Culling::None && self.early_out
+    }
+
     /// True when the filter lets a hit count.
     #[inline(always)]
     pub(crate) fn keeps(&self, hit: &Hit) -> bool {

@@ -4,7 +4,7 @@
 //!   references to them. A place without a child has an empty box and the reference [`Ref::EMPTY`].
 //! - A *leaf* is one to [`MAX_BLOCKS`] blocks of 5 units: for each axis the coordinates of the three
 //!   corners of four triangles, then the primitives of the four. Places without a triangle
-//!   repeat the last one.
+//!   repeat the corners of the last one and have the primitive [`NO_TRIANGLE`]; in a leaf primitives ascend.
 //!
 //! Nodes stand before their children, subtrees one behind the other. In a leaf each triangle stands once; in a tree
 //! whose builder cuts triangles it may stand in several leaves, whose boxes then hold only a piece of it each. All
@@ -22,6 +22,8 @@ pub(super) const MAX_BLOCKS: usize = 15;
 pub(super) const NODE_UNITS: usize = 7;
 /// Units of a block.
 pub(super) const BLOCK_UNITS: usize = 5;
+/// The primitive of a place without a triangle. Those of triangles are below 2³¹, so that a sign tells them apart.
+pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 /// More cannot be referred to.
 pub(super) const MAX_UNITS: usize = 1 << 28;
 
@@ -105,14 +107,11 @@ pub(super) fn children(units: &[Unit]) -> impl Iterator<Item = (Planes, Ref)> + 
 }
 
 /// Writes the blocks of a leaf over some triangles, each with its primitive.
-pub(super) fn write_leaf(units: &mut [Unit], triangles: impl Iterator<Item = ([[f32; 3]; 3], u32)>) {
-    let mut last = ([[0.0; 3]; 3], 0);
-    let mut triangles = triangles.peekable();
+pub(super) fn write_leaf(units: &mut [Unit], mut triangles: impl Iterator<Item = ([[f32; 3]; 3], u32)>) {
+    let mut last = ([[0.0; 3]; 3], NO_TRIANGLE);
     for block in units.chunks_exact_mut(BLOCK_UNITS) {
         for lane in 0..LANES {
-            if let Some(next) = triangles.next() {
-                last = next;
-            }
+            last = triangles.next().unwrap_or((last.0, NO_TRIANGLE));
             write_triangle(block, lane, last.0, last.1);
         }
     }
@@ -128,7 +127,13 @@ fn write_triangle(block: &mut [Unit], lane: usize, triangle: [[f32; 3]; 3], prim
     put(9, primitive);
 }
 
-/// One triangle of a block, and its primitive.
+/// The triangles of a block, each with its primitive.
+#[inline(always)]
+pub(super) fn triangles(block: &[Unit]) -> impl Iterator<Item = ([[f32; 3]; 3], u32)> + '_ {
+    (0..LANES).map(|lane| triangle(block, lane)).filter(|(_, primitive)| *primitive != NO_TRIANGLE)
+}
+
+/// What stands in one place of a block.
 #[inline(always)]
 pub(super) fn triangle(block: &[Unit], lane: usize) -> ([[f32; 3]; 3], u32) {
     let word = |row: usize| block[row * LANES / 8].0[row * LANES % 8 + lane];

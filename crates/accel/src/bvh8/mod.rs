@@ -8,6 +8,7 @@ mod kernel;
 mod layout;
 mod mapped;
 mod near;
+mod outline;
 mod overlap;
 mod refit;
 mod storage;
@@ -22,8 +23,8 @@ use crate::ray::{Hit, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, Vec3, registry::Entry};
 use kernel::View;
-use layout::Ref;
 use mapped::Units;
+use outline::Outline;
 
 pub use near::NearestPoint;
 pub use refit::RefitError;
@@ -44,9 +45,7 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 #[derive(Clone, Debug)]
 pub struct Bvh8 {
     units: Units,
-    root: Ref,
-    /// Of the box around everything; the fourth numbers are zero.
-    corners: [[f32; 4]; 2],
+    outline: Outline,
     level: CpuLevel,
 }
 
@@ -57,15 +56,13 @@ impl Bvh8 {
     /// When it would take more than 8 GiB.
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Bvh8, BuildError> {
         let built = build::build(mesh, options.quality)?;
-        let corners = built.planes.map(|[x, y, z]| [x, y, z, 0.0]);
-        let units = Units::from(built.units);
-        Ok(Bvh8 { units, root: built.root, corners, level: options.cpu_level.available() })
+        let outline = Outline::new(built.root, built.planes);
+        Ok(Bvh8 { units: Units::from(built.units), outline, level: options.cpu_level.available() })
     }
 
     #[inline(always)]
     fn view(&self) -> Option<View<'_>> {
-        let corners = self.corners;
-        (!self.units.is_empty()).then_some(View { units: &self.units, root: self.root, corners })
+        (!self.units.is_empty()).then_some(View { units: &self.units, outline: &self.outline })
     }
 }
 
@@ -97,7 +94,7 @@ impl Traverse for Bvh8 {
     }
 
     fn bounds(&self) -> Aabb {
-        let [min, max] = self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+        let [min, max] = self.outline.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
         Aabb { min, max }
     }
 
@@ -107,7 +104,7 @@ impl Traverse for Bvh8 {
 
     fn shape(&self) -> TreeShape {
         let mut shape = TreeShape::default();
-        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![(self.root, 1)] };
+        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![(self.outline.root, 1)] };
         while let Some((reference, depth)) = stack.pop() {
             if reference.is_node() {
                 shape.nodes += 1;

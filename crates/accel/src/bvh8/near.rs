@@ -1,7 +1,7 @@
 //! Which point of a mesh is nearest to a given one.
 
 use super::Bvh8;
-use super::layout::{self, BLOCK_UNITS, LANES, Planes, Ref};
+use super::layout::{self, BLOCK_UNITS, Planes, Ref};
 use bilux_math::glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -35,7 +35,7 @@ impl Bvh8 {
         }
         let mut best = Best { squared: f64::from(within) * f64::from(within), at: None };
         // Subtrees, the nearest first: the bits of distances that are not negative are in their order.
-        let mut waiting = BinaryHeap::from([Reverse((0, self.root.0))]);
+        let mut waiting = BinaryHeap::from([Reverse((0, self.outline.root.0))]);
         while let Some(Reverse((squared, reference))) = waiting.pop() {
             let reference = Ref(reference);
             if f64::from_bits(squared) > best.squared {
@@ -50,7 +50,7 @@ impl Bvh8 {
                 }
             } else {
                 for block in self.units[reference.leaf_units()].chunks_exact(BLOCK_UNITS) {
-                    for (corners, primitive) in (0..LANES).map(|lane| layout::triangle(block, lane)) {
+                    for (corners, primitive) in layout::triangles(block) {
                         best.offer(at, corners.map(|p| DVec3::from(p.map(f64::from))), primitive);
                     }
                 }

@@ -1,7 +1,7 @@
 //! Which triangles touch a box.
 
 use super::Bvh8;
-use super::layout::{self, BLOCK_UNITS, LANES};
+use super::layout::{self, BLOCK_UNITS};
 use bilux_math::glam::DVec3;
 
 impl Bvh8 {
@@ -10,7 +10,7 @@ impl Bvh8 {
     /// Computed in f64: of triangles that pass the box by less than its rounding, some are named too.
     pub fn overlapping(&self, low: [f32; 3], high: [f32; 3]) -> Vec<u32> {
         let mut found = Vec::new();
-        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![self.root] };
+        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![self.outline.root] };
         while let Some(reference) = stack.pop() {
             if reference.is_node() {
                 let touched = |planes: &layout::Planes| {
@@ -21,7 +21,7 @@ impl Bvh8 {
                 continue;
             }
             for block in self.units[reference.leaf_units()].chunks_exact(BLOCK_UNITS) {
-                for (corners, primitive) in (0..LANES).map(|lane| layout::triangle(block, lane)) {
+                for (corners, primitive) in layout::triangles(block) {
                     if touches(&corners, low, high) {
                         found.push(primitive);
                     }

@@ -2,9 +2,10 @@
 
 use super::Bvh8;
 use super::layout::{
-    BLOCK_UNITS, EMPTY, LANES, NODE_UNITS, Planes, Ref, Unit, WIDTH, children, triangle, write_leaf,
-    write_node,
+    BLOCK_UNITS, EMPTY, LANES, NO_TRIANGLE, NODE_UNITS, Planes, Ref, Unit, WIDTH, children, triangles,
+    write_leaf, write_node,
 };
+use super::outline::Outline;
 use crate::bvh::tree::union;
 use crate::mesh::TriangleMesh;
 
@@ -30,30 +31,27 @@ impl Bvh8 {
     pub fn refit(&mut self, mesh: &TriangleMesh) -> Result<(), RefitError> {
         self.check(mesh)?;
         if !self.units.is_empty() {
-            let root = self.root;
+            let root = self.outline.root;
             let planes = self.units.change(|units| fit(units, root, mesh.triangles()));
-            self.corners = planes.map(|[x, y, z]| [x, y, z, 0.0]);
+            self.outline = Outline::new(root, planes);
         }
         Ok(())
     }
 
     fn check(&self, mesh: &TriangleMesh) -> Result<(), RefitError> {
         let mut is_in = vec![false; mesh.len()];
-        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![self.root] };
+        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![self.outline.root] };
         while let Some(reference) = stack.pop() {
             if reference.is_node() {
                 stack.extend(children(&self.units[reference.unit()..]).map(|(_, child)| child));
                 continue;
             }
-            let mut last = None;
             let blocks = self.units[reference.leaf_units()].chunks_exact(BLOCK_UNITS);
-            for primitive in blocks.flat_map(|block| (0..LANES).map(|lane| triangle(block, lane).1)) {
+            for (_, primitive) in blocks.flat_map(triangles) {
                 let place = is_in.get_mut(primitive as usize).ok_or(RefitError::OtherTriangles(primitive))?;
-                // A triangle fills the places behind the last one of a leaf.
-                if *place && last != Some(primitive) {
+                if std::mem::replace(place, true) {
                     return Err(RefitError::Pieces);
                 }
-                (*place, last) = (true, Some(primitive));
             }
         }
         let is_finite = |triangle: &[[f32; 3]; 3]| triangle.iter().flatten().all(|x| x.is_finite());
@@ -66,9 +64,9 @@ impl Bvh8 {
 }
 
 /// Fits a subtree and gives its box.
-fn fit(units: &mut [Unit], reference: Ref, triangles: &[[[f32; 3]; 3]]) -> Planes {
+fn fit(units: &mut [Unit], reference: Ref, meshed: &[[[f32; 3]; 3]]) -> Planes {
     if !reference.is_node() {
-        return fit_leaf(&mut units[reference.leaf_units()], triangles);
+        return fit_leaf(&mut units[reference.leaf_units()], meshed);
     }
     let mut fitted = [(EMPTY, Ref::EMPTY); WIDTH];
     let node = reference.unit()..reference.unit() + NODE_UNITS;
@@ -77,24 +75,26 @@ fn fit(units: &mut [Unit], reference: Ref, triangles: &[[[f32; 3]; 3]]) -> Plane
     }
     let mut whole = EMPTY;
     for (planes, child) in fitted.iter_mut().filter(|(_, child)| *child != Ref::EMPTY) {
-        *planes = fit(units, *child, triangles);
+        *planes = fit(units, *child, meshed);
         whole = union(&whole, planes);
     }
     write_node(&mut units[node], &fitted);
     whole
 }
 
-fn fit_leaf(units: &mut [Unit], triangles: &[[[f32; 3]; 3]]) -> Planes {
+fn fit_leaf(units: &mut [Unit], meshed: &[[[f32; 3]; 3]]) -> Planes {
     let mut planes = EMPTY;
     for block in units.chunks_exact_mut(BLOCK_UNITS) {
-        let moved: [_; LANES] = std::array::from_fn(|lane| {
-            let primitive = triangle(block, lane).1;
-            (triangles[primitive as usize], primitive)
-        });
-        for point in moved.iter().flat_map(|(corners, _)| corners) {
+        let mut moved = [([[0.0; 3]; 3], NO_TRIANGLE); LANES];
+        let mut count = 0;
+        for ((_, primitive), moved) in triangles(block).zip(&mut moved) {
+            *moved = (meshed[primitive as usize], primitive);
+            count += 1;
+        }
+        for point in moved[..count].iter().flat_map(|(corners, _)| corners) {
             planes = union(&planes, &[*point, *point]);
         }
-        write_leaf(block, moved.into_iter());
+        write_leaf(block, moved.into_iter().take(count));
     }
     planes
 }

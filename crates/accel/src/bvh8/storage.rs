@@ -6,14 +6,17 @@
 
 use super::Bvh8;
 use super::build::binary::MAX_DEPTH;
-use super::layout::{self, BLOCK_UNITS, LANES, MAX_BLOCKS, MAX_UNITS, NODE_UNITS, Ref, Unit, WIDTH};
+use super::layout::{
+    self, BLOCK_UNITS, LANES, MAX_BLOCKS, MAX_UNITS, NO_TRIANGLE, NODE_UNITS, Ref, Unit, WIDTH,
+};
 use super::mapped::Units;
+use super::outline::Outline;
 use crate::cpu_level::CpuLevel;
 use bilux_math::hash::mix64;
 use std::io::{self, Read, Write};
 
 const MAGIC: &[u8; 8] = b"BILUXBV8";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 pub(super) const HEADER: usize = 64;
 const UNIT: usize = size_of::<Unit>();
 
@@ -47,7 +50,7 @@ pub enum StorageError {
 pub(super) struct Header {
     root: Ref,
     units: usize,
-    corners: [[f32; 4]; 2],
+    corners: [[f32; 3]; 2],
     checksum: u64,
     /// All but the checksum, as read.
     front: [u8; HEADER - 8],
@@ -62,9 +65,9 @@ impl Bvh8 {
         let mut header = Vec::with_capacity(HEADER);
         header.extend(MAGIC);
         header.extend(VERSION.to_le_bytes());
-        header.extend(self.root.0.to_le_bytes());
+        header.extend(self.outline.root.0.to_le_bytes());
         header.extend((self.units.len() as u64).to_le_bytes());
-        for corner in self.corners {
+        for corner in self.outline.corners {
             header.extend(corner[..3].iter().flat_map(|x| x.to_le_bytes()));
         }
         header.resize(HEADER - 8, 0);
@@ -115,7 +118,7 @@ impl Bvh8 {
         }
         check(&units, header.root)?;
         let level = CpuLevel::default().available();
-        Ok(Bvh8 { units, root: header.root, corners: header.corners, level })
+        Ok(Bvh8 { units, outline: Outline::new(header.root, header.corners), level })
     }
 }
 
@@ -134,7 +137,7 @@ impl Header {
             return Err(StorageError::Damaged("it has more units than can be numbered"));
         }
         let corner = |at: usize| [0, 4, 8].map(|k| f32::from_bits(word(at + k)));
-        let corners = [corner(24), corner(36)].map(|[x, y, z]| [x, y, z, 0.0]);
+        let corners = [corner(24), corner(36)];
         let front = std::array::from_fn(|i| bytes[i]);
         Ok(Header { root: Ref(word(12)), units: units as usize, corners, checksum: long(HEADER - 8), front })
     }
@@ -197,11 +200,18 @@ fn check(units: &[Unit], root: Ref) -> Result<(), StorageError> {
                 (0..WIDTH).map(|child| Ref(node[NODE_UNITS - 1].0[child])).filter(|r| *r != Ref::EMPTY);
             stack.extend(children.map(|child| (child, depth + 1)));
         } else {
+            let mut last = None;
             for block in units[range].chunks_exact(BLOCK_UNITS) {
                 for (corners, primitive) in (0..LANES).map(|lane| layout::triangle(block, lane)) {
-                    if primitive == u32::MAX || corners.iter().flatten().any(|x| !x.is_finite()) {
+                    if corners.iter().flatten().any(|x| !x.is_finite())
+                        || primitive > NO_TRIANGLE >> 1 && primitive != NO_TRIANGLE
+                    {
                         return Err(StorageError::Damaged("a leaf holds what is no triangle"));
                     }
+                    if last.is_some_and(|last| primitive <= last && last != NO_TRIANGLE) {
+                        return Err(StorageError::Damaged("the triangles of a leaf are not in order"));
+                    }
+                    last = Some(primitive);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! What must hold of every tree, whatever it is built over.
 
 use super::build::binary::MAX_DEPTH;
-use super::layout::{self, BLOCK_UNITS, LANES, Planes, Ref};
+use super::layout::{self, BLOCK_UNITS, Planes, Ref};
 use super::*;
 use crate::registry::Quality;
 use bilux_math::hash::{hash_words, unit_f32};
@@ -29,9 +29,9 @@ fn build(triangles: &[Triangle], quality: Quality) -> Bvh8 {
 /// no point in none; returns the depth, and whether any is in several.
 fn validate(tree: &Bvh8, triangles: &[Triangle]) -> (usize, bool) {
     let mut seen: Vec<Vec<Planes>> = vec![Vec::new(); triangles.len()];
-    let corners = tree.corners.map(|[x, y, z, _]| [x, y, z]);
+    let corners = tree.outline.corners.map(|[x, y, z, _]| [x, y, z]);
     let mut deepest = 0;
-    let mut stack: Vec<(Planes, Ref, usize)> = vec![(corners, tree.root, 1)];
+    let mut stack: Vec<(Planes, Ref, usize)> = vec![(corners, tree.outline.root, 1)];
     let within = |outer: &Planes, inner: &Planes| {
         (0..3).all(|k| outer[0][k] <= inner[0][k] && inner[1][k] <= outer[1][k])
     };
@@ -44,14 +44,12 @@ fn validate(tree: &Bvh8, triangles: &[Triangle]) -> (usize, bool) {
             }
             continue;
         }
+        let mut last = None;
         for block in tree.units[reference.leaf_units()].chunks_exact(BLOCK_UNITS) {
-            let mut last = None;
-            for lane in 0..LANES {
-                let (triangle, primitive) = layout::triangle(block, lane);
+            for (triangle, primitive) in layout::triangles(block) {
                 assert_eq!(triangle, triangles[primitive as usize]);
-                if last != Some(primitive) {
-                    seen[primitive as usize].push(planes);
-                }
+                assert!(last.is_none_or(|last| last < primitive), "primitives of a leaf ascend");
+                seen[primitive as usize].push(planes);
                 last = Some(primitive);
             }
         }
@@ -132,7 +130,7 @@ fn trees_do_not_depend_on_the_number_of_threads() {
             pool.install(|| build(&triangles, quality))
         };
         let (one, three) = (with(1), with(3));
-        assert!(one.root == three.root && *one.units == *three.units);
+        assert!(one.outline.root == three.outline.root && *one.units == *three.units);
     }
 }
 

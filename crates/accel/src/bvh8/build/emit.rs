@@ -82,12 +82,13 @@ impl Writer<'_> {
             + below.map(|k| self.measure(&self.binary.node(plan.children[k]), plan, scratch)).sum::<usize>()
     }
 
-    /// How many triangles a leaf made of a binary subtree has, and which; each once, whatever pieces there are.
+    /// How many triangles a leaf made of a binary subtree has, and which, in ascending order; each once, whatever pieces
+    /// there are.
     fn triangles_below(&self, node: &Node, primitives: &mut Vec<u32>) -> usize {
         primitives.clear();
         self.collect(node, primitives);
+        primitives.sort_unstable();
         if self.binary.has_pieces {
-            primitives.sort_unstable();
             primitives.dedup();
         }
         primitives.len()

@@ -11,7 +11,7 @@ mod reinsert;
 mod spatial;
 mod split;
 
-use super::layout::{BLOCK_UNITS, EMPTY, LANES, MAX_UNITS, Planes, Ref, Unit};
+use super::layout::{BLOCK_UNITS, EMPTY, LANES, MAX_UNITS, NO_TRIANGLE, Planes, Ref, Unit};
 use crate::mesh::TriangleMesh;
 use crate::registry::{BuildError, Quality};
 use binary::Binary;
@@ -32,7 +32,7 @@ pub(super) fn build(mesh: &TriangleMesh, quality: Quality) -> Result<Built, Buil
         return Ok(Built { units: Vec::new(), root: Ref::EMPTY, planes: EMPTY });
     }
     // More than can be numbered in the end, whatever the tree.
-    if items.len() > MAX_UNITS / BLOCK_UNITS * LANES {
+    if items.len() > MAX_UNITS / BLOCK_UNITS * LANES || mesh.len() > NO_TRIANGLE as usize / 2 {
         return Err(BuildError::TooManyNodes);
     }
     let binary = match quality {

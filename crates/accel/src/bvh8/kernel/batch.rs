@@ -38,7 +38,11 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
                 let ready = packet.prepare::<L>(chunk, &view);
                 if !packet::each::<L, ANY>(view, (&mut packet, &ready), chunk, query, &mut answer) {
                     wild::<ANY>(view, (ready.wild, chunk), query, &mut answer);
-                    stream::each::<L, ANY>(view, (&packet, &ready), chunk, query, &mut answer);
+                    if query.is_plain() {
+                        stream::each::<L, ANY, true>(view, (&packet, &ready), chunk, query, &mut answer);
+                    } else {
+                        stream::each::<L, ANY, false>(view, (&packet, &ready), chunk, query, &mut answer);
+                    }
                 }
             }
         }

@@ -3,9 +3,9 @@
 //! Nothing is fused: each product and difference is rounded as in `PreparedRay::cross`, first in f32 and, where the
 //! signs leave a triangle, in f64.
 
+use super::tame::halves;
 use crate::bvh8::layout::LANES;
-use crate::ray::{Culling, Query, Ray};
-use crate::slab::{least_of, limit_of};
+use crate::ray::{Culling, Ray};
 use std::arch::x86_64::*;
 
 /// A ray with a lane for each triangle. Axes are those of sheared space.
@@ -13,12 +13,11 @@ use std::arch::x86_64::*;
 pub(super) struct BlockRay {
     /// Bytes from the front of a block to the rows of each axis.
     rows: [usize; 3],
-    origin: [__m128; 3],
+    /// Less the origin.
+    back: [__m128; 3],
     shear: [__m128; 2],
     /// The direction along the third axis.
-    depth: f32,
-    t_min: f32,
-    exclude: u32,
+    depth: __m128,
 }
 
 /// Corners in sheared space: `[axis][corner]`.
@@ -26,12 +25,11 @@ pub(super) type Sheared = [[__m128; 3]; 3];
 
 /// Triangles that are hit between the ends that count.
 pub(super) struct Crossings {
-    /// A bit for each.
-    pub(super) mask: u32,
+    /// The sign bit of each.
+    within: __m128,
     t: __m128,
-    v: __m256d,
-    w: __m256d,
-    det: __m256d,
+    v: __m128,
+    w: __m128,
 }
 
 impl BlockRay {
@@ -39,21 +37,30 @@ impl BlockRay {
     /// The machine must have AVX.
     #[inline(always)]
     pub(super) unsafe fn new(ray: &Ray) -> BlockRay {
-        let [x, y, z] = [ray.direction[0].abs(), ray.direction[1].abs(), ray.direction[2].abs()];
-        // Without branches, as nobody could foresee them.
-        let axes = AXES[usize::from(y >= x) | (usize::from(z >= x) & usize::from(z >= y)) << 1];
-        // SAFETY: as the caller promises; axes are less than three.
+        // SAFETY: as the caller promises.
         unsafe {
-            let origin = |k: usize| _mm_set1_ps(*ray.origin.get_unchecked(axes[k]));
-            let direction = |k: usize| *ray.direction.get_unchecked(axes[k]);
-            let depth = direction(2);
+            let (origin, direction) = halves(ray);
+            let keep = _mm_loadu_ps([0x7fff_ffff_u32, 0x7fff_ffff, 0x7fff_ffff, 0].as_ptr().cast());
+            let sizes = _mm_and_ps(direction, keep);
+            let pairs = _mm_max_ps(sizes, _mm_permute_ps::<0b10_11_00_01>(sizes));
+            let greatest = _mm_max_ps(pairs, _mm_permute_ps::<0b01_00_11_10>(pairs));
+            let steepest = _mm_movemask_ps(_mm_cmpeq_ps(sizes, greatest));
+            // Without branches, as nobody could foresee them.
+            let Axes { order, rows } = &AXES[steepest as usize & 7];
+            let order = _mm_load_si128(order.as_ptr().cast());
+            let direction = _mm_permutevar_ps(direction, order);
+            let back = _mm_xor_ps(_mm_permutevar_ps(origin, order), _mm_set1_ps(-0.0));
+            let depth = _mm_permute_ps::<0b10_10_10_10>(direction);
+            let shear = _mm_div_ps(direction, depth);
             BlockRay {
-                rows: [axes[0] * ROW_BYTES, axes[1] * ROW_BYTES, axes[2] * ROW_BYTES],
-                origin: [origin(0), origin(1), origin(2)],
-                shear: [_mm_set1_ps(direction(0) / depth), _mm_set1_ps(direction(1) / depth)],
+                rows: *rows,
+                back: [
+                    _mm_permute_ps::<0>(back),
+                    _mm_permute_ps::<0b01_01_01_01>(back),
+                    _mm_permute_ps::<0b10_10_10_10>(back),
+                ],
+                shear: [_mm_permute_ps::<0>(shear), _mm_permute_ps::<0b01_01_01_01>(shear)],
                 depth,
-                t_min: ray.t_min,
-                exclude: ray.exclude.index,
             }
         }
     }
@@ -68,7 +75,9 @@ impl BlockRay {
         unsafe {
             let rows = |axis: usize| {
                 let row = block.add(self.rows[axis]).cast::<f32>();
-                [0, 1, 2].map(|corner| _mm_sub_ps(_mm_load_ps(row.add(corner * LANES)), self.origin[axis]))
+                let corner =
+                    |corner: usize| _mm_add_ps(self.back[axis], _mm_load_ps(row.add(corner * LANES)));
+                [corner(0), corner(1), corner(2)]
             };
             let z = rows(2);
             let lean = |axis: usize| {
@@ -79,13 +88,11 @@ impl BlockRay {
             let (x, y) = (lean(0), lean(1));
             let edge = |p: usize, q: usize| _mm_sub_ps(_mm_mul_ps(x[p], y[q]), _mm_mul_ps(y[p], x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
+            // What is not a number may drop out here, and reject less.
+            let (least, greatest) = (_mm_min_ps(_mm_min_ps(u, v), w), _mm_max_ps(_mm_max_ps(u, v), w));
             let zero = _mm_setzero_ps();
-            let either = |a, b, c| _mm_or_ps(_mm_or_ps(a, b), c);
-            let below = |a| _mm_cmplt_ps(a, zero);
-            let above = |a| _mm_cmpgt_ps(a, zero);
-            let mixed =
-                _mm_and_ps(either(below(u), below(v), below(w)), either(above(u), above(v), above(w)));
-            (_mm_movemask_ps(mixed) as u32 ^ 15, [x, y, z])
+            let one_side = _mm_or_ps(_mm_cmpnlt_ps(least, zero), _mm_cmpngt_ps(greatest, zero));
+            (_mm_movemask_ps(one_side) as u32, [x, y, z])
         }
     }
 
@@ -97,19 +104,19 @@ impl BlockRay {
     pub(super) unsafe fn not_behind(&self, [_, _, [a, b, c]]: &Sheared, t: f32) -> u32 {
         // SAFETY: as the caller promises.
         unsafe {
-            let pace = self.depth.abs();
-            let limit = _mm_set1_ps(limit_of(t, pace, least_of(pace)));
-            let near = if self.depth < 0.0 {
-                _mm_sub_ps(_mm_setzero_ps(), _mm_max_ps(_mm_max_ps(*a, *b), *c))
-            } else {
-                _mm_min_ps(_mm_min_ps(*a, *b), *c)
-            };
+            let minus = _mm_set1_ps(-0.0);
+            let (up, pace) = (_mm_and_ps(self.depth, minus), _mm_andnot_ps(minus, self.depth));
+            // `t` was rounded, and perhaps below all normal numbers; so may the product be.
+            let (more, least) = (_mm_set1_ps(1.0 + 4.0 * f32::EPSILON), _mm_set1_ps(f32::MIN_POSITIVE));
+            let limit = _mm_fmadd_ps(_mm_fmadd_ps(_mm_set1_ps(t), more, least), pace, least);
+            let (a, b, c) = (_mm_xor_ps(*a, up), _mm_xor_ps(*b, up), _mm_xor_ps(*c, up));
+            let near = _mm_min_ps(_mm_min_ps(a, b), c);
             // What is not a number is left to the exact stage.
             _mm_movemask_ps(_mm_cmpngt_ps(near, limit)) as u32
         }
     }
 
-    /// The exact stage, for the triangles of a mask that is not zero, and all that decides whether a hit counts.
+    /// The exact stage, and all that decides whether a hit counts. What the signs rejected is rejected here too.
     ///
     /// # Safety
     /// The machine must have AVX, and `block` must point to a block.
@@ -117,9 +124,9 @@ impl BlockRay {
     pub(super) unsafe fn cross(
         &self,
         block: *const u8,
-        (mask, corners): (u32, Sheared),
-        t_max: f32,
-        query: &Query,
+        corners: Sheared,
+        (ray, t_max): (&Ray, f32),
+        culling: Culling,
     ) -> Crossings {
         // SAFETY: as the caller promises; a block holds its primitives behind nine rows of four numbers.
         unsafe {
@@ -131,11 +138,13 @@ impl BlockRay {
                 |p: usize, q: usize| _mm256_sub_pd(_mm256_mul_pd(x[p], y[q]), _mm256_mul_pd(y[p], x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
             let zero = _mm256_setzero_pd();
-            let either = |a, b, c| _mm256_or_pd(_mm256_or_pd(a, b), c);
-            let below = |a| _mm256_cmp_pd::<_CMP_LT_OQ>(a, zero);
-            let above = |a| _mm256_cmp_pd::<_CMP_GT_OQ>(a, zero);
-            let mixed =
-                _mm256_and_pd(either(below(u), below(v), below(w)), either(above(u), above(v), above(w)));
+            let (least, greatest) =
+                (_mm256_min_pd(_mm256_min_pd(u, v), w), _mm256_max_pd(_mm256_max_pd(u, v), w));
+            // What is not a number makes the determinant none, and is refused there.
+            let one_side = _mm256_or_pd(
+                _mm256_cmp_pd::<_CMP_GE_OQ>(least, zero),
+                _mm256_cmp_pd::<_CMP_LE_OQ>(greatest, zero),
+            );
             let det = _mm256_add_pd(_mm256_add_pd(u, v), w);
             let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), det);
             let sound = _mm256_and_pd(
@@ -144,25 +153,39 @@ impl BlockRay {
             );
             let along = _mm256_add_pd(_mm256_mul_pd(u, z[0]), _mm256_mul_pd(v, z[1]));
             let along = _mm256_add_pd(along, _mm256_mul_pd(w, z[2]));
-            let depth = f64::from(self.depth);
-            let t = _mm256_cvtpd_ps(_mm256_div_pd(along, _mm256_mul_pd(det, _mm256_set1_pd(depth))));
+            let depth = _mm256_cvtps_pd(self.depth);
+            let t = _mm256_cvtpd_ps(_mm256_div_pd(along, _mm256_mul_pd(det, depth)));
             let within =
-                _mm_and_ps(_mm_cmpge_ps(t, _mm_set1_ps(self.t_min)), _mm_cmple_ps(t, _mm_set1_ps(t_max)));
+                _mm_and_ps(_mm_cmpge_ps(t, _mm_set1_ps(ray.t_min)), _mm_cmple_ps(t, _mm_set1_ps(t_max)));
             let primitives = _mm_load_si128(block.add(9 * LANES * 4).cast());
-            let excluded = _mm_cmpeq_epi32(primitives, _mm_set1_epi32(self.exclude as i32));
+            let excluded = _mm_cmpeq_epi32(primitives, _mm_set1_epi32(ray.exclude.index as i32));
             let within = _mm_andnot_ps(_mm_castsi128_ps(excluded), within);
-            let mut mask = mask & _mm_movemask_ps(within) as u32;
-            mask &= _mm256_movemask_pd(_mm256_andnot_pd(mixed, sound)) as u32;
-            if query.culling == Culling::Back {
-                let negative = _mm256_movemask_pd(det) as u32;
-                mask &= if depth < 0.0 { negative } else { !negative };
+            // No mesh has so many; places without a triangle do.
+            let within = _mm_andnot_ps(_mm_castsi128_ps(primitives), within);
+            let mut good = _mm256_and_pd(one_side, sound);
+            if culling == Culling::Back {
+                good = _mm256_and_pd(good, _mm256_cmp_pd::<_CMP_GT_OQ>(_mm256_mul_pd(det, depth), zero));
             }
-            Crossings { mask, t, v, w, det }
+            let good = _mm256_castpd_si256(good);
+            let (low, high) = (_mm256_castsi256_si128(good), _mm256_extracti128_si256::<1>(good));
+            let within = _mm_and_ps(within, _mm_castsi128_ps(_mm_packs_epi32(low, high)));
+            let over = |x| _mm256_cvtpd_ps(_mm256_div_pd(x, det));
+            Crossings { within, t, v: over(v), w: over(w) }
         }
     }
 }
 
 impl Crossings {
+    /// A bit for each.
+    ///
+    /// # Safety
+    /// The machine must have AVX.
+    #[inline(always)]
+    pub(super) unsafe fn mask(&self) -> u32 {
+        // SAFETY: as the caller promises.
+        unsafe { _mm_movemask_ps(self.within) as u32 }
+    }
+
     /// Distances of all four.
     #[inline(always)]
     pub(super) fn t(&self) -> [f32; LANES] {
@@ -171,21 +194,30 @@ impl Crossings {
     }
 
     /// Barycentric weights of all four.
-    ///
-    /// # Safety
-    /// The machine must have AVX.
     #[inline(always)]
-    pub(super) unsafe fn weights(&self) -> [[f32; LANES]; 2] {
-        // SAFETY: as the caller promises; both are 16 bytes.
-        unsafe {
-            let over = |x| std::mem::transmute(_mm256_cvtpd_ps(_mm256_div_pd(x, self.det)));
-            [over(self.v), over(self.w)]
-        }
+    pub(super) fn weights(&self) -> [[f32; LANES]; 2] {
+        // SAFETY: both are 16 bytes.
+        unsafe { std::mem::transmute([self.v, self.w]) }
     }
 }
 
 /// Of three corners along one axis.
 const ROW_BYTES: usize = 3 * LANES * 4;
 
-/// Which axes of space are x, y and z of sheared space: the last is the steepest, and the last of equals.
-const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+/// Which axes of space are x, y and z of sheared space, and bytes from the front of a block to the rows of each.
+#[repr(C, align(16))]
+struct Axes {
+    order: [u32; 4],
+    rows: [usize; 3],
+}
+
+/// By which components are the greatest, a bit for each: the last of them becomes z.
+const AXES: [Axes; 8] = [axes(2), axes(0), axes(1), axes(1), axes(2), axes(2), axes(2), axes(2)];
+
+const fn axes(z: usize) -> Axes {
+    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+    Axes {
+        order: [x as u32, y as u32, z as u32, z as u32],
+        rows: [x * ROW_BYTES, y * ROW_BYTES, z * ROW_BYTES],
+    }
+}

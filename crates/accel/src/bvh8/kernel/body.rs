@@ -211,7 +211,8 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match TameRay::new(ray, &view) {
-            Some(tame) => search::<L, C>(view, (ray, &tame, 0), query, count),
+            Some(tame) if query.is_plain() => search::<L, C, true>(view, (ray, &tame, 0), query, count),
+            Some(tame) => search::<L, C, false>(view, (ray, &tame, 0), query, count),
             None => plain::closest(view, ray, query, count),
         }
     }
@@ -223,7 +224,7 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
 /// # Safety
 /// As for [`closest`]; the ray must be tame.
 #[inline(always)]
-pub(super) unsafe fn search<L: Level, C: Count>(
+pub(super) unsafe fn search<L: Level, C: Count, const PLAIN: bool>(
     view: View<'_>,
     (ray, tame, met): (&Ray, &impl Boxes, u32),
     query: &Query,
@@ -235,7 +236,7 @@ pub(super) unsafe fn search<L: Level, C: Count>(
         let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = start(base, view.root, met);
+        let mut current = start(base, view.outline.root, met);
         let mut limit_bits = tame.limit_bits(nearest.t);
         let mut limit = L::splat(limit_bits);
         loop {
@@ -251,8 +252,8 @@ pub(super) unsafe fn search<L: Level, C: Count>(
             } else {
                 count.triangles(current.blocks() * LANES);
                 let before = nearest.t;
-                leaf::closest(ray, (place, current.blocks()), query, &mut nearest);
-                if query.early_out && nearest.t < before {
+                leaf::closest::<PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
+                if (PLAIN || query.early_out) && nearest.t < before {
                     limit_bits = tame.limit_bits(nearest.t);
                     limit = L::splat(limit_bits);
                 }
@@ -315,7 +316,8 @@ pub(super) unsafe fn any<L: Level, C: Count>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match TameRay::new(ray, &view) {
-            Some(tame) => search_any::<L, C>(view, (ray, &tame, 0), query, count),
+            Some(tame) if query.is_plain() => search_any::<L, C, true>(view, (ray, &tame, 0), query, count),
+            Some(tame) => search_any::<L, C, false>(view, (ray, &tame, 0), query, count),
             None => plain::any(view, ray, query, count),
         }
     }
@@ -326,7 +328,7 @@ pub(super) unsafe fn any<L: Level, C: Count>(
 /// # Safety
 /// As for [`search`].
 #[inline(always)]
-pub(super) unsafe fn search_any<L: Level, C: Count>(
+pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
     view: View<'_>,
     (ray, tame, met): (&Ray, &impl Boxes, u32),
     query: &Query,
@@ -337,7 +339,7 @@ pub(super) unsafe fn search_any<L: Level, C: Count>(
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = start_any::<L>(base, view.root, met, &mut stack);
+        let mut current = start_any::<L>(base, view.outline.root, met, &mut stack);
         let limit = L::splat(tame.limit_bits(ray.t_max));
         loop {
             count.node();
@@ -351,7 +353,7 @@ pub(super) unsafe fn search_any<L: Level, C: Count>(
                 }
             } else {
                 count.triangles(current.blocks() * LANES);
-                if leaf::any(ray, (place, current.blocks()), query) {
+                if leaf::any::<PLAIN>(ray, (place, current.blocks()), query) {
                     return true;
                 }
             }

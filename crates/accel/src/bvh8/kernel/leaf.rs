@@ -5,7 +5,7 @@
 
 use super::block::{BlockRay, Crossings};
 use crate::bvh8::layout::{BLOCK_UNITS, LANES, Unit};
-use crate::ray::{Hit, Query, Ray};
+use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;
 
 /// Where a leaf is, and how many blocks it has.
@@ -18,22 +18,39 @@ pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
 /// # Safety
 /// The machine must have AVX2, the ray be tame, and the leaf be one.
 #[inline(always)]
-pub(super) unsafe fn closest(ray: &Ray, (leaf, blocks): Leaf, query: &Query, nearest: &mut Hit) {
+pub(super) unsafe fn closest<const PLAIN: bool>(
+    ray: &Ray,
+    (leaf, blocks): Leaf,
+    query: &Query,
+    nearest: &mut Hit,
+) {
     // SAFETY: as the caller promises.
     unsafe {
-        let ray = BlockRay::new(black_box(ray));
+        let block_ray = BlockRay::new(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
-            let mut signs = ray.signs(block);
+            let mut signs = block_ray.signs(block);
             if signs.0 != 0 {
-                signs.0 &= ray.not_behind(&signs.1, nearest.t);
+                signs.0 &= block_ray.not_behind(&signs.1, nearest.t);
             }
             if signs.0 == 0 {
                 continue;
             }
-            let crossings = ray.cross(block, signs, nearest.t, query);
-            if crossings.mask != 0 {
-                keep(block, &crossings, query, nearest);
+            let culling = if PLAIN { Culling::None } else { query.culling };
+            let crossings = block_ray.cross(block, signs.1, (ray, nearest.t), culling);
+            let mask = crossings.mask();
+            if mask == 0 {
+                continue;
+            }
+            if PLAIN && mask & (mask - 1) == 0 {
+                let lane = mask.trailing_zeros() as usize & (LANES - 1);
+                let (t, [u, v]) = (crossings.t(), crossings.weights());
+                let (t, primitive) = (t[lane], primitive(block, lane));
+                if t < nearest.t || primitive < nearest.primitive {
+                    *nearest = Hit { t, u: u[lane], v: v[lane], primitive, instance: 0 };
+                }
+            } else {
+                keep::<PLAIN>(block, &crossings, query, nearest);
             }
         }
     }
@@ -42,18 +59,19 @@ pub(super) unsafe fn closest(ray: &Ray, (leaf, blocks): Leaf, query: &Query, nea
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-unsafe fn keep(block: *const u8, crossings: &Crossings, query: &Query, nearest: &mut Hit) {
+unsafe fn keep<const PLAIN: bool>(block: *const u8, crossings: &Crossings, query: &Query, nearest: &mut Hit) {
     // SAFETY: as the caller promises.
     unsafe {
-        let mut left = crossings.mask;
-        let (t, [u, v]) = (crossings.t(), crossings.weights());
+        let mut left = crossings.mask();
+        let (t, weights) = (crossings.t(), crossings.weights());
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (LANES - 1);
             left &= left - 1;
             let primitive = primitive(block, lane);
             if t[lane] < nearest.t || (t[lane] == nearest.t && primitive < nearest.primitive) {
-                let hit = Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 };
-                if query.keeps(&hit) {
+                let hit =
+                    Hit { t: t[lane], u: weights[0][lane], v: weights[1][lane], primitive, instance: 0 };
+                if PLAIN || query.keeps(&hit) {
                     *nearest = hit;
                 }
             }
@@ -66,19 +84,19 @@ unsafe fn keep(block: *const u8, crossings: &Crossings, query: &Query, nearest: 
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any(ray: &Ray, (leaf, blocks): Leaf, query: &Query) -> bool {
+pub(super) unsafe fn any<const PLAIN: bool>(ray: &Ray, (leaf, blocks): Leaf, query: &Query) -> bool {
     // SAFETY: as the caller promises.
     unsafe {
-        let t_max = ray.t_max;
-        let ray = BlockRay::new(black_box(ray));
+        let block_ray = BlockRay::new(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
-            let signs = ray.signs(block);
+            let signs = block_ray.signs(block);
             if signs.0 == 0 {
                 continue;
             }
-            let crossings = ray.cross(block, signs, t_max, query);
-            if crossings.mask != 0 && (query.filter.is_none() || keeps_any(block, &crossings, query)) {
+            let culling = if PLAIN { Culling::None } else { query.culling };
+            let crossings = block_ray.cross(block, signs.1, (ray, ray.t_max), culling);
+            if crossings.mask() != 0 && (PLAIN || keeps_any(block, &crossings, query)) {
                 return true;
             }
         }
@@ -93,8 +111,8 @@ pub(super) unsafe fn any(ray: &Ray, (leaf, blocks): Leaf, query: &Query) -> bool
 #[inline(never)]
 unsafe fn keeps_any(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
     // SAFETY: as the caller promises.
-    let (t, [u, v]) = unsafe { (crossings.t(), crossings.weights()) };
-    (0..LANES).filter(|lane| crossings.mask >> lane & 1 == 1).any(|lane| {
+    let (t, [u, v], mask) = unsafe { (crossings.t(), crossings.weights(), crossings.mask()) };
+    (0..LANES).filter(|lane| mask >> lane & 1 == 1).any(|lane| {
         // SAFETY: as above.
         let primitive = unsafe { primitive(block, lane) };
         query.keeps(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })

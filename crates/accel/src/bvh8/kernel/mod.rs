@@ -89,7 +89,8 @@ mod stream;
 #[cfg(target_arch = "x86_64")]
 mod tame;
 
-use super::layout::{Ref, Unit};
+use super::layout::Unit;
+use super::outline::Outline;
 use crate::counters::{Count, Nothing};
 use crate::cpu_level::CpuLevel;
 use crate::ray::{Hit, Query, Ray};
@@ -98,9 +99,7 @@ use crate::ray::{Hit, Query, Ray};
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) units: &'a [Unit],
-    pub(super) root: Ref,
-    /// Of the box around everything; the fourth numbers are zero.
-    pub(super) corners: [[f32; 4]; 2],
+    pub(super) outline: &'a Outline,
 }
 
 /// The nearest hit.

@@ -3,7 +3,7 @@
 
 use super::View;
 use crate::bvh8::build::binary::MAX_DEPTH;
-use crate::bvh8::layout::{BLOCK_UNITS, LANES, Ref, Unit, WIDTH, triangle};
+use crate::bvh8::layout::{BLOCK_UNITS, LANES, Ref, Unit, WIDTH, triangles};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use crate::slab::SlabRay;
@@ -18,8 +18,7 @@ pub(super) fn closest<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count:
     let mut limit = slabs.limit(nearest.t);
     walk(view, &slabs, limit, count, |leaf, count| {
         let before = nearest.t;
-        for (block, lane) in places(leaf) {
-            let (corners, primitive) = triangle(block, lane);
+        for (corners, primitive) in of_leaf(leaf) {
             nearest.test(&prepared, query, &corners, primitive);
         }
         count.triangles(leaf.len() / BLOCK_UNITS * LANES);
@@ -37,9 +36,8 @@ pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mu
     let limit = slabs.limit(ray.t_max);
     let mut found = false;
     walk(view, &slabs, limit, count, |leaf, count| {
-        for (block, lane) in places(leaf) {
+        for (corners, primitive) in of_leaf(leaf) {
             count.triangles(1);
-            let (corners, primitive) = triangle(block, lane);
             if hits(&prepared, query, &corners, primitive) {
                 found = true;
                 return ControlFlow::Break(());
@@ -52,13 +50,13 @@ pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mu
 
 fn prepare(view: &View<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
     let prepared = PreparedRay::new(ray)?;
-    let [min, max] = view.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+    let [min, max] = view.outline.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
     let pad = prepared.pad(&Aabb { min, max });
     Some((prepared, SlabRay::new(ray.origin, ray.direction, ray.t_min, pad)))
 }
 
-fn places(leaf: &[Unit]) -> impl Iterator<Item = (&[Unit], usize)> {
-    leaf.chunks_exact(BLOCK_UNITS).flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
+fn of_leaf(leaf: &[Unit]) -> impl Iterator<Item = ([[f32; 3]; 3], u32)> {
+    leaf.chunks_exact(BLOCK_UNITS).flat_map(triangles)
 }
 
 /// A subtree still to be visited, and where the ray enters it.
@@ -77,7 +75,8 @@ fn walk<C: Count>(
     count: &mut C,
     mut leaf: impl FnMut(&[Unit], &mut C) -> ControlFlow<(), f32>,
 ) {
-    let mut stack = [Waiting { reference: view.root, enter: f32::NEG_INFINITY }; MAX_DEPTH * (WIDTH - 1) + 1];
+    let mut stack =
+        [Waiting { reference: view.outline.root, enter: f32::NEG_INFINITY }; MAX_DEPTH * (WIDTH - 1) + 1];
     let mut height = 1;
     while height > 0 {
         height -= 1;

@@ -23,7 +23,7 @@ const NEAR_UNITS: usize = 3 << 14;
 /// # Safety
 /// The machine must have the level, the view must be sound, and the packet must be ready.
 #[inline(always)]
-pub(super) unsafe fn each<L: Level, const ANY: bool>(
+pub(super) unsafe fn each<L: Level, const ANY: bool, const PLAIN: bool>(
     view: View<'_>,
     (packet, ready): (&Packet, &Ready),
     rays: &[Ray],
@@ -35,9 +35,9 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
     let mut children = [0; WIDTH];
     // SAFETY: as the caller promises.
     unsafe {
-        if view.root.is_node() {
+        if view.outline.root.is_node() {
             // The root by all of them at once.
-            children = packet.meet_children::<L::Wide>(base.add(view.root.byte()), ready);
+            children = packet.meet_children::<L::Wide>(base.add(view.outline.root.byte()), ready);
             let [a, b, c, d, e, f, g, h] = children;
             let mut misses = left & !(a | b | c | d | e | f | g | h);
             left &= !misses;
@@ -53,16 +53,17 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
             (index < rays.len()).then(|| (index, &rays[index], lane(index)))
         };
         if view.units.len() > NEAR_UNITS {
-            return interleaved::<L, ANY>(view, &mut next, query, answer);
+            return interleaved::<L, ANY, PLAIN>(view, &mut next, query, answer);
         }
         while let Some((index, ray, (lane, met))) = next() {
             answer(
                 index,
                 if ANY {
-                    let found = body::search_any::<L, Nothing>(view, (ray, &lane, met), query, &mut Nothing);
+                    let found =
+                        body::search_any::<L, Nothing, PLAIN>(view, (ray, &lane, met), query, &mut Nothing);
                     found.then_some(SOMETHING)
                 } else {
-                    body::search::<L, Nothing>(view, (ray, &lane, met), query, &mut Nothing)
+                    body::search::<L, Nothing, PLAIN>(view, (ray, &lane, met), query, &mut Nothing)
                 },
             );
         }
@@ -72,7 +73,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
 /// # Safety
 /// As for [`each`].
 #[inline(always)]
-unsafe fn interleaved<'r, L: Level, const ANY: bool>(
+unsafe fn interleaved<'r, L: Level, const ANY: bool, const PLAIN: bool>(
     view: View<'_>,
     next: &mut impl FnMut() -> Option<Next<'r>>,
     query: &Query,
@@ -85,7 +86,7 @@ unsafe fn interleaved<'r, L: Level, const ANY: bool>(
     for room in &mut rooms {
         let Some(ray) = next() else { break };
         // SAFETY: as the caller promises.
-        walks[active] = Some(unsafe { Walk::new::<L, ANY>(&view, ray, Stack::new(room)) });
+        walks[active] = Some(unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, Stack::new(room)) });
         active += 1;
     }
     let mut way = 0;
@@ -93,14 +94,14 @@ unsafe fn interleaved<'r, L: Level, const ANY: bool>(
         way = if way < active { way } else { 0 };
         let Some(walk) = &mut walks[way] else { return };
         // SAFETY: as the caller promises.
-        if unsafe { walk.step::<L, ANY>(base, query) } {
+        if unsafe { walk.step::<L, ANY, PLAIN>(base, query) } {
             way += 1;
             continue;
         }
         answer(walk.index, (walk.nearest.primitive != u32::MAX).then_some(walk.nearest));
         match next() {
             // SAFETY: as the caller promises.
-            Some(ray) => *walk = unsafe { Walk::new::<L, ANY>(&view, ray, walk.stack.cleared()) },
+            Some(ray) => *walk = unsafe { Walk::new::<L, ANY, PLAIN>(&view, ray, walk.stack.cleared()) },
             None => {
                 active -= 1;
                 walks.swap(way, active);
@@ -128,7 +129,7 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn new<L: Level, const ANY: bool>(
+    unsafe fn new<L: Level, const ANY: bool, const PLAIN: bool>(
         view: &View<'_>,
         (index, ray, (lane, met)): Next<'r>,
         mut stack: Stack,
@@ -138,7 +139,11 @@ impl<'r> Walk<'r> {
         // SAFETY: as the caller promises.
         let current = unsafe {
             let base = view.units.as_ptr().cast::<u8>();
-            if ANY { start_any::<L>(base, view.root, met, &mut stack) } else { start(base, view.root, met) }
+            if ANY {
+                start_any::<L>(base, view.outline.root, met, &mut stack)
+            } else {
+                start(base, view.outline.root, met)
+            }
         };
         Walk { index, ray, lane, nearest, limit_bits, current, stack }
     }
@@ -148,7 +153,11 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn step<L: Level, const ANY: bool>(&mut self, base: *const u8, query: &Query) -> bool {
+    unsafe fn step<L: Level, const ANY: bool, const PLAIN: bool>(
+        &mut self,
+        base: *const u8,
+        query: &Query,
+    ) -> bool {
         // SAFETY: as the caller promises; references lead to whole nodes and leaves.
         unsafe {
             let place = base.add(self.current.byte());
@@ -164,7 +173,7 @@ impl<'r> Walk<'r> {
                     prefetch(base, self.current);
                     return true;
                 }
-            } else if self.leaf::<ANY>(place, query) {
+            } else if self.leaf::<ANY, PLAIN>(place, query) {
                 return false;
             }
             self.next::<ANY>(base)
@@ -176,19 +185,19 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn leaf<const ANY: bool>(&mut self, place: *const u8, query: &Query) -> bool {
+    unsafe fn leaf<const ANY: bool, const PLAIN: bool>(&mut self, place: *const u8, query: &Query) -> bool {
         let before = self.nearest.t;
         let leaf = (place, self.current.blocks());
         // SAFETY: as the caller promises.
         unsafe {
             if ANY {
-                let found = leaf::any(self.ray, leaf, query);
+                let found = leaf::any::<PLAIN>(self.ray, leaf, query);
                 self.nearest.primitive = if found { 0 } else { u32::MAX };
                 return found;
             }
-            leaf::closest(self.ray, leaf, query, &mut self.nearest);
+            leaf::closest::<PLAIN>(self.ray, leaf, query, &mut self.nearest);
         }
-        if query.early_out && self.nearest.t < before {
+        if (PLAIN || query.early_out) && self.nearest.t < before {
             self.limit_bits = self.lane.limit_bits(self.nearest.t);
         }
         false

@@ -11,14 +11,15 @@
 //! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
 
 use super::View;
+use crate::bvh8::outline::FAR_PAD;
 use crate::ray::Ray;
-use crate::slab::{SLACK, STEEPEST, least_of, limit_of};
-use crate::triangle::PAD;
+use crate::slab::{SLACK, STEEPEST};
 use std::arch::x86_64::*;
+use std::mem::offset_of;
 
-/// A ray with a lane for each child of a node.
+/// A ray with a lane for each child of a node. Distances are `t`.
 #[derive(Clone, Copy)]
-struct BoxRay {
+pub(super) struct TameRay {
     /// Bytes from the front of a node to the planes where the ray comes in, and goes out.
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
@@ -28,74 +29,79 @@ struct BoxRay {
     nearest: __m256i,
 }
 
-/// A ray for boxes, and for how far it looks.
-#[derive(Clone, Copy)]
-pub(super) struct TameRay {
-    boxes: BoxRay,
-    /// The greatest component of the direction, without its sign.
-    pace: f32,
-}
+/// Directions shorter than this are left to the plain kernel.
+const SHORTEST: f32 = 1.0 / STEEPEST;
 
-/// 4 units of f32 rounding: what is added to the pad of the lemma here.
-pub(super) const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
+/// Components less than this are taken to be this: of a direction that is long enough, a tilt as of [`STEEPEST`].
+const LEVEL: f32 = SHORTEST * SHORTEST;
+
+/// What makes up for underflow in distances: a normal number, since others are slow.
+const LEAST: f32 = 4.0 * f32::MIN_POSITIVE;
+
+/// Keeps the sizes of three numbers, and makes the fourth zero; twice.
+const SIZES: [u32; 8] = [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
 
 impl TameRay {
     /// `None` for rays that are not tame, or can hit nothing.
     ///
     /// # Safety
-    /// The machine must have AVX2.
+    /// The machine must have AVX2 and FMA.
     #[inline(always)]
     pub(super) unsafe fn new(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
-        // SAFETY: as the caller promises; corners are four floats each.
+        // SAFETY: as the caller promises; an outline has four numbers for the centre and eight for the reach.
         unsafe {
-            let wide = |v: [f32; 3]| _mm_setr_ps(v[0], v[1], v[2], 0.0);
-            let (origin, direction) = (wide(ray.origin), wide(ray.direction));
-            let [low, high] = [0, 1].map(|side| _mm_loadu_ps(view.corners[side].as_ptr()));
-            let minus = _mm_set1_ps(-0.0);
-            let size = |v| _mm_andnot_ps(minus, v);
-            let (sizes, pace) = (size(direction), greatest(size(direction)));
-            let far = greatest(_mm_max_ps(size(_mm_sub_ps(low, origin)), size(_mm_sub_ps(high, origin))));
-            let pad = _mm_add_ps(
-                _mm_add_ps(_mm_mul_ps(far, _mm_set1_ps(PAD)), _mm_set1_ps(4.0 * f32::MIN_POSITIVE)),
-                _mm_mul_ps(size(origin), _mm_set1_ps(BIAS_PAD)),
-            );
-            let steepest = _mm_set1_ps(STEEPEST);
-            let inverse = _mm_div_ps(pace, direction);
-            let inverse = _mm_min_ps(_mm_max_ps(inverse, _mm_or_ps(minus, steepest)), steepest);
-            // Rays come in where planes are farther, and go out where they are nearer.
-            let pad = _mm_or_ps(pad, _mm_and_ps(direction, minus));
-            let enter = _mm_mul_ps(_mm_add_ps(origin, pad), inverse);
-            let leave = _mm_mul_ps(_mm_sub_ps(origin, pad), inverse);
-            // Sums of sizes are finite when all of them are; no comparison holds for what is not a number.
-            let sum = _mm_add_ps(_mm_add_ps(size(enter), size(leave)), sizes);
-            let finite = _mm_movemask_ps(_mm_cmplt_ps(sum, _mm_set1_ps(f32::INFINITY))) & 7 == 7;
-            let length = _mm_cvtss_f32(pace);
-            let ends = ray.t_min >= 0.0 && ray.t_min <= ray.t_max;
-            if !(finite && ends && length > 0.0) {
+            let outline = view.outline;
+            let (origin, direction) = halves(ray);
+            let away = _mm_sub_ps(origin, _mm_loadu_ps(outline.centre.as_ptr()));
+            let both = _mm256_insertf128_ps::<1>(_mm256_castps128_ps256(away), direction);
+            let sizes = _mm256_and_ps(both, _mm256_loadu_ps(SIZES.as_ptr().cast()));
+            let pairs = _mm256_max_ps(sizes, _mm256_permute_ps::<0b10_11_00_01>(sizes));
+            let greatest = _mm256_max_ps(pairs, _mm256_permute_ps::<0b01_00_11_10>(pairs));
+            // What is not a number drops out of no more than half of the lanes, so that one of them fails.
+            let within = _mm256_cmp_ps::<_CMP_LE_OQ>(greatest, _mm256_loadu_ps(outline.reach.as_ptr()));
+            let (far, pace) = (_mm256_castps256_ps128(greatest), _mm256_extractf128_ps::<1>(greatest));
+            let long_enough = _mm_cvtss_f32(pace) >= SHORTEST;
+            if !(_mm256_movemask_ps(within) == 0xff && long_enough && ray.t_min >= 0.0) {
                 return None;
             }
-            let s = ray.t_min * length;
-            let least = s - s * SLACK - least_of(length);
-            // What is not a number comes from infinities only.
-            let least = if least > 0.0 { least } else { 0.0 };
-            let boxes = BoxRay::new(direction, inverse, enter, leave, least);
-            Some(TameRay { boxes, pace: length })
+            let minus = _mm_set1_ps(-0.0);
+            let tilted = _mm_max_ps(_mm_andnot_ps(minus, direction), _mm_set1_ps(LEVEL));
+            let tilted = _mm_or_ps(tilted, _mm_and_ps(direction, minus));
+            let inverse = _mm_div_ps(_mm_set1_ps(1.0), tilted);
+            let pad = _mm_fmadd_ps(far, _mm_set1_ps(FAR_PAD), _mm_set1_ps(outline.pad));
+            // Rays come in where planes are farther, and go out where they are nearer.
+            let (bias, steep) =
+                (_mm_mul_ps(_mm_xor_ps(origin, minus), inverse), _mm_andnot_ps(minus, inverse));
+            let (enter, leave) = (_mm_fnmadd_ps(pad, steep, bias), _mm_fmadd_ps(pad, steep, bias));
+            let nearest = _mm_fmsub_ss(_mm_set_ss(ray.t_min), _mm_set_ss(1.0 - SLACK), _mm_set_ss(LEAST));
+            let nearest = _mm_max_ss(nearest, _mm_setzero_ps());
+            let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
+            let lane = |v: __m128, lane: i32| {
+                _mm256_permutevar8x32_ps(_mm256_castps128_ps256(v), _mm256_set1_epi32(lane))
+            };
+            let spread = |v: __m128| [_mm256_broadcastss_ps(v), lane(v, 1), lane(v, 2)];
+            Some(TameRay {
+                enter_rows,
+                leave_rows,
+                inverse: spread(inverse),
+                enter_bias: spread(enter),
+                leave_bias: spread(leave),
+                nearest: _mm256_castps_si256(_mm256_broadcastss_ps(nearest)),
+            })
         }
     }
 }
 
-/// The greatest of the first three, in all four.
+/// The origin and the direction of a ray, and what stands behind each of them.
 ///
 /// # Safety
 /// Asks for SSE, which every machine of this kind has.
 #[inline(always)]
-unsafe fn greatest(v: __m128) -> __m128 {
-    // SAFETY: every x86-64 machine has SSE.
-    unsafe {
-        let rotated = _mm_max_ps(v, _mm_shuffle_ps::<0b11_00_10_01>(v, v));
-        let pair = _mm_max_ps(rotated, _mm_shuffle_ps::<0b11_01_00_10>(v, v));
-        _mm_shuffle_ps::<0>(pair, pair)
-    }
+pub(super) unsafe fn halves(ray: &Ray) -> (__m128, __m128) {
+    const { assert!(offset_of!(Ray, direction) == 12 && offset_of!(Ray, t_min) == 24) }
+    let numbers = std::ptr::from_ref(ray).cast::<f32>();
+    // SAFETY: a ray begins with its origin, its direction and its least `t`.
+    unsafe { (_mm_loadu_ps(numbers), _mm_loadu_ps(numbers.add(3))) }
 }
 
 /// Bytes from the front of a node to the planes where a ray comes in, and goes out, by the signs of its direction.
@@ -110,45 +116,24 @@ pub(super) const ROWS: [[[usize; 3]; 2]; 8] = {
     rows
 };
 
-impl BoxRay {
-    /// # Safety
-    /// The machine must have AVX2.
-    #[inline(always)]
-    unsafe fn new(direction: __m128, inverse: __m128, enter: __m128, leave: __m128, least: f32) -> BoxRay {
-        // SAFETY: as the caller promises.
-        unsafe {
-            let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
-            let lane = |v: __m128, lane: i32| {
-                _mm256_permutevar8x32_ps(_mm256_castps128_ps256(v), _mm256_set1_epi32(lane))
-            };
-            let spread = |v: __m128| [_mm256_broadcastss_ps(v), lane(v, 1), lane(v, 2)];
-            BoxRay {
-                enter_rows,
-                leave_rows,
-                inverse: spread(inverse),
-                enter_bias: spread(enter),
-                leave_bias: spread(leave),
-                nearest: _mm256_set1_epi32(least.to_bits() as i32),
-            }
-        }
-    }
-}
-
 impl Boxes for TameRay {
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
         // SAFETY: as the trait demands.
         unsafe {
-            let BoxRay { inverse, enter_bias, leave_bias, nearest, .. } = self.boxes;
-            let rows = (&self.boxes.enter_rows, &self.boxes.leave_rows);
-            span(node, rows, inverse, (enter_bias, leave_bias), (nearest, limit))
+            let rows = (&self.enter_rows, &self.leave_rows);
+            span(node, rows, self.inverse, (self.enter_bias, self.leave_bias), (self.nearest, limit))
         }
     }
 
     #[inline(always)]
     fn limit_bits(&self, t: f32) -> u32 {
-        limit_of(t, self.pace, least_of(self.pace)).to_bits()
+        // SAFETY: who has a tame ray has FMA.
+        unsafe {
+            let t = _mm_fmadd_ss(_mm_set_ss(t), _mm_set_ss(1.0 + 2.0 * SLACK), _mm_set_ss(LEAST));
+            _mm_extract_ps::<0>(t) as u32
+        }
     }
 }
 
@@ -183,7 +168,7 @@ pub(super) unsafe fn span(
     unsafe {
         let distance = |row: usize, k: usize, bias: __m256| {
             let planes = _mm256_load_ps(node.add(row).cast());
-            _mm256_castps_si256(_mm256_fmsub_ps(planes, inverse[k], bias))
+            _mm256_castps_si256(_mm256_fmadd_ps(planes, inverse[k], bias))
         };
         let enter = |k: usize| distance(enter_rows[k], k, enter_bias[k]);
         let leave = |k: usize| distance(leave_rows[k], k, leave_bias[k]);

@@ -164,7 +164,7 @@ impl<W: Wide> Extremes<W> {
     /// The machine must have the level.
     #[inline(always)]
     unsafe fn are_near(&self, down: [bool; 3], axes: [usize; 3], view: &View<'_>) -> bool {
-        let extent = |k: usize| view.corners[1][k] - view.corners[0][k];
+        let extent = |k: usize| view.outline.corners[1][k] - view.outline.corners[0][k];
         let size = extent(0).max(extent(1)).max(extent(2));
         let mut near = true;
         // SAFETY: as the caller promises.

@@ -22,7 +22,7 @@ use super::View;
 use super::batch::SOMETHING;
 use super::body::{Level, Room, Stack, reference};
 use super::leaf::BLOCK_BYTES;
-use crate::bvh8::layout::{LANES, Ref};
+use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
 use triangle::Group;
@@ -50,7 +50,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
 ) -> bool {
-    if !view.root.is_node() || !frustum::alike(rays) {
+    if !view.outline.root.is_node() || !frustum::alike(rays) {
         return false;
     }
     // SAFETY: as the caller promises.
@@ -83,7 +83,7 @@ impl Walk<'_> {
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = view.root;
+        let mut current = view.outline.root;
         let mut limit_bits = self.frustum.limit.to_bits();
         // SAFETY: as the caller promises; references lead to whole nodes and leaves.
         unsafe {
@@ -181,8 +181,7 @@ impl Walk<'_> {
                     let block = base.add(leaf.byte() + index * BLOCK_BYTES);
                     let primitives = block.add(9 * LANES * 4).cast::<u32>();
                     for lane in 0..LANES {
-                        // The last triangle fills a block.
-                        if lane > 0 && *primitives.add(lane) == *primitives.add(lane - 1) {
+                        if *primitives.add(lane) == NO_TRIANGLE {
                             break;
                         }
                         let hit = group.test::<ANY>(block, lane, mask);

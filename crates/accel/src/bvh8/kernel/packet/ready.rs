@@ -3,10 +3,11 @@
 
 use super::super::View;
 use super::super::body::Level;
-use super::super::tame::{BIAS_PAD, Boxes, ROWS, span};
+use super::super::tame::{Boxes, ROWS, span};
 use super::rays::{Packet, Row};
 use super::wide::Wide;
 use crate::bvh8::layout::WIDTH;
+use crate::bvh8::outline::BIAS_PAD;
 use crate::ray::Ray;
 use crate::slab::{SLACK, STEEPEST, least_of, limit_of};
 use crate::triangle::PAD;
@@ -115,7 +116,11 @@ impl Boxes for Lane<'_> {
             let all = |row: &Row<f32>| _mm256_set1_ps(*row.at(self.lane));
             let three = |rows: &[Row<f32>; 3]| [all(&rows[0]), all(&rows[1]), all(&rows[2])];
             let packet = self.packet;
-            let bias = (three(&packet.enter_bias), three(&packet.leave_bias));
+            let minus = |[x, y, z]: [__m256; 3]| {
+                let m = _mm256_set1_ps(-0.0);
+                [_mm256_xor_ps(x, m), _mm256_xor_ps(y, m), _mm256_xor_ps(z, m)]
+            };
+            let bias = (minus(three(&packet.enter_bias)), minus(three(&packet.leave_bias)));
             let nearest = _mm256_castps_si256(all(&packet.nearest));
             let [enter_rows, leave_rows] = self.rows;
             span(node, (enter_rows, leave_rows), three(&packet.inverse), bias, (nearest, limit))
@@ -144,7 +149,7 @@ unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &View<'_>, read
         let pace = sizes[0].max(sizes[1]).max(sizes[2]);
         let mut far = W::splat(0.0);
         for k in 0..3 {
-            let to = |side: usize| W::splat(view.corners[side][k]).sub(origin[k]).abs();
+            let to = |side: usize| W::splat(view.outline.corners[side][k]).sub(origin[k]).abs();
             far = to(0).max(to(1)).max(far);
         }
         let pad = far.mul(W::splat(PAD)).add(W::splat(4.0 * f32::MIN_POSITIVE));

@@ -1,0 +1,54 @@
+//! A tree as a whole: what a ray has to know of it before it walks.
+
+use super::layout::Ref;
+use crate::triangle::PAD;
+
+/// Where the tree begins, and how large it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outline {
+    pub(super) root: Ref,
+    /// Of the box around everything; the fourth numbers are zero.
+    pub(super) corners: [[f32; 4]; 2],
+    /// Of that box; the fourth number is zero.
+    pub(super) centre: [f32; 4],
+    /// What a ray must not exceed for the wide kernels: four times how far its origin is from the centre, on any axis,
+    /// and four times its greatest component.
+    pub(super) reach: [f32; 8],
+    /// How far boxes have to grow for a ray from the centre.
+    pub(super) pad: f32,
+}
+
+/// Sizes beyond this, or below its inverse, are left to the plain kernel.
+const LARGEST: f32 = (1u64 << 40) as f32;
+
+/// 4 units of f32 rounding: what the fused box test adds to the pad of the lemma; see `docs/adr/0008-bvh8.md`.
+pub(super) const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
+
+/// How far boxes have to grow for each unit of distance between the ray's origin and the centre; two more, for the
+/// rounding of that distance and of the sum.
+pub(super) const FAR_PAD: f32 = PAD + BIAS_PAD + 2.0 / 16_777_216.0;
+
+/// Makes up for underflow: 2⁻⁸⁴ over directions as short as 2⁻⁴⁰ is still a normal number.
+const LEAST_PAD: f32 = 1.0 / (1u128 << 84) as f32;
+
+impl Outline {
+    pub(super) fn new(root: Ref, corners: [[f32; 3]; 2]) -> Outline {
+        let middle = |k: usize| corners[0][k] * 0.5 + corners[1][k] * 0.5;
+        let centre = [middle(0), middle(1), middle(2)];
+        let away = |k: usize| (corners[0][k] - centre[k]).abs().max((corners[1][k] - centre[k]).abs());
+        let half = away(0).max(away(1)).max(away(2));
+        let off = centre[0].abs().max(centre[1].abs()).max(centre[2].abs());
+        // Twice the roundings of this sum.
+        let pad = (half * PAD + off * BIAS_PAD + LEAST_PAD) * (1.0 + 16.0 / 16_777_216.0);
+        // An empty box, and one of which something is not a number, is nobody's.
+        let fits = half <= LARGEST && off <= LARGEST;
+        let (reach, pace) = if fits { (LARGEST, LARGEST) } else { (-1.0, -1.0) };
+        Outline {
+            root,
+            corners: corners.map(|[x, y, z]| [x, y, z, 0.0]),
+            centre: [centre[0], centre[1], centre[2], 0.0],
+            reach: [reach, reach, reach, reach, pace, pace, pace, pace],
+            pad,
+        }
+    }
+}
