@@ -106,12 +106,16 @@ pub struct Query<'a> {
 
 impl Default for Query<'_> {
     fn default() -> Self {
-        Query { culling: Culling::None, filter: None, early_out: true, cull_by_partition: true }
+        Query::PLAIN
     }
 }
 
 impl Query<'_> {
-    /// True of what most are asked: all hits count, and the search may end early.
+    /// What most are asked: all hits count, and the search may end early.
+    pub(crate) const PLAIN: Query<'static> =
+        Query { culling: Culling::None, filter: None, early_out: true, cull_by_partition: true };
+
+    /// True of what asks no more than [`Query::PLAIN`].
     #[inline(always)]
     pub(crate) fn is_plain(&self) -> bool {
         self.filter.is_none() && self.culling == Culling::None && self.early_out

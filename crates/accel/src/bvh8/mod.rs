@@ -67,13 +67,13 @@ impl Bvh8 {
 }
 
 impl Traverse for Bvh8 {
-    #[inline]
+    #[inline(always)]
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
         count.ray();
         kernel::closest(self.level, self.view()?, ray, query, count)
     }
 
-    #[inline]
+    #[inline(always)]
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
         self.view().is_some_and(|view| kernel::any(self.level, view, ray, query, count))

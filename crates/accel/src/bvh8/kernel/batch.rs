@@ -57,9 +57,9 @@ unsafe fn one<L: Level, const ANY: bool>(view: View<'_>, ray: &Ray, query: &Quer
     // SAFETY: as the caller promises.
     unsafe {
         if ANY {
-            body::any::<L, Nothing>(view, ray, query, &mut Nothing).then_some(SOMETHING)
+            body::any::<L, Nothing, false>(view, ray, query, &mut Nothing).then_some(SOMETHING)
         } else {
-            body::closest::<L, Nothing>(view, ray, query, &mut Nothing)
+            body::closest::<L, Nothing, false>(view, ray, query, &mut Nothing)
         }
     }
 }

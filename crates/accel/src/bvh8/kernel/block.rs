@@ -96,26 +96,6 @@ impl BlockRay {
         }
     }
 
-    /// A bit for each triangle that does not lie wholly behind `t`: the exact distance is a mean of those of the corners.
-    ///
-    /// # Safety
-    /// The machine must have AVX.
-    #[inline(always)]
-    pub(super) unsafe fn not_behind(&self, [_, _, [a, b, c]]: &Sheared, t: f32) -> u32 {
-        // SAFETY: as the caller promises.
-        unsafe {
-            let minus = _mm_set1_ps(-0.0);
-            let (up, pace) = (_mm_and_ps(self.depth, minus), _mm_andnot_ps(minus, self.depth));
-            // `t` was rounded, and perhaps below all normal numbers; so may the product be.
-            let (more, least) = (_mm_set1_ps(1.0 + 4.0 * f32::EPSILON), _mm_set1_ps(f32::MIN_POSITIVE));
-            let limit = _mm_fmadd_ps(_mm_fmadd_ps(_mm_set1_ps(t), more, least), pace, least);
-            let (a, b, c) = (_mm_xor_ps(*a, up), _mm_xor_ps(*b, up), _mm_xor_ps(*c, up));
-            let near = _mm_min_ps(_mm_min_ps(a, b), c);
-            // What is not a number is left to the exact stage.
-            _mm_movemask_ps(_mm_cmpngt_ps(near, limit)) as u32
-        }
-    }
-
     /// The exact stage, and all that decides whether a hit counts. What the signs rejected is rejected here too.
     ///
     /// # Safety

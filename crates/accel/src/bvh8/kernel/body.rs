@@ -188,12 +188,11 @@ pub(super) unsafe fn choose<L: Level>(
             stack.put(later, if swap { near } else { far });
             return if swap { b } else { a };
         }
-        let before = stack.references();
         L::push_sorted(node, mask, enter, stack);
-        for later in 0..mask.count_ones() as usize - 1 {
-            prefetch(base, Ref(*before.add(later)));
-        }
-        stack.take_reference()
+        let nearest = stack.take_reference();
+        // Of those that wait, the next only: how many wait nobody can foresee.
+        prefetch(base, Ref(*stack.references().sub(1)));
+        nearest
     }
 }
 
@@ -202,7 +201,7 @@ pub(super) unsafe fn choose<L: Level>(
 /// # Safety
 /// The machine must have the level, and the view must be sound.
 #[inline(always)]
-pub(super) unsafe fn closest<L: Level, C: Count>(
+pub(super) unsafe fn closest<L: Level, C: Count, const PLAIN: bool>(
     view: View<'_>,
     ray: &Ray,
     query: &Query,
@@ -211,8 +210,7 @@ pub(super) unsafe fn closest<L: Level, C: Count>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match TameRay::new(ray, &view) {
-            Some(tame) if query.is_plain() => search::<L, C, true>(view, (ray, &tame, 0), query, count),
-            Some(tame) => search::<L, C, false>(view, (ray, &tame, 0), query, count),
+            Some(tame) => search::<L, C, PLAIN>(view, (ray, &tame, 0), query, count),
             None => plain::closest(view, ray, query, count),
         }
     }
@@ -307,7 +305,7 @@ pub(super) unsafe fn start_any<L: Level>(base: *const u8, root: Ref, met: u32, s
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any<L: Level, C: Count>(
+pub(super) unsafe fn any<L: Level, C: Count, const PLAIN: bool>(
     view: View<'_>,
     ray: &Ray,
     query: &Query,
@@ -316,8 +314,7 @@ pub(super) unsafe fn any<L: Level, C: Count>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match TameRay::new(ray, &view) {
-            Some(tame) if query.is_plain() => search_any::<L, C, true>(view, (ray, &tame, 0), query, count),
-            Some(tame) => search_any::<L, C, false>(view, (ray, &tame, 0), query, count),
+            Some(tame) => search_any::<L, C, PLAIN>(view, (ray, &tame, 0), query, count),
             None => plain::any(view, ray, query, count),
         }
     }

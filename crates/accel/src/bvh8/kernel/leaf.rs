@@ -29,10 +29,7 @@ pub(super) unsafe fn closest<const PLAIN: bool>(
         let block_ray = BlockRay::new(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
-            let mut signs = block_ray.signs(block);
-            if signs.0 != 0 {
-                signs.0 &= block_ray.not_behind(&signs.1, nearest.t);
-            }
+            let signs = block_ray.signs(block);
             if signs.0 == 0 {
                 continue;
             }

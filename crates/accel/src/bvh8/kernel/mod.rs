@@ -8,32 +8,60 @@
 #[cfg(target_arch = "x86_64")]
 macro_rules! entries {
     ($level:ty, $features:literal) => {
-        /// See [`super::closest`].
+        /// See [`super::closest`]; for [`crate::Query::PLAIN`].
         ///
         /// # Safety
         /// The machine must have the level, and the view must be sound; as for all that follow.
         #[target_feature(enable = $features)]
         pub(super) unsafe fn closest<C: $crate::counters::Count>(
+            units: &[super::Unit],
+            outline: &super::Outline,
+            ray: &$crate::Ray,
+            count: &mut C,
+        ) -> Option<$crate::Hit> {
+            let view = super::View { units, outline };
+            // SAFETY: as the caller promises.
+            unsafe { super::body::closest::<$level, C, true>(view, ray, &$crate::Query::PLAIN, count) }
+        }
+
+        /// See [`super::closest`].
+        // SAFETY: as above.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn closest_by<C: $crate::counters::Count>(
             view: super::View<'_>,
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
         ) -> Option<$crate::Hit> {
             // SAFETY: as the caller promises.
-            unsafe { super::body::closest::<$level, C>(view, ray, query, count) }
+            unsafe { super::body::closest::<$level, C, false>(view, ray, query, count) }
+        }
+
+        /// See [`super::any`]; for [`crate::Query::PLAIN`].
+        // SAFETY: as above.
+        #[target_feature(enable = $features)]
+        pub(super) unsafe fn any<C: $crate::counters::Count>(
+            units: &[super::Unit],
+            outline: &super::Outline,
+            ray: &$crate::Ray,
+            count: &mut C,
+        ) -> bool {
+            let view = super::View { units, outline };
+            // SAFETY: as the caller promises.
+            unsafe { super::body::any::<$level, C, true>(view, ray, &$crate::Query::PLAIN, count) }
         }
 
         /// See [`super::any`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn any<C: $crate::counters::Count>(
+        pub(super) unsafe fn any_by<C: $crate::counters::Count>(
             view: super::View<'_>,
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
         ) -> bool {
             // SAFETY: as the caller promises.
-            unsafe { super::body::any::<$level, C>(view, ray, query, count) }
+            unsafe { super::body::any::<$level, C, false>(view, ray, query, count) }
         }
 
         /// See [`super::closest_each`].
@@ -103,7 +131,7 @@ pub(super) struct View<'a> {
 }
 
 /// The nearest hit.
-#[inline]
+#[inline(always)]
 pub(super) fn closest<C: Count>(
     level: CpuLevel,
     view: View<'_>,
@@ -111,19 +139,25 @@ pub(super) fn closest<C: Count>(
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
-    match level {
+    match (level, query.is_plain()) {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: a structure holds a level that `available` found on this machine.
-        CpuLevel::Avx512 => unsafe { avx512::closest(view, ray, query, count) },
+        (CpuLevel::Avx512, true) => unsafe { avx512::closest(view.units, view.outline, ray, count) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx2 => unsafe { avx2::closest(view, ray, query, count) },
+        (CpuLevel::Avx512, false) => unsafe { avx512::closest_by(view, ray, query, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Avx2, true) => unsafe { avx2::closest(view.units, view.outline, ray, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Avx2, false) => unsafe { avx2::closest_by(view, ray, query, count) },
         _ => plain::closest(view, ray, query, count),
     }
 }
 
 /// Whether there is any hit.
-#[inline]
+#[inline(always)]
 pub(super) fn any<C: Count>(
     level: CpuLevel,
     view: View<'_>,
@@ -131,13 +165,19 @@ pub(super) fn any<C: Count>(
     query: &Query,
     count: &mut C,
 ) -> bool {
-    match level {
+    match (level, query.is_plain()) {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx512 => unsafe { avx512::any(view, ray, query, count) },
+        (CpuLevel::Avx512, true) => unsafe { avx512::any(view.units, view.outline, ray, count) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        CpuLevel::Avx2 => unsafe { avx2::any(view, ray, query, count) },
+        (CpuLevel::Avx512, false) => unsafe { avx512::any_by(view, ray, query, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Avx2, true) => unsafe { avx2::any(view.units, view.outline, ray, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Avx2, false) => unsafe { avx2::any_by(view, ray, query, count) },
         _ => plain::any(view, ray, query, count),
     }
 }

@@ -3,7 +3,7 @@
 
 use super::View;
 use crate::bvh8::build::binary::MAX_DEPTH;
-use crate::bvh8::layout::{BLOCK_UNITS, LANES, Ref, Unit, WIDTH, triangles};
+use crate::bvh8::layout::{BLOCK_UNITS, LANES, NO_TRIANGLE, Ref, Unit, WIDTH, triangle};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use crate::slab::SlabRay;
@@ -18,7 +18,11 @@ pub(super) fn closest<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count:
     let mut limit = slabs.limit(nearest.t);
     walk(view, &slabs, limit, count, |leaf, count| {
         let before = nearest.t;
-        for (corners, primitive) in of_leaf(leaf) {
+        for (block, lane) in places(leaf) {
+            let (corners, primitive) = triangle(block, lane);
+            if primitive == NO_TRIANGLE {
+                break;
+            }
             nearest.test(&prepared, query, &corners, primitive);
         }
         count.triangles(leaf.len() / BLOCK_UNITS * LANES);
@@ -36,7 +40,11 @@ pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mu
     let limit = slabs.limit(ray.t_max);
     let mut found = false;
     walk(view, &slabs, limit, count, |leaf, count| {
-        for (corners, primitive) in of_leaf(leaf) {
+        for (block, lane) in places(leaf) {
+            let (corners, primitive) = triangle(block, lane);
+            if primitive == NO_TRIANGLE {
+                break;
+            }
             count.triangles(1);
             if hits(&prepared, query, &corners, primitive) {
                 found = true;
@@ -55,8 +63,8 @@ fn prepare(view: &View<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
     Some((prepared, SlabRay::new(ray.origin, ray.direction, ray.t_min, pad)))
 }
 
-fn of_leaf(leaf: &[Unit]) -> impl Iterator<Item = ([[f32; 3]; 3], u32)> {
-    leaf.chunks_exact(BLOCK_UNITS).flat_map(triangles)
+fn places(leaf: &[Unit]) -> impl Iterator<Item = (&[Unit], usize)> {
+    leaf.chunks_exact(BLOCK_UNITS).flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
 }
 
 /// A subtree still to be visited, and where the ray enters it.

@@ -2,9 +2,12 @@
 //!
 //! # Boxes
 //! Where [`crate::slab`] takes a plane's distance as `(plane − origin) · inverse`, this takes it as the fused
-//! `plane · inverse − bias` with `bias = origin · inverse`, rounded once a ray. That rounding displaces
-//! all planes of an axis by at most `2⁻²⁴ · |origin|`, and that of `origin ± pad` by as much again: the pad of
-//! the lemma is therefore grown by four times that, twice what it takes; see `docs/adr/0008-bvh8.md`.
+//! `plane · inverse + bias` with `bias = −origin · inverse ∓ pad · |inverse|`, rounded twice a ray. That displaces
+//! all planes of an axis by at most `2 · 2⁻²⁴ · |origin|`: the pad of the lemma is therefore grown by twice that. It
+//! is taken from how far the origin is from the centre of the tree; see `docs/adr/0008-bvh8.md`.
+//!
+//! Distances are `t`, so that no step waits for the length of the direction: what a ray has to know before its
+//! first node should take as few steps, one after the other, as can be.
 //!
 //! # Tame rays
 //! Of a tame ray all of this is finite and no distance that counts is negative. So no NaN can come up, and
@@ -24,6 +27,7 @@ pub(super) struct TameRay {
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
     inverse: [__m256; 3],
+    /// Less where the origin is, in units of distance, and the pad.
     enter_bias: [__m256; 3],
     leave_bias: [__m256; 3],
     nearest: __m256i,
@@ -145,7 +149,8 @@ pub(super) trait Boxes {
     /// The machine must have AVX2 and FMA, and `node` must point to a node.
     unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i);
 
-    /// The bits of the least `s` that no hit at `t` or before can exceed; `t` is not negative.
+    /// The bits of the least distance, as of [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
+    /// negative, or nothing can be hit.
     fn limit_bits(&self, t: f32) -> u32;
 }
 

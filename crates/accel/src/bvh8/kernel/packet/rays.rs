@@ -40,6 +40,7 @@ pub(in crate::bvh8::kernel) struct Packet {
     /// Origins as planes see them where the ray comes in, and goes out.
     pub(super) enter: [Row<f32>; 3],
     pub(super) leave: [Row<f32>; 3],
+    /// Less those, in units of distance.
     pub(super) enter_bias: [Row<f32>; 3],
     pub(super) leave_bias: [Row<f32>; 3],
     pub(super) nearest: Row<f32>,
@@ -110,11 +111,11 @@ impl Packet {
             let plane = |row: usize| W::splat(*node.add(row + child * 4).cast::<f32>());
             let enter = |k: usize| {
                 let bias = W::load(self.enter_bias[k].at(from));
-                plane(frustum.enter_rows[k]).fmsub(W::load(self.inverse[k].at(from)), bias)
+                plane(frustum.enter_rows[k]).fmadd(W::load(self.inverse[k].at(from)), bias)
             };
             let leave = |k: usize| {
                 let bias = W::load(self.leave_bias[k].at(from));
-                plane(frustum.leave_rows[k]).fmsub(W::load(self.inverse[k].at(from)), bias)
+                plane(frustum.leave_rows[k]).fmadd(W::load(self.inverse[k].at(from)), bias)
             };
             let (a, b) = (enter(0).max(enter(1)), enter(2).max(W::load(self.nearest.at(from))));
             let (c, d) = (leave(0).min(leave(1)), leave(2).min(W::load(self.limit.at(from))));

@@ -88,8 +88,8 @@ impl Packet {
                         let (low, high) = (plane(k), plane(k + 3));
                         let (first, last) =
                             (direction[k].by_sign(low, high), direction[k].by_sign(high, low));
-                        enter = enter.max(first.fmsub(inverse[k], enter_bias[k]));
-                        leave = leave.min(last.fmsub(inverse[k], leave_bias[k]));
+                        enter = enter.max(first.fmadd(inverse[k], enter_bias[k]));
+                        leave = leave.min(last.fmadd(inverse[k], leave_bias[k]));
                     }
                     children[child] |= u64::from(enter.le(leave)) << from;
                 }
@@ -116,11 +116,7 @@ impl Boxes for Lane<'_> {
             let all = |row: &Row<f32>| _mm256_set1_ps(*row.at(self.lane));
             let three = |rows: &[Row<f32>; 3]| [all(&rows[0]), all(&rows[1]), all(&rows[2])];
             let packet = self.packet;
-            let minus = |[x, y, z]: [__m256; 3]| {
-                let m = _mm256_set1_ps(-0.0);
-                [_mm256_xor_ps(x, m), _mm256_xor_ps(y, m), _mm256_xor_ps(z, m)]
-            };
-            let bias = (minus(three(&packet.enter_bias)), minus(three(&packet.leave_bias)));
+            let bias = (three(&packet.enter_bias), three(&packet.leave_bias));
             let nearest = _mm256_castps_si256(all(&packet.nearest));
             let [enter_rows, leave_rows] = self.rows;
             span(node, (enter_rows, leave_rows), three(&packet.inverse), bias, (nearest, limit))
@@ -161,7 +157,8 @@ unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &View<'_>, read
             let pad = pad.add(origin[k].abs().mul(W::splat(BIAS_PAD))).copy_sign(direction[k]);
             let (enter, leave) = (origin[k].add(pad), origin[k].sub(pad));
             let inverse = pace.div(direction[k]).max(W::splat(-STEEPEST)).min(W::splat(STEEPEST));
-            let bias = [enter.mul(inverse), leave.mul(inverse)];
+            let minus = zero.sub(inverse);
+            let bias = [enter.mul(minus), leave.mul(minus)];
             good &= bias[0].abs().add(bias[1].abs()).add(sizes[k]).lt(W::splat(f32::INFINITY));
             enter.store(packet.enter[k].at_mut(from));
             leave.store(packet.leave[k].at_mut(from));

@@ -37,8 +37,8 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
         div(self, other: Self) -> Self;
         min(self, other: Self) -> Self;
         max(self, other: Self) -> Self;
-        // The product less the third, rounded once.
-        fmsub(self, by: Self, less: Self) -> Self;
+        // The product and the third, rounded once.
+        fmadd(self, by: Self, more: Self) -> Self;
         abs(self) -> Self;
         // With the sign of the other, if its own is positive.
         copy_sign(self, of: Self) -> Self;
@@ -110,7 +110,7 @@ impl Wide for __m512 {
         div(self, other: Self) -> Self = _mm512_div_ps(self, other);
         min(self, other: Self) -> Self = _mm512_min_ps(self, other);
         max(self, other: Self) -> Self = _mm512_max_ps(self, other);
-        fmsub(self, by: Self, less: Self) -> Self = _mm512_fmsub_ps(self, by, less);
+        fmadd(self, by: Self, more: Self) -> Self = _mm512_fmadd_ps(self, by, more);
         abs(self) -> Self = _mm512_abs_ps(self);
         copy_sign(self, of: Self) -> Self = _mm512_or_ps(self, _mm512_and_ps(of, _mm512_set1_ps(-0.0)));
         by_sign(self, plus: Self, minus: Self) -> Self =
@@ -169,7 +169,7 @@ impl Wide for __m256 {
         div(self, other: Self) -> Self = _mm256_div_ps(self, other);
         min(self, other: Self) -> Self = _mm256_min_ps(self, other);
         max(self, other: Self) -> Self = _mm256_max_ps(self, other);
-        fmsub(self, by: Self, less: Self) -> Self = _mm256_fmsub_ps(self, by, less);
+        fmadd(self, by: Self, more: Self) -> Self = _mm256_fmadd_ps(self, by, more);
         abs(self) -> Self = _mm256_andnot_ps(_mm256_set1_ps(-0.0), self);
         copy_sign(self, of: Self) -> Self = _mm256_or_ps(self, _mm256_and_ps(of, _mm256_set1_ps(-0.0)));
         by_sign(self, plus: Self, minus: Self) -> Self = _mm256_blendv_ps(plus, minus, self);
