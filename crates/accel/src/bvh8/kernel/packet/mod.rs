@@ -20,7 +20,7 @@ pub(super) use wide::Wide;
 
 use super::View;
 use super::batch::SOMETHING;
-use super::body::{Level, Room, Stack, reference};
+use super::body::{Level, Room, Stack, prefetch, reference};
 use super::leaf::BLOCK_BYTES;
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
 use crate::ray::{Hit, Query, Ray};
@@ -88,9 +88,14 @@ impl Walk<'_> {
         // SAFETY: as the caller promises; references lead to whole nodes and leaves.
         unsafe {
             loop {
-                let (mask, enter) = self.frustum.meet::<L>(base.add(current.byte()), L::splat(limit_bits));
+                let node = base.add(current.byte());
+                let (mut mask, enter) = self.frustum.meet::<L>(node, L::splat(limit_bits));
                 if mask != 0 {
                     L::push_children(current, mask, enter, &mut stack);
+                }
+                while mask != 0 {
+                    prefetch(base, reference(node, mask.trailing_zeros() as usize));
+                    mask &= mask - 1;
                 }
                 loop {
                     if stack.is_empty() || (ANY && self.done == u64::MAX) {
