@@ -47,6 +47,20 @@ pub fn sphere_pdf_solid_angle() -> f32 {
     1.0 / (4.0 * PI)
 }
 
+/// Directions about +z, all equally likely down to a cosine of `cos_max`, -1..=1.
+pub fn sample_cone(u: Vec2, cos_max: f32) -> Vec3 {
+    let below = u.x * (1.0 - cos_max);
+    // By what the cosine lacks to 1, which a narrow cone would lose.
+    let r = (below * (2.0 - below)).max(0.0).sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    Vec3::new(r * c, r * s, 1.0 - below)
+}
+
+/// Density of [`sample_cone`] within the cone; infinite for one without width.
+pub fn cone_pdf_solid_angle(cos_max: f32) -> f32 {
+    1.0 / (TAU * (1.0 - cos_max))
+}
+
 /// Directions about +z with density (n+1)/2π · cosⁿα, the lobe of Phong. [Lafortune 1994]
 pub fn sample_power_cosine(u: Vec2, exponent: f32) -> Vec3 {
     let cos_alpha = powf(1.0 - u.x, 1.0 / (exponent + 1.0));

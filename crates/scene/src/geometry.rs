@@ -7,7 +7,7 @@ use crate::mesh::Mesh;
 use crate::parameters::Span;
 use crate::surface::{Surface, gamma};
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
-use bilux_accel::{Accelerator, Hit, Ray, TriangleMesh};
+use bilux_accel::{Accelerator, Hit, Primitive, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::sync::Arc;
@@ -120,9 +120,13 @@ impl Geometry {
         &self.instances
     }
 
-    /// The first primitive of an object, as rays number them.
-    pub fn first_primitive(&self, object: u32) -> u32 {
-        self.still_objects.iter().find(|(_, o)| *o == object).map_or(0, |(first, _)| *first)
+    /// The first triangle of an object, as rays number them.
+    pub fn first_primitive(&self, object: u32) -> Primitive {
+        if let Some((first, _)) = self.still_objects.iter().find(|(_, o)| *o == object) {
+            return Primitive { instance: 0, index: *first };
+        }
+        let instance = self.instance_objects.iter().position(|o| *o == object);
+        instance.map_or(Primitive::NONE, |i| Primitive { instance: i as u32, index: 0 })
     }
 
     /// An object's triangles: in world space when it stands still in the common tree, else in its own, with the
@@ -228,7 +232,7 @@ fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f3
 }
 
 /// A point moved, with the bound on its error moved too. [pbrt 2023, 6.8.5]
-fn transform_with_error(to_world: &Transform, p: Vec3, error: Vec3) -> (Vec3, Vec3) {
+pub(crate) fn transform_with_error(to_world: &Transform, p: Vec3, error: Vec3) -> (Vec3, Vec3) {
     let m = to_world.matrix();
     let abs = |v: Vec3| {
         m.x_axis.truncate().abs() * v.x + m.y_axis.truncate().abs() * v.y + m.z_axis.truncate().abs() * v.z

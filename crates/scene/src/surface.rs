@@ -38,12 +38,7 @@ impl Surface {
     /// bound, on the side that it goes to, and leaves out the triangle itself.
     pub fn spawn(&self, direction: Vec3) -> Ray {
         let origin = offset_origin(self.p, self.p_error, self.n_geom, direction);
-        Ray {
-            time: self.time,
-            exclude: self.primitive,
-            t_min: AWAY,
-            ..Ray::new(origin.to_array(), direction.to_array())
-        }
+        leaving(origin, direction, self.primitive, self.time)
     }
 
     /// A ray from here to where a light was sampled, as far as nothing of the light itself can be in its way.
@@ -65,14 +60,15 @@ impl Surface {
     /// A ray from here to `target`, which it reaches at `t = 1`.
     pub fn spawn_to(&self, target: Vec3) -> Ray {
         let origin = offset_origin(self.p, self.p_error, self.n_geom, target - self.p);
-        Ray {
-            time: self.time,
-            exclude: self.primitive,
-            t_min: AWAY,
-            t_max: 1.0,
-            ..Ray::new(origin.to_array(), (target - origin).to_array())
-        }
+        Ray { t_max: 1.0, ..leaving(origin, target - origin, self.primitive, self.time) }
     }
+}
+
+/// A ray from `origin` that leaves a triangle.
+#[inline]
+pub(crate) fn leaving(origin: Vec3, direction: Vec3, primitive: Primitive, time: f32) -> Ray {
+    let ray = Ray::new(origin.to_array(), direction.to_array());
+    Ray { time, exclude: primitive, t_min: AWAY, ..ray }
 }
 
 /// Where a point has no error at all, as on a floor at height 0, its neighbours in the same plane are met at

@@ -2,6 +2,11 @@
 //!
 //! Directions: `wo` is the known one, `wi` the sampled or evaluated one; both are unit and point away from the
 //! surface. `eval` gives f·|cosθi|. In the lobes' own files directions are local, with the normal as z.
+//!
+//! A shading normal is not the surface's own, and so light and importance scatter by different laws. What arrives along
+//! `wi` at a surface that faces n_shade is f·|wi·n_shade|: so radiance is carried. For a path from a light to carry the
+//! same light between the same directions, what it found along `wo` leaves along `wi` by
+//! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
 mod dielectric;
 mod lambert;
@@ -140,13 +145,14 @@ impl Bsdf {
         self.lobes.iter().flatten().all(Lobe::is_delta)
     }
 
-    /// f·|cosθi| of all lobes with width.
+    /// f·|wi·n_shade| of all lobes with width; for importance f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|.
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         if !self.sides_agree(wo, wi) {
             return Rgb::BLACK;
         }
-        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        self.lobes.iter().flatten().map(|lobe| lobe.eval(wo, wi, mode)).sum()
+        let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        let scattered = self.lobes.iter().flatten().map(|lobe| lobe.eval(local_wo, local_wi, mode)).sum();
+        self.carried(scattered, self.frame.n, wo, wi, mode)
     }
 
     /// Density of [`Bsdf::sample`] over the lobes with width.
@@ -162,15 +168,18 @@ impl Bsdf {
     /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
     #[inline]
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
-        let sides_agree = self.sides_agree(wo, wi);
-        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
         for lobe in self.lobes.iter().flatten() {
-            let (f, p) = lobe.eval_and_pdf(wo, wi, mode);
+            let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
             scattered += f;
             pdf += lobe.strength() * p;
         }
-        let scattered = if sides_agree { scattered } else { Rgb::BLACK };
+        let scattered = if self.sides_agree(wo, wi) {
+            self.carried(scattered, self.frame.n, wo, wi, mode)
+        } else {
+            Rgb::BLACK
+        };
         (scattered, if self.total_strength > 0.0 { pdf / self.total_strength } else { 0.0 })
     }
 
@@ -206,11 +215,24 @@ impl Bsdf {
         let about = |frame: &Frame| {
             let mut sample = lobe.sample(frame.to_local(wo), u_choice, u, mode)?;
             sample.wi = frame.to_world(sample.wi).normalize();
+            sample.weight = self.carried(sample.weight, frame.n, wo, sample.wi, mode);
             self.keeps_side(wo, &sample).then_some(sample)
         };
         let sees_outside_as_such = wo.dot(self.frame.n) * wo.dot(self.n_geom) > 0.0;
         let shaded = if sees_outside_as_such { about(&self.frame) } else { None };
         shaded.or_else(|| about(&Frame::from_normal(self.n_geom)))
+    }
+
+    /// What was scattered about a normal `n`, as radiance or as importance. Importance that comes along the surface
+    /// itself carries nothing, rather than what no number holds.
+    #[inline]
+    fn carried(&self, scattered: Rgb, n: Vec3, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        if mode == TransportMode::Radiance {
+            return scattered;
+        }
+        let turned = wo.dot(n).abs() * wi.dot(self.n_geom).abs();
+        let ratio = turned / (wo.dot(self.n_geom).abs() * wi.dot(n).abs());
+        if ratio.is_finite() { scattered * ratio } else { Rgb::BLACK }
     }
 
     /// True when what is reflected stays on its side of the triangle, and what is transmitted does not.

@@ -21,10 +21,37 @@ pub struct CameraSample {
     pub time: f32,
 }
 
+/// How a camera sees a point of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraConnection {
+    /// Point of the film, as of [`CameraSample`], from 0 to below 1 on both axes.
+    pub film: Vec2,
+    /// Point of the lens (of the film, for parallel rays) from which it is seen.
+    pub p: Vec3,
+    /// Unit direction from the point of the scene to there.
+    pub wi: Vec3,
+    /// Density of camera rays at the point of the scene, over area across `wi`, 1/m², for film points uniform over
+    /// the unit square and this point of the lens. It is the camera's importance, for a film of area 1.
+    pub density: f32,
+}
+
+impl CameraConnection {
+    /// This, if the film's point is on the film and the density a number.
+    fn on_film(self) -> Option<CameraConnection> {
+        let inside = |x: f32| (0.0..1.0).contains(&x);
+        (inside(self.film.x) && inside(self.film.y) && self.density.is_finite()).then_some(self)
+    }
+}
+
 /// Something that turns points of the film into rays.
 pub trait Camera: Send + Sync {
     /// The ray of a sample; its direction is of unit length.
     fn ray(&self, sample: &CameraSample) -> Ray;
+    /// How a point of the scene is seen through a point of the lens (as of [`CameraSample`]) at a time in seconds:
+    /// the inverse of [`Camera::ray`]. `None` when it is behind the camera or off the film.
+    fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
+    /// [`CameraConnection::density`] where one of its rays (of unit direction) has come to `t`.
+    fn density(&self, ray: &Ray, t: f32) -> f32;
     /// True when its rays depend on [`CameraSample::lens`].
     fn has_lens(&self) -> bool;
     /// Where it looks, a unit vector, at a time in seconds.

@@ -1,11 +1,11 @@
 //! `orthographic`: parallel rays, as in a plan.
 
 use super::perspective::vector;
-use super::{Camera, CameraEntry, CameraSample, around, look};
+use super::{Camera, CameraConnection, CameraEntry, CameraSample, around, look};
 use crate::error::SceneError;
 use bilux_accel::Ray;
-use bilux_math::Vec3;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Vec2, Vec3};
 use std::sync::Arc;
 
 pub(super) const ENTRY: CameraEntry = CameraEntry {
@@ -57,15 +57,46 @@ struct Key {
     half_height: f32,
 }
 
+impl Orthographic {
+    fn key_at(&self, time: f32) -> Key {
+        let (low, high, t) = around(&self.keys, time);
+        Key {
+            position: low.position.lerp(high.position, t),
+            axes: low.axes,
+            half_height: low.half_height + (high.half_height - low.half_height) * t,
+        }
+    }
+
+    /// Rays over area: the film's points are uniform, and the rays parallel.
+    fn density_of(&self, key: &Key) -> f32 {
+        1.0 / (4.0 * key.half_height * key.half_height * self.aspect)
+    }
+}
+
 impl Camera for Orthographic {
     fn ray(&self, sample: &CameraSample) -> Ray {
-        let (low, high, t) = around(&self.keys, sample.time);
-        let half_height = low.half_height + (high.half_height - low.half_height) * t;
+        let Key { position, axes: [right, up, forward], half_height } = self.key_at(sample.time);
         let x = (2.0 * sample.film.x - 1.0) * half_height * self.aspect;
         let y = (1.0 - 2.0 * sample.film.y) * half_height;
-        let [right, up, forward] = low.axes;
-        let origin = low.position.lerp(high.position, t) + right * x + up * y;
+        let origin = position + right * x + up * y;
         Ray { time: sample.time, ..Ray::new(origin.to_array(), forward.to_array()) }
+    }
+
+    fn connect(&self, from: Vec3, _lens: Vec2, time: f32) -> Option<CameraConnection> {
+        let key = self.key_at(time);
+        let Key { position, axes: [right, up, forward], half_height } = key;
+        let d = from - position;
+        let (x, y, depth) = (d.dot(right), d.dot(up), d.dot(forward));
+        if depth <= 0.0 {
+            return None;
+        }
+        let film = Vec2::new(x / (half_height * self.aspect), -y / half_height) * 0.5 + 0.5;
+        let p = position + right * x + up * y;
+        CameraConnection { film, p, wi: -forward, density: self.density_of(&key) }.on_film()
+    }
+
+    fn density(&self, ray: &Ray, _t: f32) -> f32 {
+        self.density_of(&self.key_at(ray.time))
     }
 
     fn has_lens(&self) -> bool {

@@ -1,6 +1,6 @@
 //! `perspective`: a pinhole, or a thin lens where an aperture is given.
 
-use super::{Camera, CameraEntry, CameraSample, around, look};
+use super::{Camera, CameraConnection, CameraEntry, CameraSample, around, look};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use bilux_accel::Ray;
@@ -136,6 +136,21 @@ impl Perspective {
     }
 }
 
+impl Key {
+    /// Distance of what is sharp, along the axis.
+    fn focus(&self) -> f32 {
+        if self.focus > 0.0 { self.focus } else { (self.look_at - self.position).length() }
+    }
+
+    /// Density of rays over area across them, at a distance and a cosine to the axis. On the plane at distance 1
+    /// the film's points are uniform, whatever the point of the lens; `1 / cos³` is what of that is seen in solid
+    /// angle, there as in the plane that is sharp.
+    fn density(&self, aspect: f32, cos: f32, distance2: f32) -> f32 {
+        let film_area = 4.0 * self.tan_half_fov * self.tan_half_fov * aspect.abs();
+        1.0 / (film_area * cos * cos * cos * distance2)
+    }
+}
+
 impl Camera for Perspective {
     fn ray(&self, sample: &CameraSample) -> Ray {
         let (key, [right, up, forward]) = self.key_at(sample.time);
@@ -145,11 +160,36 @@ impl Camera for Perspective {
         let (origin, direction) = if sample.lens == Vec2::ZERO || key.aperture == 0.0 {
             (key.position, through)
         } else {
-            let focus = if key.focus > 0.0 { key.focus } else { (key.look_at - key.position).length() };
             let lens = (right * sample.lens.x + up * sample.lens.y) * key.aperture;
-            (key.position + lens, through * focus - lens)
+            (key.position + lens, through * key.focus() - lens)
         };
         Ray { time: sample.time, ..Ray::new(origin.to_array(), direction.normalize().to_array()) }
+    }
+
+    fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection> {
+        let (key, [right, up, forward]) = self.key_at(time);
+        let lens = lens * key.aperture;
+        let p = key.position + right * lens.x + up * lens.y;
+        let away = from - p;
+        let depth = away.dot(forward);
+        if depth.is_nan() || depth <= 0.0 {
+            return None;
+        }
+        // Where the middle of the lens sees, at distance 1, what the ray meets where things are sharp.
+        let aside = if lens == Vec2::ZERO { lens } else { lens / key.focus() };
+        let seen = Vec2::new(away.dot(right), away.dot(up)) / depth + aside;
+        let film =
+            Vec2::new(seen.x / (key.tan_half_fov * self.aspect), -seen.y / key.tan_half_fov) * 0.5 + 0.5;
+        let distance2 = away.length_squared();
+        let distance = distance2.sqrt();
+        let density = key.density(self.aspect, depth / distance, distance2);
+        CameraConnection { film, p, wi: -away / distance, density }.on_film()
+    }
+
+    fn density(&self, ray: &Ray, t: f32) -> f32 {
+        let (key, [_, _, forward]) = self.key_at(ray.time);
+        let cos = Vec3::from(ray.direction).dot(forward);
+        if cos > 0.0 { key.density(self.aspect, cos, t * t) } else { 0.0 }
     }
 
     fn has_lens(&self) -> bool {

@@ -1,7 +1,7 @@
 //! `ambient`: the constant light of Equation 1. There is no such light in nature, and the physical integrators
 //! know nothing of it: give them an `environment`.
 
-use super::{BuiltLight, Light, LightEntry, LightSample, colour};
+use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample, colour};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use bilux_math::registry::Entry;
@@ -29,6 +29,18 @@ impl Light for Ambient {
 
     fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
         0.0
+    }
+
+    fn sample_le(&self, _: &Aabb, _time: f32, _u_point: Vec2, _u_direction: Vec2) -> Option<EmissionSample> {
+        None
+    }
+
+    fn emission_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        0.0
+    }
+
+    fn is_infinite(&self) -> bool {
+        false
     }
 
     fn is_delta(&self) -> bool {

@@ -1,9 +1,13 @@
 //! `directional`: parallel light from infinitely far, as from the sun.
 
-use super::{BuiltLight, CLASSIC, Light, LightEntry, LightSample, colour, given_classic, vector};
+use super::distant::{disc_pdf_area, sample_disc};
+use super::{
+    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+};
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
+use bilux_accel::Primitive;
 use bilux_math::registry::Entry;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -49,6 +53,29 @@ impl Light for Directional {
 
     fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
         0.0
+    }
+
+    fn sample_le(&self, bounds: &Aabb, _time: f32, u_point: Vec2, _u: Vec2) -> Option<EmissionSample> {
+        let direction = -self.towards;
+        let pdf_emission = self.emission_pdf(bounds, 1.0, direction, 1.0);
+        (pdf_emission > 0.0).then(|| EmissionSample {
+            p: sample_disc(bounds, direction, u_point),
+            p_error: Vec3::ZERO,
+            n_light: Vec3::ZERO,
+            direction,
+            le: self.irradiance,
+            pdf_emission,
+            pdf_direct: 1.0,
+            primitive: Primitive::NONE,
+        })
+    }
+
+    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_direct * disc_pdf_area(bounds)
+    }
+
+    fn is_infinite(&self) -> bool {
+        true
     }
 
     fn is_delta(&self) -> bool {

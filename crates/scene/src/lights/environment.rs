@@ -1,8 +1,10 @@
 //! `environment`: light from all around, infinitely far: one colour, or a sky that changes with height.
 
-use super::{BuiltLight, Light, LightEntry, LightSample};
+use super::distant::{disc_pdf_area, sample_disc};
+use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
+use bilux_accel::Primitive;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::PI;
@@ -79,6 +81,30 @@ impl Light for Environment {
 
     fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, hit: Option<&Surface>) -> f32 {
         if self.backdrop || hit.is_some() { 0.0 } else { warp::sphere_pdf_solid_angle() }
+    }
+
+    fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
+        let direction = -warp::sample_sphere(u_direction);
+        let pdf_direct = warp::sphere_pdf_solid_angle();
+        let pdf_emission = self.emission_pdf(bounds, pdf_direct, direction, 1.0);
+        (pdf_emission > 0.0).then(|| EmissionSample {
+            p: sample_disc(bounds, direction, u_point),
+            p_error: Vec3::ZERO,
+            n_light: Vec3::ZERO,
+            direction,
+            le: self.le(-direction),
+            pdf_emission,
+            pdf_direct,
+            primitive: Primitive::NONE,
+        })
+    }
+
+    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        if self.backdrop { 0.0 } else { pdf_direct * disc_pdf_area(bounds) }
+    }
+
+    fn is_infinite(&self) -> bool {
+        true
     }
 
     fn le(&self, direction: Vec3) -> Rgb {

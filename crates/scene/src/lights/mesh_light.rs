@@ -1,10 +1,12 @@
 //! Triangles that give light. Not in the table: objects whose material gives light become one.
 
-use super::{Light, LightSample};
+use super::{EmissionSample, Light, LightSample};
 use crate::classic::ClassicLight;
-use crate::surface::Surface;
+use crate::geometry::transform_with_error;
+use crate::surface::{Surface, gamma};
+use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
-use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
+use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::PI;
 
 /// An emissive object, sampled uniformly by the area that its triangles have in their own space.
@@ -12,8 +14,8 @@ pub struct MeshLight {
     triangles: Vec<[Vec3; 3]>,
     /// `cdf[i]` is the share of the area in triangles `0..=i`; the last is 1.
     cdf: Vec<f32>,
-    /// Index of the object's first triangle within its primitive numbering.
-    first_primitive: u32,
+    /// The object's first triangle, as rays number it.
+    first: Primitive,
     /// Centre of the area, in the object's own space.
     middle: Vec3,
     motion: Motion,
@@ -37,11 +39,11 @@ struct Facet {
 const FEW: usize = 8;
 
 impl MeshLight {
-    /// A light from an object's triangles in its own space; `first_primitive` is the index that rays see of the
-    /// first of them. `None` when they have no area.
+    /// A light from an object's triangles in its own space; `first` is how rays number the first of
+    /// them. `None` when they have no area.
     pub fn new(
         triangles: Vec<[Vec3; 3]>,
-        first_primitive: u32,
+        first: Primitive,
         motion: Motion,
         radiance: Rgb,
         classic: Option<Rgb>,
@@ -65,8 +67,7 @@ impl MeshLight {
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
         let resting = Vec::new();
-        let mut light =
-            MeshLight { triangles, cdf, first_primitive, middle, motion, resting, radiance, classic };
+        let mut light = MeshLight { triangles, cdf, first, middle, motion, resting, radiance, classic };
         if light.motion.is_still() {
             light.resting = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
@@ -102,16 +103,29 @@ impl MeshLight {
         below.min(self.cdf.len() - 1)
     }
 
-    /// A point, and its triangle.
-    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Facet) {
+    /// A triangle by area, and weights of its corners, uniform over it.
+    fn sample_weights(&self, u: Vec2) -> (usize, [f32; 3]) {
         let triangle = self.choose(u.x);
         let share = self.share(triangle);
         let below = self.cdf[triangle] - share;
         let rest = if share > 0.0 { ((u.x - below) / share).clamp(0.0, 1.0) } else { 0.0 };
         let weights = warp::sample_triangle(Vec2::new(rest, u.y));
+        (triangle, [1.0 - weights.x - weights.y, weights.x, weights.y])
+    }
+
+    /// A point, and its triangle.
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Facet) {
+        let (triangle, weights) = self.sample_weights(u);
         let facet = self.facet(triangle, time);
-        let [a, b, c] = facet.corners;
-        (a * (1.0 - weights.x - weights.y) + b * weights.x + c * weights.y, facet)
+        (blend(&facet.corners, weights), facet)
+    }
+
+    /// A point of a triangle and the bound on its error, both as a hit there would have them.
+    fn point_with_error(&self, triangle: usize, weights: [f32; 3], time: f32) -> (Vec3, Vec3) {
+        let own = &self.triangles[triangle];
+        let (p, error) = (blend(own, weights), blend(&own.map(Vec3::abs), weights) * gamma(7));
+        let to_world = self.motion.at(time);
+        if to_world.is_identity() { (p, error) } else { transform_with_error(&to_world, p, error) }
     }
 
     fn middle(&self, time: f32) -> Vec3 {
@@ -121,6 +135,10 @@ impl MeshLight {
     fn world_area(&self, time: f32) -> f32 {
         (0..self.triangles.len()).map(|i| area(&self.corners(i, time))).sum()
     }
+}
+
+fn blend(corners: &[Vec3; 3], weights: [f32; 3]) -> Vec3 {
+    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
 }
 
 fn area(t: &[Vec3; 3]) -> f32 {
@@ -160,13 +178,53 @@ impl Light for MeshLight {
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
         let Some(hit) = hit else { return 0.0 };
-        let triangle = hit.primitive.index.wrapping_sub(self.first_primitive) as usize;
-        if triangle >= self.triangles.len() {
+        let pdf = self.pdf_area(hit) * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    fn pdf_area(&self, hit: &Surface) -> f32 {
+        let triangle = hit.primitive.index.wrapping_sub(self.first.index) as usize;
+        if hit.primitive.instance != self.first.instance || triangle >= self.triangles.len() {
             return 0.0;
         }
-        let pdf =
-            self.facet(triangle, hit.time).pdf_area * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
+        let pdf = self.facet(triangle, hit.time).pdf_area;
         if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    fn sample_le(
+        &self,
+        bounds: &Aabb,
+        time: f32,
+        u_point: Vec2,
+        u_direction: Vec2,
+    ) -> Option<EmissionSample> {
+        let (triangle, weights) = self.sample_weights(u_point);
+        let Facet { normal, pdf_area, .. } = self.facet(triangle, time);
+        let (p, p_error) = self.point_with_error(triangle, weights, time);
+        // Both sides give light: each takes half of the numbers.
+        let is_front = u_direction.x < 0.5;
+        let u = Vec2::new(2.0 * u_direction.x - if is_front { 0.0 } else { 1.0 }, u_direction.y);
+        let n_light = if is_front { normal } else { -normal };
+        let direction = Frame::from_normal(n_light).to_world(warp::sample_cosine_hemisphere(u)).normalize();
+        let pdf_emission = self.emission_pdf(bounds, pdf_area, direction, n_light.dot(direction).abs());
+        (pdf_emission.is_finite() && pdf_emission > 0.0).then(|| EmissionSample {
+            p,
+            p_error,
+            n_light,
+            direction,
+            le: self.radiance,
+            pdf_emission,
+            pdf_direct: pdf_area,
+            primitive: Primitive { index: self.first.index + triangle as u32, ..self.first },
+        })
+    }
+
+    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
+        pdf_direct * (0.5 * warp::cosine_hemisphere_pdf_solid_angle(cos))
+    }
+
+    fn is_infinite(&self) -> bool {
+        false
     }
 
     fn is_delta(&self) -> bool {

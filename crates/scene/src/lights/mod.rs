@@ -7,6 +7,7 @@
 
 mod ambient;
 mod directional;
+mod distant;
 mod environment;
 mod mesh_light;
 mod point;
@@ -20,6 +21,8 @@ use crate::error::SceneError;
 use crate::mesh::Mesh;
 use crate::parameters::{Reader, Spec};
 use crate::surface::Surface;
+use crate::surface::{leaving, offset_origin};
+use bilux_accel::{Primitive, Ray};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::sync::Arc;
@@ -42,6 +45,44 @@ pub struct LightSample {
     pub clearance: f32,
 }
 
+/// Light that leaves a light, as a ray into the scene. [Georgiev 2012]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EmissionSample {
+    /// Where it starts: on the light; for a light infinitely far, on a disc across `direction`, just outside of the
+    /// sphere around the scene.
+    pub p: Vec3,
+    /// Bound on the rounding error of `p`, per axis.
+    pub p_error: Vec3,
+    /// Unit normal of the light there, on the side that the ray goes to; zero where it has none.
+    pub n_light: Vec3,
+    /// Unit direction in which the light goes.
+    pub direction: Vec3,
+    /// Radiance along the ray; of a light at a point the intensity in that direction, in W/sr; of a directional light
+    /// the irradiance across it, in W/m².
+    pub le: Rgb,
+    /// The emission density: of the start over area times that of the direction over solid angle, 1/(m² sr). What
+    /// is fixed counts 1.
+    pub pdf_emission: f32,
+    /// The direct density: with which [`Light::sample_li`] finds this start, over area; of a light infinitely far,
+    /// this direction, over solid angle. 1 for delta lights.
+    pub pdf_direct: f32,
+    /// The triangle that it leaves; [`Primitive::NONE`] where there is none.
+    pub primitive: Primitive,
+}
+
+impl EmissionSample {
+    /// Cosine between the ray and the light's normal; 1 where there is no normal.
+    pub fn cos(&self) -> f32 {
+        if self.n_light == Vec3::ZERO { 1.0 } else { self.n_light.dot(self.direction).abs() }
+    }
+
+    /// The ray, at a time in seconds. It cannot meet the triangle that it leaves.
+    pub fn spawn(&self, time: f32) -> Ray {
+        let origin = offset_origin(self.p, self.p_error, self.n_light, self.direction);
+        leaving(origin, self.direction, self.primitive, time)
+    }
+}
+
 /// Something that gives light.
 pub trait Light: Send + Sync {
     /// A direction from which light arrives at `from`; `None` where none does.
@@ -50,6 +91,25 @@ pub trait Light: Send + Sync {
     /// Density of [`Light::sample_li`] for the direction `wi`, in which `hit` was met (`None`: nothing was, and
     /// the light is infinitely far). Zero for delta lights.
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32;
+
+    /// Density over area with which [`Light::sample_li`] finds a point of this light; zero for a point that is not
+    /// on it, and for lights without a surface.
+    fn pdf_area(&self, _hit: &Surface) -> f32 {
+        0.0
+    }
+
+    /// A ray of light into a scene within `bounds`, at a time in seconds; `None` where none leaves, or where the
+    /// scene has no size that a light infinitely far could aim at.
+    fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u_direction: Vec2)
+    -> Option<EmissionSample>;
+
+    /// The density ([`EmissionSample::pdf_emission`]) with which [`Light::sample_le`] sends a ray along `direction`,
+    /// a unit vector away from the light, from where direct sampling finds the light with density `pdf_direct`
+    /// ([`EmissionSample::pdf_direct`]). `cos` is [`EmissionSample::cos`].
+    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+
+    /// True when it is infinitely far, so that its direct density is one of directions.
+    fn is_infinite(&self) -> bool;
 
     /// Radiance from infinity in a direction away from the scene.
     fn le(&self, _direction: Vec3) -> Rgb {

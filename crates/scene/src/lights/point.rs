@@ -1,10 +1,13 @@
 //! `point`: light from a point, the same in all directions.
 
-use super::{BuiltLight, CLASSIC, Light, LightEntry, LightSample, colour, given_classic, vector};
+use super::{
+    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
+use bilux_accel::Primitive;
 use bilux_math::registry::Entry;
-use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -50,6 +53,28 @@ impl Light for Point {
 
     fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
         0.0
+    }
+
+    fn sample_le(&self, bounds: &Aabb, _: f32, _u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
+        let direction = warp::sample_sphere(u_direction);
+        Some(EmissionSample {
+            p: self.position,
+            p_error: Vec3::ZERO,
+            n_light: Vec3::ZERO,
+            direction,
+            le: self.intensity,
+            pdf_emission: self.emission_pdf(bounds, 1.0, direction, 1.0),
+            pdf_direct: 1.0,
+            primitive: Primitive::NONE,
+        })
+    }
+
+    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_direct * warp::sphere_pdf_solid_angle()
+    }
+
+    fn is_infinite(&self) -> bool {
+        false
     }
 
     fn is_delta(&self) -> bool {

@@ -1,12 +1,15 @@
 //! `spot`: light from a point into a cone, with a soft edge.
 
-use super::{BuiltLight, CLASSIC, Light, LightEntry, LightSample, colour, given_classic, vector};
+use super::{
+    BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
+};
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
+use bilux_accel::Primitive;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::cos;
-use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -85,6 +88,31 @@ impl Light for Spot {
 
     fn li_pdf_solid_angle(&self, _from: Vec3, _wi: Vec3, _hit: Option<&Surface>) -> f32 {
         0.0
+    }
+
+    fn sample_le(&self, bounds: &Aabb, _: f32, _u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
+        let local = warp::sample_cone(u_direction, self.cos_outer);
+        let direction = Frame::from_normal(self.axis).to_world(local).normalize();
+        let pdf_emission = self.emission_pdf(bounds, 1.0, direction, 1.0);
+        (pdf_emission > 0.0).then(|| EmissionSample {
+            p: self.position,
+            p_error: Vec3::ZERO,
+            n_light: Vec3::ZERO,
+            direction,
+            le: self.intensity * self.falloff(-direction),
+            pdf_emission,
+            pdf_direct: 1.0,
+            primitive: Primitive::NONE,
+        })
+    }
+
+    fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+        let pdf = warp::cone_pdf_solid_angle(self.cos_outer);
+        if pdf.is_finite() && self.falloff(-direction) > 0.0 { pdf_direct * pdf } else { 0.0 }
+    }
+
+    fn is_infinite(&self) -> bool {
+        false
     }
 
     fn is_delta(&self) -> bool {
