@@ -1,8 +1,9 @@
 //! What every BSDF promises, checked on any of them: see DESIGN, "Contract suites".
 
 use crate::chi_square::{p_value, uniforms};
+use crate::tally::Tally;
 use bilux_math::transcendental::sin_cos;
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::{Bsdf, Lobe};
 use bilux_scene::{BsdfSample, TransportMode};
 
@@ -15,6 +16,8 @@ pub struct Scatterer {
     pub pdf: Box<dyn Fn(Vec3, Vec3) -> f32>,
     /// A direction.
     pub sample: SampleFn,
+    /// Normal of the surface, where it is not that of the scattering.
+    pub n_geom: Vec3,
 }
 
 /// `wo`, a number that chooses, two for the direction, the mode.
@@ -26,6 +29,7 @@ impl From<Lobe> for Scatterer {
             eval: Box::new(move |wo, wi, mode| lobe.eval(wo, wi, mode)),
             pdf: Box::new(move |wo, wi| lobe.pdf_solid_angle(wo, wi)),
             sample: Box::new(move |wo, choice, u, mode| lobe.sample(wo, choice, u, mode)),
+            n_geom: Vec3::Z,
         }
     }
 }
@@ -36,6 +40,7 @@ impl From<Bsdf> for Scatterer {
             eval: Box::new(move |wo, wi, mode| bsdf.eval(wo, wi, mode)),
             pdf: Box::new(move |wo, wi| bsdf.pdf_solid_angle(wo, wi)),
             sample: Box::new(move |wo, choice, u, mode| bsdf.sample(wo, choice, u, mode)),
+            n_geom: Vec3::Z,
         }
     }
 }
@@ -50,10 +55,11 @@ pub struct Promise {
 }
 
 /// The checks, by name.
-pub const CHECKS: [(&str, Check); 6] = [
+pub const CHECKS: [(&str, Check); 7] = [
     ("samples follow the density", samples_follow_the_density),
     ("weight times density is eval", weight_times_density_is_eval),
     ("reciprocity, or else the adjoint", reciprocity_or_adjoint),
+    ("the same from both ends", the_same_from_both_ends),
     ("energy", energy),
     ("delta lobes hide from eval", delta_lobes_hide),
     ("lobes of zero chance give no sample", samples_are_sound),
@@ -125,9 +131,11 @@ fn shares_follow(s: &Scatterer, wo: Vec3, stream: u64) -> Result<(), String> {
 
 /// What `sample` says of its direction is what `eval` and `pdf` say of it.
 pub fn weight_times_density_is_eval(s: &Scatterer, _promise: Promise) -> Result<(), String> {
-    for (i, wo) in known_directions().into_iter().enumerate() {
-        for x in (0..2000).filter_map(|k| draw(s, wo, 100 + i as u64, k, RADIANCE)).filter(|x| !x.is_delta) {
-            let (f, pdf) = ((s.eval)(wo, x.wi, RADIANCE), (s.pdf)(wo, x.wi));
+    let directions = known_directions().into_iter().enumerate();
+    let both_modes = directions.flat_map(|(i, wo)| [(i, wo, RADIANCE), (i, wo, IMPORTANCE)]);
+    for (i, wo, mode) in both_modes {
+        for x in (0..2000).filter_map(|k| draw(s, wo, 100 + i as u64, k, mode)).filter(|x| !x.is_delta) {
+            let (f, pdf) = ((s.eval)(wo, x.wi, mode), (s.pdf)(wo, x.wi));
             let said = x.weight * x.pdf_solid_angle;
             let far = |a: f32, b: f32| (a - b).abs() > 2e-3 * a.abs().max(b.abs()).max(1e-6);
             if far(pdf, x.pdf_solid_angle) {
@@ -147,7 +155,7 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
         for k in 0..500 {
             if promise.reciprocal {
                 let (_, u) = uniforms(200 + i as u64, k);
-                let wi = bilux_math::warp::sample_sphere(u);
+                let wi = warp::sample_sphere(u);
                 let there = (s.eval)(wo, wi, RADIANCE) * wo.z.abs();
                 let back = (s.eval)(wi, wo, RADIANCE) * wi.z.abs();
                 if (0..3).any(|c| (there[c] - back[c]).abs() > 1e-3 * there[c].max(back[c]).max(1e-5)) {
@@ -163,6 +171,40 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
                     return Err(format!("wo {wo}: radiance·η² {radiance}, importance {importance}"));
                 }
             }
+        }
+    }
+    Ok(())
+}
+
+/// ⟨g, S h⟩ = ⟨S* g, h⟩: light that falls in as `h` and is looked at as `g` is the same, whether directions are drawn
+/// for radiance from where it is looked at or for importance from where it falls in. [Veach 1997, 4.4]
+pub fn the_same_from_both_ends(s: &Scatterer, _promise: Promise) -> Result<(), String> {
+    let tested = known_directions();
+    let shape = |d: Vec3, about: Vec3| {
+        let x = f64::from(1.0 + d.dot(about));
+        x * x
+    };
+    let pairs = tested.len() * tested.len();
+    let mut tallies = vec![[Tally::default(); 2]; pairs];
+    for k in 0..SAMPLES {
+        for (end, mode) in [RADIANCE, IMPORTANCE].into_iter().enumerate() {
+            let (_, u) = uniforms(600 + end as u64, k);
+            let known = warp::sample_sphere(u);
+            let sample = draw(s, known, 602 + end as u64, k, mode);
+            let weight = sample.map_or(0.0, |x| f64::from(x.weight.luminance() * known.dot(s.n_geom).abs()));
+            let found = sample.map_or(known, |x| x.wi);
+            let (looked_from, light_from) = if mode == RADIANCE { (known, found) } else { (found, known) };
+            for (tally, i) in tallies.iter_mut().zip(0..) {
+                let (g, h) = (tested[i % tested.len()], tested[i / tested.len()]);
+                tally[end].add(shape(looked_from, g) * weight * shape(light_from, h));
+            }
+        }
+    }
+    for (i, [radiance, importance]) in tallies.iter().enumerate() {
+        let p = radiance.p_value(importance);
+        if p < SIGNIFICANCE / pairs as f64 {
+            let (r, t) = (radiance.mean(), importance.mean());
+            return Err(format!("pair {i}: radiance {r:.5}, importance {t:.5}, p = {p:.2e}"));
         }
     }
     Ok(())

@@ -4,3 +4,4 @@
 pub mod bsdf_contract;
 pub mod chi_square;
 pub mod course_oracle;
+pub mod tally;

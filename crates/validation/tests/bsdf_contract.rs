@@ -1,9 +1,10 @@
 //! Every registered BSDF and material keeps its contract, and every check of it can fail.
 
+use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::bsdf::{BSDFS, Dielectric, Lambert, Lobe, Mirror};
+use bilux_scene::bsdf::{BSDFS, BsdfEntry, Dielectric, Lambert, Lobe, Mirror};
 use bilux_scene::materials::MATERIALS;
-use bilux_scene::{Primitive, Spec, Surface, TransportMode};
+use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
 
 #[test]
@@ -44,6 +45,46 @@ fn every_registered_material_keeps_the_contract_too() {
             assert_eq!(result, Ok(()), "{}: {check}", row.entry.name);
         }
     }
+}
+
+/// Shading normals as meshes have them: hardly turned, turned, and turned beyond what a triangle can see.
+fn turned() -> [Vec3; 3] {
+    [Vec3::new(0.05, 0.0, 1.0), Vec3::new(-0.3, 0.4, 1.0), Vec3::new(0.9, -0.7, 0.6)].map(Vec3::normalize)
+}
+
+#[test]
+fn a_turned_normal_scatters_the_same_from_both_ends() {
+    let checks = ["the same from both ends", "weight times density is eval"];
+    let named =
+        |row: &'static BsdfEntry| (row.cases)().into_iter().map(|(case, lobe)| (row.entry.name, case, lobe));
+    for (name, case, lobe) in BSDFS.iter().flat_map(named) {
+        for n_shade in turned() {
+            let bsdf = Bsdf::new(n_shade, Vec3::Z, [Some(lobe), None, None]);
+            for (check, run) in CHECKS.iter().filter(|(check, _)| checks.contains(check)) {
+                let result = run(&bsdf.into(), Promise { reciprocal: false, lossless: false });
+                assert_eq!(result, Ok(()), "{name} ({case}) about {n_shade}: {check}");
+            }
+        }
+    }
+}
+
+#[test]
+fn importance_is_the_adjoint_of_radiance_for_any_two_normals() {
+    let number = |i: u64, k: u64| unit_f32(hash_words([i, k]) as u32) * 2.0 - 1.0;
+    let direction = |i, k| Vec3::new(number(i, k), number(i, k + 1), number(i, k + 2)).normalize();
+    let (mut scattered, mut far) = (0, 0);
+    for (i, (_, lobe)) in (0..5000).flat_map(|i| BSDFS.iter().flat_map(|r| (r.cases)()).map(move |c| (i, c)))
+    {
+        let (wo, wi, n_geom) = (direction(i, 0), direction(i, 3), direction(i, 6));
+        let bsdf = Bsdf::new(direction(i, 9), n_geom, [Some(lobe), None, None]);
+        let importance = bsdf.eval(wo, wi, TransportMode::Importance) * wo.dot(n_geom).abs();
+        let radiance = bsdf.eval(wi, wo, TransportMode::Radiance) * wi.dot(n_geom).abs();
+        assert!(importance.is_finite(), "wo {wo}, wi {wi}");
+        let (a, b) = (importance.luminance(), radiance.luminance());
+        scattered += usize::from(a > 0.0);
+        far += usize::from((a - b).abs() > 1e-3 * a.max(b).max(1e-9));
+    }
+    assert!(scattered > 1000 && far == 0, "{far} of {scattered} differ");
 }
 
 fn flat_surface() -> Surface {
@@ -97,6 +138,9 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     wrong_choice.sample = Box::new(move |wo, c, u, mode| glass.sample(wo, c * 0.9, u, mode));
     let mut no_eta = Scatterer::from(glass);
     no_eta.sample = Box::new(move |wo, c, u, _| glass.sample(wo, c, u, TransportMode::Importance));
+    let mut forgetful = Scatterer::from(Bsdf::new(turned()[1], Vec3::Z, [Some(lambert), None, None]));
+    let as_radiance = forgetful.sample;
+    forgetful.sample = Box::new(move |wo, c, u, _| as_radiance(wo, c, u, TransportMode::Radiance));
     let mut shown = Scatterer::from(mirror);
     shown.pdf = Box::new(|_, _| 1.0);
     let mut through = Scatterer::from(mirror);
@@ -113,9 +157,17 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
         ("2% lost", "energy", leaking, white),
         ("a wrong share of refraction", "samples follow the density", wrong_choice, adjoint),
         ("η² forgotten", "reciprocity, or else the adjoint", no_eta, adjoint),
+        ("a turned normal's adjoint forgotten", "the same from both ends", forgetful, white),
+        ("η² forgotten", "the same from both ends", no_eta_either(glass), adjoint),
         ("a delta lobe with a density", "delta lobes hide from eval", shown, white),
         ("a mirror that transmits", "lobes of zero chance give no sample", through, white),
     ]
+}
+
+fn no_eta_either(lobe: Lobe) -> Scatterer {
+    let mut scatterer = Scatterer::from(lobe);
+    scatterer.sample = Box::new(move |wo, c, u, _| lobe.sample(wo, c, u, TransportMode::Radiance));
+    scatterer
 }
 
 fn spoilt_pdf(lobe: Lobe) -> Scatterer {

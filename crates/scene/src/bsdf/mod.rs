@@ -8,6 +8,7 @@
 //! same light between the same directions, what it found along `wo` leaves along `wi` by
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
+mod delta;
 mod dielectric;
 mod lambert;
 mod mirror;
@@ -190,7 +191,7 @@ impl Bsdf {
         let chosen = self.lobes[index].as_ref()?;
         let share = chosen.strength() / self.total_strength;
         if chosen.is_delta() {
-            let mut sample = self.sample_delta(chosen, wo, u_choice, u, mode)?;
+            let mut sample = self.sample_delta(chosen, wo, u_choice, mode)?;
             sample.weight = sample.weight / share;
             sample.pdf_solid_angle *= share;
             return (sample.pdf_solid_angle > 0.0).then_some(sample);
@@ -200,27 +201,6 @@ impl Bsdf {
         let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
         (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
         (self.keeps_side(wo, &sample) && sample.pdf_solid_angle > 0.0).then_some(sample)
-    }
-
-    /// A direction of a lobe without width. Where the interpolated normal would send it through the triangle,
-    /// or sees `wo` on the wrong side, the triangle's own normal is taken, so that no light is lost.
-    fn sample_delta(
-        &self,
-        lobe: &Lobe,
-        wo: Vec3,
-        u_choice: f32,
-        u: Vec2,
-        mode: TransportMode,
-    ) -> Option<BsdfSample> {
-        let about = |frame: &Frame| {
-            let mut sample = lobe.sample(frame.to_local(wo), u_choice, u, mode)?;
-            sample.wi = frame.to_world(sample.wi).normalize();
-            sample.weight = self.carried(sample.weight, frame.n, wo, sample.wi, mode);
-            self.keeps_side(wo, &sample).then_some(sample)
-        };
-        let sees_outside_as_such = wo.dot(self.frame.n) * wo.dot(self.n_geom) > 0.0;
-        let shaded = if sees_outside_as_such { about(&self.frame) } else { None };
-        shaded.or_else(|| about(&Frame::from_normal(self.n_geom)))
     }
 
     /// What was scattered about a normal `n`, as radiance or as importance. Importance that comes along the surface

@@ -1,0 +1,93 @@
+//! Lobes without width about an interpolated normal, which may send light through the triangle, or see `wo` on the
+//! wrong side. The triangle's own normal is then taken, so that no light is lost.
+//!
+//! From a camera that is a rule of what follows `wo`. A path from a light comes along what follows, and more than one
+//! `wo` may have led there: one about the interpolated normal, others about the triangle's. It has to take each as
+//! often as the rule does, or the picture of a coarse mirror depends on where paths begin.
+
+use super::{Bsdf, BsdfSample, Lobe, TransportMode};
+use bilux_math::{Frame, Vec2, Vec3};
+use std::ops::Range;
+
+/// What a lobe does about one normal: it reflects, it transmits.
+type Events = [Option<BsdfSample>; 2];
+
+impl Bsdf {
+    /// A direction of a lobe without width.
+    #[inline]
+    pub(super) fn sample_delta(
+        &self,
+        lobe: &Lobe,
+        wo: Vec3,
+        u_choice: f32,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        if mode == TransportMode::Importance && self.frame.n != self.n_geom {
+            return self.sample_delta_importance(lobe, wo, u_choice);
+        }
+        let about = |frame: &Frame| {
+            about(lobe, frame, wo, u_choice, mode).filter(|sample| self.keeps_side(wo, sample))
+        };
+        let shaded = if self.sees_side(wo) { about(&self.frame) } else { None };
+        shaded.or_else(|| about(&Frame::from_normal(self.n_geom)))
+    }
+
+    /// The adjoint of the rule: everything that it could have begun with to go on along `wo`, by its chance.
+    fn sample_delta_importance(&self, lobe: &Lobe, wo: Vec3, u_choice: f32) -> Option<BsdfSample> {
+        let keeps = |event: Option<BsdfSample>| event.filter(|sample| self.keeps_side(wo, sample));
+        let shaded = if self.sees_side(wo) { events(lobe, &self.frame, wo).map(keeps) } else { [None; 2] };
+        let flat = events(lobe, &Frame::from_normal(self.n_geom), wo).map(keeps);
+        let n = self.frame.n;
+        let ways = [(shaded[0], n), (shaded[1], n), (flat[0], self.n_geom), (flat[1], self.n_geom)];
+        // About the interpolated normal the way back has the same chance: Fresnel's equations have no direction.
+        let chances: [f32; 4] = std::array::from_fn(|i| match &ways[i].0 {
+            Some(event) if i < 2 => event.pdf_solid_angle,
+            Some(event) => self.falls_back(lobe, event),
+            None => 0.0,
+        });
+        let total: f32 = chances.iter().sum();
+        let begins = |i: usize| chances[..i].iter().sum::<f32>();
+        let chosen = (0..4).rev().find(|&i| chances[i] > 0.0 && begins(i) <= u_choice * total)?;
+        let (event, n) = (ways[chosen].0?, ways[chosen].1);
+        let weight = self.carried(event.weight * total, n, wo, event.wi, TransportMode::Importance);
+        Some(BsdfSample { weight, pdf_solid_angle: chances[chosen] / total, ..event })
+    }
+
+    /// The chance, from the other end of an event about the triangle's normal, that the interpolated normal fails and
+    /// this event takes its place.
+    fn falls_back(&self, lobe: &Lobe, event: &BsdfSample) -> f32 {
+        let wo = event.wi;
+        if !self.sees_side(wo) {
+            return event.pdf_solid_angle;
+        }
+        let own = if event.transmits { 1.0 - event.pdf_solid_angle..1.0 } else { 0.0..event.pdf_solid_angle };
+        let [reflected, transmitted] = events(lobe, &self.frame, wo);
+        let end = reflected.map_or(0.0, |sample| sample.pdf_solid_angle);
+        let fails = |sample: Option<BsdfSample>| sample.is_none_or(|s| !self.keeps_side(wo, &s));
+        let lost = |fails: bool, range: Range<f32>| if fails { overlap(&own, &range) } else { 0.0 };
+        lost(fails(reflected), 0.0..end) + lost(fails(transmitted), end..1.0)
+    }
+
+    /// True when `wo` is on one side of the triangle and of the interpolated surface.
+    #[inline]
+    fn sees_side(&self, wo: Vec3) -> bool {
+        wo.dot(self.frame.n) * wo.dot(self.n_geom) > 0.0
+    }
+}
+
+#[inline]
+fn about(lobe: &Lobe, frame: &Frame, wo: Vec3, u_choice: f32, mode: TransportMode) -> Option<BsdfSample> {
+    let mut sample = lobe.sample(frame.to_local(wo), u_choice, Vec2::ZERO, mode)?;
+    sample.wi = frame.to_world(sample.wi).normalize();
+    Some(sample)
+}
+
+/// The least number reflects if any does, the greatest transmits.
+fn events(lobe: &Lobe, frame: &Frame, wo: Vec3) -> Events {
+    let by = |u: f32| about(lobe, frame, wo, u, TransportMode::Importance);
+    [by(0.0).filter(|sample| !sample.transmits), by(1f32.next_down()).filter(|sample| sample.transmits)]
+}
+
+fn overlap(a: &Range<f32>, b: &Range<f32>) -> f32 {
+    (a.end.min(b.end) - a.start.max(b.start)).max(0.0)
+}

@@ -1,0 +1,49 @@
+//! Means of samples, and whether two of them can be one. [Welch 1947]
+
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// Sums of samples: enough of them for their mean to be normally distributed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    count: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Tally {
+    /// Counts a sample.
+    pub fn add(&mut self, x: f64) {
+        self.count += 1.0;
+        self.sum += x;
+        self.squares += x * x;
+    }
+
+    /// The mean; zero of nothing.
+    pub fn mean(&self) -> f64 {
+        self.sum / self.count.max(1.0)
+    }
+
+    /// Variance of the mean.
+    fn variance(&self) -> f64 {
+        let n = self.count.max(2.0);
+        (self.squares / n - self.mean() * self.mean()).max(0.0) / (n - 1.0)
+    }
+
+    /// The chance that two means differ as much as these where what they estimate is the same. Differences that
+    /// rounding explains, a hundred-thousandth, do not count.
+    pub fn p_value(&self, other: &Tally) -> f64 {
+        let rounding = 1e-5 * self.mean().abs().max(other.mean().abs());
+        let difference = ((self.mean() - other.mean()).abs() - rounding).max(0.0);
+        if difference == 0.0 {
+            return 1.0;
+        }
+        let deviations = difference / (self.variance() + other.variance()).sqrt();
+        2.0 * Normal::standard().cdf(-deviations)
+    }
+
+    /// The same against a number that is known.
+    pub fn p_value_of(&self, known: f64) -> f64 {
+        let exact = Tally { count: 2.0, sum: 2.0 * known, squares: 2.0 * known * known };
+        self.p_value(&Tally { squares: 0.0, ..exact })
+    }
+}
