@@ -2,6 +2,8 @@
 //! catches.
 
 pub mod bsdf_contract;
+pub mod camera_contract;
 pub mod chi_square;
 pub mod course_oracle;
+pub mod light_contract;
 pub mod tally;

@@ -8,6 +8,7 @@ pub struct Tally {
     count: f64,
     sum: f64,
     squares: f64,
+    nonzero: u64,
 }
 
 impl Tally {
@@ -16,6 +17,12 @@ impl Tally {
         self.count += 1.0;
         self.sum += x;
         self.squares += x * x;
+        self.nonzero += u64::from(x != 0.0);
+    }
+
+    /// True when too few samples are not zero for the mean to be normally distributed.
+    pub fn is_sparse(&self) -> bool {
+        self.nonzero < 30
     }
 
     /// The mean; zero of nothing.
@@ -43,7 +50,7 @@ impl Tally {
 
     /// The same against a number that is known.
     pub fn p_value_of(&self, known: f64) -> f64 {
-        let exact = Tally { count: 2.0, sum: 2.0 * known, squares: 2.0 * known * known };
-        self.p_value(&Tally { squares: 0.0, ..exact })
+        let exact = Tally { count: 1.0, sum: known, squares: 0.0, nonzero: 0 };
+        self.p_value(&exact)
     }
 }

@@ -1,5 +1,6 @@
 //! Every registered BSDF and material keeps its contract, and every check of it can fail.
 
+use bilux_math::frame::reflect;
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::bsdf::{BSDFS, BsdfEntry, Dielectric, Lambert, Lobe, Mirror};
@@ -158,10 +159,28 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
         ("a wrong share of refraction", "samples follow the density", wrong_choice, adjoint),
         ("η² forgotten", "reciprocity, or else the adjoint", no_eta, adjoint),
         ("a turned normal's adjoint forgotten", "the same from both ends", forgetful, white),
+        ("a camera's rule for a light's mirror", "the same from both ends", ruled_as_from_a_camera(), white),
         ("η² forgotten", "the same from both ends", no_eta_either(glass), adjoint),
         ("a delta lobe with a density", "delta lobes hide from eval", shown, white),
         ("a mirror that transmits", "lobes of zero chance give no sample", through, white),
     ]
+}
+
+/// A mirror whose interpolated normal fails: from a light too, the triangle's is only taken where it does.
+fn ruled_as_from_a_camera() -> Scatterer {
+    let (n_shade, n_geom) = (turned()[1], Vec3::Z);
+    let mirror = Lobe::Mirror(Mirror { reflectance: Rgb::WHITE });
+    let bsdf = Bsdf::new(n_shade, n_geom, [Some(mirror), None, None]);
+    let mut scatterer = Scatterer::from(bsdf);
+    scatterer.sample = Box::new(move |wo, c, u, mode| {
+        let mut sample = bsdf.sample(wo, c, u, TransportMode::Radiance)?;
+        let about_shading = (sample.wi - reflect(wo, n_shade)).length() < 1e-4;
+        if about_shading && mode == TransportMode::Importance {
+            sample.weight *= (sample.wi.z / wo.z).abs();
+        }
+        Some(sample)
+    });
+    scatterer
 }
 
 fn no_eta_either(lobe: Lobe) -> Scatterer {

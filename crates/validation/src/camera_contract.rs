@@ -1,0 +1,189 @@
+//! What every camera promises: that it sees a point where its ray through that point began, as densely as its rays
+//! are there.
+
+use crate::chi_square::uniforms;
+use crate::tally::Tally;
+use bilux_math::{DVec3, Vec2, Vec3, warp};
+use bilux_scene::{Camera, CameraSample, Ray};
+
+/// The checks, by name.
+pub const CHECKS: [(&str, Check); 5] = [
+    ("a ray's points are seen where it began", rays_come_back),
+    ("density is that of the rays nearby", density_is_that_of_rays),
+    ("a ray knows its own density", rays_know_their_density),
+    ("points of a plane are seen as often as met", planes_are_seen_as_met),
+    ("nothing is seen behind or beside the film", nothing_is_seen_elsewhere),
+];
+
+/// One check of a camera at a time in seconds: what it found wrong, if anything.
+pub type Check = fn(&dyn Camera, f32) -> Result<(), String>;
+
+const SAMPLES: u64 = 40_000;
+/// Chance of a false alarm of a check.
+const SIGNIFICANCE: f64 = 1e-5;
+/// Cells of the film along each side.
+const CELLS: usize = 4;
+/// What stands for all of them.
+const ALL: usize = CELLS * CELLS;
+
+fn sample(stream: u64, i: u64, time: f32) -> CameraSample {
+    let film = uniforms(stream, i).1;
+    CameraSample { film, lens: warp::sample_disc(uniforms(stream + 1, i).1), time }
+}
+
+/// Some rays and how far along them to look.
+fn some(camera: &dyn Camera, stream: u64, time: f32) -> impl Iterator<Item = (CameraSample, Ray, f32)> {
+    (0..500).map(move |i| {
+        let sample = sample(stream, i, time);
+        (sample, camera.ray(&sample), 0.5 + 8.0 * uniforms(stream + 2, i).0)
+    })
+}
+
+fn at(ray: &Ray, t: f32) -> Vec3 {
+    Vec3::from(ray.at(t))
+}
+
+/// `connect` is the inverse of `ray`, but for rounding.
+pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
+    for (sample, ray, t) in some(camera, 0, time) {
+        let (point, origin) = (at(&ray, t), Vec3::from(ray.origin));
+        let seen = camera.connect(point, sample.lens, time).ok_or(format!("{point} is not seen"))?;
+        // The point is rounded in every coordinate; so is everything on the way back.
+        let size = point.abs().max_element() + origin.abs().max_element();
+        let aside = 8.0 * f32::EPSILON * size;
+        let on_film = 2.0 * aside * camera.density(&ray, t).sqrt() * edge(camera, time) + 8.0 * f32::EPSILON;
+        let film = (seen.film - sample.film).abs().max_element();
+        let same_ray = seen.p.distance(origin) <= aside
+            && (seen.wi + Vec3::from(ray.direction)).length() <= aside / t + 8.0 * f32::EPSILON;
+        if film > on_film || !same_ray {
+            let d = seen.film - sample.film;
+            return Err(format!("{sample:?} at {t} comes back as {seen:?}: {d} off, {on_film:e} allowed"));
+        }
+    }
+    Ok(())
+}
+
+/// How much longer than wide, or wider than long, the film is.
+fn edge(camera: &dyn Camera, time: f32) -> f32 {
+    let away = |x: f32, y: f32| {
+        let ray = camera.ray(&CameraSample { film: Vec2::new(x, y), lens: Vec2::ZERO, time });
+        at(&ray, 1.0)
+    };
+    let (middle, right, up) = (away(0.5, 0.5), away(0.51, 0.5), away(0.5, 0.51));
+    let ratio = (right.distance(middle) / up.distance(middle)).sqrt();
+    ratio.max(1.0 / ratio)
+}
+
+/// One over the area, across the ray, of what neighbours on the film go through.
+pub fn density_is_that_of_rays(camera: &dyn Camera, time: f32) -> Result<(), String> {
+    const STEP: f32 = 1.0 / 512.0;
+    for (sample, ray, t) in some(camera, 10, time) {
+        let (point, across) = (at(&ray, t).as_dvec3(), Vec3::from(ray.direction).as_dvec3());
+        let through = |x: f32, y: f32| -> DVec3 {
+            let ray = camera.ray(&CameraSample { film: sample.film + Vec2::new(x, y) * STEP, ..sample });
+            let (o, d) = (Vec3::from(ray.origin).as_dvec3(), Vec3::from(ray.direction).as_dvec3());
+            o + d * ((point - o).dot(across) / d.dot(across))
+        };
+        let along_x = through(1.0, 0.0) - through(-1.0, 0.0);
+        let along_y = through(0.0, 1.0) - through(0.0, -1.0);
+        let area = along_x.cross(along_y).length() / f64::from(4.0 * STEP * STEP);
+        let seen = camera.connect(at(&ray, t), sample.lens, time).ok_or(format!("{point} is not seen"))?;
+        let ratio = f64::from(seen.density) * area;
+        if (ratio - 1.0).abs() > 2e-3 {
+            return Err(format!("{sample:?} at {t}: density {} times area {area} is {ratio}", seen.density));
+        }
+    }
+    Ok(())
+}
+
+/// `density` says of a ray what `connect` says of its points.
+pub fn rays_know_their_density(camera: &dyn Camera, time: f32) -> Result<(), String> {
+    for (sample, ray, t) in some(camera, 20, time) {
+        let seen = camera.connect(at(&ray, t), sample.lens, time).ok_or("a point is not seen")?;
+        let said = camera.density(&ray, t);
+        if (said - seen.density).abs() > 1e-4 * said {
+            return Err(format!("{sample:?} at {t}: the ray says {said}, its point {}", seen.density));
+        }
+    }
+    Ok(())
+}
+
+/// On a square before the camera, askew, random points that ask the camera count as much in each cell of the film as
+/// random rays that meet it.
+pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), String> {
+    let middle = camera.ray(&CameraSample { film: Vec2::splat(0.45), lens: Vec2::ZERO, time });
+    let (forward, distance) = (Vec3::from(middle.direction), 3.0);
+    let side = forward.any_orthonormal_vector();
+    let (u, v) = (side * 2.5, (forward.cross(side) + forward * 0.4) * 1.8);
+    let corner = at(&middle, distance) - (u + v) * 0.5;
+    let (across, area) = (u.cross(v).normalize(), u.cross(v).length());
+    let cell = |film: Vec2| {
+        let index = |x: f32| (x * CELLS as f32) as usize;
+        index(film.y) * CELLS + index(film.x)
+    };
+    let (mut met, mut seen) = ([Tally::default(); ALL + 1], [Tally::default(); ALL + 1]);
+    for i in 0..SAMPLES {
+        let sample = sample(30, i, time);
+        let ray = camera.ray(&sample);
+        let (o, d) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+        let t = (corner - o).dot(across) / d.dot(across);
+        let place = o + d * t - corner;
+        let share = |x: Vec3, y: Vec3| x.cross(y).dot(across) / area;
+        let inside = |x: f32| (0.0..1.0).contains(&x);
+        let hit = t > 0.0 && inside(share(place, v)) && inside(share(u, place));
+        met.iter_mut().enumerate().for_each(|(c, tally)| {
+            tally.add(f64::from(u8::from(hit && (c == ALL || c == cell(sample.film)))))
+        });
+        let (place, lens) = (uniforms(40, i).1, warp::sample_disc(uniforms(41, i).1));
+        let connection = camera.connect(corner + u * place.x + v * place.y, lens, time);
+        let found = connection.map(|c| (cell(c.film), f64::from(c.density * c.wi.dot(across).abs() * area)));
+        seen.iter_mut()
+            .enumerate()
+            .for_each(|(c, tally)| tally.add(found.filter(|f| c == ALL || f.0 == c).map_or(0.0, |f| f.1)));
+    }
+    for (c, (met, seen)) in met.iter().zip(&seen).enumerate() {
+        let p = met.p_value(seen);
+        let sparse = c != ALL && (met.is_sparse() || seen.is_sparse());
+        if !sparse && p < SIGNIFICANCE / (ALL + 1) as f64 {
+            let (a, b) = (met.mean(), seen.mean());
+            return Err(format!("cell {c}: {a:.5} of the rays, {b:.5} of the points, p = {p:.2e}"));
+        }
+    }
+    Ok(())
+}
+
+/// `None` for what is off the film, or on the other side of the lens.
+pub fn nothing_is_seen_elsewhere(camera: &dyn Camera, time: f32) -> Result<(), String> {
+    for (i, (inside, ray, t)) in some(camera, 50, time).enumerate() {
+        let behind = at(&ray, -t);
+        if let Some(seen) = camera.connect(behind, inside.lens, time) {
+            return Err(format!("{behind} behind is seen at {}", seen.film));
+        }
+        let shift = [Vec2::X, -Vec2::X, Vec2::Y, -Vec2::Y][i % 4];
+        let ray = camera.ray(&CameraSample { film: inside.film + shift, ..inside });
+        let beside = at(&ray, t);
+        let near_edge = (inside.film - inside.film.round()).abs().min_element() < 1e-3;
+        if let Some(seen) = camera.connect(beside, inside.lens, time)
+            && !near_edge
+        {
+            return Err(format!(
+                "{beside}, at {} of the film, is seen at {}",
+                inside.film + shift,
+                seen.film
+            ));
+        }
+    }
+    let lens = sample(60, 0, time).lens;
+    for strange in [Vec3::NAN, Vec3::INFINITY] {
+        if let Some(seen) = camera.connect(strange, lens, time) {
+            return Err(format!("{strange} is seen: {seen:?}"));
+        }
+    }
+    let origin = Vec3::from(camera.ray(&sample(60, 0, time)).origin);
+    match camera.connect(origin, lens, time) {
+        Some(seen) if !(seen.wi.is_finite() && seen.p.is_finite() && seen.density.is_finite()) => {
+            Err(format!("its own place {origin} is seen: {seen:?}"))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,225 @@
+//! What every light promises: that it sends what it is found to give, by the densities that it says.
+
+use crate::chi_square::uniforms;
+use crate::tally::Tally;
+use bilux_math::{Vec2, Vec3};
+use bilux_scene::{EmissionSample, Light, Scene, Tracer};
+use std::sync::Arc;
+
+/// A light in a scene at a time.
+pub struct LightCase {
+    /// What it is.
+    pub name: String,
+    /// Where it stands; with a surface, it is one of the objects.
+    pub scene: Scene,
+    /// The light.
+    pub light: Arc<dyn Light>,
+    /// When it is asked, in seconds.
+    pub time: f32,
+    /// Luminance of its power then, in W, where [`Light::power`] speaks of another time.
+    pub power: Option<f64>,
+}
+
+/// The checks, by name.
+pub const CHECKS: [(&str, Check); 5] = [
+    ("samples are sound", samples_are_sound),
+    ("densities are as said", densities_are_as_said),
+    ("what is sent is the power", what_is_sent_is_the_power),
+    ("direct light finds what was sent", direct_light_finds_what_was_sent),
+    ("flux through a plane is the same both ways", flux_is_the_same_both_ways),
+];
+
+/// One check: what it found wrong, if anything.
+pub type Check = fn(&LightCase) -> Result<(), String>;
+
+/// Rays of each mean.
+const SAMPLES: u64 = 40_000;
+/// Chance of a false alarm of each check.
+const SIGNIFICANCE: f64 = 1e-5;
+/// Cells of the plane along each side.
+const CELLS: usize = 4;
+/// What stands for all of them.
+const ALL: usize = CELLS * CELLS;
+
+impl LightCase {
+    fn samples(&self, stream: u64, count: u64) -> impl Iterator<Item = Option<EmissionSample>> {
+        let bounds = self.scene.bounds();
+        (0..count).map(move |i| {
+            let (u_point, u_direction) = (uniforms(stream, i).1, uniforms(stream + 1, i).1);
+            self.light.sample_le(&bounds, self.time, u_point, u_direction)
+        })
+    }
+}
+
+/// Luminance that a ray carries over its density: its share of the power.
+fn power_of(sample: &EmissionSample) -> f64 {
+    f64::from(sample.le.luminance() * sample.cos()) / f64::from(sample.pdf_emission)
+}
+
+/// Directions are unit vectors away from the light, densities positive; what is infinitely far starts outside of the
+/// scene and aims at it.
+pub fn samples_are_sound(case: &LightCase) -> Result<(), String> {
+    let bounds = case.scene.bounds();
+    for sample in case.samples(0, 2000).flatten() {
+        let unit = |v: Vec3| (v.length() - 1.0).abs() < 1e-5;
+        let normal = sample.n_light == Vec3::ZERO
+            || (unit(sample.n_light) && sample.n_light.dot(sample.direction) > 0.0);
+        let densities = [sample.pdf_emission, sample.pdf_direct];
+        let numbers = densities.iter().all(|pdf| pdf.is_finite() && *pdf > 0.0) && sample.le.is_finite();
+        let from_centre = sample.p - bounds.centre();
+        let along = -from_centre.dot(sample.direction);
+        let aside = (from_centre + sample.direction * along).length();
+        let outside = along > bounds.radius() && aside < bounds.radius() * (1.0 + 1e-5);
+        let started = !case.light.is_infinite() || outside;
+        if !(unit(sample.direction) && normal && numbers && started && sample.p_error.min_element() >= 0.0) {
+            return Err(format!("{sample:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// `emission_pdf` says of a sample's own numbers what the sample says.
+pub fn densities_are_as_said(case: &LightCase) -> Result<(), String> {
+    let bounds = case.scene.bounds();
+    for sample in case.samples(2, 2000).flatten() {
+        let EmissionSample { pdf_emission, pdf_direct, direction, .. } = sample;
+        let said = case.light.emission_pdf(&bounds, pdf_direct, direction, sample.cos());
+        if said != pdf_emission {
+            return Err(format!("emission_pdf {said} of {sample:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// All rays together carry the power.
+pub fn what_is_sent_is_the_power(case: &LightCase) -> Result<(), String> {
+    let mut sent = Tally::default();
+    case.samples(4, SAMPLES).for_each(|sample| sent.add(sample.as_ref().map_or(0.0, power_of)));
+    let power = case.power.unwrap_or_else(|| f64::from(case.light.power(&case.scene.bounds())));
+    let p = sent.p_value_of(power);
+    if p < SIGNIFICANCE {
+        return Err(format!("sends {}, power {power}, p = {p:.2e}", sent.mean()));
+    }
+    Ok(())
+}
+
+/// A receiver on the ray, asking back, finds the light where it started, with the same density and strength.
+pub fn direct_light_finds_what_was_sent(case: &LightCase) -> Result<(), String> {
+    let mut tracer = Tracer::new(&case.scene, false);
+    let (mut asked, mut missed) = (0, 0);
+    let peak = case.samples(6, 2000).flatten().map(|s| s.le.luminance()).fold(0.0, f32::max);
+    for sample in case.samples(6, 2000).flatten() {
+        let found = if sample.pdf_direct == 1.0 && case.light.is_delta() {
+            found_of_delta(case, &sample, peak)
+        } else if case.light.is_infinite() {
+            found_far(case, &sample)
+        } else {
+            match found_on_surface(case, &mut tracer, &sample) {
+                Some(found) => found,
+                // Another triangle may be met where two touch, or the next wall be too near to stand between.
+                None => {
+                    missed += 1;
+                    Ok(())
+                }
+            }
+        };
+        asked += 1;
+        found.map_err(|wrong| format!("{wrong}: {sample:?}"))?;
+    }
+    if missed * 50 > asked {
+        Err(format!("{missed} of {asked} are not found where they start"))
+    } else {
+        Ok(())
+    }
+}
+
+fn near(a: f32, b: f32, tolerance: f32) -> bool {
+    (a - b).abs() <= tolerance * a.abs().max(b.abs())
+}
+
+fn check(holds: bool, wrong: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(wrong()) }
+}
+
+fn found_of_delta(case: &LightCase, sample: &EmissionSample, peak: f32) -> Result<(), String> {
+    let distance = 2.5;
+    let receiver = sample.p + sample.direction * distance;
+    let found = case.light.sample_li(receiver, case.time, Vec2::splat(0.5)).ok_or("dark")?;
+    let spread = if case.light.is_infinite() { 1.0 } else { distance * distance };
+    let (li, le) = (found.li.luminance() * spread, sample.le.luminance());
+    // The soft edge of a cone is steep, beside the rounding of its cosine.
+    check((li - le).abs() < 1e-3 * peak && found.wi.dot(-sample.direction) > 1.0 - 1e-5, || {
+        format!("finds {found:?}")
+    })
+}
+
+fn found_far(case: &LightCase, sample: &EmissionSample) -> Result<(), String> {
+    let pdf = case.light.li_pdf_solid_angle(case.scene.bounds().centre(), -sample.direction, None);
+    let le = case.light.le(-sample.direction);
+    check(pdf == sample.pdf_direct && le == sample.le, || format!("density {pdf}, radiance {le:?}"))
+}
+
+fn found_on_surface(
+    case: &LightCase,
+    tracer: &mut Tracer,
+    sample: &EmissionSample,
+) -> Option<Result<(), String>> {
+    let ray = sample.spawn(case.time);
+    let distance = tracer.closest(&ray).map_or(1.0, |hit| 0.5 * hit.t.min(2.0));
+    let receiver = Vec3::from(ray.at(distance));
+    let mut back = bilux_scene::Ray::new(receiver.to_array(), (-sample.direction).to_array());
+    back.time = case.time;
+    let hit = tracer.closest(&back).filter(|hit| hit.primitive == sample.primitive)?;
+    let area = case.light.pdf_area(&hit);
+    let pdf = case.light.li_pdf_solid_angle(receiver, -sample.direction, Some(&hit));
+    let converted = sample.pdf_direct * hit.p.distance_squared(receiver) / sample.cos();
+    let exact = near(area, sample.pdf_direct, 1e-5) && near(pdf, converted, 1e-3);
+    let there = hit.p.distance(sample.p) < 1e-4 * (1.0 + sample.p.length()) / sample.cos();
+    Some(check(exact && there, || format!("over area {area}, over solid angle {pdf} for {converted}")))
+}
+
+/// A square in the scene receives as much in each of its cells from rays that the light sends and from points that
+/// ask for it. What stands between is not looked at.
+pub fn flux_is_the_same_both_ways(case: &LightCase) -> Result<(), String> {
+    let corner = Vec3::new(-0.8, 0.25, -1.0);
+    let (side_u, side_v) = (Vec3::new(1.6, 0.3, 0.0), Vec3::new(0.0, 0.2, 2.0));
+    let across = side_u.cross(side_v);
+    let cell = |u: f32, v: f32| {
+        let index = |x: f32| (x * CELLS as f32) as usize;
+        ((0.0..1.0).contains(&u) && (0.0..1.0).contains(&v)).then(|| index(u) * CELLS + index(v))
+    };
+    let mut sent = [Tally::default(); ALL + 1];
+    for sample in case.samples(8, 2 * SAMPLES) {
+        let met = sample.and_then(|s| {
+            let t = (corner - s.p).dot(across) / s.direction.dot(across);
+            let at = s.p + s.direction * t - corner;
+            let u = at.cross(side_v).dot(across) / across.length_squared();
+            let v = side_u.cross(at).dot(across) / across.length_squared();
+            if t > 0.0 { Some((cell(u, v)?, power_of(&s))) } else { None }
+        });
+        for (i, tally) in sent.iter_mut().enumerate() {
+            tally.add(met.filter(|(c, _)| *c == i || i == ALL).map_or(0.0, |(_, power)| power));
+        }
+    }
+    let mut asked = sent.map(|_| Tally::default());
+    for i in 0..SAMPLES {
+        let (place, u) = (uniforms(10, i).1, uniforms(11, i).1);
+        let from = corner + side_u * place.x + side_v * place.y;
+        let met = case.light.sample_li(from, case.time, u).map(|s| {
+            let flux = s.li.luminance() * s.wi.dot(across).abs() / s.pdf_solid_angle;
+            (cell(place.x, place.y), f64::from(flux))
+        });
+        for (i, tally) in asked.iter_mut().enumerate() {
+            tally.add(met.filter(|(c, _)| *c == Some(i) || i == ALL).map_or(0.0, |(_, flux)| flux));
+        }
+    }
+    for (i, (sent, asked)) in sent.iter().zip(&asked).enumerate() {
+        let p = sent.p_value(asked);
+        let sparse = i != ALL && (sent.is_sparse() || asked.is_sparse());
+        if !sparse && p < SIGNIFICANCE / (ALL + 1) as f64 {
+            let (a, b) = (sent.mean(), asked.mean());
+            return Err(format!("cell {i}: {a:.5} sent, {b:.5} asked for, p = {p:.2e}"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,273 @@
+//! Every registered light and every kind of luminous mesh keeps its contract, and every check of it can fail.
+
+use bilux_math::glam::DVec3;
+use bilux_math::{Aabb, DMat4, Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
+use bilux_scene::generators::shapes::{cuboid, icosphere, quad};
+use bilux_scene::{
+    AccelChoice, ClassicLight, EmissionSample, LIGHTS, Light, LightSample, Mesh, Object, Primitive,
+    SceneBuilder, Spec, Surface,
+};
+use bilux_validation::light_contract::{CHECKS, LightCase};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A block to be lit, and whatever is added.
+fn case(name: &str, time: f32, add: impl FnOnce(&mut SceneBuilder)) -> LightCase {
+    let mut builder = SceneBuilder::default();
+    let grey = builder.add_material(Spec::new("grey", "diffuse"));
+    let block = Aabb { min: Vec3::new(-2.0, 0.0, -2.0), max: Vec3::new(2.0, 1.0, 2.0) };
+    builder.objects.push(Object::new("block", Arc::new(cuboid(block)), grey));
+    add(&mut builder);
+    let scene = builder.build(&AccelChoice::default(), [0.0, 1.0], 1.0).unwrap();
+    let light = scene.lights()[0].light.clone();
+    LightCase { name: name.to_owned(), scene, light, time, power: None }
+}
+
+const RADIANCE: Rgb = Rgb { r: 3.0, g: 2.0, b: 1.0 };
+
+/// A mesh that gives light, moved.
+fn luminous(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
+    let to_world = motion.at(time);
+    let area: f64 = mesh
+        .triangles
+        .iter()
+        .map(|t| t.map(|i| to_world.point(mesh.positions[i as usize]).as_dvec3()))
+        .map(|[a, b, c]: [DVec3; 3]| 0.5 * (b - a).cross(c - a).length())
+        .sum();
+    let placed = case(name, time, |builder| {
+        let glowing = Spec::new("glowing", "diffuse").with("reflectance", 0.0).with("emission", RADIANCE);
+        let material = builder.add_material(glowing);
+        let object = Object::new("lamp", Arc::new(mesh), material);
+        builder.objects.push(Object { motion: motion.clone(), instanced, ..object.clone() });
+        // A twin that gives no light, so that the lamp is not the only instance of its mesh.
+        let aside = Motion::still(shifted(DVec3::new(9.0, 3.0, 0.0)));
+        builder.objects.insert(0, Object { motion: aside, material: 0, instanced, ..object });
+    });
+    LightCase { power: Some(f64::from(RADIANCE.luminance()) * area * 0.5 * TAU * 2.0), ..placed }
+}
+
+fn shifted(by: DVec3) -> Transform {
+    Transform::from_matrix(DMat4::from_translation(by)).unwrap()
+}
+
+fn luminous_meshes() -> Vec<LightCase> {
+    let rest = Motion::still(shifted(DVec3::new(0.5, 3.0, 0.0)));
+    let askew = DMat4::from_translation(DVec3::new(-0.5, 3.0, 0.5))
+        * DMat4::from_rotation_x(0.7)
+        * DMat4::from_scale(DVec3::new(-1.5, 0.2, 0.9));
+    let askew = Motion::still(Transform::from_matrix(askew).unwrap());
+    let key = |time_seconds: f32, x: f32, turn: f32, scale: Vec3| MotionKey {
+        time_seconds,
+        translation: Vec3::new(x, 2.5, 0.3),
+        rotation: Quat::from_rotation_x(turn),
+        scale,
+    };
+    let first = key(0.0, -1.0, 0.0, Vec3::ONE);
+    let moving = Motion::from_keys(vec![first, key(1.0, 1.5, 2.0, Vec3::new(0.5, 1.0, 2.0))]).unwrap();
+    let ball = || icosphere(Vec3::ZERO, 0.4, 1);
+    let panel = || quad(Vec3::ZERO, Vec3::X, Vec3::new(0.0, 0.3, 0.7));
+    vec![
+        luminous("ball", ball(), &rest, false, 0.0),
+        luminous("ball of its own tree", ball(), &rest, true, 0.0),
+        luminous("mirrored and flattened", ball(), &askew, false, 0.0),
+        luminous("mirrored and flattened, of its own tree", ball(), &askew, true, 0.0),
+        luminous("moving ball, at first", ball(), &moving, false, 0.0),
+        luminous("moving ball, later", ball(), &moving, false, 0.6),
+        luminous("moving panel, later", panel(), &moving, true, 0.9),
+    ]
+}
+
+fn with_light(name: &str, spec: Spec) -> LightCase {
+    case(name, 0.0, |builder| builder.lights.push(spec))
+}
+
+fn cases() -> Vec<LightCase> {
+    let row = |kind: &'static str| {
+        let spec = Spec::new("", kind);
+        with_light(kind, if kind == "rect" { spec.with("radiance", RADIANCE) } else { spec })
+    };
+    let spot = |outer: f32, inner: f32| {
+        let at = Vec3::new(1.0, 4.0, -0.5);
+        Spec::new("", "spot").with("position", at).with("angle", outer).with("inner_angle", inner)
+    };
+    let sky = Spec::new("", "environment")
+        .with("zenith", Rgb::new(0.2, 0.4, 1.0))
+        .with("horizon", Rgb::WHITE)
+        .with("ground", Rgb::new(0.2, 0.1, 0.0));
+    let beside = Spec::new("", "rect").with("radiance", RADIANCE).with("position", Vec3::new(1.0, 2.5, 0.5));
+    let mut cases: Vec<LightCase> = LIGHTS.iter().map(|light| row(light.entry.name)).collect();
+    cases.extend([
+        with_light("sky", sky.clone()),
+        with_light("backdrop", sky.with("backdrop", true)),
+        with_light("spot without an edge", spot(20.0, 20.0)),
+        with_light("spot of half the sphere", spot(90.0, 0.0)),
+        with_light("spot of all the sphere", spot(180.0, 120.0)),
+        with_light("narrow spot", spot(2.0, 1.0)),
+        with_light("panel", beside.with("edge_v", Vec3::new(0.3, 0.3, 0.8))),
+    ]);
+    cases.extend(luminous_meshes());
+    cases
+}
+
+#[test]
+fn every_light_keeps_its_contract() {
+    for case in cases() {
+        for (check, run) in CHECKS {
+            assert_eq!(run(&case), Ok(()), "{}: {check}", case.name);
+        }
+    }
+}
+
+/// A light with its rays spoilt.
+struct Spoilt {
+    light: Arc<dyn Light>,
+    spoil: fn(EmissionSample) -> EmissionSample,
+}
+
+impl Light for Spoilt {
+    fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
+        self.light.sample_li(from, time, u)
+    }
+
+    fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
+        self.light.li_pdf_solid_angle(from, wi, hit)
+    }
+
+    fn pdf_area(&self, hit: &Surface) -> f32 {
+        self.light.pdf_area(hit)
+    }
+
+    fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u: Vec2) -> Option<EmissionSample> {
+        self.light.sample_le(bounds, time, u_point, u).map(self.spoil)
+    }
+
+    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {
+        self.light.emission_pdf(bounds, pdf_direct, direction, cos)
+    }
+
+    fn is_infinite(&self) -> bool {
+        self.light.is_infinite()
+    }
+
+    fn le(&self, direction: Vec3) -> Rgb {
+        self.light.le(direction)
+    }
+
+    fn is_delta(&self) -> bool {
+        self.light.is_delta()
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        self.light.power(bounds)
+    }
+
+    fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
+        self.light.classic(from, time, u, extent)
+    }
+
+    fn classic_colour(&self, bounds: &Aabb) -> Rgb {
+        self.light.classic_colour(bounds)
+    }
+}
+
+type Bug = (&'static str, &'static str, &'static str, fn(EmissionSample) -> EmissionSample);
+
+/// A bug, the light that has it, the check that has to see it.
+const PLANTED: &[Bug] = &[
+    ("a scene seen from within", "sky", "samples are sound", |s| EmissionSample {
+        p: s.p + s.direction * 3.0,
+        ..s
+    }),
+    ("a normal on the other side", "ball", "samples are sound", |s| EmissionSample {
+        n_light: -s.n_light,
+        ..s
+    }),
+    ("one side's density", "panel", "densities are as said", |s| EmissionSample {
+        pdf_emission: 2.0 * s.pdf_emission,
+        ..s
+    }),
+    ("1% too dense", "moving ball, later", "what is sent is the power", |s| EmissionSample {
+        pdf_emission: 1.01 * s.pdf_emission,
+        ..s
+    }),
+    ("an edge forgotten", "spot", "what is sent is the power", |s| EmissionSample {
+        le: Rgb::WHITE * 100.0,
+        ..s
+    }),
+    ("a cosine counted twice", "panel", "what is sent is the power", |s| EmissionSample {
+        le: s.le * s.cos(),
+        ..s
+    }),
+    ("the wrong instance", "ball of its own tree", "direct light finds what was sent", |s| EmissionSample {
+        primitive: Primitive { instance: 0, ..s.primitive },
+        ..s
+    }),
+    ("a density of its own space", "moving ball, later", "direct light finds what was sent", |s| {
+        EmissionSample { pdf_direct: s.pdf_direct * 0.9, ..s }
+    }),
+    ("the sky upside down", "sky", "direct light finds what was sent", |s| EmissionSample {
+        direction: -s.direction,
+        ..s
+    }),
+    ("one side only", "panel", "flux through a plane is the same both ways", |s| {
+        let up = s.n_light * if s.n_light.y < 0.0 { 1.0 } else { -1.0 };
+        EmissionSample { direction: s.direction - s.n_light * s.cos() + up * s.cos(), n_light: up, ..s }
+    }),
+    ("a narrow disc", "sky", "flux through a plane is the same both ways", |s| EmissionSample {
+        p: s.p * 0.9,
+        ..s
+    }),
+];
+
+#[test]
+fn every_check_catches_its_planted_bugs() {
+    let cases = cases();
+    for (bug, name, check, spoil) in PLANTED {
+        let sound = cases.iter().find(|case| case.name == *name).unwrap();
+        let spoilt = LightCase {
+            name: name.to_string(),
+            scene: sound.scene.at(&AccelChoice::default(), sound.scene.shutter()),
+            light: Arc::new(Spoilt { light: sound.light.clone(), spoil: *spoil }),
+            ..*sound
+        };
+        let (_, run) = CHECKS.iter().find(|(name, _)| name == check).unwrap();
+        assert!(run(&spoilt).is_err(), "{check} does not see {bug}");
+    }
+    for (check, _) in CHECKS {
+        assert!(PLANTED.iter().any(|(_, _, name, _)| *name == check), "{check}");
+    }
+}
+
+#[test]
+fn what_has_no_size_cannot_be_aimed_at_from_afar() {
+    let point = Aabb::of_points([Vec3::ONE]);
+    for kind in ["directional", "environment"] {
+        let case = with_light(kind, Spec::new("", kind));
+        for bounds in [Aabb::EMPTY, point, Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY }] {
+            assert_eq!(
+                case.light.sample_le(&bounds, 0.0, Vec2::splat(0.3), Vec2::splat(0.6)),
+                None,
+                "{kind}"
+            );
+            assert_eq!(case.light.emission_pdf(&bounds, 1.0, Vec3::Y, 1.0), 0.0, "{kind}");
+        }
+    }
+}
+
+#[test]
+fn rays_of_a_panel_far_from_the_origin_do_not_meet_it() {
+    let spec = Spec::new("", "rect")
+        .with("radiance", RADIANCE)
+        .with("position", Vec3::new(900.0, -700.0, 800.0))
+        .with("edge_u", Vec3::new(1.0, 0.3, 0.1))
+        .with("edge_v", Vec3::new(-0.2, 0.4, 0.9));
+    let far = with_light("far", spec);
+    let mut tracer = bilux_scene::Tracer::new(&far.scene, false);
+    for i in 0..20_000u32 {
+        let u = Vec2::new((i % 141) as f32 / 141.0, (i / 141) as f32 / 142.0);
+        let u_direction = Vec2::new(u.y, u.x);
+        let Some(sample) = far.light.sample_le(&far.scene.bounds(), 0.0, u, u_direction) else { continue };
+        let hit = tracer.closest(&sample.spawn(0.0));
+        assert!(hit.is_none_or(|hit| far.scene.light_of(hit.object).is_none()), "{sample:?}");
+    }
+}
