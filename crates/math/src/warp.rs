@@ -101,6 +101,22 @@ mod tests {
     }
 
     #[test]
+    fn cones_are_filled_evenly_to_their_rim_however_narrow() {
+        for cos_max in [-1.0f32, -0.3, 0.5, 0.999, 1.0 - f32::EPSILON] {
+            let width = 1.0 - cos_max;
+            for i in 0..=16 {
+                let u = Vec2::new(i as f32 / 16.0, 0.3);
+                let d = sample_cone(u, cos_max);
+                // The part of the cone's solid angle about the axis, by the sine, which a narrow cone keeps.
+                let sin2 = f64::from(d.x) * f64::from(d.x) + f64::from(d.y) * f64::from(d.y);
+                let below = 1.0 - (1.0 - sin2).max(0.0).sqrt() * f64::from(1f32.copysign(d.z));
+                assert!((below - f64::from(u.x * width)).abs() < 1e-5 * f64::from(width), "{cos_max}: {d}");
+            }
+            assert!((cone_pdf_solid_angle(cos_max) * TAU * width - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
     fn power_cosine_density_integrates_to_one() {
         for exponent in [0.0, 1.0, 8.0, 100.0] {
             let n = 20_000;

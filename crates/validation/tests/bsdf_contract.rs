@@ -2,11 +2,12 @@
 
 use bilux_math::frame::reflect;
 use bilux_math::hash::{hash_words, unit_f32};
-use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::bsdf::{BSDFS, BsdfEntry, Dielectric, Lambert, Lobe, Mirror};
+use bilux_math::{Rgb, Vec2, Vec3, warp};
+use bilux_scene::bsdf::{BSDFS, BsdfEntry, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
 use bilux_scene::materials::MATERIALS;
 use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode};
-use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
+use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer, the_same_from_both_ends};
+use bilux_validation::chi_square::uniforms;
 
 #[test]
 fn every_registered_bsdf_keeps_its_contract() {
@@ -64,6 +65,47 @@ fn a_turned_normal_scatters_the_same_from_both_ends() {
             for (check, run) in CHECKS.iter().filter(|(check, _)| checks.contains(check)) {
                 let result = run(&bsdf.into(), Promise { reciprocal: false, lossless: false });
                 assert_eq!(result, Ok(()), "{name} ({case}) about {n_shade}: {check}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sums_of_lobes_about_a_turned_normal_do_too() {
+    let [grey, glass, sheen, metal] = [
+        Lobe::Lambert(Lambert { albedo: Rgb::new(0.2, 0.5, 0.7) }),
+        Lobe::Dielectric(Dielectric { eta: 1.5, tint: Rgb::WHITE, thin: false }),
+        Lobe::Phong(PhongLobe { reflectance: Rgb::WHITE, exponent: 20.0 }),
+        Lobe::Mirror(Mirror { reflectance: Rgb::new(0.9, 0.6, 0.3) }),
+    ];
+    for lobes in [[grey, metal, sheen], [glass, grey, metal], [sheen, glass, glass]] {
+        for n_shade in turned() {
+            for n_geom in [Vec3::Z, -Vec3::Z] {
+                let bsdf = Bsdf::new(n_shade, n_geom, lobes.map(Some));
+                let result =
+                    the_same_from_both_ends(&bsdf.into(), Promise { reciprocal: false, lossless: false });
+                assert_eq!(result, Ok(()), "{lobes:?} about {n_shade} on {n_geom}");
+            }
+        }
+    }
+}
+
+#[test]
+fn importance_that_comes_along_the_surface_is_finite() {
+    for (_, lobe) in BSDFS.iter().flat_map(|row| (row.cases)()) {
+        for n_shade in turned() {
+            let bsdf = Bsdf::new(n_shade, Vec3::Z, [Some(lobe), None, None]);
+            for (i, z) in [0.0, -0.0, f32::MIN_POSITIVE, 1e-30, -1e-30, 1e-20, 1e-7].into_iter().enumerate() {
+                let wo = Vec3::new(0.6, 0.8, z);
+                for u in (0..64).map(|k| uniforms(i as u64, k)) {
+                    let sample = bsdf.sample(wo, u.0, u.1, TransportMode::Importance);
+                    assert!(sample.is_none_or(|s| s.weight.is_finite()), "{lobe:?} from {wo}: {sample:?}");
+                    let wi = warp::sample_sphere(u.1);
+                    assert!(
+                        bsdf.eval(wo, wi, TransportMode::Importance).is_finite(),
+                        "{lobe:?}: {wo} to {wi}"
+                    );
+                }
             }
         }
     }
