@@ -113,8 +113,7 @@ impl Job {
 
     /// Samples that [`Job::render`] will take.
     pub fn sample_count(&self) -> u64 {
-        let whole = Window::whole(self.render.width, self.render.height);
-        self.render.crop.unwrap_or(whole).pixels() as u64 * self.render.samples.len() as u64
+        self.render.sample_count(&*self.integrator)
     }
 
     /// Renders.

@@ -8,6 +8,7 @@
 //! scale is held at its end, and both are counted and located, pixel by pixel.
 
 use crate::error::FilmError;
+use crate::splats::add;
 use crate::window::{Coverage, Window};
 use bilux_math::Rgb;
 use bilux_math::hash::hash_words;
@@ -32,6 +33,9 @@ pub struct Film {
     scale_exponent: i32,
     pub(crate) sums: Vec<[i64; 3]>,
     pub(crate) counts: Vec<u32>,
+    /// What light paths have left, and of how many iterations, pixel by pixel; empty as long as there is none.
+    pub(crate) splats: Vec<[i64; 3]>,
+    pub(crate) iterations: Vec<u32>,
     /// Empty as long as there is none.
     pub(crate) trouble: Vec<PixelTrouble>,
     pub(crate) coverage: Coverage,
@@ -124,6 +128,8 @@ impl Film {
             scale_exponent: scale_exponent.clamp(-1000, 1000),
             sums: Vec::new(),
             counts: Vec::new(),
+            splats: Vec::new(),
+            iterations: Vec::new(),
             trouble: Vec::new(),
             coverage: Coverage::default(),
             fingerprint: String::new(),
@@ -168,19 +174,14 @@ impl Film {
     /// Adds a sample of radiance to a pixel within the window; beyond it, nothing happens.
     #[inline]
     pub fn add(&mut self, x: u32, y: u32, sample: u32, radiance: Rgb) {
-        const LIMIT: i64 = 1 << SAMPLE_BITS;
         let Some(index) = self.window.index(x, y) else { return };
         if !radiance.is_finite() {
             return self.note_non_finite(index, sample);
         }
-        let scale = exp2(self.scale_exponent);
         let dither = hash_words([u64::from(x) << 32 | u64::from(y), u64::from(sample)]);
-        let mut overflowed = false;
-        for (channel, value) in radiance.to_array().into_iter().enumerate() {
-            let up = (dither >> (21 * channel) & 0x1f_ffff) as f64 * (1.0 / 2_097_152.0);
-            let steps = floor((f64::from(value) * scale + up).clamp(-(LIMIT as f64), LIMIT as f64));
-            overflowed |= steps.abs() >= LIMIT;
-            self.sums[index][channel] += steps.clamp(1 - LIMIT, LIMIT - 1);
+        let (steps, overflowed) = to_steps(radiance, self.scale_exponent, dither);
+        for (sum, steps) in self.sums[index].iter_mut().zip(steps) {
+            *sum += steps;
         }
         self.counts[index] += 1;
         if overflowed {
@@ -191,17 +192,16 @@ impl Film {
     #[cold]
     fn note_non_finite(&mut self, index: usize, sample: u32) {
         let trouble = self.trouble_at(index);
-        let first = PixelTrouble { non_finite: 1, first_non_finite: sample, ..PixelTrouble::default() };
-        trouble.absorb(&first);
+        trouble.absorb(&PixelTrouble::non_finite_at(sample));
     }
 
     #[cold]
     fn note_overflowed(&mut self, index: usize, sample: u32) {
         let trouble = self.trouble_at(index);
-        trouble.absorb(&PixelTrouble { overflowed: 1, first_overflowed: sample, ..PixelTrouble::default() });
+        trouble.absorb(&PixelTrouble::overflowed_at(sample));
     }
 
-    fn trouble_at(&mut self, index: usize) -> &mut PixelTrouble {
+    pub(crate) fn trouble_at(&mut self, index: usize) -> &mut PixelTrouble {
         if self.trouble.is_empty() {
             self.trouble = vec![PixelTrouble::default(); self.window.pixels()];
         }
@@ -226,6 +226,9 @@ impl Film {
         }
         self.check_counts(other)?;
         self.grow_to(self.window.union(&other.window))?;
+        if !other.splats.is_empty() {
+            self.make_room_for_splats()?;
+        }
         self.absorb(other);
         self.coverage.extend(&other.coverage);
         Ok(())
@@ -247,6 +250,9 @@ impl Film {
             return Ok(());
         }
         let mut larger = Film::windowed(self.width, self.height, window, self.scale_exponent)?;
+        if !self.splats.is_empty() {
+            larger.make_room_for_splats()?;
+        }
         larger.absorb(self);
         (larger.coverage, larger.fingerprint) =
             (std::mem::take(&mut self.coverage), std::mem::take(&mut self.fingerprint));
@@ -263,6 +269,10 @@ impl Film {
                 self.counts[start + i] += part.counts[from + i];
                 for channel in 0..3 {
                     self.sums[start + i][channel] += part.sums[from + i][channel];
+                }
+                if let Some(splats) = part.splats.get(from + i) {
+                    add(&mut self.splats[start + i], *splats);
+                    self.iterations[start + i] += part.iterations[from + i];
                 }
                 if let Some(trouble) = part.trouble.get(from + i).filter(|t| t.is_any()) {
                     self.trouble_at(start + i).absorb(trouble);
@@ -314,12 +324,14 @@ impl Film {
 
     fn mean(&self, index: usize) -> Rgb {
         let bad = self.trouble.get(index).is_some_and(|t| t.non_finite > 0);
+        let step = exp2(-self.scale_exponent);
+        let splats = self.splat_mean(index, step);
         match self.counts[index] {
             0 if bad => Rgb::grey(f32::NAN),
-            0 => Rgb::BLACK,
+            0 => splats,
             count => {
-                let step = exp2(-self.scale_exponent) / f64::from(count);
-                Rgb::from_array(self.sums[index].map(|sum| (sum as f64 * step) as f32))
+                let step = step / f64::from(count);
+                splats + Rgb::from_array(self.sums[index].map(|sum| (sum as f64 * step) as f32))
             }
         }
     }
@@ -332,12 +344,20 @@ impl Film {
 }
 
 impl PixelTrouble {
-    fn is_any(&self) -> bool {
+    pub(crate) fn non_finite_at(sample: u32) -> PixelTrouble {
+        PixelTrouble { non_finite: 1, first_non_finite: sample, ..PixelTrouble::default() }
+    }
+
+    pub(crate) fn overflowed_at(sample: u32) -> PixelTrouble {
+        PixelTrouble { overflowed: 1, first_overflowed: sample, ..PixelTrouble::default() }
+    }
+
+    pub(crate) fn is_any(&self) -> bool {
         self.non_finite > 0 || self.overflowed > 0
     }
 
     /// Adds counts; the first sample is the least of both.
-    fn absorb(&mut self, other: &PixelTrouble) {
+    pub(crate) fn absorb(&mut self, other: &PixelTrouble) {
         let first = |n: u32, first: u32, m: u32, second: u32| match (n, m) {
             (_, 0) => first,
             (0, _) => second,
@@ -350,6 +370,21 @@ impl PixelTrouble {
         self.non_finite = self.non_finite.saturating_add(other.non_finite);
         self.overflowed = self.overflowed.saturating_add(other.overflowed);
     }
+}
+
+/// Light in steps of the film, rounded up or down by chance, and whether it was more than the film can hold.
+#[inline]
+pub(crate) fn to_steps(light: Rgb, scale_exponent: i32, dither: u64) -> ([i64; 3], bool) {
+    const LIMIT: i64 = 1 << SAMPLE_BITS;
+    let scale = exp2(scale_exponent);
+    let (mut all, mut overflowed) = ([0; 3], false);
+    for (channel, value) in light.to_array().into_iter().enumerate() {
+        let up = (dither >> (21 * channel) & 0x1f_ffff) as f64 * (1.0 / 2_097_152.0);
+        let steps = floor((f64::from(value) * scale + up).clamp(-(LIMIT as f64), LIMIT as f64));
+        overflowed |= steps.abs() >= LIMIT;
+        all[channel] = steps.clamp(1 - LIMIT, LIMIT - 1);
+    }
+    (all, overflowed)
 }
 
 /// The greatest integer that is not above `x`, for `x` within ±2⁶². On old levels of the machine `f64::floor` is a call.

@@ -104,6 +104,21 @@ impl Filter {
         Vec2::new(self.sample_axis(u.x), self.sample_axis(u.y))
     }
 
+    /// How far it reaches from the middle on each axis, in pixels.
+    pub fn radius(&self) -> f32 {
+        self.quantiles[PIECES]
+    }
+
+    /// Density of [`Filter::sample`] along one axis, at a distance from the middle in pixels.
+    pub fn density(&self, x: f32) -> f32 {
+        let x = x.abs();
+        let after = self.quantiles.partition_point(|&q| q <= x);
+        if after == 0 || after > PIECES {
+            return 0.0;
+        }
+        0.5 / (PIECES as f32 * (self.quantiles[after] - self.quantiles[after - 1]))
+    }
+
     fn sample_axis(&self, u: f32) -> f32 {
         let signed = 2.0 * u - 1.0;
         let place = signed.abs() * PIECES as f32;

@@ -4,6 +4,7 @@
 //! of every pixel and adds up the [`Film`]. At a fixed number of samples the film is a pure function of scene,
 //! settings and seed: the same bytes for any number of threads, any crop, and any split into ranges of samples.
 
+mod bidirectional;
 mod classic;
 pub mod error;
 pub mod film;
@@ -15,6 +16,7 @@ pub mod partial;
 pub mod render;
 pub mod replay;
 pub mod sampler;
+mod splats;
 mod task;
 pub mod window;
 
@@ -28,5 +30,6 @@ pub use render::{
 };
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
+pub use splats::Splats;
 pub use task::{Event, Task};
 pub use window::{Coverage, Window};

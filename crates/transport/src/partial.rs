@@ -19,6 +19,15 @@ const SUMS: [[&str; 2]; 3] =
 
 const SAMPLES: &str = "samples";
 
+/// The same for what light paths have left, where there are any.
+const SPLATS: [[&str; 2]; 3] = [
+    ["splats.R.low", "splats.R.high"],
+    ["splats.G.low", "splats.G.high"],
+    ["splats.B.low", "splats.B.high"],
+];
+
+const ITERATIONS: &str = "iterations";
+
 const TROUBLE: [&str; 4] =
     ["bad.non_finite", "bad.first_non_finite", "bad.overflowed", "bad.first_overflowed"];
 
@@ -49,14 +58,12 @@ impl Film {
     /// When there is no room for it.
     pub fn to_partial(&self) -> Result<Picture, FilmError> {
         let mut picture = self.window_to_picture()?;
-        let half = |channel: usize, shift: u32| {
-            self.sums.iter().map(|sum| (sum[channel] >> shift) as u32).collect::<Vec<u32>>()
-        };
-        for (channel, [low, high]) in SUMS.into_iter().enumerate() {
-            picture.push_integer_plane(low, half(channel, 0))?;
-            picture.push_integer_plane(high, half(channel, 32))?;
-        }
+        push_sums(&mut picture, SUMS, &self.sums)?;
         picture.push_integer_plane(SAMPLES, self.counts.clone())?;
+        if !self.splats.is_empty() {
+            push_sums(&mut picture, SPLATS, &self.splats)?;
+            picture.push_integer_plane(ITERATIONS, self.iterations.clone())?;
+        }
         if !self.trouble.is_empty() {
             for (field, name) in TROUBLE.into_iter().enumerate() {
                 let plane = self.trouble.iter().map(|t| t.to_array()[field]).collect();
@@ -103,10 +110,23 @@ impl Film {
             Some(plane) => Ok(plane),
             None => Err(not_a_film(format!("it has no integer layer '{name}'"))),
         };
-        for (channel, [low, high]) in SUMS.into_iter().enumerate() {
-            let halves = plane(low)?.iter().zip(plane(high)?);
-            for (sum, (low, high)) in self.sums.iter_mut().zip(halves) {
-                sum[channel] = (u64::from(*high) << 32 | u64::from(*low)) as i64;
+        let read_sums = |names: [[&str; 2]; 3], sums: &mut [[i64; 3]]| {
+            for (channel, [low, high]) in names.into_iter().enumerate() {
+                let halves = plane(low)?.iter().zip(plane(high)?);
+                for (sum, (low, high)) in sums.iter_mut().zip(halves) {
+                    sum[channel] = (u64::from(*high) << 32 | u64::from(*low)) as i64;
+                }
+            }
+            Ok::<_, FilmError>(())
+        };
+        read_sums(SUMS, &mut self.sums)?;
+        if picture.integer_plane(ITERATIONS).is_some() {
+            self.make_room_for_splats()?;
+            read_sums(SPLATS, &mut self.splats)?;
+            self.iterations.copy_from_slice(plane(ITERATIONS)?);
+            if let Some(i) = self.iterations.iter().position(|&count| count > MAX_SAMPLES) {
+                let (x, y) = self.window().position(i);
+                return Err(not_a_film(format!("its iterations at pixel {x},{y} cannot be")));
             }
         }
         self.counts.copy_from_slice(plane(SAMPLES)?);
@@ -126,6 +146,17 @@ impl Film {
         }
         Ok(())
     }
+}
+
+fn push_sums(picture: &mut Picture, names: [[&str; 2]; 3], sums: &[[i64; 3]]) -> Result<(), FilmError> {
+    let half = |channel: usize, shift: u32| {
+        sums.iter().map(|sum| (sum[channel] >> shift) as u32).collect::<Vec<u32>>()
+    };
+    for (channel, [low, high]) in names.into_iter().enumerate() {
+        picture.push_integer_plane(low, half(channel, 0))?;
+        picture.push_integer_plane(high, half(channel, 32))?;
+    }
+    Ok(())
 }
 
 impl PixelTrouble {

@@ -1,16 +1,19 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
-use crate::error::RenderError;
+use crate::error::{FilmError, RenderError};
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
 use crate::integrators::PixelIntegrator;
 use crate::light_choice::LightChoice;
 use crate::sampler::{PixelSampler, regular_pattern};
+use crate::splats::{Iterations, Splats};
 use crate::task::Task;
 use crate::window::Window;
 use bilux_accel::Counters;
 use bilux_math::{Vec2, warp};
 use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -89,6 +92,17 @@ impl RenderSettings {
         self.crop.unwrap_or(Window::whole(self.width, self.height))
     }
 
+    /// How many samples an integrator takes: of those that follow light from its sources, all that the whole film has,
+    /// whatever part of it is wanted, since the light of any may land there.
+    pub fn sample_count(&self, integrator: &dyn PixelIntegrator) -> u64 {
+        self.walked(integrator).pixels() as u64 * self.samples.len() as u64
+    }
+
+    /// The pixels whose samples are taken.
+    fn walked(&self, integrator: &dyn PixelIntegrator) -> Window {
+        if integrator.splats() { Window::whole(self.width, self.height) } else { self.window() }
+    }
+
     fn check(&self) -> Result<(), RenderError> {
         let Range { start, end } = self.samples;
         let spp = self.spp;
@@ -154,14 +168,19 @@ pub fn render(
     let work = Work {
         eye,
         progress,
-        tiles: settings.window().tiles(TILE),
+        tiles: settings.walked(integrator).tiles(TILE),
         passes: passes(&settings.samples),
         next: AtomicU64::new(0),
         dropped: Mutex::new(Vec::new()),
         film: Mutex::new(film),
+        iterations: Mutex::new(BTreeMap::new()),
+        failed: Mutex::new(None),
     };
     let mut counters = Counters::default();
     pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
+    if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(error.into());
+    }
     let (film, cancelled) = work.finish();
     Ok(Rendered { film, counters, cancelled })
 }
@@ -187,13 +206,19 @@ struct Work<'a> {
     /// Jobs that were taken but not finished.
     dropped: Mutex<Vec<u64>>,
     film: Mutex<Film>,
+    /// What light paths have left in passes that are not finished.
+    iterations: Mutex<BTreeMap<usize, Iterations>>,
+    /// Why there is no film.
+    failed: Mutex<Option<FilmError>>,
 }
 
 impl<'a> Work<'a> {
     /// One thread's share.
     fn run(&self) -> Counters {
         let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
-        let mut part = Film::part(scale_exponent(self.eye.scene));
+        let scale = scale_exponent(self.eye.scene);
+        let mut part = Film::part(scale);
+        let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
         let jobs = (self.tiles.len() * self.passes.len()) as u64;
         loop {
             let job = self.next.fetch_add(1, Ordering::Relaxed);
@@ -201,14 +226,21 @@ impl<'a> Work<'a> {
                 return tracer.counters;
             }
             let tile = self.tiles[job as usize % self.tiles.len()];
-            let samples = self.passes[job as usize / self.tiles.len()].clone();
-            part.restart(tile);
+            let pass = job as usize / self.tiles.len();
+            let samples = self.passes[pass].clone();
+            part.restart(tile.intersection(&self.eye.settings.window()));
             let rays_before = tracer.counters.rays;
-            if !self.render_tile(tile, samples.clone(), &mut tracer, &mut part) {
+            if !self.render_tile(tile, samples.clone(), &mut tracer, (&mut part, &mut splats)) {
                 self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
                 return tracer.counters;
             }
             self.film.lock().unwrap_or_else(PoisonError::into_inner).absorb(&part);
+            if self.eye.integrator.splats()
+                && let Err(error) = self.take_splats(pass, &mut splats)
+            {
+                *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                return tracer.counters;
+            }
             let taken = tile.pixels() as u64 * samples.len() as u64;
             self.progress.advance(taken, tracer.counters.rays - rays_before);
         }
@@ -220,7 +252,7 @@ impl<'a> Work<'a> {
         tile: Window,
         samples: Range<u32>,
         tracer: &mut Tracer<'a>,
-        part: &mut Film,
+        (part, splats): (&mut Film, &mut Splats),
     ) -> bool {
         for y in tile.y..tile.y + tile.height {
             if self.progress.is_cancelled() {
@@ -229,11 +261,33 @@ impl<'a> Work<'a> {
             for x in tile.x..tile.x + tile.width {
                 for sample in samples.clone() {
                     let (ray, mut task) = self.eye.sample(tracer, x, y, sample);
-                    part.add(x, y, sample, self.eye.integrator.radiance(&ray, &mut task));
+                    let is_wanted = part.window().index(x, y).is_some();
+                    splats.begin(x, y, sample);
+                    let light = self.eye.integrator.sample(&ray, is_wanted, &mut task, splats);
+                    part.add(x, y, sample, light);
                 }
             }
         }
         true
+    }
+
+    /// Keeps what the light paths of a tile have left, and gives it to the film when it is the last of its pass.
+    fn take_splats(&self, pass: usize, splats: &mut Splats) -> Result<(), FilmError> {
+        let mut all = self.iterations.lock().unwrap_or_else(PoisonError::into_inner);
+        let iterations = match all.entry(pass) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
+                entry.insert(Iterations::new(self.eye.settings.window().pixels(), self.tiles.len())?)
+            }
+        };
+        iterations.take(&mut splats.deposits);
+        if iterations.tiles_left > 0 {
+            return Ok(());
+        }
+        let Some(iterations) = all.remove(&pass) else { return Ok(()) };
+        drop(all);
+        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.add_iterations(&iterations, self.passes[pass].len() as u32)
     }
 
     /// The film with its coverage, and whether anything is missing.
@@ -253,7 +307,8 @@ impl<'a> Work<'a> {
                 film.cover(self.eye.settings.window(), samples.clone());
             } else {
                 for job in (first..first + tiles).filter(is_done) {
-                    film.cover(self.tiles[(job - first) as usize], samples.clone());
+                    let tile = self.tiles[(job - first) as usize];
+                    film.cover(tile.intersection(&self.eye.settings.window()), samples.clone());
                 }
             }
         }

@@ -1,20 +1,35 @@
 //! How the light that comes along a camera ray is found. One integrator a file; the table is [`INTEGRATORS`].
 
+mod bdpt;
 mod cast;
 mod cook;
+mod light;
 mod occlusion;
 mod path;
 mod whitted;
 
+use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Ray, Reader, SceneError, Spec};
 
 /// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render()`].
 pub trait PixelIntegrator: Send + Sync {
-    /// Radiance (in the classic modes: intensity) that comes along a camera ray.
+    /// Radiance (in the classic modes: intensity) that comes along a camera ray, as far as the integrator finds it from
+    /// the camera.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
+
+    /// True when it also follows light from its sources, which may land anywhere on the film.
+    fn splats(&self) -> bool {
+        false
+    }
+
+    /// A sample of a pixel: [`PixelIntegrator::radiance`], where it `is_wanted` (pixels that were cropped away have only
+    /// their light paths followed), and all that lands elsewhere.
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, _splats: &mut Splats) -> Rgb {
+        if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK }
+    }
 
     /// How far samples spread over pixel, lens and shutter.
     fn camera_spread(&self) -> CameraSpread {
@@ -57,9 +72,18 @@ pub struct IntegratorEntry {
     pub build: fn(&Reader) -> Result<Box<dyn PixelIntegrator>, SceneError>,
 }
 
+/// When roulette begins, for all that play it.
+const ROULETTE_DEPTH: Parameter = Parameter {
+    name: "roulette_depth",
+    summary: "scattering events after which weak paths may end by chance",
+    unit: "",
+    kind: ParameterKind::Integer { min: 0, max: 1000 },
+    default: "4",
+};
+
 /// Every integrator that there is.
 pub const INTEGRATORS: &[IntegratorEntry] =
-    &[cast::ENTRY, whitted::ENTRY, cook::ENTRY, path::ENTRY, occlusion::ENTRY];
+    &[cast::ENTRY, whitted::ENTRY, cook::ENTRY, path::ENTRY, light::ENTRY, bdpt::ENTRY, occlusion::ENTRY];
 
 /// The row of this name.
 ///

@@ -1,0 +1,184 @@
+//! Paths from both ends: subpaths that begin at a light or at the camera, what they carry, and how they are joined.
+//!
+//! A path with `s` vertices from the light and `t` from the camera can be found in several ways, one for each pair
+//! (s, t). All of them are tried, and each is weighted by the balance heuristic against all others [Veach 1997, 10.2].
+//! The sums over the others are carried along while a subpath grows [Georgiev 2012, eq. 31 to 48], so that a weight
+//! costs no more for long paths than for short ones. In words: [`Partial::d_vcm`] is how likely the vertex is to be
+//! connected to over how likely it is to be walked to; [`Partial::d_vc`] is the same for all vertices before it.
+//!
+//! Densities count a film of area 1 and one light path for each camera path. Roulette is left out of them: weights need
+//! to be the same for all ways and no more.
+
+mod connect;
+mod walk;
+
+pub(crate) use connect::{to_camera, to_light, to_vertex};
+pub(crate) use walk::{Vertex, Walk};
+
+use crate::task::Task;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::lights::EmissionSample;
+use bilux_scene::surface::{Surface, offset_origin};
+use bilux_scene::{Ray, TransportMode};
+
+/// The recursive part of the weights. [Georgiev 2012]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Partial {
+    /// dVCM: 1 over the density of the last step, times the density of joining there instead.
+    pub(crate) d_vcm: f32,
+    /// dVC: the same, summed over the steps before.
+    pub(crate) d_vc: f32,
+}
+
+impl Partial {
+    /// Of a light path that leaves its light with the cosine `cos`.
+    fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial {
+        let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
+        Partial { d_vcm: pdf_direct / pdf_emission, d_vc }
+    }
+
+    /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`.
+    fn arrive(&mut self, distance2: f32, cos: f32) {
+        self.d_vcm *= distance2 / cos;
+        self.d_vc /= cos;
+    }
+
+    /// On leaving under the cosine `cos`, with densities there and back; `None` where there is only one direction.
+    fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>) {
+        match pdfs {
+            None => {
+                self.d_vcm = 0.0;
+                self.d_vc *= cos;
+            }
+            Some((pdf, pdf_back)) => {
+                self.d_vc = cos / pdf * (self.d_vc * pdf_back + self.d_vcm);
+                self.d_vcm = 1.0 / pdf;
+            }
+        }
+    }
+
+    /// Weight against all other ways, of which the vertex before this subpath's end would be found with `pdf_area`, and
+    /// the one before that with `pdf_back`, as a part of 1.
+    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> f32 {
+        pdf_area * (self.d_vcm + self.d_vc * pdf_back)
+    }
+}
+
+/// Random numbers of light paths begin here, far from those of camera paths.
+const LIGHT_STREAM: u64 = 1 << 32;
+
+impl Task<'_, '_> {
+    /// Random numbers for joining a vertex of the light path.
+    pub(crate) fn enter_light_vertex(&mut self, depth: u32) {
+        self.sampler.enter(2 * LIGHT_STREAM + u64::from(depth));
+    }
+}
+
+/// A path from a light: every surface that it meets and that scatters into more than single directions, in order.
+pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32) -> Vec<Vertex> {
+    let mut vertices = Vec::new();
+    let Some(mut walk) = begin_at_light(task, time) else { return vertices };
+    while let Some(vertex) = walk.meet(task) {
+        // The last event of the longest path is at the camera's side.
+        let ends = vertex.depth + 1 >= task.max_depth;
+        let stream = LIGHT_STREAM + 1 + u64::from(vertex.depth);
+        task.sampler.enter(stream);
+        let goes_on = !ends && walk.scatter(&vertex, TransportMode::Importance, roulette_depth, task);
+        if !vertex.bsdf.is_delta() {
+            vertices.push(vertex);
+        }
+        if !goes_on {
+            break;
+        }
+    }
+    vertices
+}
+
+fn begin_at_light(task: &mut Task, time: f32) -> Option<Walk> {
+    task.sampler.enter(LIGHT_STREAM);
+    let (u_light, u_point, u_direction) =
+        (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
+    if task.max_depth == 0 {
+        return None;
+    }
+    let (index, probability) = task.lights.sample_emission(u_light)?;
+    let scene = task.scene();
+    let light = &scene.lights()[index].light;
+    let sample = light.sample_le(&scene.bounds(), time, u_point, u_direction)?;
+    let cos = cos_at_light(sample.n_light, sample.direction);
+    let pdf_emission = sample.pdf_emission * probability;
+    let pdf_direct = sample.pdf_direct * task.lights.probability(index);
+    let beta = sample.le * (cos / pdf_emission);
+    let partial = Partial::of_light(pdf_direct, pdf_emission, cos_if_near(light.is_infinite(), cos), light.is_delta());
+    // The start of a ray from infinity is known by area already.
+    Some(Walk::new(spawn(&sample, time), beta, partial, light.is_infinite()))
+}
+
+fn cos_if_near(is_infinite: bool, cos: f32) -> f32 {
+    if is_infinite { 1.0 } else { cos }
+}
+
+/// 1 where a light has no normal.
+pub(crate) fn cos_at_light(n_light: Vec3, direction: Vec3) -> f32 {
+    if n_light == Vec3::ZERO { 1.0 } else { n_light.dot(direction).abs() }
+}
+
+fn spawn(sample: &EmissionSample, time: f32) -> Ray {
+    let origin = offset_origin(sample.p, sample.p_error, sample.n_light, sample.direction);
+    Ray { time, exclude: sample.primitive, ..Ray::new(origin.to_array(), sample.direction.to_array()) }
+}
+
+/// Light that a camera path meets by chance: its radiance, and the densities with which the same path would have been
+/// found by picking the point on the light, and by a path from it.
+pub(crate) struct Found {
+    pub(crate) radiance: Rgb,
+    /// Over area; from infinity, over solid angle.
+    pub(crate) pdf_direct: f32,
+    pub(crate) pdf_emission: f32,
+}
+
+/// Light from infinity that a camera path meets where it leaves the scene, weighted.
+pub(crate) fn from_infinity(task: &Task, walk: &Walk) -> Rgb {
+    let scene = task.scene();
+    let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
+    let mut sum = Rgb::BLACK;
+    for (index, light) in scene.lights().iter().enumerate() {
+        let light = &light.light;
+        let radiance = light.le(direction);
+        if radiance.is_black() || (light.is_backdrop() && !walk.specular) {
+            continue;
+        }
+        if walk.depth == 0 || light.is_backdrop() {
+            sum += radiance;
+            continue;
+        }
+        let pdf = light.li_pdf_solid_angle(origin, direction, None);
+        let pdf_direct = pdf * task.lights.probability(index);
+        let pdf_emission =
+            light.emission_pdf(&scene.bounds(), pdf, -direction, 1.0) * task.lights.emission_probability(index);
+        let others = walk.partial.d_vcm * pdf_direct + walk.partial.d_vc * pdf_emission;
+        sum += radiance * (1.0 / (1.0 + others));
+    }
+    sum
+}
+
+/// What a surface gives out towards `wo`; `None` where nothing.
+pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Found> {
+    let scene = task.scene();
+    let radiance = scene.material(surface).emission();
+    if radiance.is_black() {
+        return None;
+    }
+    let Some(index) = scene.light_index_of(surface.object) else {
+        return Some(Found { radiance, pdf_direct: 0.0, pdf_emission: 0.0 });
+    };
+    let light = &scene.lights()[index].light;
+    let pdf_area = light.pdf_area(surface);
+    let cos = surface.n_geom.dot(wo).abs();
+    let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_area, wo, cos);
+    Some(Found {
+        radiance,
+        pdf_direct: pdf_area * task.lights.probability(index),
+        pdf_emission: pdf_emission * task.lights.emission_probability(index),
+    })
+}

@@ -1,0 +1,53 @@
+//! `light`: light tracing. Paths begin at the lights, and wherever they meet a surface the camera is asked where it
+//! sees it. [Arvo 1986; Dutré 1993] What is seen in mirrors or through glass alone is not found, nor is any of that
+//! by other means: it is here to show what light paths are good for, and as one of `bdpt`'s ways.
+
+use super::{IntegratorEntry, PixelIntegrator};
+use crate::bidirectional::{light_vertices, to_camera};
+use crate::splats::Splats;
+use crate::task::Task;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+use bilux_scene::Ray;
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "light",
+        summary: "light tracing: paths from the lights to what the camera sees, mirrors and glass aside",
+        source: "Arvo 1986",
+        parameters: &[super::ROULETTE_DEPTH],
+    },
+    covers: "L(D|G|S)*(D|G)E|LE",
+    classic: false,
+    default_spp: 64,
+    build: |reader| Ok(Box::new(Light { roulette_depth: reader.integer("roulette_depth") as u32 })),
+};
+
+struct Light {
+    roulette_depth: u32,
+}
+
+impl PixelIntegrator for Light {
+    /// Only the lights themselves.
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        match task.tracer.closest(ray) {
+            Some(surface) => task.scene().material(&surface).emission(),
+            None => task.scene().background(ray.direction.into()),
+        }
+    }
+
+    fn splats(&self) -> bool {
+        true
+    }
+
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
+        for vertex in light_vertices(task, ray.time, self.roulette_depth) {
+            task.enter_light_vertex(vertex.depth);
+            if let Some((film, light, _)) = to_camera(task, &vertex) {
+                splats.add(film, light);
+            }
+        }
+        emitted
+    }
+}

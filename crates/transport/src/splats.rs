@@ -1,0 +1,170 @@
+//! Light that was followed from its source and arrives at the film wherever it will, in fixed point as all sums.
+//!
+//! One sample of every pixel is one iteration: as many light paths as the *whole* film has pixels, whatever part of it
+//! is kept. What they leave is added up without being divided; a pixel's mean divides by the iterations that are in. An
+//! iteration counts when all of its light paths have arrived, and not before, since half of them would be half of the
+//! light.
+
+use crate::error::FilmError;
+use crate::film::{Film, PixelTrouble, to_steps, zeroed};
+use crate::filters::Filter;
+use crate::render::{PixelAnchor, RenderSettings};
+use crate::window::Window;
+use bilux_math::hash::hash_words;
+use bilux_math::{Rgb, Vec2};
+
+/// What light paths leave on the film, pixel by pixel.
+pub struct Splats<'a> {
+    filter: &'a Filter,
+    anchor: f32,
+    size: Vec2,
+    window: Window,
+    scale_exponent: i32,
+    /// Which light path, and how many splats it has left.
+    path: [u64; 2],
+    sample: u32,
+    pub(crate) deposits: Vec<Deposit>,
+}
+
+/// A splat's share in one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Deposit {
+    /// The pixel's place in the film's window.
+    pub(crate) index: u32,
+    pub(crate) steps: [i64; 3],
+    pub(crate) trouble: PixelTrouble,
+}
+
+impl<'a> Splats<'a> {
+    pub(crate) fn new(settings: &'a RenderSettings, window: Window, scale_exponent: i32) -> Splats<'a> {
+        Splats {
+            filter: &settings.filter,
+            anchor: match settings.pixel_anchor {
+                PixelAnchor::Centre => 0.5,
+                PixelAnchor::Corner => 0.0,
+            },
+            size: Vec2::new(settings.width as f32, settings.height as f32),
+            window,
+            scale_exponent,
+            path: [0; 2],
+            sample: 0,
+            deposits: Vec::new(),
+        }
+    }
+
+    /// Whose splats the next are: those of the light path of a pixel and sample.
+    pub(crate) fn begin(&mut self, x: u32, y: u32, sample: u32) {
+        self.path = [u64::from(x) << 32 | u64::from(y), u64::from(sample) << 32];
+        self.sample = sample;
+    }
+
+    /// Light at a point of the film (0..=1 on both axes, y downwards), as an estimate of the integral over the whole
+    /// film of importance times radiance, the film's area being 1. Each pixel whose filter reaches the point has its share.
+    pub fn add(&mut self, film: Vec2, light: Rgb) {
+        self.path[1] += 1;
+        if light.is_black() {
+            return;
+        }
+        let at = film * self.size;
+        let reach = self.filter.radius();
+        let range = |at: f32| {
+            // A pixel reaches its middle ± radius: one more on each side costs little, and rounding nothing.
+            let first = (at - self.anchor - reach).floor().max(0.0);
+            (first as u32, (at - self.anchor + reach).floor().max(0.0) as u32 + 1)
+        };
+        let ((left, right), (top, bottom)) = (range(at.x), range(at.y));
+        for y in top..=bottom {
+            let share_y = self.filter.density(at.y - (y as f32 + self.anchor));
+            if share_y == 0.0 {
+                continue;
+            }
+            for x in left..=right {
+                let share = share_y * self.filter.density(at.x - (x as f32 + self.anchor));
+                if share > 0.0 {
+                    self.deposit(x, y, light * share);
+                }
+            }
+        }
+    }
+
+    fn deposit(&mut self, x: u32, y: u32, light: Rgb) {
+        let Some(index) = self.window.index(x, y) else { return };
+        let mut deposit = Deposit { index: index as u32, steps: [0; 3], trouble: PixelTrouble::default() };
+        if light.is_finite() {
+            let dither = hash_words([self.path[0], self.path[1], u64::from(x) << 32 | u64::from(y)]);
+            let (steps, overflowed) = to_steps(light, self.scale_exponent, dither);
+            deposit.steps = steps;
+            if overflowed {
+                deposit.trouble = PixelTrouble::overflowed_at(self.sample);
+            }
+        } else {
+            deposit.trouble = PixelTrouble::non_finite_at(self.sample);
+        }
+        self.deposits.push(deposit);
+    }
+}
+
+/// The splats of some iterations while they come in.
+pub(crate) struct Iterations {
+    sums: Vec<[i64; 3]>,
+    trouble: Vec<(u32, PixelTrouble)>,
+    /// Tiles of the film whose light paths are still to come.
+    pub(crate) tiles_left: usize,
+}
+
+impl Iterations {
+    pub(crate) fn new(pixels: usize, tiles: usize) -> Result<Iterations, FilmError> {
+        Ok(Iterations { sums: zeroed(pixels)?, trouble: Vec::new(), tiles_left: tiles })
+    }
+
+    /// Takes over what the light paths of one tile have left.
+    pub(crate) fn take(&mut self, deposits: &mut Vec<Deposit>) {
+        for deposit in deposits.drain(..) {
+            add(&mut self.sums[deposit.index as usize], deposit.steps);
+            if deposit.trouble.is_any() {
+                self.trouble.push((deposit.index, deposit.trouble));
+            }
+        }
+        self.tiles_left -= 1;
+    }
+}
+
+impl Film {
+    /// Adds whole iterations.
+    pub(crate) fn add_iterations(&mut self, splats: &Iterations, iterations: u32) -> Result<(), FilmError> {
+        self.make_room_for_splats()?;
+        for (sum, more) in self.splats.iter_mut().zip(&splats.sums) {
+            add(sum, *more);
+        }
+        self.iterations.iter_mut().for_each(|count| *count += iterations);
+        for (index, trouble) in &splats.trouble {
+            self.trouble_at(*index as usize).absorb(trouble);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn make_room_for_splats(&mut self) -> Result<(), FilmError> {
+        if self.splats.is_empty() {
+            self.splats = zeroed(self.window().pixels())?;
+            self.iterations = zeroed(self.window().pixels())?;
+        }
+        Ok(())
+    }
+
+    /// A pixel's light from splats.
+    pub(crate) fn splat_mean(&self, index: usize, step: f64) -> Rgb {
+        match self.iterations.get(index) {
+            None | Some(0) => Rgb::BLACK,
+            Some(&count) => {
+                Rgb::from_array(self.splats[index].map(|sum| (sum as f64 * (step / f64::from(count))) as f32))
+            }
+        }
+    }
+}
+
+/// More than can be added is told as overflow long before.
+pub(crate) fn add(sum: &mut [i64; 3], more: [i64; 3]) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum = sum.saturating_add(more);
+    }
+}
