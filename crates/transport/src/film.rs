@@ -9,6 +9,7 @@
 
 use crate::error::FilmError;
 use crate::splats::add;
+use crate::trouble::{PixelTrouble, SamplePlace, Trouble};
 use crate::window::{Coverage, Window};
 use bilux_math::Rgb;
 use bilux_math::hash::hash_words;
@@ -42,39 +43,6 @@ pub struct Film {
     /// What the film is of: any text that differs where scene or settings differ; given by the caller. Films
     /// with different fingerprints do not merge.
     pub fingerprint: String,
-}
-
-/// What went wrong in one pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct PixelTrouble {
-    pub(crate) non_finite: u32,
-    pub(crate) first_non_finite: u32,
-    pub(crate) overflowed: u32,
-    pub(crate) first_overflowed: u32,
-}
-
-/// Where a sample was that went wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SamplePlace {
-    /// Column.
-    pub x: u32,
-    /// Row, downwards.
-    pub y: u32,
-    /// Index of the sample within the pixel.
-    pub sample: u32,
-}
-
-/// Samples that went wrong.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Trouble {
-    /// How many were infinite or not a number; they are left out of their pixels' means.
-    pub non_finite: u64,
-    /// The first of them, row by row.
-    pub first_non_finite: Option<SamplePlace>,
-    /// How many were brighter than the film can hold; they count as the brightest that it can.
-    pub overflowed: u64,
-    /// The first of them, row by row.
-    pub first_overflowed: Option<SamplePlace>,
 }
 
 /// The scale for a scene, a pure function of it: the top of the range is 2⁶ times the brightest radiance that
@@ -317,21 +285,27 @@ impl Film {
         self.window.index(x, y).map_or(0, |index| self.counts[index])
     }
 
-    /// The mean of a pixel's samples: black where there are none, not a number where all of them were bad.
+    /// The light of a pixel: the mean of its samples and what light paths have left; black where there is nothing, not
+    /// a number where all samples were bad.
     pub fn pixel(&self, x: u32, y: u32) -> Rgb {
+        let step = exp2(-self.scale_exponent);
+        let light = |index| self.mean(index) + self.splat_mean(index, step);
+        self.window.index(x, y).map_or(Rgb::BLACK, light)
+    }
+
+    /// The mean of a pixel's own samples, without what light paths have left.
+    pub fn sampled(&self, x: u32, y: u32) -> Rgb {
         self.window.index(x, y).map_or(Rgb::BLACK, |index| self.mean(index))
     }
 
     fn mean(&self, index: usize) -> Rgb {
         let bad = self.trouble.get(index).is_some_and(|t| t.non_finite > 0);
-        let step = exp2(-self.scale_exponent);
-        let splats = self.splat_mean(index, step);
         match self.counts[index] {
             0 if bad => Rgb::grey(f32::NAN),
-            0 => splats,
+            0 => Rgb::BLACK,
             count => {
-                let step = step / f64::from(count);
-                splats + Rgb::from_array(self.sums[index].map(|sum| (sum as f64 * step) as f32))
+                let step = exp2(-self.scale_exponent) / f64::from(count);
+                Rgb::from_array(self.sums[index].map(|sum| (sum as f64 * step) as f32))
             }
         }
     }
@@ -340,35 +314,6 @@ impl Film {
     pub fn to_rgb(&self) -> Vec<Rgb> {
         let whole = Window::whole(self.width, self.height);
         (0..whole.pixels()).map(|i| whole.position(i)).map(|(x, y)| self.pixel(x, y)).collect()
-    }
-}
-
-impl PixelTrouble {
-    pub(crate) fn non_finite_at(sample: u32) -> PixelTrouble {
-        PixelTrouble { non_finite: 1, first_non_finite: sample, ..PixelTrouble::default() }
-    }
-
-    pub(crate) fn overflowed_at(sample: u32) -> PixelTrouble {
-        PixelTrouble { overflowed: 1, first_overflowed: sample, ..PixelTrouble::default() }
-    }
-
-    pub(crate) fn is_any(&self) -> bool {
-        self.non_finite > 0 || self.overflowed > 0
-    }
-
-    /// Adds counts; the first sample is the least of both.
-    pub(crate) fn absorb(&mut self, other: &PixelTrouble) {
-        let first = |n: u32, first: u32, m: u32, second: u32| match (n, m) {
-            (_, 0) => first,
-            (0, _) => second,
-            _ => first.min(second),
-        };
-        self.first_non_finite =
-            first(self.non_finite, self.first_non_finite, other.non_finite, other.first_non_finite);
-        self.first_overflowed =
-            first(self.overflowed, self.first_overflowed, other.overflowed, other.first_overflowed);
-        self.non_finite = self.non_finite.saturating_add(other.non_finite);
-        self.overflowed = self.overflowed.saturating_add(other.overflowed);
     }
 }
 

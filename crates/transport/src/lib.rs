@@ -18,10 +18,11 @@ pub mod replay;
 pub mod sampler;
 mod splats;
 mod task;
+mod trouble;
 pub mod window;
 
 pub use error::{FilmError, RenderError};
-pub use film::{Film, SamplePlace, Trouble, scale_exponent};
+pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};
 pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrator};
 pub use light_choice::LightChoice;
@@ -32,4 +33,5 @@ pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
 pub use splats::Splats;
 pub use task::{Event, Task};
+pub use trouble::{SamplePlace, Trouble};
 pub use window::{Coverage, Window};

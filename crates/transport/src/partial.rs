@@ -1,7 +1,8 @@
 //! Films as pictures, and partial films that lose nothing: their sums travel as integer layers of an EXR.
 
 use crate::error::FilmError;
-use crate::film::{Film, MAX_SAMPLES, PixelTrouble, SAMPLE_BITS, zeroed};
+use crate::film::{Film, MAX_SAMPLES, SAMPLE_BITS, zeroed};
+use crate::trouble::PixelTrouble;
 use crate::window::{Coverage, Window};
 use bilux_pictures::Picture;
 use std::ops::Range;
@@ -20,11 +21,8 @@ const SUMS: [[&str; 2]; 3] =
 const SAMPLES: &str = "samples";
 
 /// The same for what light paths have left, where there are any.
-const SPLATS: [[&str; 2]; 3] = [
-    ["splats.R.low", "splats.R.high"],
-    ["splats.G.low", "splats.G.high"],
-    ["splats.B.low", "splats.B.high"],
-];
+const SPLATS: [[&str; 2]; 3] =
+    [["splats.R.low", "splats.R.high"], ["splats.G.low", "splats.G.high"], ["splats.B.low", "splats.B.high"]];
 
 const ITERATIONS: &str = "iterations";
 

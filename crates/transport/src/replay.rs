@@ -1,10 +1,13 @@
 //! One sample once more, with all that happens on its way.
 
 use crate::error::{FilmError, RenderError};
-use crate::film::{MAX_SIDE, SamplePlace};
+use crate::film::{MAX_SIDE, scale_exponent};
 use crate::integrators::PixelIntegrator;
 use crate::render::{Eye, RenderSettings};
+use crate::splats::Splats;
 use crate::task::Event;
+use crate::trouble::SamplePlace;
+use crate::window::Window;
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Ray, Scene, Tracer};
 use std::fmt;
@@ -18,8 +21,10 @@ pub struct Replay {
     pub ray: Ray,
     /// What happened on the way.
     pub events: Vec<Event>,
-    /// What came of it.
+    /// What came of it in its own pixel.
     pub radiance: Rgb,
+    /// Pixels in which its light path has left something.
+    pub splats: usize,
     /// How many rays it took.
     pub rays: u64,
 }
@@ -47,9 +52,12 @@ pub fn replay(
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
     task.events = Some(Vec::new());
-    let radiance = integrator.radiance(&ray, &mut task);
+    let mut splats = Splats::new(settings, Window::whole(width, height), scale_exponent(scene));
+    splats.begin(x, y, sample);
+    let radiance = integrator.sample(&ray, true, &mut task, &mut splats);
     let events = task.events.take().unwrap_or_default();
-    Ok(Replay { place, ray, events, radiance, rays: tracer.counters.rays })
+    let splats = splats.deposits.len();
+    Ok(Replay { place, ray, events, radiance, splats, rays: tracer.counters.rays })
 }
 
 impl fmt::Display for Replay {
@@ -62,6 +70,9 @@ impl fmt::Display for Replay {
             writeln!(f, "{:2$}{}", "", event.what, 2 * (event.depth as usize + 1))?;
         }
         let [r, g, b] = self.radiance.to_array();
+        if self.splats > 0 {
+            writeln!(f, "its light path is seen in {} pixels", self.splats)?;
+        }
         writeln!(f, "radiance {r} {g} {b}, {} rays", self.rays)
     }
 }

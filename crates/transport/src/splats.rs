@@ -6,9 +6,10 @@
 //! light.
 
 use crate::error::FilmError;
-use crate::film::{Film, PixelTrouble, to_steps, zeroed};
+use crate::film::{Film, to_steps, zeroed};
 use crate::filters::Filter;
 use crate::render::{PixelAnchor, RenderSettings};
+use crate::trouble::PixelTrouble;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};

@@ -184,7 +184,7 @@ fn a_replay_is_the_sample_and_tells_its_story() {
         let one = RenderSettings { samples: sample..sample + 1, crop, ..settings() };
         let film = shoot(&scene, &*integrator, &one).film;
         let story = replay(&scene, camera, &*integrator, &settings(), SamplePlace { x, y, sample }).unwrap();
-        let difference = (film.pixel(x, y) - story.radiance).max_channel().abs();
+        let difference = (film.sampled(x, y) - story.radiance).max_channel().abs();
         assert!(difference < 1e-6, "{}: {difference}", row.entry.name);
         assert!(!story.events.is_empty(), "{}", row.entry.name);
         assert!(story.to_string().contains("pixel 26,12 sample 3"));

@@ -5,8 +5,8 @@ mod common;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Ray, Scene, SceneBuilder, Spec};
 use bilux_transport::{PixelIntegrator, RenderSettings, Task, integrators};
-use common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use common::statistics::{agreement, blocks, channel, estimate};
+use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky};
 
 fn path(sampling: &str) -> Box<dyn PixelIntegrator> {
     integrators::build(&Spec::new("", "path").with("sampling", sampling)).unwrap()
@@ -22,31 +22,6 @@ fn means(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSetti
     (0..8).map(mean).collect()
 }
 
-/// Mean and standard error.
-fn estimate(values: &[f64]) -> (f64, f64) {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
-    (mean, (variance / n).sqrt())
-}
-
-fn channel(values: &[Rgb], channel: usize) -> Vec<f64> {
-    values.iter().map(|v| f64::from(v[channel])).collect()
-}
-
-/// Probability that two sets of values with one mean differ by as much as these. [Welch 1947]
-fn welch(a: &[f64], b: &[f64]) -> f64 {
-    let ((mean_a, error_a), (mean_b, error_b)) = (estimate(a), estimate(b));
-    let (va, vb) = (error_a * error_a, error_b * error_b);
-    if va + vb == 0.0 {
-        return f64::from(u8::from(mean_a == mean_b));
-    }
-    let freedom =
-        (va + vb) * (va + vb) / (va * va / (a.len() as f64 - 1.0) + vb * vb / (b.len() as f64 - 1.0));
-    let t = (mean_a - mean_b).abs() / (va + vb).sqrt();
-    2.0 * StudentsT::new(0.0, 1.0, freedom).unwrap().sf(t)
-}
-
 /// Every mean within this of the truth, relatively, or within five standard errors.
 fn assert_mean(found: &[Rgb], wanted: f64) {
     for c in 0..3 {
@@ -56,10 +31,6 @@ fn assert_mean(found: &[Rgb], wanted: f64) {
             "channel {c}: {mean} ± {error}, not {wanted}"
         );
     }
-}
-
-fn sky(builder: &mut SceneBuilder, radiance: f32) {
-    builder.lights.push(Spec::new("", "environment").with("radiance", radiance));
 }
 
 #[test]
@@ -124,53 +95,6 @@ fn a_mirror_ball_loses_no_light_at_its_silhouette() {
     for pixel in film.to_rgb() {
         assert!((pixel.g - 1.0).abs() < 1e-5, "{pixel:?}");
     }
-}
-
-/// Matt, glossy and mirror surfaces under two panels, a lamp and a sky: each way of finding light is best
-/// somewhere.
-fn mixed() -> SceneBuilder {
-    let mut builder = SceneBuilder::default();
-    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
-    let satin = Spec::new("", "phong").with("kd", 0.2f32).with("ks", 0.6f32).with("exponent", 30.0f32);
-    put(
-        &mut builder,
-        "satin",
-        ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true),
-        satin.with("reflectivity", 0.2f32),
-    );
-    put(&mut builder, "mirror", ball(Vec3::new(0.9, 0.6, -0.3), 0.6, 10, false), Spec::new("", "mirror"));
-    for (x, size) in [(-1.5, 1.5), (1.8, 0.3)] {
-        let panel = Spec::new("", "rect").with("position", Vec3::new(x, 3.0, 0.5)).with("intensity", 12.0f32);
-        builder.lights.push(panel.with("edge_u", Vec3::X * size).with("edge_v", Vec3::new(0.0, 0.3, size)));
-    }
-    builder
-        .lights
-        .push(Spec::new("", "point").with("position", Vec3::new(0.0, 2.0, 3.0)).with("intensity", 2.0f32));
-    sky(&mut builder, 0.3);
-    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
-    builder
-}
-
-/// Block means (2 × 2 blocks, three channels) of pictures with different seeds: `[block][picture]`.
-fn blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) -> Vec<Vec<f64>> {
-    let mut blocks = vec![Vec::new(); 12];
-    for seed in first_seed..first_seed + 12 {
-        let settings = RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 16, 32) };
-        let film = shoot(scene, integrator, &settings).film;
-        let mut sums = vec![0.0; 12];
-        for (i, pixel) in film.to_rgb().into_iter().enumerate() {
-            let block = (i / 16 / 8) * 2 + i % 16 / 8;
-            (0..3).for_each(|c| sums[block * 3 + c] += f64::from(pixel[c]));
-        }
-        blocks.iter_mut().zip(sums).for_each(|(block, sum)| block.push(sum));
-    }
-    blocks
-}
-
-/// The least p-value over all blocks, corrected for their number. [Šidák 1967]
-fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let least = a.iter().zip(b).map(|(a, b)| welch(a, b)).fold(1.0, f64::min);
-    1.0 - bilux_math::transcendental::powf_f64(1.0 - least, a.len() as f64)
 }
 
 /// A path tracer with a bug.

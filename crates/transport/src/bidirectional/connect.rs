@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
-use super::walk::Vertex;
 use super::cos_at_light;
+use super::walk::Vertex;
 use crate::medium::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -41,9 +41,8 @@ pub(crate) fn to_light(task: &mut Task, z: &Vertex, index: usize, u: Vec2) -> Rg
     // Of a light without extent the point is certain: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
-    let pdf_emission =
-        light.emission_pdf(&scene.bounds(), pdf_direct / area_to_angle, -sample.wi, cos_light)
-            * task.lights.emission_probability(index);
+    let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_direct / area_to_angle, -sample.wi, cos_light)
+        * task.lights.emission_probability(index);
     let by_scattering = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
@@ -67,7 +66,8 @@ pub(crate) fn to_vertex(task: &mut Task, z: &Vertex, y: &Vertex) -> Rgb {
         return Rgb::BLACK;
     }
     let cos = |vertex: &Vertex| vertex.surface.n_geom.dot(direction).abs();
-    let by_camera_path = y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo));
+    let by_camera_path =
+        y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo));
     let by_light_path = z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo));
     let weight = 1.0 / (1.0 + by_camera_path + by_light_path);
     let passed = transmittance(z.sigma_a, distance2.sqrt());

@@ -83,7 +83,7 @@ pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32) ->
         let ends = vertex.depth + 1 >= task.max_depth;
         let stream = LIGHT_STREAM + 1 + u64::from(vertex.depth);
         task.sampler.enter(stream);
-        let goes_on = !ends && walk.scatter(&vertex, TransportMode::Importance, roulette_depth, task);
+        let goes_on = !ends && walk.scatter(&vertex, roulette_depth, task);
         if !vertex.bsdf.is_delta() {
             vertices.push(vertex);
         }
@@ -109,9 +109,10 @@ fn begin_at_light(task: &mut Task, time: f32) -> Option<Walk> {
     let pdf_emission = sample.pdf_emission * probability;
     let pdf_direct = sample.pdf_direct * task.lights.probability(index);
     let beta = sample.le * (cos / pdf_emission);
-    let partial = Partial::of_light(pdf_direct, pdf_emission, cos_if_near(light.is_infinite(), cos), light.is_delta());
+    let partial =
+        Partial::of_light(pdf_direct, pdf_emission, cos_if_near(light.is_infinite(), cos), light.is_delta());
     // The start of a ray from infinity is known by area already.
-    Some(Walk::new(spawn(&sample, time), beta, partial, light.is_infinite()))
+    Some(Walk::new(TransportMode::Importance, spawn(&sample, time), beta, partial, light.is_infinite()))
 }
 
 fn cos_if_near(is_infinite: bool, cos: f32) -> f32 {
@@ -154,8 +155,8 @@ pub(crate) fn from_infinity(task: &Task, walk: &Walk) -> Rgb {
         }
         let pdf = light.li_pdf_solid_angle(origin, direction, None);
         let pdf_direct = pdf * task.lights.probability(index);
-        let pdf_emission =
-            light.emission_pdf(&scene.bounds(), pdf, -direction, 1.0) * task.lights.emission_probability(index);
+        let pdf_emission = light.emission_pdf(&scene.bounds(), pdf, -direction, 1.0)
+            * task.lights.emission_probability(index);
         let others = walk.partial.d_vcm * pdf_direct + walk.partial.d_vc * pdf_emission;
         sum += radiance * (1.0 / (1.0 + others));
     }

@@ -23,6 +23,8 @@ pub(crate) struct Vertex {
 
 /// A subpath on its way to the next vertex.
 pub(crate) struct Walk {
+    /// What it carries: radiance from the camera on, importance from a light.
+    mode: TransportMode,
     pub(crate) ray: Ray,
     pub(crate) beta: Rgb,
     pub(crate) partial: Partial,
@@ -42,14 +44,33 @@ pub(crate) struct Walk {
 
 impl Walk {
     /// A subpath with nothing but its first ray.
-    pub(crate) fn new(ray: Ray, beta: Rgb, partial: Partial, by_area: bool) -> Walk {
+    pub(crate) fn new(mode: TransportMode, ray: Ray, beta: Rgb, partial: Partial, by_area: bool) -> Walk {
         let full = beta.max_channel();
-        Walk { ray, beta, partial, depth: 0, specular: true, by_area, eta_scale: 1.0, full, sigma_a: Rgb::BLACK }
+        Walk {
+            ray,
+            beta,
+            partial,
+            depth: 0,
+            specular: true,
+            by_area,
+            eta_scale: 1.0,
+            full,
+            sigma_a: Rgb::BLACK,
+            mode,
+        }
     }
 
     /// The next surface; `None` where the ray leaves the scene.
     pub(crate) fn meet(&mut self, task: &mut Task) -> Option<Vertex> {
-        let surface = task.tracer.closest(&self.ray)?;
+        let Some(surface) = task.tracer.closest(&self.ray) else {
+            task.note(self.depth, || {
+                format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction)
+            });
+            return None;
+        };
+        task.note(self.depth, || {
+            format!("{} meets object {} at {}", self.whose(), surface.object, surface.p)
+        });
         let wo = -Vec3::from(self.ray.direction);
         let material = task.scene().material(&surface);
         let outside = surface.n_geom.dot(wo) >= 0.0;
@@ -64,22 +85,20 @@ impl Walk {
     }
 
     /// Goes on from a vertex; false when the subpath ends there.
-    pub(crate) fn scatter(
-        &mut self,
-        vertex: &Vertex,
-        mode: TransportMode,
-        roulette_depth: u32,
-        task: &mut Task,
-    ) -> bool {
+    pub(crate) fn scatter(&mut self, vertex: &Vertex, roulette_depth: u32, task: &mut Task) -> bool {
         let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
         let u_survival = task.sampler.next_1d();
-        let Some(sample) = vertex.bsdf.sample(vertex.wo, u_choice, u, mode) else { return false };
+        let Some(sample) = vertex.bsdf.sample(vertex.wo, u_choice, u, self.mode) else { return false };
         let cos = vertex.surface.n_geom.dot(sample.wi).abs();
         let pdfs = (!sample.is_delta)
             .then(|| (sample.pdf_solid_angle, vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo)));
         self.partial.leave(cos, pdfs);
         self.follow(vertex, &sample, task);
-        self.survives(u_survival, roulette_depth, mode)
+        self.survives(u_survival, roulette_depth)
+    }
+
+    fn whose(&self) -> &'static str {
+        if self.mode == TransportMode::Radiance { "the camera's path" } else { "the light's path" }
     }
 
     fn follow(&mut self, vertex: &Vertex, sample: &BsdfSample, task: &Task) {
@@ -97,14 +116,14 @@ impl Walk {
     }
 
     /// Russian roulette by what the path could still carry. [Arvo 1990]
-    fn survives(&mut self, u: f32, roulette_depth: u32, mode: TransportMode) -> bool {
+    fn survives(&mut self, u: f32, roulette_depth: u32) -> bool {
         if self.beta.is_black() {
             return false;
         }
         if self.depth <= roulette_depth {
             return true;
         }
-        let eta_scale = if mode == TransportMode::Radiance { self.eta_scale } else { 1.0 };
+        let eta_scale = if self.mode == TransportMode::Radiance { self.eta_scale } else { 1.0 };
         let survival = (self.beta.max_channel() / self.full * eta_scale).min(0.95);
         if u < survival {
             self.beta = self.beta / survival;

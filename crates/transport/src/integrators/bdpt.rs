@@ -53,7 +53,7 @@ impl PixelIntegrator for Bdpt {
 
 impl Bdpt {
     fn camera_path(&self, ray: &Ray, light_path: &[Vertex], task: &mut Task) -> Rgb {
-        let mut walk = Walk::new(*ray, Rgb::WHITE, Partial::default(), false);
+        let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::default(), false);
         let mut sum = Rgb::BLACK;
         loop {
             let Some(mut z) = walk.meet(task) else {
@@ -70,7 +70,7 @@ impl Bdpt {
             }
             task.sampler.enter(u64::from(z.depth) + 1);
             sum += self.lights(&z, task) + self.connections(&z, light_path, task);
-            if !walk.scatter(&z, TransportMode::Radiance, self.roulette_depth, task) {
+            if !walk.scatter(&z, self.roulette_depth, task) {
                 return sum;
             }
         }

@@ -1,5 +1,5 @@
 //! `light`: light tracing. Paths begin at the lights, and wherever they meet a surface the camera is asked where it
-//! sees it. [Arvo 1986; Dutré 1993] What is seen in mirrors or through glass alone is not found, nor is any of that
+//! sees it. [Arvo 1986] What is seen in mirrors or through glass alone is not found, nor is any of that
 //! by other means: it is here to show what light paths are good for, and as one of `bdpt`'s ways.
 
 use super::{IntegratorEntry, PixelIntegrator};

@@ -1,6 +1,8 @@
 //! Scenes and shapes that several tests share.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod statistics;
+
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
@@ -115,5 +117,35 @@ pub fn still_life() -> SceneBuilder {
     let sky = Spec::new("sky", "environment").with("radiance", Rgb::new(0.25, 0.32, 0.45));
     builder.lights.push(sky.with("ground", 0.1f32));
     look(&mut builder, Vec3::new(0.0, 3.0, 8.0), Vec3::new(0.0, 0.8, 0.0), 36.0);
+    builder
+}
+
+/// An even sky.
+pub fn sky(builder: &mut SceneBuilder, radiance: f32) {
+    builder.lights.push(Spec::new("", "environment").with("radiance", radiance));
+}
+
+/// Matt, glossy and mirror surfaces under two panels, a lamp and a sky: each way of finding light is best
+/// somewhere.
+pub fn mixed() -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    let satin = Spec::new("", "phong").with("kd", 0.2f32).with("ks", 0.6f32).with("exponent", 30.0f32);
+    put(
+        &mut builder,
+        "satin",
+        ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true),
+        satin.with("reflectivity", 0.2f32),
+    );
+    put(&mut builder, "mirror", ball(Vec3::new(0.9, 0.6, -0.3), 0.6, 10, false), Spec::new("", "mirror"));
+    for (x, size) in [(-1.5, 1.5), (1.8, 0.3)] {
+        let panel = Spec::new("", "rect").with("position", Vec3::new(x, 3.0, 0.5)).with("intensity", 12.0f32);
+        builder.lights.push(panel.with("edge_u", Vec3::X * size).with("edge_v", Vec3::new(0.0, 0.3, size)));
+    }
+    builder
+        .lights
+        .push(Spec::new("", "point").with("position", Vec3::new(0.0, 2.0, 3.0)).with("intensity", 2.0f32));
+    sky(&mut builder, 0.3);
+    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
     builder
 }

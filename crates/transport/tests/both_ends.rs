@@ -1,0 +1,207 @@
+//! Light traced from both ends: `light` and `bdpt` against `path`, wherever they find the same paths.
+
+mod common;
+
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec};
+use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window};
+use common::statistics::{agreement, blocks};
+use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life};
+use std::f32::consts::PI;
+
+/// Less likely than this by chance: a bug.
+const UNLIKELY: f64 = 1e-4;
+
+fn check(name: &str, scene: &Scene, others: &[&str]) {
+    let path = blocks(scene, &*integrator("path"), 0);
+    for (i, other) in others.iter().enumerate() {
+        let found = blocks(scene, &*integrator(other), 100 * (i as u64 + 1));
+        let p = agreement(&path, &found);
+        assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
+    }
+}
+
+/// Matt and glossy bodies, smooth and not, so that light paths find all that there is.
+fn without_mirrors(light: Spec) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    put(
+        &mut builder,
+        "wall",
+        quad(Vec3::new(-3.0, 0.0, -2.0), Vec3::X * 6.0, Vec3::Y * 3.0),
+        diffuse(0.6f32),
+    );
+    put(&mut builder, "ball", ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true), diffuse(0.8f32));
+    let satin = Spec::new("", "phong")
+        .with("kd", 0.3f32)
+        .with("ks", 0.5f32)
+        .with("exponent", 20.0f32)
+        .with("reflectivity", 0.0f32);
+    put(&mut builder, "satin", ball(Vec3::new(0.9, 0.6, 0.3), 0.6, 6, true), satin);
+    builder.lights.push(light);
+    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
+    builder
+}
+
+#[test]
+fn every_kind_of_light_gives_the_same_from_both_ends() {
+    let lights = [
+        Spec::new("", "point").with("position", Vec3::new(0.5, 2.0, 2.0)).with("intensity", 4.0f32),
+        Spec::new("", "spot").with("position", Vec3::new(1.0, 3.0, 2.0)).with("intensity", 20.0f32),
+        Spec::new("", "directional").with("direction", Vec3::new(0.3, -1.0, -0.4)),
+        Spec::new("", "environment").with("radiance", 0.5f32).with("ground", 0.1f32).with("zenith", 1.0f32),
+        Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
+    ];
+    for light in lights {
+        let name = light.kind.clone();
+        check(&name, &built(&without_mirrors(light)), &["light", "bdpt"]);
+    }
+}
+
+/// No camera path finds what a mirror sends on from a light without extent.
+fn without_small_lights(mut builder: SceneBuilder) -> SceneBuilder {
+    builder.lights.retain(|light| !["point", "spot", "directional"].contains(&light.kind.as_str()));
+    builder
+}
+
+#[test]
+fn mirrors_and_glass_under_many_lights_look_the_same_from_both_ends() {
+    check("mixed", &built(&without_small_lights(mixed())), &["bdpt"]);
+    check("still life", &built(&without_small_lights(still_life())), &["bdpt"]);
+}
+
+#[test]
+fn light_paths_find_what_mirrors_make_of_small_lights() {
+    // A floor, lit by a point before a mirror: by the point, and by its image behind the mirror.
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
+    let mirror = Spec::new("", "mirror").with("reflectance", 1.0f32);
+    put(&mut builder, "mirror", quad(Vec3::new(-9.0, 0.0, -1.0), Vec3::X * 18.0, Vec3::Y * 9.0), mirror);
+    builder.lights.push(Spec::new("", "point").with("position", Vec3::Y).with("intensity", 1.0f32));
+    look(&mut builder, Vec3::new(0.5, 4.0, 0.6), Vec3::new(0.5, 0.0, 0.5), 20.0);
+    let scene = built(&builder);
+    let settings = RenderSettings::new(16, 16, 256);
+    // Radiance by a point light of unit intensity, on average over the film.
+    let lit_by = |light: Vec3| {
+        let at = |i: usize| {
+            let film = Vec2::new((i % 16) as f32 + 0.5, (i / 16) as f32 + 0.5) / 16.0;
+            let ray = scene.cameras()[0].1.ray(&CameraSample { film, lens: Vec2::ZERO, time: 0.0 });
+            let p = Vec3::from(ray.at(-ray.origin[1] / ray.direction[1]));
+            let distance2 = light.distance_squared(p);
+            0.5 / PI * light.y / (distance2 * distance2.sqrt())
+        };
+        (0..256).map(at).sum::<f32>() / 256.0
+    };
+    let (by_point, by_image) = (lit_by(Vec3::Y), lit_by(Vec3::new(0.0, 1.0, -2.0)));
+    for (name, wanted, tolerance) in
+        [("path", by_point, 2e-3), ("bdpt", by_point + by_image, 0.01), ("light", by_point + by_image, 0.02)]
+    {
+        let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
+        let found = pixels.iter().map(|pixel| pixel.g).sum::<f32>() / 256.0;
+        assert!((found / wanted - 1.0).abs() < tolerance, "{name}: {found}, not {wanted}");
+    }
+    // Or else the test could not tell one from the other.
+    assert!(by_image > 0.05 * by_point);
+}
+
+#[test]
+fn many_lights_of_which_one_is_chosen() {
+    let mut builder = without_mirrors(Spec::new("", "point").with("position", Vec3::new(0.5, 2.0, 2.0)));
+    for i in 0..6 {
+        let place = Vec3::new(i as f32 * 0.6 - 1.5, 1.5 + 0.1 * i as f32, 1.0);
+        let lamp = Spec::new("", "rect").with("position", place).with("intensity", 1.0 + i as f32);
+        builder.lights.push(lamp.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
+    }
+    sky(&mut builder, 0.2);
+    check("many lights", &built(&builder), &["light", "bdpt"]);
+}
+
+#[test]
+fn lenses_and_cameras_without_perspective() {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let mut builder = without_mirrors(panel);
+    let seen = |kind: &str| {
+        let spec = Spec::new("eye", kind);
+        spec.with("position", Vec3::new(0.0, 2.0, 5.0)).with("look_at", Vec3::new(0.0, 0.5, 0.0))
+    };
+    let lens = seen("perspective").with("fov", 40.0f32).with("aperture", 0.3f32).with("focus", 4.0f32);
+    for spec in [lens, seen("orthographic").with("height", 3.0f32)] {
+        let name = spec.kind.clone();
+        builder.cameras = vec![CameraSpec { spec, keyframes: Vec::new() }];
+        check(&name, &built(&builder), &["light", "bdpt"]);
+    }
+}
+
+#[test]
+fn every_filter_spreads_splats_as_it_spreads_samples() {
+    // A bright edge, whose blur is that of the filter.
+    let mut builder = SceneBuilder::default();
+    put(
+        &mut builder,
+        "half",
+        quad(Vec3::new(-4.0, -4.0, 0.0), Vec3::X * 4.0, Vec3::Y * 8.0),
+        diffuse(0.8f32),
+    );
+    sky(&mut builder, 1.0);
+    builder.lights[0] = Spec::new("", "directional").with("direction", -Vec3::Z);
+    look(&mut builder, Vec3::Z * 5.0, Vec3::ZERO, 60.0);
+    let scene = built(&builder);
+    for row in FILTERS {
+        let profile = |name: &str, spp| {
+            let settings = RenderSettings { filter: Filter::new(row), ..RenderSettings::new(8, 8, spp) };
+            let pixels = shoot(&scene, &*integrator(name), &settings).film.to_rgb();
+            [2, 3, 4, 5].map(|x| (0..8).map(|y| pixels[y * 8 + x].g).sum::<f32>() / 8.0)
+        };
+        let (path, light) = (profile("path", 256), profile("light", 1 << 12));
+        for (a, b) in path.into_iter().zip(light) {
+            assert!((a - b).abs() < 0.04 * path[0], "{}: {path:?} and {light:?}", row.entry.name);
+        }
+    }
+}
+
+/// Camera paths that are a little too bright, beside splats that are right.
+struct Wrong(Box<dyn PixelIntegrator>);
+
+impl PixelIntegrator for Wrong {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        self.0.radiance(ray, task)
+    }
+    fn splats(&self) -> bool {
+        true
+    }
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        self.0.sample(ray, is_wanted, task, splats) * 1.05
+    }
+}
+
+#[test]
+fn a_way_that_is_weighted_wrongly_is_found_out() {
+    let scene = built(&without_small_lights(mixed()));
+    let path = blocks(&scene, &*integrator("path"), 0);
+    let p = agreement(&path, &blocks(&scene, &Wrong(integrator("bdpt")), 100));
+    assert!(p < UNLIKELY, "camera paths that are too bright pass: p = {p}");
+}
+
+#[test]
+fn a_crop_and_a_range_of_samples_show_the_same_splats() {
+    let scene = built(&mixed());
+    for name in ["light", "bdpt"] {
+        let whole = RenderSettings { threads: 2, ..RenderSettings::new(20, 18, 6) };
+        let film = shoot(&scene, &*integrator(name), &whole).film;
+        let window = Window { x: 5, y: 7, width: 9, height: 4 };
+        let cropped = RenderSettings { crop: Some(window), threads: 1, ..whole.clone() };
+        let part = shoot(&scene, &*integrator(name), &cropped).film;
+        for i in 0..window.pixels() {
+            let (x, y) = window.position(i);
+            assert_eq!(film.pixel(x, y), part.pixel(x, y), "{name} at {x}, {y}");
+        }
+        let range =
+            |samples| shoot(&scene, &*integrator(name), &RenderSettings { samples, ..whole.clone() }).film;
+        let mut merged = range(0..2);
+        merged.merge(&range(2..6)).unwrap();
+        assert_eq!(merged.to_rgb(), film.to_rgb(), "{name}");
+        let back = bilux_transport::Film::from_partial(&film.to_partial().unwrap()).unwrap();
+        assert_eq!(back, film, "{name}");
+    }
+}

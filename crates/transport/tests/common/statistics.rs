@@ -1,0 +1,54 @@
+//! Whether two ways of making a picture have the same mean.
+
+use super::shoot;
+use bilux_math::Rgb;
+use bilux_scene::Scene;
+use bilux_transport::{PixelIntegrator, RenderSettings};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Mean and standard error.
+pub fn estimate(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+    (mean, (variance / n).sqrt())
+}
+
+pub fn channel(values: &[Rgb], channel: usize) -> Vec<f64> {
+    values.iter().map(|v| f64::from(v[channel])).collect()
+}
+
+/// Probability that two sets of values with one mean differ by as much as these. [Welch 1947]
+pub fn welch(a: &[f64], b: &[f64]) -> f64 {
+    let ((mean_a, error_a), (mean_b, error_b)) = (estimate(a), estimate(b));
+    let (va, vb) = (error_a * error_a, error_b * error_b);
+    if va + vb == 0.0 {
+        return f64::from(u8::from(mean_a == mean_b));
+    }
+    let freedom =
+        (va + vb) * (va + vb) / (va * va / (a.len() as f64 - 1.0) + vb * vb / (b.len() as f64 - 1.0));
+    let t = (mean_a - mean_b).abs() / (va + vb).sqrt();
+    2.0 * StudentsT::new(0.0, 1.0, freedom).unwrap().sf(t)
+}
+
+/// Block means (2 × 2 blocks, three channels) of pictures with different seeds: `[block][picture]`.
+pub fn blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) -> Vec<Vec<f64>> {
+    let mut blocks = vec![Vec::new(); 12];
+    for seed in first_seed..first_seed + 12 {
+        let settings = RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 16, 32) };
+        let film = shoot(scene, integrator, &settings).film;
+        let mut sums = vec![0.0; 12];
+        for (i, pixel) in film.to_rgb().into_iter().enumerate() {
+            let block = (i / 16 / 8) * 2 + i % 16 / 8;
+            (0..3).for_each(|c| sums[block * 3 + c] += f64::from(pixel[c]));
+        }
+        blocks.iter_mut().zip(sums).for_each(|(block, sum)| block.push(sum));
+    }
+    blocks
+}
+
+/// The least p-value over all blocks, corrected for their number. [Šidák 1967]
+pub fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let least = a.iter().zip(b).map(|(a, b)| welch(a, b)).fold(1.0, f64::min);
+    1.0 - bilux_math::transcendental::powf_f64(1.0 - least, a.len() as f64)
+}
