@@ -14,7 +14,6 @@ type Events = [Option<BsdfSample>; 2];
 
 impl Bsdf {
     /// A direction of a lobe without width.
-    #[inline]
     pub(super) fn sample_delta(
         &self,
         lobe: &Lobe,
@@ -68,7 +67,7 @@ impl Bsdf {
         lost(fails(reflected), 0.0..end) + lost(fails(transmitted), end..1.0)
     }
 
-    /// True when `wo` is on one side of the triangle and of the interpolated surface.
+    /// True when `wo` is on the same side of the triangle and of the interpolated surface.
     #[inline]
     fn sees_side(&self, wo: Vec3) -> bool {
         wo.dot(self.frame.n) * wo.dot(self.n_geom) > 0.0
