@@ -6,6 +6,7 @@
 //! often as the rule does, or the picture of a coarse mirror depends on where paths begin.
 
 use super::{Bsdf, BsdfSample, Lobe, TransportMode};
+use bilux_math::frame::reflect;
 use bilux_math::{Frame, Vec2, Vec3};
 use std::ops::Range;
 
@@ -21,14 +22,34 @@ impl Bsdf {
         u_choice: f32,
         mode: TransportMode,
     ) -> Option<BsdfSample> {
-        if mode == TransportMode::Importance && self.frame.n != self.n_geom {
+        if mode == TransportMode::Importance && !self.holds_both_ways(lobe, wo) {
             return self.sample_delta_importance(lobe, wo, u_choice);
         }
         let about = |frame: &Frame| {
-            about(lobe, frame, wo, u_choice, mode).filter(|sample| self.keeps_side(wo, sample))
+            let sample = about(lobe, frame, wo, u_choice, mode).filter(|s| self.keeps_side(wo, s))?;
+            let weight = self.carried(sample.weight, frame.n, wo, sample.wi, mode);
+            Some(BsdfSample { weight, ..sample })
         };
         let shaded = if self.sees_side(wo) { about(&self.frame) } else { None };
         shaded.or_else(|| about(&Frame::from_normal(self.n_geom)))
+    }
+
+    /// True when the interpolated normal does for `wo`, and would have for whatever else could have led to `wo`. That
+    /// is nearly always so, and far sooner seen than all chances are found.
+    fn holds_both_ways(&self, lobe: &Lobe, wo: Vec3) -> bool {
+        if self.frame.n == self.n_geom {
+            return true;
+        }
+        let through = |frame: &Frame, wo: Vec3| Some(frame.to_world(lobe.transmitted(frame.to_local(wo))?));
+        let holds = |wo: Vec3| {
+            let side = wo.dot(self.n_geom);
+            self.sees_side(wo)
+                && reflect(wo, self.frame.n).dot(self.n_geom) * side > 0.0
+                && through(&self.frame, wo).is_none_or(|wi| wi.dot(self.n_geom) * side < 0.0)
+        };
+        holds(wo)
+            && holds(reflect(wo, self.n_geom))
+            && through(&Frame::from_normal(self.n_geom), wo).is_none_or(holds)
     }
 
     /// The adjoint of the rule: everything that it could have begun with to go on along `wo`, by its chance.

@@ -59,8 +59,7 @@ impl Dielectric {
         _u: Vec2,
         mode: TransportMode,
     ) -> Option<BsdfSample> {
-        let eta = if wo.z > 0.0 { self.eta } else { 1.0 / self.eta };
-        let normal = Vec3::new(0.0, 0.0, 1f32.copysign(wo.z));
+        let eta = self.eta_from(wo);
         let mut reflected = fresnel_dielectric(wo.z.abs(), if self.thin { self.eta } else { eta });
         if self.thin && reflected < 1.0 {
             // Light that goes to and fro between the two faces adds up. [pbrt 2023, eq. 9.12]
@@ -69,13 +68,26 @@ impl Dielectric {
         if u_choice < reflected {
             return Some(self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, None));
         }
-        let wi = if self.thin { -wo } else { refract(wo, normal, eta)? };
+        let wi = self.transmitted(wo)?;
         let eta = if self.thin { 1.0 } else { eta };
         let mut sample = self.towards(wi, 1.0 - reflected, Some(eta));
         if mode == TransportMode::Radiance {
             sample.weight = sample.weight / (eta * eta);
         }
         Some(sample)
+    }
+
+    /// Index of the far side over that of the side of `wo`.
+    #[inline]
+    fn eta_from(&self, wo: Vec3) -> f32 {
+        if wo.z > 0.0 { self.eta } else { 1.0 / self.eta }
+    }
+
+    /// The direction that is not reflected; `None` under total internal reflection.
+    #[inline]
+    pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
+        let normal = Vec3::new(0.0, 0.0, 1f32.copysign(wo.z));
+        if self.thin { Some(-wo) } else { refract(wo, normal, self.eta_from(wo)) }
     }
 
     /// The weight of a direction is f·|cosθ| / probability: Fresnel's share cancels against the choice.

@@ -94,6 +94,15 @@ impl Lobe {
         each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
     }
 
+    /// Where one without width lets light through that is known to come along `wo`, however little.
+    #[inline]
+    fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
+        match self {
+            Lobe::Dielectric(lobe) => lobe.transmitted(wo),
+            Lobe::Lambert(_) | Lobe::Mirror(_) | Lobe::Phong(_) => None,
+        }
+    }
+
     /// True when it has no width.
     #[inline]
     pub fn is_delta(&self) -> bool {
