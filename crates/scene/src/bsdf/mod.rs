@@ -72,7 +72,7 @@ macro_rules! each_lobe {
 }
 
 impl Lobe {
-    /// f·|cosθi|; black for delta lobes.
+    /// f·|cosθi|; black for delta lobes. For importance, f is that of the two directions exchanged.
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         each_lobe!(self, l => l.eval(wo, wi, mode))
     }
