@@ -7,6 +7,7 @@
 mod bidirectional;
 mod classic;
 pub mod error;
+mod eye;
 pub mod film;
 pub mod filters;
 pub mod integrators;
@@ -21,6 +22,7 @@ mod task;
 mod trouble;
 pub mod window;
 
+pub use bidirectional::{Merging, Photons};
 pub use error::{FilmError, RenderError};
 pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};

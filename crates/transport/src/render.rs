@@ -1,17 +1,15 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
+use crate::bidirectional::Photons;
 use crate::error::{FilmError, RenderError};
+use crate::eye::Eye;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
 use crate::integrators::PixelIntegrator;
-use crate::light_choice::LightChoice;
-use crate::sampler::{PixelSampler, regular_pattern};
 use crate::splats::{Iterations, Splats};
-use crate::task::Task;
 use crate::window::Window;
 use bilux_accel::Counters;
-use bilux_math::{Vec2, warp};
-use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer};
+use bilux_scene::{Camera, Scene, Tracer};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::Range;
@@ -164,19 +162,47 @@ pub fn render(
         .stack_size(STACK_BYTES)
         .build()
         .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })?;
-    let eye = Eye::new(scene, camera, integrator, settings);
+    let tiles = settings.walked(integrator).tiles(TILE);
+    let mut rendered = Rendered { film, counters: Counters::default(), cancelled: false };
+    let Some(merging) = integrator.merging() else {
+        let eye = Eye::new(scene, camera, integrator, settings);
+        return all_passes(&pool, eye, tiles, passes(&settings.samples), progress, rendered);
+    };
+    let whole = Window::whole(settings.width, settings.height).tiles(TILE);
+    for iteration in settings.samples.clone() {
+        let mut eye = Eye::new(scene, camera, integrator, settings);
+        let photons = pool.install(|| Photons::trace(&eye, merging, &whole, iteration));
+        eye.photons = Some(&photons);
+        let pass = passes(&(iteration..iteration + 1));
+        rendered = all_passes(&pool, eye, tiles.clone(), pass, progress, rendered)?;
+        if rendered.cancelled {
+            break;
+        }
+    }
+    Ok(rendered)
+}
+
+/// Some passes over all tiles, by all threads.
+fn all_passes(
+    pool: &rayon::ThreadPool,
+    eye: Eye,
+    tiles: Vec<Window>,
+    passes: Vec<Range<u32>>,
+    progress: &dyn Progress,
+    before: Rendered,
+) -> Result<Rendered, RenderError> {
+    let Rendered { film, mut counters, .. } = before;
     let work = Work {
         eye,
         progress,
-        tiles: settings.walked(integrator).tiles(TILE),
-        passes: passes(&settings.samples),
+        tiles,
+        passes,
         next: AtomicU64::new(0),
         dropped: Mutex::new(Vec::new()),
         film: Mutex::new(film),
         iterations: Mutex::new(BTreeMap::new()),
         failed: Mutex::new(None),
     };
-    let mut counters = Counters::default();
     pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
     if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
         return Err(error.into());
@@ -313,84 +339,5 @@ impl<'a> Work<'a> {
             }
         }
         (film, true)
-    }
-}
-
-/// Turns a sample's number into a camera ray and the tools for it.
-pub(crate) struct Eye<'a> {
-    scene: &'a Scene,
-    camera: &'a dyn Camera,
-    pub(crate) integrator: &'a dyn PixelIntegrator,
-    settings: &'a RenderSettings,
-    lights: LightChoice,
-    has_lens: bool,
-}
-
-impl<'a> Eye<'a> {
-    pub(crate) fn new(
-        scene: &'a Scene,
-        camera: &'a dyn Camera,
-        integrator: &'a dyn PixelIntegrator,
-        settings: &'a RenderSettings,
-    ) -> Eye<'a> {
-        let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
-        Eye { scene, camera, integrator, settings, lights, has_lens }
-    }
-
-    /// The camera ray of a sample, and what its integrator works with.
-    #[inline]
-    pub(crate) fn sample<'t>(
-        &'t self,
-        tracer: &'t mut Tracer<'a>,
-        x: u32,
-        y: u32,
-        index: u32,
-    ) -> (Ray, Task<'t, 'a>) {
-        let mut sampler = PixelSampler::new(self.settings.seed, x, y, index);
-        let camera_sample = self.camera_sample(&mut sampler, x, y, index);
-        let task = Task {
-            tracer,
-            sampler,
-            max_depth: self.settings.max_depth,
-            camera: self.camera,
-            lights: &self.lights,
-            events: None,
-        };
-        (self.camera.ray(&camera_sample), task)
-    }
-
-    /// Where on film and lens, and when. What the integrator gives no extent takes the pixel's regular
-    /// pattern, the middle of the lens and the middle of the time that the shutter is open.
-    fn camera_sample(&self, sampler: &mut PixelSampler, x: u32, y: u32, index: u32) -> CameraSample {
-        let (spread, settings) = (self.integrator.camera_spread(), self.settings);
-        let u_pixel = sampler.next_2d();
-        let offset = match spread.pixel {
-            0.0 => settings.filter.sample(regular_pattern(index)),
-            extent => settings.filter.sample(u_pixel) * extent,
-        };
-        let anchor = match settings.pixel_anchor {
-            PixelAnchor::Centre => 0.5,
-            PixelAnchor::Corner => 0.0,
-        };
-        let lens = match spread.lens {
-            0.0 => Vec2::ZERO,
-            _ if !self.has_lens => {
-                sampler.skip(1);
-                Vec2::ZERO
-            }
-            extent => warp::sample_disc(sampler.next_2d()) * extent,
-        };
-        let [opens, closes] = self.scene.shutter();
-        let middle = opens + (closes - opens) * 0.5;
-        let time = match spread.shutter {
-            0.0 => middle,
-            _ if opens == closes => middle,
-            extent => middle + (closes - opens) * (sampler.next_1d() - 0.5) * extent,
-        };
-        let film = Vec2::new(
-            (x as f32 + (anchor + offset.x)) / settings.width as f32,
-            (y as f32 + (anchor + offset.y)) / settings.height as f32,
-        );
-        CameraSample { film, lens, time: time.clamp(opens.min(closes), opens.max(closes)) }
     }
 }

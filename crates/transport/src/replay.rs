@@ -1,9 +1,11 @@
 //! One sample once more, with all that happens on its way.
 
+use crate::bidirectional::Photons;
 use crate::error::{FilmError, RenderError};
+use crate::eye::Eye;
 use crate::film::{MAX_SIDE, scale_exponent};
 use crate::integrators::PixelIntegrator;
-use crate::render::{Eye, RenderSettings};
+use crate::render::RenderSettings;
 use crate::splats::Splats;
 use crate::task::Event;
 use crate::trouble::SamplePlace;
@@ -48,11 +50,14 @@ pub fn replay(
     if x >= width || y >= height {
         return Err(RenderError::Pixel { x, y, width, height });
     }
-    let eye = Eye::new(scene, camera, integrator, settings);
+    let mut eye = Eye::new(scene, camera, integrator, settings);
+    let whole = Window::whole(width, height);
+    let photons = integrator.merging().map(|merging| Photons::trace(&eye, merging, &[whole], sample));
+    eye.photons = photons.as_ref();
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);
     task.events = Some(Vec::new());
-    let mut splats = Splats::new(settings, Window::whole(width, height), scale_exponent(scene));
+    let mut splats = Splats::new(settings, whole, scale_exponent(scene));
     splats.begin(x, y, sample);
     let radiance = integrator.sample(&ray, true, &mut task, &mut splats);
     let events = task.events.take().unwrap_or_default();

@@ -1,5 +1,6 @@
 //! What an integrator works with while it looks at one sample.
 
+use crate::bidirectional::Photons;
 use crate::light_choice::LightChoice;
 use crate::sampler::PixelSampler;
 use bilux_scene::{Camera, Scene, Tracer};
@@ -16,6 +17,8 @@ pub struct Task<'a, 's> {
     pub camera: &'a dyn Camera,
     /// Picks lights by what they give.
     pub lights: &'a LightChoice,
+    /// What the light paths of this iteration have left, where paths are merged.
+    pub photons: Option<&'a Photons>,
     /// What happened on the way, if anybody wants to know.
     pub events: Option<Vec<Event>>,
 }

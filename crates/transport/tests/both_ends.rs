@@ -5,7 +5,7 @@ mod common;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec};
-use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window};
+use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
 use common::statistics::{agreement, blocks};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life};
 use std::f32::consts::PI;
@@ -158,6 +158,62 @@ fn every_filter_spreads_splats_as_it_spreads_samples() {
             assert!((a - b).abs() < 0.04 * path[0], "{}: {path:?} and {light:?}", row.entry.name);
         }
     }
+}
+
+fn with_radius(name: &str, radius: f32) -> Box<dyn PixelIntegrator> {
+    integrators::build(&Spec::new("", name).with("radius", radius)).unwrap()
+}
+
+#[test]
+fn without_merging_vcm_is_bdpt_to_the_bit() {
+    let (scene, settings) = (built(&still_life()), RenderSettings::new(24, 16, 4));
+    let film = |integrator: &dyn PixelIntegrator| shoot(&scene, integrator, &settings).film;
+    assert_eq!(film(&*with_radius("vcm", 0.0)), film(&*integrator("bdpt")));
+}
+
+#[test]
+fn merging_comes_to_the_same() {
+    // Its blur is far below what these pictures can tell apart.
+    let scene = built(&without_mirrors(
+        Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
+    ));
+    let path = blocks(&scene, &*integrator("path"), 0);
+    for (name, seed) in [("vcm", 100), ("sppm", 200)] {
+        let p = agreement(&path, &blocks(&scene, &*with_radius(name, 0.01), seed));
+        assert!(p > UNLIKELY, "path and {name}: p = {p}");
+    }
+}
+
+#[test]
+fn merging_finds_what_mirrors_hide_at_both_ends() {
+    // The floor of a small light before a mirror, itself seen in the mirror: lit by the light, and by its image.
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
+    let mirror = Spec::new("", "mirror").with("reflectance", 1.0f32);
+    put(&mut builder, "mirror", quad(Vec3::new(-9.0, 0.0, -1.0), Vec3::X * 18.0, Vec3::Y * 9.0), mirror);
+    builder.lights.push(Spec::new("", "point").with("position", Vec3::Y).with("intensity", 1.0f32));
+    let (seen, image) = (Vec3::new(0.5, 0.0, -0.5), Vec3::new(0.0, 1.0, -2.0));
+    // Towards where the mirror shows that place.
+    look(&mut builder, Vec3::new(0.5, 2.0, 2.5), Vec3::new(0.5, 0.0, -1.5), 4.0);
+    let scene = built(&builder);
+    let lit_by = |light: Vec3| {
+        let distance2 = light.distance_squared(seen);
+        0.5 / PI * light.y / (distance2 * distance2.sqrt())
+    };
+    let (by_light, by_image) = (lit_by(Vec3::Y), lit_by(image));
+    let found = |integrator: &dyn PixelIntegrator| {
+        let film = shoot(&scene, integrator, &RenderSettings::new(16, 16, 400)).film;
+        film.to_rgb().iter().map(|pixel| pixel.g).sum::<f32>() / 256.0
+    };
+    for (name, wanted) in [("bdpt", by_light), ("vcm", by_light + by_image), ("sppm", by_light + by_image)] {
+        let found = found(&*with_some_radius(name));
+        assert!((found / wanted - 1.0).abs() < 0.04, "{name}: {found}, not {wanted}");
+    }
+    assert!(by_image > 0.2 * by_light, "{by_image} beside {by_light}");
+}
+
+fn with_some_radius(name: &str) -> Box<dyn PixelIntegrator> {
+    if name == "bdpt" { integrator(name) } else { with_radius(name, 0.02) }
 }
 
 /// Camera paths that are a little too bright, beside splats that are right.

@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
-use super::cos_at_light;
 use super::walk::Vertex;
+use super::{Partial, Photons, cos_at_light};
 use crate::medium::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -72,6 +72,32 @@ pub(crate) fn to_vertex(task: &mut Task, z: &Vertex, y: &Vertex) -> Rgb {
     let weight = 1.0 / (1.0 + by_camera_path + by_light_path);
     let passed = transmittance(z.sigma_a, distance2.sqrt());
     z.beta * f_z * f_y * y.beta * passed * (weight / distance2)
+}
+
+/// A camera vertex and all photons around it: the light that they bring, weighted where there are other ways.
+pub(crate) fn merged(task: &Task, photons: &Photons, z: &Vertex, is_only_way: bool) -> Rgb {
+    let (mut sum, per_eta) = (Rgb::BLACK, 1.0 / photons.eta());
+    photons.around(z.surface.p, |y| {
+        // On the same surface, not on the other side of a sheet or around a corner.
+        if z.depth + y.depth + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+            return;
+        }
+        let (scattered, pdf) = z.bsdf.eval_and_pdf(z.wo, y.wo, TransportMode::Radiance);
+        if scattered.is_black() {
+            return;
+        }
+        // Photons come per area of the surface itself; `eval` has the cosine to the shading normal in it.
+        let cos = z.surface.n_geom.dot(y.wo).abs();
+        let others = if is_only_way {
+            0.0
+        } else {
+            let back = z.bsdf.pdf_solid_angle(y.wo, z.wo);
+            let by_camera_path = Partial::others_than_merging(y.d_vcm, y.d_vm, pdf, per_eta);
+            by_camera_path + Partial::others_than_merging(z.partial.d_vcm, z.partial.d_vm, back, per_eta)
+        };
+        sum += scattered * y.beta * (1.0 / (cos * (1.0 + others)));
+    });
+    z.beta * sum * per_eta
 }
 
 /// From one surface to another, ending just before the second.

@@ -10,9 +10,11 @@
 //! to be the same for all ways and no more.
 
 mod connect;
+mod photons;
 mod walk;
 
-pub(crate) use connect::{to_camera, to_light, to_vertex};
+pub(crate) use connect::{merged, to_camera, to_light, to_vertex};
+pub use photons::{Merging, Photons};
 pub(crate) use walk::{Vertex, Walk};
 
 use crate::task::Task;
@@ -28,19 +30,36 @@ pub(crate) struct Partial {
     pub(crate) d_vcm: f32,
     /// dVC: the same, summed over the steps before.
     pub(crate) d_vc: f32,
+    /// dVM: the same for merging.
+    pub(crate) d_vm: f32,
+    /// η: how many light paths a merged vertex counts, over area; 0 where nothing is merged.
+    pub(crate) eta: f32,
 }
 
 impl Partial {
     /// Of a light path that leaves its light with the cosine `cos`.
-    fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial {
+    fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool, eta: f32) -> Partial {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
-        Partial { d_vcm: pdf_direct / pdf_emission, d_vc }
+        let mut partial = Partial { d_vcm: pdf_direct / pdf_emission, d_vc, d_vm: 0.0, eta };
+        partial.d_vm = d_vc * partial.per_eta();
+        partial
+    }
+
+    /// Of a camera path that has met its first surface, given the density of doing so over area.
+    pub(crate) fn of_camera(pdf_area: f32, eta: f32) -> Partial {
+        Partial { d_vcm: 1.0 / pdf_area, d_vc: 0.0, d_vm: 0.0, eta }
+    }
+
+    /// 1 / η, or 0 where nothing is merged.
+    fn per_eta(&self) -> f32 {
+        if self.eta > 0.0 { 1.0 / self.eta } else { 0.0 }
     }
 
     /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`.
     fn arrive(&mut self, distance2: f32, cos: f32) {
         self.d_vcm *= distance2 / cos;
         self.d_vc /= cos;
+        self.d_vm /= cos;
     }
 
     /// On leaving under the cosine `cos`, with densities there and back; `None` where there is only one direction.
@@ -49,9 +68,12 @@ impl Partial {
             None => {
                 self.d_vcm = 0.0;
                 self.d_vc *= cos;
+                self.d_vm *= cos;
             }
             Some((pdf, pdf_back)) => {
-                self.d_vc = cos / pdf * (self.d_vc * pdf_back + self.d_vcm);
+                let merged = self.d_vcm * self.per_eta() + 1.0;
+                self.d_vc = cos / pdf * (self.d_vc * pdf_back + self.d_vcm + self.eta);
+                self.d_vm = cos / pdf * (self.d_vm * pdf_back + merged);
                 self.d_vcm = 1.0 / pdf;
             }
         }
@@ -60,7 +82,12 @@ impl Partial {
     /// Weight against all other ways, of which the vertex before this subpath's end would be found with `pdf_area`, and
     /// the one before that with `pdf_back`, as a part of 1.
     pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> f32 {
-        pdf_area * (self.d_vcm + self.d_vc * pdf_back)
+        pdf_area * (self.eta + self.d_vcm + self.d_vc * pdf_back)
+    }
+
+    /// The same for merging at this vertex, the step on from it having the density `pdf` over solid angle.
+    fn others_than_merging(d_vcm: f32, d_vm: f32, pdf: f32, per_eta: f32) -> f32 {
+        d_vcm * per_eta + d_vm * pdf
     }
 }
 
@@ -75,9 +102,9 @@ impl Task<'_, '_> {
 }
 
 /// A path from a light: every surface that it meets and that scatters into more than single directions, in order.
-pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32) -> Vec<Vertex> {
+pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32, eta: f32) -> Vec<Vertex> {
     let mut vertices = Vec::new();
-    let Some(mut walk) = begin_at_light(task, time) else { return vertices };
+    let Some(mut walk) = begin_at_light(task, time, eta) else { return vertices };
     while let Some(vertex) = walk.meet(task) {
         // The last event of the longest path is at the camera's side.
         let ends = vertex.depth + 1 >= task.max_depth;
@@ -94,7 +121,7 @@ pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32) ->
     vertices
 }
 
-fn begin_at_light(task: &mut Task, time: f32) -> Option<Walk> {
+fn begin_at_light(task: &mut Task, time: f32, eta: f32) -> Option<Walk> {
     task.sampler.enter(LIGHT_STREAM);
     let (u_light, u_point, u_direction) =
         (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
@@ -109,8 +136,13 @@ fn begin_at_light(task: &mut Task, time: f32) -> Option<Walk> {
     let pdf_emission = sample.pdf_emission * probability;
     let pdf_direct = sample.pdf_direct * task.lights.probability(index);
     let beta = sample.le * (cos / pdf_emission);
-    let partial =
-        Partial::of_light(pdf_direct, pdf_emission, cos_if_near(light.is_infinite(), cos), light.is_delta());
+    let partial = Partial::of_light(
+        pdf_direct,
+        pdf_emission,
+        cos_if_near(light.is_infinite(), cos),
+        light.is_delta(),
+        eta,
+    );
     // The start of a ray from infinity is known by area already.
     Some(Walk::new(TransportMode::Importance, spawn(&sample, time), beta, partial, light.is_infinite()))
 }

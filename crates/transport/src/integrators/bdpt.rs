@@ -4,13 +4,14 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
-    Partial, Vertex, Walk, emitted, from_infinity, light_vertices, to_camera, to_light, to_vertex,
+    Partial, Photons, Vertex, Walk, emitted, from_infinity, light_vertices, merged, to_camera, to_light,
+    to_vertex,
 };
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
-use bilux_scene::{Ray, TransportMode};
+use bilux_scene::{Ray, Reader, TransportMode};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -22,10 +23,10 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
-    build: |reader| Ok(Box::new(Bdpt { roulette_depth: reader.integer("roulette_depth") as u32 })),
+    build: |reader| Ok(Box::new(Bdpt::new(reader))),
 };
 
-struct Bdpt {
+pub(super) struct Bdpt {
     roulette_depth: u32,
 }
 
@@ -39,8 +40,12 @@ impl PixelIntegrator for Bdpt {
         true
     }
 
+    fn roulette_depth(&self) -> u32 {
+        self.roulette_depth
+    }
+
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        let light_path = light_vertices(task, ray.time, self.roulette_depth);
+        let light_path = light_vertices(task, ray.time, self.roulette_depth, eta(task));
         for y in &light_path {
             task.enter_light_vertex(y.depth);
             if let Some((film, light, others)) = to_camera(task, y) {
@@ -51,7 +56,16 @@ impl PixelIntegrator for Bdpt {
     }
 }
 
+/// How many light paths a merged vertex counts; 0 where nothing is merged.
+fn eta(task: &Task) -> f32 {
+    task.photons.map_or(0.0, Photons::eta)
+}
+
 impl Bdpt {
+    pub(super) fn new(reader: &Reader) -> Bdpt {
+        Bdpt { roulette_depth: reader.integer("roulette_depth") as u32 }
+    }
+
     fn camera_path(&self, ray: &Ray, light_path: &[Vertex], task: &mut Task) -> Rgb {
         let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::default(), false);
         let mut sum = Rgb::BLACK;
@@ -61,7 +75,7 @@ impl Bdpt {
             };
             if z.depth == 0 {
                 let density = task.camera.density(&walk.ray, z.surface.t);
-                z.partial.d_vcm = 1.0 / (density * z.surface.n_geom.dot(z.wo).abs());
+                z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), eta(task));
                 walk.partial = z.partial;
             }
             sum += z.beta * self.emission(&z, task);
@@ -70,6 +84,11 @@ impl Bdpt {
             }
             task.sampler.enter(u64::from(z.depth) + 1);
             sum += self.lights(&z, task) + self.connections(&z, light_path, task);
+            if let Some(photons) = task.photons
+                && !z.bsdf.is_delta()
+            {
+                sum += merged(task, photons, &z, false);
+            }
             if !walk.scatter(&z, self.roulette_depth, task) {
                 return sum;
             }

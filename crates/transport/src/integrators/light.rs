@@ -42,7 +42,7 @@ impl PixelIntegrator for Light {
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
-        for vertex in light_vertices(task, ray.time, self.roulette_depth) {
+        for vertex in light_vertices(task, ray.time, self.roulette_depth, 0.0) {
             task.enter_light_vertex(vertex.depth);
             if let Some((film, light, _)) = to_camera(task, &vertex) {
                 splats.add(film, light);

@@ -4,10 +4,14 @@ mod bdpt;
 mod cast;
 mod cook;
 mod light;
+mod merging;
 mod occlusion;
 mod path;
+mod sppm;
+mod vcm;
 mod whitted;
 
+use crate::bidirectional::Merging;
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;
@@ -23,6 +27,17 @@ pub trait PixelIntegrator: Send + Sync {
     /// True when it also follows light from its sources, which may land anywhere on the film.
     fn splats(&self) -> bool {
         false
+    }
+
+    /// How it merges camera paths with light paths; then each sample of all pixels is an iteration, which begins with the
+    /// light paths of all of them ([`Task::photons`]).
+    fn merging(&self) -> Option<&Merging> {
+        None
+    }
+
+    /// When roulette begins on the light paths of an iteration.
+    fn roulette_depth(&self) -> u32 {
+        0
     }
 
     /// A sample of a pixel: [`PixelIntegrator::radiance`], where it `is_wanted` (pixels that were cropped away have only
@@ -82,8 +97,17 @@ const ROULETTE_DEPTH: Parameter = Parameter {
 };
 
 /// Every integrator that there is.
-pub const INTEGRATORS: &[IntegratorEntry] =
-    &[cast::ENTRY, whitted::ENTRY, cook::ENTRY, path::ENTRY, light::ENTRY, bdpt::ENTRY, occlusion::ENTRY];
+pub const INTEGRATORS: &[IntegratorEntry] = &[
+    cast::ENTRY,
+    whitted::ENTRY,
+    cook::ENTRY,
+    path::ENTRY,
+    light::ENTRY,
+    bdpt::ENTRY,
+    sppm::ENTRY,
+    vcm::ENTRY,
+    occlusion::ENTRY,
+];
 
 /// The row of this name.
 ///

@@ -1,0 +1,149 @@
+//! What the light paths of one iteration leave in the scene, to be found by place: the vertices that camera paths merge
+//! with. [Jensen 1996; Georgiev 2012]
+
+use super::light_vertices;
+use crate::eye::Eye;
+use crate::window::Window;
+use bilux_math::hash::hash_words;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Scene, Tracer};
+use rayon::prelude::*;
+
+/// How camera paths and light paths are merged.
+#[derive(Clone, Copy, Debug)]
+pub struct Merging {
+    /// The greatest distance at which two vertices count as one in the first iteration, as a part of the scene's radius.
+    pub radius: f32,
+    /// How fast that distance shrinks: by the power (alpha - 1) / 2 of the iteration's number, 0..1.
+    pub alpha: f32,
+    /// The most light paths of an iteration whose vertices are kept.
+    pub max_light_paths: u32,
+}
+
+impl Merging {
+    /// The radius of an iteration, in metres: it depends on nothing but the iteration's number. [Knaus 2011, eq. 20]
+    fn radius(&self, scene: &Scene, iteration: u32) -> f32 {
+        let shrunk = bilux_math::transcendental::powf(iteration as f32 + 1.0, 0.5 * (self.alpha - 1.0));
+        scene.bounds().radius() * self.radius * shrunk
+    }
+}
+
+/// A vertex of a light path.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Photon {
+    pub(crate) p: Vec3,
+    /// Where it came from.
+    pub(crate) wo: Vec3,
+    pub(crate) n_geom: Vec3,
+    pub(crate) beta: Rgb,
+    pub(crate) d_vcm: f32,
+    pub(crate) d_vm: f32,
+    /// Scattering events before it.
+    pub(crate) depth: u32,
+}
+
+/// All of an iteration, in a grid whose cells are as wide as the discs that merge.
+pub struct Photons {
+    radius: f32,
+    /// Expected light paths on each square metre that they are merged over: η of [Georgiev 2012].
+    eta: f32,
+    photons: Vec<Photon>,
+    /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
+    starts: Vec<u32>,
+}
+
+impl Photons {
+    /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many.
+    pub(crate) fn trace(eye: &Eye, merging: &Merging, tiles: &[Window], iteration: u32) -> Photons {
+        let scene = eye.scene;
+        let pixels: usize = tiles.iter().map(Window::pixels).sum();
+        let step = pixels.div_ceil(merging.max_light_paths.max(1) as usize).max(1) as u32;
+        let width = tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1);
+        let is_followed = |(x, y): (u32, u32)| {
+            (u64::from(y) * u64::from(width) + u64::from(x)).is_multiple_of(u64::from(step))
+        };
+        let followed = tiles
+            .iter()
+            .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
+            .sum::<usize>();
+        let radius = merging.radius(scene, iteration);
+        let eta = std::f32::consts::PI * radius * radius * followed as f32;
+        let of_tile = |tile: &Window| {
+            let mut tracer = Tracer::new(scene, false);
+            let mut photons = Vec::new();
+            for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
+                let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
+                let vertices = light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), eta);
+                photons.extend(vertices.iter().map(|vertex| Photon {
+                    p: vertex.surface.p,
+                    wo: vertex.wo,
+                    n_geom: vertex.surface.n_geom,
+                    beta: vertex.beta,
+                    d_vcm: vertex.partial.d_vcm,
+                    d_vm: vertex.partial.d_vm,
+                    depth: vertex.depth,
+                }));
+            }
+            photons
+        };
+        let parts: Vec<Vec<Photon>> = tiles.par_iter().map(of_tile).collect();
+        Photons::new(parts.concat(), radius, eta)
+    }
+
+    /// In the order of their cells, and within a cell in the order in which they are given.
+    fn new(photons: Vec<Photon>, radius: f32, eta: f32) -> Photons {
+        let buckets = photons.len().next_power_of_two();
+        let hash = |p: Vec3| bucket(cell(p, radius), buckets);
+        let mut keys: Vec<(u32, u32)> =
+            photons.par_iter().enumerate().map(|(i, photon)| (hash(photon.p), i as u32)).collect();
+        keys.par_sort_unstable();
+        let mut starts = vec![0; buckets + 1];
+        for (bucket, _) in &keys {
+            starts[*bucket as usize + 1] += 1;
+        }
+        for i in 0..buckets {
+            starts[i + 1] += starts[i];
+        }
+        let photons = keys.par_iter().map(|(_, i)| photons[*i as usize]).collect();
+        Photons { radius, eta, photons, starts }
+    }
+
+    pub(crate) fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    /// Calls `visit` with every photon that is no further than the radius from a point.
+    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Photon)) {
+        let buckets = self.starts.len() - 1;
+        // Cells are two radii wide: what is near lies in the point's own or in the nearer neighbour on each axis.
+        let middle = cell(p, self.radius);
+        let within = p / (2.0 * self.radius) - p_floor(p, self.radius);
+        let beside = [within.x, within.y, within.z].map(|x| if x < 0.5 { -1 } else { 1 });
+        for corner in 0..8 {
+            let near: [i64; 3] =
+                std::array::from_fn(|k| middle[k] + if corner >> k & 1 == 1 { beside[k] } else { 0 });
+            let bucket = bucket(near, buckets) as usize;
+            for photon in &self.photons[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
+                // Of other cells with the same hash some may be near too: each is visited from its own.
+                if photon.p.distance_squared(p) <= self.radius * self.radius
+                    && cell(photon.p, self.radius) == near
+                {
+                    visit(photon);
+                }
+            }
+        }
+    }
+}
+
+fn p_floor(p: Vec3, radius: f32) -> Vec3 {
+    (p / (2.0 * radius)).floor()
+}
+
+fn cell(p: Vec3, radius: f32) -> [i64; 3] {
+    let floor = p_floor(p, radius);
+    [floor.x as i64, floor.y as i64, floor.z as i64]
+}
+
+fn bucket(cell: [i64; 3], buckets: usize) -> u32 {
+    hash_words(cell.map(|c| c as u64)) as u32 & (buckets as u32 - 1)
+}

@@ -1,0 +1,91 @@
+//! From the number of a sample to its camera ray, and to what its integrator works with.
+
+use crate::bidirectional::Photons;
+use crate::integrators::PixelIntegrator;
+use crate::light_choice::LightChoice;
+use crate::render::{PixelAnchor, RenderSettings};
+use crate::sampler::{PixelSampler, regular_pattern};
+use crate::task::Task;
+use bilux_math::{Vec2, warp};
+use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer};
+
+/// Turns a sample's number into a camera ray and the tools for it.
+pub(crate) struct Eye<'a> {
+    pub(crate) scene: &'a Scene,
+    camera: &'a dyn Camera,
+    pub(crate) integrator: &'a dyn PixelIntegrator,
+    pub(crate) settings: &'a RenderSettings,
+    lights: LightChoice,
+    has_lens: bool,
+    pub(crate) photons: Option<&'a Photons>,
+}
+
+impl<'a> Eye<'a> {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        camera: &'a dyn Camera,
+        integrator: &'a dyn PixelIntegrator,
+        settings: &'a RenderSettings,
+    ) -> Eye<'a> {
+        let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
+        Eye { scene, camera, integrator, settings, lights, has_lens, photons: None }
+    }
+
+    /// The camera ray of a sample, and what its integrator works with.
+    #[inline]
+    pub(crate) fn sample<'t>(
+        &'t self,
+        tracer: &'t mut Tracer<'a>,
+        x: u32,
+        y: u32,
+        index: u32,
+    ) -> (Ray, Task<'t, 'a>) {
+        let mut sampler = PixelSampler::new(self.settings.seed, x, y, index);
+        let camera_sample = self.camera_sample(&mut sampler, x, y, index);
+        let task = Task {
+            tracer,
+            sampler,
+            max_depth: self.settings.max_depth,
+            camera: self.camera,
+            lights: &self.lights,
+            photons: self.photons,
+            events: None,
+        };
+        (self.camera.ray(&camera_sample), task)
+    }
+
+    /// Where on film and lens, and when. What the integrator gives no extent takes the pixel's regular
+    /// pattern, the middle of the lens and the middle of the time that the shutter is open.
+    fn camera_sample(&self, sampler: &mut PixelSampler, x: u32, y: u32, index: u32) -> CameraSample {
+        let (spread, settings) = (self.integrator.camera_spread(), self.settings);
+        let u_pixel = sampler.next_2d();
+        let offset = match spread.pixel {
+            0.0 => settings.filter.sample(regular_pattern(index)),
+            extent => settings.filter.sample(u_pixel) * extent,
+        };
+        let anchor = match settings.pixel_anchor {
+            PixelAnchor::Centre => 0.5,
+            PixelAnchor::Corner => 0.0,
+        };
+        let lens = match spread.lens {
+            0.0 => Vec2::ZERO,
+            _ if !self.has_lens => {
+                sampler.skip(1);
+                Vec2::ZERO
+            }
+            extent => warp::sample_disc(sampler.next_2d()) * extent,
+        };
+        let [opens, closes] = self.scene.shutter();
+        let middle = opens + (closes - opens) * 0.5;
+        let time = match spread.shutter {
+            0.0 => middle,
+            _ if opens == closes => middle,
+            extent => middle + (closes - opens) * (sampler.next_1d() - 0.5) * extent,
+        };
+        let film = Vec2::new(
+            (x as f32 + (anchor + offset.x)) / settings.width as f32,
+            (y as f32 + (anchor + offset.y)) / settings.height as f32,
+        );
+        CameraSample { film, lens, time: time.clamp(opens.min(closes), opens.max(closes)) }
+    }
+}

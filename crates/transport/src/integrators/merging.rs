@@ -1,0 +1,39 @@
+//! What those that merge paths can be told.
+
+use crate::bidirectional::Merging;
+use bilux_math::registry::{Parameter, ParameterKind};
+use bilux_scene::Reader;
+
+pub(super) const fn radius(min: f64) -> Parameter {
+    Parameter {
+        name: "radius",
+        summary: "how near vertices of both ends must be to count as one at first, as a part of the scene's radius",
+        unit: "",
+        kind: ParameterKind::Number { min, max: 1.0 },
+        default: "0.003",
+    }
+}
+
+pub(super) const ALPHA: Parameter = Parameter {
+    name: "alpha",
+    summary: "how slowly that shrinks from iteration to iteration",
+    unit: "",
+    kind: ParameterKind::Number { min: 0.0, max: 1.0 },
+    default: "0.75",
+};
+
+pub(super) const LIGHT_PATHS: Parameter = Parameter {
+    name: "light_paths",
+    summary: "the most light paths of an iteration whose vertices are kept",
+    unit: "",
+    kind: ParameterKind::Integer { min: 1, max: 1 << 26 },
+    default: "1048576",
+};
+
+pub(super) fn read(reader: &Reader) -> Merging {
+    Merging {
+        radius: reader.number("radius"),
+        alpha: reader.number("alpha"),
+        max_light_paths: reader.integer("light_paths") as u32,
+    }
+}

@@ -1,0 +1,70 @@
+//! `sppm`: progressive photon mapping. Light paths leave photons; the camera's paths go on through mirrors and glass to the
+//! first surface with any width, and count the photons around it. From iteration to iteration less is counted as around.
+//! [Hachisuka 2009; Knaus 2011]
+
+use super::{IntegratorEntry, PixelIntegrator, merging};
+use crate::bidirectional::{Merging, Partial, Walk, emitted, from_infinity, merged};
+use crate::task::Task;
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+use bilux_scene::{Ray, TransportMode};
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "sppm",
+        summary: "progressive photon mapping: photons from the lights, counted where the camera's paths arrive",
+        source: "Hachisuka 2009",
+        parameters: &[super::ROULETTE_DEPTH, merging::radius(1e-6), merging::ALPHA, merging::LIGHT_PATHS],
+    },
+    covers: "L(D|G|S)*E",
+    classic: false,
+    default_spp: 64,
+    build: |reader| {
+        Ok(Box::new(Sppm {
+            roulette_depth: reader.integer("roulette_depth") as u32,
+            merging: merging::read(reader),
+        }))
+    },
+};
+
+struct Sppm {
+    roulette_depth: u32,
+    merging: Merging,
+}
+
+impl PixelIntegrator for Sppm {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::default(), false);
+        let mut sum = Rgb::BLACK;
+        loop {
+            let Some(z) = walk.meet(task) else {
+                return sum + walk.beta * from_infinity(task, &walk);
+            };
+            // Lights that are seen, in mirrors too; what they give to other surfaces, photons bring.
+            if let Some(found) = emitted(task, &z.surface, z.wo) {
+                sum += z.beta * found.radiance;
+            }
+            if z.depth >= task.max_depth {
+                return sum;
+            }
+            if let Some(photons) = task.photons
+                && !z.bsdf.is_delta()
+            {
+                sum += merged(task, photons, &z, true);
+            }
+            task.sampler.enter(u64::from(z.depth) + 1);
+            // What goes on into more than single directions has been counted.
+            if !walk.scatter(&z, self.roulette_depth, task) || !walk.specular {
+                return sum;
+            }
+        }
+    }
+
+    fn merging(&self) -> Option<&Merging> {
+        Some(&self.merging)
+    }
+
+    fn roulette_depth(&self) -> u32 {
+        self.roulette_depth
+    }
+}
