@@ -17,6 +17,9 @@ const WORKS: &[&str] = &[
     "bounce-batch-avx2",
     "shadow-single-avx2",
     "shadow-batch-avx2",
+    "primary-single-sse4.2",
+    "bounce-single-sse4.2",
+    "shadow-single-sse4.2",
     "bounce-single-baseline",
 ];
 const TABLE: &str = "crates/accel/instructions.tsv";

@@ -6,6 +6,8 @@
 pub enum CpuLevel {
     /// What every machine of the target has.
     Baseline,
+    /// SSE4.2 with POPCNT, as all have since 2009: four lanes.
+    Sse42,
     /// AVX2 with FMA, BMI and its kin, as all have since 2013: eight lanes.
     Avx2,
     /// AVX-512 F, VL, DQ and BW, as all for servers have since 2017: sixteen lanes, and masks for eight.
@@ -14,7 +16,7 @@ pub enum CpuLevel {
 
 impl CpuLevel {
     /// All levels, the lowest first.
-    pub const ALL: [CpuLevel; 3] = [CpuLevel::Baseline, CpuLevel::Avx2, CpuLevel::Avx512];
+    pub const ALL: [CpuLevel; 4] = [CpuLevel::Baseline, CpuLevel::Sse42, CpuLevel::Avx2, CpuLevel::Avx512];
 
     /// The highest level that this machine has.
     pub fn detect() -> CpuLevel {
@@ -30,6 +32,9 @@ impl CpuLevel {
             if avx2 {
                 return CpuLevel::Avx2;
             }
+            if has!("sse4.2") && has!("popcnt") {
+                return CpuLevel::Sse42;
+            }
         }
         CpuLevel::Baseline
     }
@@ -43,6 +48,7 @@ impl CpuLevel {
     pub const fn name(self) -> &'static str {
         match self {
             CpuLevel::Baseline => "baseline",
+            CpuLevel::Sse42 => "sse4.2",
             CpuLevel::Avx2 => "avx2",
             CpuLevel::Avx512 => "avx512",
         }

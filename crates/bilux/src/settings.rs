@@ -41,7 +41,12 @@ pub const RENDER: Entry = Entry {
             &["auto", "fast", "balanced", "best"],
             "auto",
         ),
-        choice("cpu", "instructions that kernels may use", &["auto", "baseline", "avx2", "avx512"], "auto"),
+        choice(
+            "cpu",
+            "instructions that kernels may use",
+            &["auto", "baseline", "sse4.2", "avx2", "avx512"],
+            "auto",
+        ),
         choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"),
         choice("bsp_group", "what bsp keeps together", &["polygons", "objects"], "polygons"),
         switch("early_out", "end a search at the first hit that nothing nearer can beat"),

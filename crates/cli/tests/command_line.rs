@@ -37,7 +37,7 @@ fn one_picture_for_any_threads_and_any_accelerator() {
         for row in bilux::accel::ACCELERATORS {
             assert!(with(&["--accel", row.entry.name]) == reference, "{integrator}, {}", row.entry.name);
         }
-        for cpu in ["cpu=baseline", "cpu=avx2", "cpu=avx512"] {
+        for cpu in ["cpu=baseline", "cpu=sse4.2", "cpu=avx2", "cpu=avx512"] {
             let more = ["--accel", "brute-simd", "--set", cpu];
             assert!(with(&more) == reference, "{integrator}, {cpu}");
         }

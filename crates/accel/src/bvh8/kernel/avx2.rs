@@ -1,15 +1,42 @@
 //! AVX2 and FMA on eight lanes.
 
-use super::body::{Level, Stack, lanes, reference};
+use super::View;
+use super::block::Axes;
+use super::level::{BatchLevel, Level, lanes};
+use super::stack::Stack;
+use super::tame::{self, TameRay};
 use crate::bvh8::layout::Ref;
+use crate::ray::Ray;
 use std::arch::x86_64::*;
 
 super::entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+super::batch_entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
 struct Avx2;
 
 impl Level for Avx2 {
-    type Wide = __m256;
+    type Eight = __m256i;
+    type Tame = TameRay;
+    type Doubles = __m256d;
+
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+        // SAFETY: as the trait demands.
+        unsafe { TameRay::new(ray, view) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat(bits: u32) -> __m256i {
+        // SAFETY: as the trait demands.
+        unsafe { _mm256_set1_epi32(bits as i32) }
+    }
+
+    #[inline(always)]
+    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
+        // SAFETY: as the trait demands.
+        unsafe { tame::reorder(numbers, axes) }
+    }
 
     // SAFETY: as the trait demands.
     #[inline(always)]
@@ -20,7 +47,12 @@ impl Level for Avx2 {
             _mm256_movemask_ps(misses) as u32 ^ 0xff
         }
     }
+}
 
+impl BatchLevel for Avx2 {
+    type Wide = __m256;
+
+    // SAFETY: as the trait demands.
     #[inline(always)]
     unsafe fn column(masks: &[u64; 8], bit: usize) -> u32 {
         // SAFETY: as the trait demands.
@@ -34,38 +66,12 @@ impl Level for Avx2 {
         }
     }
 
-    /// Sorted in, one after the other.
-    // SAFETY: as the trait demands.
-    #[inline(always)]
-    unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let distances = lanes(enter);
-            let (references, enters) = (stack.references(), stack.distances());
-            let (mut left, mut size) = (mask, 0);
-            while left != 0 {
-                let child = left.trailing_zeros() as usize & 7;
-                left &= left - 1;
-                let mut place = size;
-                size += 1;
-                while place > 0 && *enters.add(place - 1) < distances[child] {
-                    *enters.add(place) = *enters.add(place - 1);
-                    *references.add(place) = *references.add(place - 1);
-                    place -= 1;
-                }
-                *enters.add(place) = distances[child];
-                *references.add(place) = reference(node, child).0;
-            }
-            stack.grow(size);
-        }
-    }
-
     // SAFETY: as the trait demands.
     #[inline(always)]
     unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
-            let distances = lanes(enter);
+            let distances = lanes::<Avx2>(enter);
             let (references, keys) = (stack.references(), stack.distances());
             let (mut left, mut size) = (mask, 0);
             while left != 0 {
@@ -82,18 +88,6 @@ impl Level for Avx2 {
                 size += 1;
             }
             stack.grow(size);
-        }
-    }
-
-    // SAFETY: as the trait demands.
-    #[inline(always)]
-    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
-        let mut left = mask;
-        while left != 0 {
-            let child = left.trailing_zeros() as usize;
-            left &= left - 1;
-            // SAFETY: as the trait demands.
-            unsafe { stack.put(reference(node, child), 0) };
         }
     }
 }

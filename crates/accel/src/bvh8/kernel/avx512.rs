@@ -1,30 +1,48 @@
 //! AVX-512 on eight lanes: masks, and compression for more than two children.
 
-use super::body::{Level, Stack};
+use super::View;
+use super::block::Axes;
+use super::level::{BatchLevel, Level};
+use super::stack::Stack;
+use super::tame::{self, TameRay};
 use crate::bvh8::layout::Ref;
+use crate::ray::Ray;
 use std::arch::x86_64::*;
 
 super::entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+super::batch_entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 
 struct Avx512;
 
 impl Level for Avx512 {
-    type Wide = __m512;
+    type Eight = __m256i;
+    type Tame = TameRay;
+    type Doubles = __m256d;
+
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+        // SAFETY: as the trait demands.
+        unsafe { TameRay::new(ray, view) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat(bits: u32) -> __m256i {
+        // SAFETY: as the trait demands.
+        unsafe { _mm256_set1_epi32(bits as i32) }
+    }
+
+    #[inline(always)]
+    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
+        // SAFETY: as the trait demands.
+        unsafe { tame::reorder(numbers, axes) }
+    }
 
     // SAFETY: as the trait demands.
     #[inline(always)]
     unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32 {
         // SAFETY: as the trait demands.
         unsafe { u32::from(_mm256_cmple_epi32_mask(enter, leave)) }
-    }
-
-    #[inline(always)]
-    unsafe fn column(masks: &[u64; 8], bit: usize) -> u32 {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let masks = _mm512_loadu_si512(masks.as_ptr().cast());
-            u32::from(_mm512_test_epi64_mask(masks, _mm512_set1_epi64(1 << bit)))
-        }
     }
 
     #[inline(always)]
@@ -40,6 +58,31 @@ impl Level for Avx512 {
         }
     }
 
+    #[inline(always)]
+    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let references = _mm256_load_si256(node.add(192).cast());
+            let kept = _mm256_maskz_compress_epi32(mask as u8, references);
+            _mm256_storeu_si256(stack.references().cast(), kept);
+            stack.grow(mask.count_ones() as usize);
+        }
+    }
+}
+
+impl BatchLevel for Avx512 {
+    type Wide = __m512;
+
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn column(masks: &[u64; 8], bit: usize) -> u32 {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let masks = _mm512_loadu_si512(masks.as_ptr().cast());
+            u32::from(_mm512_test_epi64_mask(masks, _mm512_set1_epi64(1 << bit)))
+        }
+    }
+
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {
@@ -48,17 +91,6 @@ impl Level for Avx512 {
             let keys = if mask & (mask - 1) == 0 { compressed(mask, enter) } else { sorted(mask, enter) };
             _mm256_storeu_si256(stack.references().cast(), _mm256_set1_epi32(node.0 as i32));
             _mm256_storeu_si256(stack.distances().cast(), keys);
-            stack.grow(mask.count_ones() as usize);
-        }
-    }
-
-    #[inline(always)]
-    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let references = _mm256_load_si256(node.add(192).cast());
-            let kept = _mm256_maskz_compress_epi32(mask as u8, references);
-            _mm256_storeu_si256(stack.references().cast(), kept);
             stack.grow(mask.count_ones() as usize);
         }
     }

@@ -1,6 +1,6 @@
 //! Many rays at once: made ready in vectors, then together where they run side by side, else each on a way of its own.
 
-use super::body::Level;
+use super::level::BatchLevel;
 use super::packet::{self, Packet};
 use super::{View, body, plain, stream};
 use crate::counters::Nothing;
@@ -17,7 +17,7 @@ pub(super) const SOMETHING: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, in
 /// # Safety
 /// The machine must have the level, and the view must be sound.
 #[inline(always)]
-pub(super) unsafe fn each<L: Level, const ANY: bool>(
+pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
     view: View<'_>,
     rays: &[Ray],
     query: &Query,
@@ -53,7 +53,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool>(
 /// # Safety
 /// As for [`each`].
 #[inline(always)]
-unsafe fn one<L: Level, const ANY: bool>(view: View<'_>, ray: &Ray, query: &Query) -> Option<Hit> {
+unsafe fn one<L: BatchLevel, const ANY: bool>(view: View<'_>, ray: &Ray, query: &Query) -> Option<Hit> {
     // SAFETY: as the caller promises.
     unsafe {
         if ANY {

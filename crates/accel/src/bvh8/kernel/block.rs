@@ -3,6 +3,8 @@
 //! Nothing is fused: each product and difference is rounded as in `PreparedRay::cross`, first in f32 and, where the
 //! signs leave a triangle, in f64.
 
+use super::doubles::Doubles;
+use super::level::Level;
 use super::tame::halves;
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Ray};
@@ -34,32 +36,31 @@ pub(super) struct Crossings {
 
 impl BlockRay {
     /// # Safety
-    /// The machine must have AVX.
+    /// The machine must have the level.
     #[inline(always)]
-    pub(super) unsafe fn new(ray: &Ray) -> BlockRay {
+    pub(super) unsafe fn new<L: Level>(ray: &Ray) -> BlockRay {
         // SAFETY: as the caller promises.
         unsafe {
             let (origin, direction) = halves(ray);
             let keep = _mm_loadu_ps([0x7fff_ffff_u32, 0x7fff_ffff, 0x7fff_ffff, 0].as_ptr().cast());
             let sizes = _mm_and_ps(direction, keep);
-            let pairs = _mm_max_ps(sizes, _mm_permute_ps::<0b10_11_00_01>(sizes));
-            let greatest = _mm_max_ps(pairs, _mm_permute_ps::<0b01_00_11_10>(pairs));
+            let pairs = _mm_max_ps(sizes, _mm_shuffle_ps::<0b10_11_00_01>(sizes, sizes));
+            let greatest = _mm_max_ps(pairs, _mm_shuffle_ps::<0b01_00_11_10>(pairs, pairs));
             let steepest = _mm_movemask_ps(_mm_cmpeq_ps(sizes, greatest));
             // Without branches, as nobody could foresee them.
-            let Axes { order, rows } = &AXES[steepest as usize & 7];
-            let order = _mm_load_si128(order.as_ptr().cast());
-            let direction = _mm_permutevar_ps(direction, order);
-            let back = _mm_xor_ps(_mm_permutevar_ps(origin, order), _mm_set1_ps(-0.0));
-            let depth = _mm_permute_ps::<0b10_10_10_10>(direction);
+            let axes = &AXES[steepest as usize & 7];
+            let direction = L::reorder(direction, axes);
+            let back = _mm_xor_ps(L::reorder(origin, axes), _mm_set1_ps(-0.0));
+            let depth = _mm_shuffle_ps::<0b10_10_10_10>(direction, direction);
             let shear = _mm_div_ps(direction, depth);
             BlockRay {
-                rows: *rows,
+                rows: axes.rows,
                 back: [
-                    _mm_permute_ps::<0>(back),
-                    _mm_permute_ps::<0b01_01_01_01>(back),
-                    _mm_permute_ps::<0b10_10_10_10>(back),
+                    _mm_shuffle_ps::<0>(back, back),
+                    _mm_shuffle_ps::<0b01_01_01_01>(back, back),
+                    _mm_shuffle_ps::<0b10_10_10_10>(back, back),
                 ],
-                shear: [_mm_permute_ps::<0>(shear), _mm_permute_ps::<0b01_01_01_01>(shear)],
+                shear: [_mm_shuffle_ps::<0>(shear, shear), _mm_shuffle_ps::<0b01_01_01_01>(shear, shear)],
                 depth,
             }
         }
@@ -68,7 +69,7 @@ impl BlockRay {
     /// A bit for each triangle that the signs of its edges do not reject, and all corners.
     ///
     /// # Safety
-    /// The machine must have AVX, and `block` must point to a block.
+    /// The machine must have SSE4.2, and `block` must point to a block.
     #[inline(always)]
     pub(super) unsafe fn signs(&self, block: *const u8) -> (u32, Sheared) {
         // SAFETY: a block is aligned to 32 bytes and holds nine rows of four numbers.
@@ -99,9 +100,9 @@ impl BlockRay {
     /// The exact stage, and all that decides whether a hit counts. What the signs rejected is rejected here too.
     ///
     /// # Safety
-    /// The machine must have AVX, and `block` must point to a block.
+    /// The machine must have the level of the doubles, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn cross(
+    pub(super) unsafe fn cross<D: Doubles>(
         &self,
         block: *const u8,
         corners: Sheared,
@@ -111,30 +112,22 @@ impl BlockRay {
         // SAFETY: as the caller promises; a block holds its primitives behind nine rows of four numbers.
         unsafe {
             // Not `map`, which would be compiled without the instructions of the level, and called.
-            let wide = |[a, b, c]: [__m128; 3]| [_mm256_cvtps_pd(a), _mm256_cvtps_pd(b), _mm256_cvtps_pd(c)];
+            let wide = |[a, b, c]: [__m128; 3]| [D::widen(a), D::widen(b), D::widen(c)];
             let [x, y, z] = corners;
             let (x, y, z) = (wide(x), wide(y), wide(z));
-            let edge =
-                |p: usize, q: usize| _mm256_sub_pd(_mm256_mul_pd(x[p], y[q]), _mm256_mul_pd(y[p], x[q]));
+            let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
-            let zero = _mm256_setzero_pd();
-            let (least, greatest) =
-                (_mm256_min_pd(_mm256_min_pd(u, v), w), _mm256_max_pd(_mm256_max_pd(u, v), w));
+            let zero = D::splat(0.0);
+            let (least, greatest) = (u.min(v).min(w), u.max(v).max(w));
             // What is not a number makes the determinant none, and is refused there.
-            let one_side = _mm256_or_pd(
-                _mm256_cmp_pd::<_CMP_GE_OQ>(least, zero),
-                _mm256_cmp_pd::<_CMP_LE_OQ>(greatest, zero),
-            );
-            let det = _mm256_add_pd(_mm256_add_pd(u, v), w);
-            let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), det);
-            let sound = _mm256_and_pd(
-                _mm256_cmp_pd::<_CMP_GT_OQ>(size, zero),
-                _mm256_cmp_pd::<_CMP_LT_OQ>(size, _mm256_set1_pd(f64::INFINITY)),
-            );
-            let along = _mm256_add_pd(_mm256_mul_pd(u, z[0]), _mm256_mul_pd(v, z[1]));
-            let along = _mm256_add_pd(along, _mm256_mul_pd(w, z[2]));
-            let depth = _mm256_cvtps_pd(self.depth);
-            let t = _mm256_cvtpd_ps(_mm256_div_pd(along, _mm256_mul_pd(det, depth)));
+            let one_side = least.ge(zero).or(greatest.le(zero));
+            let det = u.add(v).add(w);
+            let size = det.and_not(D::splat(-0.0));
+            let sound = size.gt(zero).and(size.lt(D::splat(f64::INFINITY)));
+            let along = u.mul(z[0]).add(v.mul(z[1]));
+            let along = along.add(w.mul(z[2]));
+            let depth = D::widen(self.depth);
+            let t = along.div(det.mul(depth)).narrow();
             let within =
                 _mm_and_ps(_mm_cmpge_ps(t, _mm_set1_ps(ray.t_min)), _mm_cmple_ps(t, _mm_set1_ps(t_max)));
             let primitives = _mm_load_si128(block.add(9 * LANES * 4).cast());
@@ -142,15 +135,12 @@ impl BlockRay {
             let within = _mm_andnot_ps(_mm_castsi128_ps(excluded), within);
             // No mesh has so many; places without a triangle do.
             let within = _mm_andnot_ps(_mm_castsi128_ps(primitives), within);
-            let mut good = _mm256_and_pd(one_side, sound);
+            let mut good = one_side.and(sound);
             if culling == Culling::Back {
-                good = _mm256_and_pd(good, _mm256_cmp_pd::<_CMP_GT_OQ>(_mm256_mul_pd(det, depth), zero));
+                good = good.and(det.mul(depth).gt(zero));
             }
-            let good = _mm256_castpd_si256(good);
-            let (low, high) = (_mm256_castsi256_si128(good), _mm256_extracti128_si256::<1>(good));
-            let within = _mm_and_ps(within, _mm_castsi128_ps(_mm_packs_epi32(low, high)));
-            let over = |x| _mm256_cvtpd_ps(_mm256_div_pd(x, det));
-            Crossings { within, t, v: over(v), w: over(w) }
+            let within = _mm_and_ps(within, good.narrow_mask());
+            Crossings { within, t, v: v.div(det).narrow(), w: w.div(det).narrow() }
         }
     }
 }
@@ -159,7 +149,7 @@ impl Crossings {
     /// A bit for each.
     ///
     /// # Safety
-    /// The machine must have AVX.
+    /// Asks for SSE, which every machine of this kind has.
     #[inline(always)]
     pub(super) unsafe fn mask(&self) -> u32 {
         // SAFETY: as the caller promises.
@@ -186,8 +176,10 @@ const ROW_BYTES: usize = 3 * LANES * 4;
 
 /// Which axes of space are x, y and z of sheared space, and bytes from the front of a block to the rows of each.
 #[repr(C, align(16))]
-struct Axes {
-    order: [u32; 4],
+pub(super) struct Axes {
+    pub(super) order: [u32; 4],
+    /// The same, byte by byte.
+    pub(super) bytes: [u8; 16],
     rows: [usize; 3],
 }
 
@@ -196,8 +188,12 @@ const AXES: [Axes; 8] = [axes(2), axes(0), axes(1), axes(1), axes(2), axes(2), a
 
 const fn axes(z: usize) -> Axes {
     let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-    Axes {
-        order: [x as u32, y as u32, z as u32, z as u32],
-        rows: [x * ROW_BYTES, y * ROW_BYTES, z * ROW_BYTES],
+    let order = [x as u32, y as u32, z as u32, z as u32];
+    let mut bytes = [0; 16];
+    let mut byte = 0;
+    while byte < 16 {
+        bytes[byte] = (order[byte / 4] * 4) as u8 + (byte % 4) as u8;
+        byte += 1;
     }
+    Axes { order, bytes, rows: [x * ROW_BYTES, y * ROW_BYTES, z * ROW_BYTES] }
 }

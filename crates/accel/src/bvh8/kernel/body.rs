@@ -1,147 +1,12 @@
 //! The body of the wide kernels, which is the same for all levels.
 
-use super::leaf;
-use super::packet::Wide;
-use super::tame::{Boxes, TameRay};
-use super::{View, plain};
-use crate::bvh8::build::binary::MAX_DEPTH;
-use crate::bvh8::layout::{LANES, Ref, WIDTH};
+use super::level::{Boxes, Level, lanes};
+use super::stack::{Room, Stack};
+use super::{View, leaf, plain};
+use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
-use std::arch::x86_64::{__m256i, _MM_HINT_T0, _mm_prefetch, _mm256_set1_epi32};
-use std::mem::MaybeUninit;
-
-/// What a level of instructions does with a node. Distances are the bits of floats that are not negative.
-///
-/// # Safety
-/// Functions must be called only on machines that have the level, with pointers to whole nodes and stacks
-/// with room for [`WIDTH`] more.
-pub(super) trait Level {
-    /// What holds a group of rays.
-    type Wide: Wide;
-    /// A bit for each lane where the first is not greater.
-    unsafe fn at_most(enter: __m256i, leave: __m256i) -> u32;
-    /// One bit of each of eight masks.
-    unsafe fn column(masks: &[u64; WIDTH], bit: usize) -> u32;
-    /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
-    #[inline(always)]
-    unsafe fn meet<B: Boxes>(ray: &B, node: *const u8, limit: __m256i) -> (u32, __m256i) {
-        // SAFETY: as the trait demands.
-        unsafe {
-            let (enter, leave) = ray.span(node, limit);
-            (Self::at_most(enter, leave), enter)
-        }
-    }
-    // SAFETY: as the trait says.
-    /// Puts the children of the mask on the stack, the nearest on top.
-    unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack);
-    /// Puts the node on the stack once for each child of the mask, the nearest on top; the last three bits of the
-    /// distance say which child.
-    unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack);
-    // SAFETY: as the trait says.
-    /// Puts the children of the mask on the stack, in any order.
-    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack);
-    /// The same distance for all.
-    #[inline(always)]
-    unsafe fn splat(bits: u32) -> __m256i {
-        // SAFETY: as the trait demands.
-        unsafe { _mm256_set1_epi32(bits as i32) }
-    }
-}
-
-/// The distances, one by one.
-#[inline(always)]
-pub(super) fn lanes(distances: __m256i) -> [u32; WIDTH] {
-    // SAFETY: both are 32 bytes.
-    unsafe { std::mem::transmute(distances) }
-}
-
-/// Every node on the way down leaves at most seven others behind; a whole vector is written at the top.
-const ROOM: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
-
-/// Where a stack lies: first the references, then where the ray enters each. Not written before it is used: to clear
-/// it would take as long as a short ray.
-pub(super) type Room = MaybeUninit<[u32; 2 * ROOM]>;
-
-/// What is still to be visited, and the bits of where the ray enters it, the last three of no meaning.
-#[derive(Clone, Copy)]
-pub(super) struct Stack {
-    base: *mut u32,
-    top: *mut u32,
-}
-
-impl Stack {
-    /// An empty one, that must not be used longer than its room.
-    #[inline(always)]
-    pub(super) fn new(room: &mut Room) -> Stack {
-        let base = room.as_mut_ptr().cast();
-        Stack { base, top: base }
-    }
-
-    #[inline(always)]
-    pub(super) fn is_empty(&self) -> bool {
-        self.top == self.base
-    }
-
-    /// The same without anything on it.
-    #[inline(always)]
-    pub(super) fn cleared(&self) -> Stack {
-        Stack { base: self.base, top: self.base }
-    }
-
-    /// Where the next reference goes, and those behind it.
-    #[inline(always)]
-    pub(super) fn references(&self) -> *mut u32 {
-        self.top
-    }
-
-    /// Where the distance of the next reference goes.
-    #[inline(always)]
-    pub(super) fn distances(&self) -> *mut u32 {
-        self.top.wrapping_add(ROOM)
-    }
-
-    /// What was written behind the top belongs to the stack.
-    ///
-    /// # Safety
-    /// It must have been written, and there must be room for [`WIDTH`] more.
-    #[inline(always)]
-    pub(super) unsafe fn grow(&mut self, by: usize) {
-        // SAFETY: the tree is not deeper than there is room for.
-        self.top = unsafe { self.top.add(by) };
-    }
-
-    /// # Safety
-    /// As for [`Stack::grow`].
-    #[inline(always)]
-    pub(super) unsafe fn put(&mut self, reference: Ref, enter: u32) {
-        // SAFETY: as above.
-        unsafe {
-            self.references().write(reference.0);
-            self.distances().write(enter);
-            self.grow(1);
-        }
-    }
-
-    /// # Safety
-    /// The stack must not be empty.
-    #[inline(always)]
-    pub(super) unsafe fn take_reference(&mut self) -> Ref {
-        // SAFETY: everything below the top has been written.
-        unsafe {
-            self.top = self.top.sub(1);
-            Ref(self.top.read())
-        }
-    }
-
-    /// # Safety
-    /// The stack must not be empty, and hold distances.
-    #[inline(always)]
-    pub(super) unsafe fn take(&mut self) -> (Ref, u32) {
-        // SAFETY: as above.
-        unsafe { (self.take_reference(), self.distances().read()) }
-    }
-}
+use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
 /// The reference to a child.
 #[inline(always)]
@@ -166,7 +31,7 @@ pub(super) unsafe fn choose<L: Level>(
     base: *const u8,
     node: *const u8,
     mask: u32,
-    enter: __m256i,
+    enter: L::Eight,
     stack: &mut Stack,
 ) -> Ref {
     // SAFETY: as the caller promises.
@@ -179,7 +44,7 @@ pub(super) unsafe fn choose<L: Level>(
         let second = rest.trailing_zeros() as usize;
         let others = rest & (rest - 1);
         if others == 0 {
-            let distances = lanes(enter);
+            let distances = lanes::<L>(enter);
             let (a, b) = (reference(node, first), reference(node, second));
             let (near, far) = (distances[first & 7], distances[second & 7]);
             let swap = far < near;
@@ -209,7 +74,7 @@ pub(super) unsafe fn closest<L: Level, C: Count, const PLAIN: bool>(
 ) -> Option<Hit> {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
-        match TameRay::new(ray, &view) {
+        match L::tame(ray, &view) {
             Some(tame) => search::<L, C, PLAIN>(view, (ray, &tame, 0), query, count),
             None => plain::closest(view, ray, query, count),
         }
@@ -224,7 +89,7 @@ pub(super) unsafe fn closest<L: Level, C: Count, const PLAIN: bool>(
 #[inline(always)]
 pub(super) unsafe fn search<L: Level, C: Count, const PLAIN: bool>(
     view: View<'_>,
-    (ray, tame, met): (&Ray, &impl Boxes, u32),
+    (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
@@ -250,7 +115,7 @@ pub(super) unsafe fn search<L: Level, C: Count, const PLAIN: bool>(
             } else {
                 count.triangles(current.blocks() * LANES);
                 let before = nearest.t;
-                leaf::closest::<PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
+                leaf::closest::<L, PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
                 if (PLAIN || query.early_out) && nearest.t < before {
                     limit_bits = tame.limit_bits(nearest.t);
                     limit = L::splat(limit_bits);
@@ -313,7 +178,7 @@ pub(super) unsafe fn any<L: Level, C: Count, const PLAIN: bool>(
 ) -> bool {
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
-        match TameRay::new(ray, &view) {
+        match L::tame(ray, &view) {
             Some(tame) => search_any::<L, C, PLAIN>(view, (ray, &tame, 0), query, count),
             None => plain::any(view, ray, query, count),
         }
@@ -327,7 +192,7 @@ pub(super) unsafe fn any<L: Level, C: Count, const PLAIN: bool>(
 #[inline(always)]
 pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
     view: View<'_>,
-    (ray, tame, met): (&Ray, &impl Boxes, u32),
+    (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
     count: &mut C,
 ) -> bool {
@@ -350,7 +215,7 @@ pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
                 }
             } else {
                 count.triangles(current.blocks() * LANES);
-                if leaf::any::<PLAIN>(ray, (place, current.blocks()), query) {
+                if leaf::any::<L, PLAIN>(ray, (place, current.blocks()), query) {
                     return true;
                 }
             }
@@ -368,7 +233,7 @@ pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
 /// As for [`closest`].
 #[inline(always)]
 unsafe fn count_early_outs<L: Level, C: Count>(
-    boxes: &impl Boxes,
+    boxes: &impl Boxes<Eight = L::Eight>,
     node: *const u8,
     mask: u32,
     count: &mut C,

@@ -4,6 +4,7 @@
 //! keeps the compiler from doing it before it is known.
 
 use super::block::{BlockRay, Crossings};
+use super::level::Level;
 use crate::bvh8::layout::{BLOCK_UNITS, LANES, Unit};
 use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;
@@ -16,9 +17,9 @@ pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
 /// Keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive as high as that of no hit.
 ///
 /// # Safety
-/// The machine must have AVX2, the ray be tame, and the leaf be one.
+/// The machine must have the level, the ray be tame, and the leaf be one.
 #[inline(always)]
-pub(super) unsafe fn closest<const PLAIN: bool>(
+pub(super) unsafe fn closest<L: Level, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
@@ -26,7 +27,7 @@ pub(super) unsafe fn closest<const PLAIN: bool>(
 ) {
     // SAFETY: as the caller promises.
     unsafe {
-        let block_ray = BlockRay::new(black_box(ray));
+        let block_ray = BlockRay::new::<L>(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
             let signs = block_ray.signs(block);
@@ -34,7 +35,7 @@ pub(super) unsafe fn closest<const PLAIN: bool>(
                 continue;
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
-            let crossings = block_ray.cross(block, signs.1, (ray, nearest.t), culling);
+            let crossings = block_ray.cross::<L::Doubles>(block, signs.1, (ray, nearest.t), culling);
             let mask = crossings.mask();
             if mask == 0 {
                 continue;
@@ -81,10 +82,14 @@ unsafe fn keep<const PLAIN: bool>(block: *const u8, crossings: &Crossings, query
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any<const PLAIN: bool>(ray: &Ray, (leaf, blocks): Leaf, query: &Query) -> bool {
+pub(super) unsafe fn any<L: Level, const PLAIN: bool>(
+    ray: &Ray,
+    (leaf, blocks): Leaf,
+    query: &Query,
+) -> bool {
     // SAFETY: as the caller promises.
     unsafe {
-        let block_ray = BlockRay::new(black_box(ray));
+        let block_ray = BlockRay::new::<L>(black_box(ray));
         for index in 0..blocks {
             let block = leaf.add(index * BLOCK_BYTES);
             let signs = block_ray.signs(block);
@@ -92,7 +97,7 @@ pub(super) unsafe fn any<const PLAIN: bool>(ray: &Ray, (leaf, blocks): Leaf, que
                 continue;
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
-            let crossings = block_ray.cross(block, signs.1, (ray, ray.t_max), culling);
+            let crossings = block_ray.cross::<L::Doubles>(block, signs.1, (ray, ray.t_max), culling);
             if crossings.mask() != 0 && (PLAIN || keeps_any(block, &crossings, query)) {
                 return true;
             }

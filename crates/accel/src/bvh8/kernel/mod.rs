@@ -63,7 +63,15 @@ macro_rules! entries {
             // SAFETY: as the caller promises.
             unsafe { super::body::any::<$level, C, false>(view, ray, query, count) }
         }
+    };
+}
+#[cfg(target_arch = "x86_64")]
+use entries;
 
+/// The same for batches, at levels that have them.
+#[cfg(target_arch = "x86_64")]
+macro_rules! batch_entries {
+    ($level:ty, $features:literal) => {
         /// See [`super::closest_each`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
@@ -95,7 +103,7 @@ macro_rules! entries {
     };
 }
 #[cfg(target_arch = "x86_64")]
-use entries;
+use batch_entries;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -108,10 +116,18 @@ mod block;
 #[cfg(target_arch = "x86_64")]
 mod body;
 #[cfg(target_arch = "x86_64")]
+mod doubles;
+#[cfg(target_arch = "x86_64")]
 mod leaf;
+#[cfg(target_arch = "x86_64")]
+mod level;
 #[cfg(target_arch = "x86_64")]
 mod packet;
 mod plain;
+#[cfg(target_arch = "x86_64")]
+mod sse42;
+#[cfg(target_arch = "x86_64")]
+mod stack;
 #[cfg(target_arch = "x86_64")]
 mod stream;
 #[cfg(target_arch = "x86_64")]
@@ -152,6 +168,26 @@ pub(super) fn closest<C: Count>(
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
         (CpuLevel::Avx2, false) => unsafe { avx2::closest_by(view, ray, query, count) },
+        _ => lesser_closest(level, view, ray, query, count),
+    }
+}
+
+/// [`closest`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
+#[inline(never)]
+fn lesser_closest<C: Count>(
+    level: CpuLevel,
+    view: View<'_>,
+    ray: &Ray,
+    query: &Query,
+    count: &mut C,
+) -> Option<Hit> {
+    match (level, query.is_plain()) {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Sse42, true) => unsafe { sse42::closest(view.units, view.outline, ray, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Sse42, false) => unsafe { sse42::closest_by(view, ray, query, count) },
         _ => plain::closest(view, ray, query, count),
     }
 }
@@ -178,6 +214,20 @@ pub(super) fn any<C: Count>(
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
         (CpuLevel::Avx2, false) => unsafe { avx2::any_by(view, ray, query, count) },
+        _ => lesser_any(level, view, ray, query, count),
+    }
+}
+
+/// [`any`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
+#[inline(never)]
+fn lesser_any<C: Count>(level: CpuLevel, view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
+    match (level, query.is_plain()) {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Sse42, true) => unsafe { sse42::any(view.units, view.outline, ray, count) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        (CpuLevel::Sse42, false) => unsafe { sse42::any_by(view, ray, query, count) },
         _ => plain::any(view, ray, query, count),
     }
 }
@@ -199,7 +249,7 @@ pub(super) fn closest_each(
         CpuLevel::Avx2 => unsafe { avx2::closest_each(view, rays, query, hits) },
         _ => {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = plain::closest(view, ray, query, &mut Nothing);
+                *hit = closest(level, view, ray, query, &mut Nothing);
             }
         }
     }
@@ -216,7 +266,7 @@ pub(super) fn any_each(level: CpuLevel, view: View<'_>, rays: &[Ray], query: &Qu
         CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, hits) },
         _ => {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = plain::any(view, ray, query, &mut Nothing);
+                *hit = any(level, view, ray, query, &mut Nothing);
             }
         }
     }

@@ -4,9 +4,10 @@
 //! node or leaf, asks for what comes next, and hands over to the next ray, which goes on while the first would wait.
 
 use super::batch::SOMETHING;
-use super::body::{self, Level, Room, Stack, choose, prefetch, start, start_any};
+use super::body::{self, choose, prefetch, start, start_any};
+use super::level::{BatchLevel, Boxes};
 use super::packet::{Lane, Packet, Ready};
-use super::tame::Boxes;
+use super::stack::{Room, Stack};
 use super::{View, leaf};
 use crate::bvh8::layout::{Ref, WIDTH};
 use crate::counters::Nothing;
@@ -23,7 +24,7 @@ const NEAR_UNITS: usize = 3 << 14;
 /// # Safety
 /// The machine must have the level, the view must be sound, and the packet must be ready.
 #[inline(always)]
-pub(super) unsafe fn each<L: Level, const ANY: bool, const PLAIN: bool>(
+pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     view: View<'_>,
     (packet, ready): (&Packet, &Ready),
     rays: &[Ray],
@@ -73,7 +74,7 @@ pub(super) unsafe fn each<L: Level, const ANY: bool, const PLAIN: bool>(
 /// # Safety
 /// As for [`each`].
 #[inline(always)]
-unsafe fn interleaved<'r, L: Level, const ANY: bool, const PLAIN: bool>(
+unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     view: View<'_>,
     next: &mut impl FnMut() -> Option<Next<'r>>,
     query: &Query,
@@ -129,7 +130,7 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn new<L: Level, const ANY: bool, const PLAIN: bool>(
+    unsafe fn new<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
         view: &View<'_>,
         (index, ray, (lane, met)): Next<'r>,
         mut stack: Stack,
@@ -153,7 +154,7 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn step<L: Level, const ANY: bool, const PLAIN: bool>(
+    unsafe fn step<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
         &mut self,
         base: *const u8,
         query: &Query,
@@ -173,7 +174,7 @@ impl<'r> Walk<'r> {
                     prefetch(base, self.current);
                     return true;
                 }
-            } else if self.leaf::<ANY, PLAIN>(place, query) {
+            } else if self.leaf::<L, ANY, PLAIN>(place, query) {
                 return false;
             }
             self.next::<ANY>(base)
@@ -185,17 +186,21 @@ impl<'r> Walk<'r> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn leaf<const ANY: bool, const PLAIN: bool>(&mut self, place: *const u8, query: &Query) -> bool {
+    unsafe fn leaf<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
+        &mut self,
+        place: *const u8,
+        query: &Query,
+    ) -> bool {
         let before = self.nearest.t;
         let leaf = (place, self.current.blocks());
         // SAFETY: as the caller promises.
         unsafe {
             if ANY {
-                let found = leaf::any::<PLAIN>(self.ray, leaf, query);
+                let found = leaf::any::<L, PLAIN>(self.ray, leaf, query);
                 self.nearest.primitive = if found { 0 } else { u32::MAX };
                 return found;
             }
-            leaf::closest::<PLAIN>(self.ray, leaf, query, &mut self.nearest);
+            leaf::closest::<L, PLAIN>(self.ray, leaf, query, &mut self.nearest);
         }
         if (PLAIN || query.early_out) && self.nearest.t < before {
             self.limit_bits = self.lane.limit_bits(self.nearest.t);

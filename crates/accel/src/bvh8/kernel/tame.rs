@@ -14,6 +14,8 @@
 //! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
 
 use super::View;
+use super::block::Axes;
+use super::level::Boxes;
 use crate::bvh8::outline::FAR_PAD;
 use crate::ray::Ray;
 use crate::slab::{SLACK, STEEPEST};
@@ -34,16 +36,17 @@ pub(super) struct TameRay {
 }
 
 /// Directions shorter than this are left to the plain kernel.
-const SHORTEST: f32 = 1.0 / STEEPEST;
+pub(super) const SHORTEST: f32 = 1.0 / STEEPEST;
 
 /// Components less than this are taken to be this: of a direction that is long enough, a tilt as of [`STEEPEST`].
-const LEVEL: f32 = SHORTEST * SHORTEST;
+pub(super) const LEVEL: f32 = SHORTEST * SHORTEST;
 
 /// What makes up for underflow in distances: a normal number, since others are slow.
-const LEAST: f32 = 4.0 * f32::MIN_POSITIVE;
+pub(super) const LEAST: f32 = 4.0 * f32::MIN_POSITIVE;
 
 /// Keeps the sizes of three numbers, and makes the fourth zero; twice.
-const SIZES: [u32; 8] = [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
+pub(super) const SIZES: [u32; 8] =
+    [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
 
 impl TameRay {
     /// `None` for rays that are not tame, or can hit nothing.
@@ -96,6 +99,16 @@ impl TameRay {
     }
 }
 
+/// See [`super::level::Level::reorder`].
+///
+/// # Safety
+/// The machine must have AVX.
+#[inline(always)]
+pub(super) unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
+    // SAFETY: as the caller promises.
+    unsafe { _mm_permutevar_ps(numbers, _mm_load_si128(axes.order.as_ptr().cast())) }
+}
+
 /// The origin and the direction of a ray, and what stands behind each of them.
 ///
 /// # Safety
@@ -121,6 +134,8 @@ pub(super) const ROWS: [[[usize; 3]; 2]; 8] = {
 };
 
 impl Boxes for TameRay {
+    type Eight = __m256i;
+
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
@@ -139,19 +154,6 @@ impl Boxes for TameRay {
             _mm_extract_ps::<0>(t) as u32
         }
     }
-}
-
-/// A ray that can be held against boxes.
-pub(super) trait Boxes {
-    /// Where the ray enters the children of a node, and where it leaves them or reaches the limit.
-    ///
-    /// # Safety
-    /// The machine must have AVX2 and FMA, and `node` must point to a node.
-    unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i);
-
-    /// The bits of the least distance, as of [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
-    /// negative, or nothing can be hit.
-    fn limit_bits(&self, t: f32) -> u32;
 }
 
 /// See [`Boxes::span`].

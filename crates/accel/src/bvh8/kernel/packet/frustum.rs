@@ -2,7 +2,7 @@
 #![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
 
 use super::super::View;
-use super::super::body::Level;
+use super::super::level::BatchLevel;
 use super::rays::{Packet, Row};
 use super::ready::Ready;
 use super::wide::Wide;
@@ -113,7 +113,7 @@ impl Frustum {
     /// # Safety
     /// The machine must have the level, and `node` must point to a node.
     #[inline(always)]
-    pub(super) unsafe fn meet<L: Level>(&self, node: *const u8, limit: __m256i) -> (u32, __m256i) {
+    pub(super) unsafe fn meet<L: BatchLevel>(&self, node: *const u8, limit: __m256i) -> (u32, __m256i) {
         // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
         unsafe {
             let enter = |k: usize| {

@@ -16,12 +16,14 @@ mod wide;
 
 pub(super) use rays::{Packet, RAYS};
 pub(super) use ready::{Lane, Ready};
-pub(super) use wide::Wide;
+pub(super) use wide::{Wide, declare, define};
 
 use super::View;
 use super::batch::SOMETHING;
-use super::body::{Level, Room, Stack, prefetch, reference};
+use super::body::{prefetch, reference};
 use super::leaf::BLOCK_BYTES;
+use super::level::BatchLevel;
+use super::stack::{Room, Stack};
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
 use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
@@ -43,7 +45,7 @@ struct Walk<'p> {
 /// # Safety
 /// The machine must have the level, the view must be sound, and the packet ready.
 #[inline(always)]
-pub(super) unsafe fn each<L: Level, const ANY: bool>(
+pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
     view: View<'_>,
     (packet, ready): (&mut Packet, &Ready),
     rays: &[Ray],
@@ -79,7 +81,7 @@ impl Walk<'_> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn run<L: Level, const ANY: bool>(&mut self, view: &View<'_>) {
+    unsafe fn run<L: BatchLevel, const ANY: bool>(&mut self, view: &View<'_>) {
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);

@@ -2,8 +2,8 @@
 #![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
 
 use super::super::View;
-use super::super::body::Level;
-use super::super::tame::{Boxes, ROWS, span};
+use super::super::level::{BatchLevel, Boxes};
+use super::super::tame::{ROWS, span};
 use super::rays::{Packet, Row};
 use super::wide::Wide;
 use crate::bvh8::layout::WIDTH;
@@ -42,7 +42,7 @@ impl Packet {
     /// # Safety
     /// The machine must have the level; there must be at least one ray, and at most [`super::RAYS`].
     #[inline(always)]
-    pub(in crate::bvh8::kernel) unsafe fn prepare<L: Level>(
+    pub(in crate::bvh8::kernel) unsafe fn prepare<L: BatchLevel>(
         &mut self,
         rays: &[Ray],
         view: &View<'_>,
@@ -108,6 +108,8 @@ impl Packet {
 }
 
 impl Boxes for Lane<'_> {
+    type Eight = __m256i;
+
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
     unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {

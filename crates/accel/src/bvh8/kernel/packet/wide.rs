@@ -16,6 +16,7 @@ macro_rules! define {
         $(#[inline(always)] unsafe fn $name($($argument)*) -> $result { unsafe { $body } })*
     };
 }
+pub(in crate::bvh8::kernel) use {declare, define};
 
 /// Floats, one for each ray of a group. Masks have a bit for each lane.
 ///

@@ -1,0 +1,125 @@
+//! What a level of instructions does with a node.
+
+use super::block::Axes;
+use super::doubles::Doubles;
+use super::packet::Wide;
+use super::stack::Stack;
+use super::{View, body::reference};
+use crate::bvh8::layout::{Ref, WIDTH};
+use crate::ray::Ray;
+use std::arch::x86_64::{__m128, __m256i};
+
+/// A level, as the search of one ray needs it. Distances are the bits of floats that are not negative.
+///
+/// # Safety
+/// Functions must be called only on machines that have the level, with pointers to whole nodes and stacks
+/// with room for [`WIDTH`] more.
+pub(super) trait Level {
+    /// A distance for each child.
+    type Eight: Copy;
+    /// A ray that is ready for boxes.
+    type Tame: Boxes<Eight = Self::Eight>;
+    /// A number for each triangle of a block, for the exact stage.
+    type Doubles: Doubles;
+    // SAFETY: as the trait says.
+    /// `None` for rays that are not tame, or can hit nothing.
+    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<Self::Tame>;
+    /// The same distance for all.
+    unsafe fn splat(bits: u32) -> Self::Eight;
+    /// A bit for each lane where the first is not greater.
+    unsafe fn at_most(enter: Self::Eight, leave: Self::Eight) -> u32;
+    // SAFETY: as the trait says.
+    /// Numbers of space in the order of sheared space.
+    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128;
+    /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
+    #[inline(always)]
+    unsafe fn meet<B: Boxes<Eight = Self::Eight>>(
+        ray: &B,
+        node: *const u8,
+        limit: Self::Eight,
+    ) -> (u32, Self::Eight) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let (enter, leave) = ray.span(node, limit);
+            (Self::at_most(enter, leave), enter)
+        }
+    }
+    /// Puts the children of the mask on the stack, the nearest on top.
+    ///
+    /// Sorted in, one after the other.
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn push_sorted(node: *const u8, mask: u32, enter: Self::Eight, stack: &mut Stack) {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let distances = lanes::<Self>(enter);
+            let (references, enters) = (stack.references(), stack.distances());
+            let (mut left, mut size) = (mask, 0);
+            while left != 0 {
+                let child = left.trailing_zeros() as usize & 7;
+                left &= left - 1;
+                let mut place = size;
+                size += 1;
+                while place > 0 && *enters.add(place - 1) < distances[child] {
+                    *enters.add(place) = *enters.add(place - 1);
+                    *references.add(place) = *references.add(place - 1);
+                    place -= 1;
+                }
+                *enters.add(place) = distances[child];
+                *references.add(place) = reference(node, child).0;
+            }
+            stack.grow(size);
+        }
+    }
+    /// Puts the children of the mask on the stack, in any order.
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
+        let mut left = mask;
+        while left != 0 {
+            let child = left.trailing_zeros() as usize;
+            left &= left - 1;
+            // SAFETY: as the trait demands.
+            unsafe { stack.put(reference(node, child), 0) };
+        }
+    }
+}
+
+/// A level, as batches need it.
+///
+/// # Safety
+/// As for [`Level`].
+pub(super) trait BatchLevel: Level<Eight = __m256i> {
+    /// What holds a group of rays.
+    type Wide: Wide;
+    /// One bit of each of eight masks.
+    unsafe fn column(masks: &[u64; WIDTH], bit: usize) -> u32;
+    // SAFETY: as the trait says.
+    /// Puts the node on the stack once for each child of the mask, the nearest on top; the last three bits of the
+    /// distance say which child.
+    unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack);
+}
+
+/// A ray that can be held against boxes.
+pub(super) trait Boxes {
+    /// A distance for each child.
+    type Eight;
+
+    /// Where the ray enters the children of a node, and where it leaves them or reaches the limit.
+    ///
+    /// # Safety
+    /// The machine must have the level that the ray was made ready for, and `node` must point to a node.
+    unsafe fn span(&self, node: *const u8, limit: Self::Eight) -> (Self::Eight, Self::Eight);
+
+    /// The bits of the least distance, as of [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
+    /// negative, or nothing can be hit.
+    fn limit_bits(&self, t: f32) -> u32;
+}
+
+/// The distances, one by one.
+#[inline(always)]
+pub(super) fn lanes<L: Level + ?Sized>(distances: L::Eight) -> [u32; WIDTH] {
+    const { assert!(size_of::<L::Eight>() == size_of::<[u32; WIDTH]>()) }
+    // SAFETY: both are 32 bytes, and all bits are whole numbers.
+    unsafe { std::mem::transmute_copy(&distances) }
+}

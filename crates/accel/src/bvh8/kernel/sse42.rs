@@ -1,0 +1,155 @@
+//! SSE4.2: eight lanes as two halves of four.
+//!
+//! Nothing is fused here, so a plane's distance is taken as in [`crate::slab`]: `(plane − origin) · inverse`, with the
+//! origin moved by the pad. That rounds what a fused operation does not, but only in proportion to the distance; planes
+//! are displaced by the rounding of the moved origin alone, half of what `docs/adr/0008-bvh8.md` allows for.
+
+use super::View;
+use super::block::Axes;
+use super::doubles::Halves;
+use super::level::{Boxes, Level};
+use super::tame::{LEAST, LEVEL, ROWS, SHORTEST, SIZES, halves};
+use crate::bvh8::outline::FAR_PAD;
+use crate::ray::Ray;
+use crate::slab::SLACK;
+use std::arch::x86_64::*;
+
+super::entries!(Sse42, "sse4.2,popcnt");
+
+struct Sse42;
+
+/// A ray with a lane for each child of half a node; otherwise as [`super::tame::TameRay`].
+#[derive(Clone, Copy)]
+struct TameRay {
+    enter_rows: [usize; 3],
+    leave_rows: [usize; 3],
+    inverse: [__m128; 3],
+    /// Where the ray begins for planes where it comes in, and for those where it goes out.
+    enter: [__m128; 3],
+    leave: [__m128; 3],
+    nearest: __m128i,
+}
+
+impl Level for Sse42 {
+    type Eight = [__m128i; 2];
+    type Tame = TameRay;
+    type Doubles = Halves;
+
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+        // SAFETY: as the trait demands.
+        unsafe { TameRay::new(ray, view) }
+    }
+
+    #[inline(always)]
+    unsafe fn splat(bits: u32) -> [__m128i; 2] {
+        // SAFETY: as the trait demands.
+        unsafe { [_mm_set1_epi32(bits as i32); 2] }
+    }
+
+    #[inline(always)]
+    unsafe fn at_most(enter: [__m128i; 2], leave: [__m128i; 2]) -> u32 {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let misses =
+                _mm_packs_epi32(_mm_cmpgt_epi32(enter[0], leave[0]), _mm_cmpgt_epi32(enter[1], leave[1]));
+            _mm_movemask_epi8(_mm_packs_epi16(misses, _mm_setzero_si128())) as u32 ^ 0xff
+        }
+    }
+
+    // SAFETY: as the trait demands.
+    #[inline(always)]
+    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
+        // SAFETY: as the trait demands.
+        unsafe {
+            let bytes = _mm_load_si128(axes.bytes.as_ptr().cast());
+            _mm_castsi128_ps(_mm_shuffle_epi8(_mm_castps_si128(numbers), bytes))
+        }
+    }
+}
+
+impl TameRay {
+    /// See [`super::tame::TameRay::new`].
+    ///
+    /// # Safety
+    /// The machine must have SSE4.2.
+    #[inline(always)]
+    unsafe fn new(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+        // SAFETY: as the caller promises; an outline has four numbers for the centre and eight for the reach.
+        unsafe {
+            let outline = view.outline;
+            let (origin, direction) = halves(ray);
+            let greatest = |numbers: __m128| {
+                let sizes = _mm_and_ps(numbers, _mm_loadu_ps(SIZES.as_ptr().cast()));
+                let pairs = _mm_max_ps(sizes, _mm_shuffle_ps::<0b10_11_00_01>(sizes, sizes));
+                _mm_max_ps(pairs, _mm_shuffle_ps::<0b01_00_11_10>(pairs, pairs))
+            };
+            let far = greatest(_mm_sub_ps(origin, _mm_loadu_ps(outline.centre.as_ptr())));
+            let pace = greatest(direction);
+            // What is not a number drops out of no more than some of the lanes, so that one of them fails.
+            let within = |numbers: __m128, from: usize| {
+                _mm_cmple_ps(numbers, _mm_loadu_ps(outline.reach.as_ptr().add(from)))
+            };
+            let within = _mm_movemask_ps(_mm_and_ps(within(far, 0), within(pace, 4)));
+            if !(within == 0xf && _mm_cvtss_f32(pace) >= SHORTEST && ray.t_min >= 0.0) {
+                return None;
+            }
+            let minus = _mm_set1_ps(-0.0);
+            let down = _mm_and_ps(direction, minus);
+            let tilted = _mm_max_ps(_mm_andnot_ps(minus, direction), _mm_set1_ps(LEVEL));
+            let inverse = _mm_div_ps(_mm_set1_ps(1.0), _mm_or_ps(tilted, down));
+            let pad = _mm_add_ps(_mm_mul_ps(far, _mm_set1_ps(FAR_PAD)), _mm_set1_ps(outline.pad));
+            // Rays come in where planes are farther, and go out where they are nearer.
+            let pad = _mm_or_ps(pad, down);
+            let (enter, leave) = (_mm_add_ps(origin, pad), _mm_sub_ps(origin, pad));
+            let nearest = (ray.t_min * (1.0 - SLACK) - LEAST).max(0.0);
+            let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
+            let spread = |v: __m128| {
+                [
+                    _mm_shuffle_ps::<0>(v, v),
+                    _mm_shuffle_ps::<0b01_01_01_01>(v, v),
+                    _mm_shuffle_ps::<0b10_10_10_10>(v, v),
+                ]
+            };
+            Some(TameRay {
+                enter_rows,
+                leave_rows,
+                inverse: spread(inverse),
+                enter: spread(enter),
+                leave: spread(leave),
+                nearest: _mm_castps_si128(_mm_set1_ps(nearest)),
+            })
+        }
+    }
+}
+
+impl Boxes for TameRay {
+    type Eight = [__m128i; 2];
+
+    // SAFETY: the trait says what is asked for.
+    #[inline(always)]
+    unsafe fn span(&self, node: *const u8, limit: [__m128i; 2]) -> ([__m128i; 2], [__m128i; 2]) {
+        // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
+        unsafe {
+            let half = |from: usize, limit: __m128i| {
+                let distance = |row: usize, k: usize, origin: __m128| {
+                    let planes = _mm_load_ps(node.add(row + from).cast());
+                    _mm_castps_si128(_mm_mul_ps(_mm_sub_ps(planes, origin), self.inverse[k]))
+                };
+                let enter = |k: usize| distance(self.enter_rows[k], k, self.enter[k]);
+                let leave = |k: usize| distance(self.leave_rows[k], k, self.leave[k]);
+                let (a, b) = (_mm_max_epi32(enter(0), enter(1)), _mm_max_epi32(enter(2), self.nearest));
+                let (c, d) = (_mm_min_epi32(leave(0), leave(1)), _mm_min_epi32(leave(2), limit));
+                (_mm_max_epi32(a, b), _mm_min_epi32(c, d))
+            };
+            let (low, high) = (half(0, limit[0]), half(16, limit[1]));
+            ([low.0, high.0], [low.1, high.1])
+        }
+    }
+
+    #[inline(always)]
+    fn limit_bits(&self, t: f32) -> u32 {
+        (t * (1.0 + 2.0 * SLACK) + LEAST).to_bits()
+    }
+}
