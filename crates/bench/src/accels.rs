@@ -2,25 +2,33 @@
 
 use bilux::Error;
 use bilux::accel::registry::Quality;
-use bilux::accel::{ACCELERATORS, AcceleratorEntry, BuildOptions};
+use bilux::accel::{ACCELERATORS, AcceleratorEntry, BuildOptions, CpuLevel};
 use bilux::scene::error::nearest_name;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The name of a structure, and behind a hyphen how much time its builder may take (`bvh8-best`); balanced where
-/// nothing is said.
+/// The name of a structure, and behind a hyphen how much time its builder may take (`bvh8-best`), or which instructions
+/// its kernels (`bvh8-sse4.2`); balanced, and the highest level there is, where nothing is said.
 pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOptions), Error> {
     let row = |name: &str| ACCELERATORS.iter().find(|row| row.entry.name == name);
     if let Some(row) = row(name) {
         return Ok((row, BuildOptions::default()));
     }
-    let with_quality = name.rsplit_once('-').and_then(|(name, quality)| {
-        Some((row(name)?, BuildOptions { quality: Quality::from_name(quality)?, ..BuildOptions::default() }))
+    let with_option = name.rsplit_once('-').and_then(|(name, option)| {
+        let (row, options) = (row(name)?, BuildOptions::default());
+        if let Some(quality) = Quality::from_name(option) {
+            return Some((row, BuildOptions { quality, ..options }));
+        }
+        let cpu_level = CpuLevel::ALL.into_iter().find(|level| level.name() == option)?;
+        Some((row, BuildOptions { cpu_level, ..options }))
     });
-    with_quality.ok_or_else(|| {
+    with_option.ok_or_else(|| {
         let names: Vec<String> = ACCELERATORS.iter().map(|row| row.entry.name.to_owned()).collect();
         let hint = match nearest_name(name, &names) {
             Some(nearest) => format!("did you mean '{nearest}'?"),
-            None => format!("there are {}, each also with -fast or -best behind it", names.join(", ")),
+            None => format!(
+                "there are {}, each also with -fast, -best or a CPU level behind it",
+                names.join(", ")
+            ),
         };
         Error::Settings(format!("there is no accelerator '{name}'; {hint}"))
     })

@@ -1,8 +1,8 @@
 //! SSE4.2: eight lanes as two halves of four.
 //!
 //! Nothing is fused here, so a plane's distance is taken as in [`crate::slab`]: `(plane − origin) · inverse`, with the
-//! origin moved by the pad. That rounds what a fused operation does not, but only in proportion to the distance; planes
-//! are displaced by the rounding of the moved origin alone, half of what `docs/adr/0008-bvh8.md` allows for.
+//! origin moved by the pad. Each step is rounded in proportion to the distance, and the moved origin once: less than
+//! what the pad has grown by for the fused levels. See `docs/adr/0008-bvh8.md`.
 
 use super::View;
 use super::block::Axes;
@@ -87,7 +87,7 @@ impl TameRay {
             };
             let far = greatest(_mm_sub_ps(origin, _mm_loadu_ps(outline.centre.as_ptr())));
             let pace = greatest(direction);
-            // What is not a number drops out of no more than some of the lanes, so that one of them fails.
+            // What is not a number drops out of no more than half of the lanes, so that one of them fails.
             let within = |numbers: __m128, from: usize| {
                 _mm_cmple_ps(numbers, _mm_loadu_ps(outline.reach.as_ptr().add(from)))
             };
