@@ -9,6 +9,9 @@ use crate::ray::{Hit, Query, Ray};
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
 /// The reference to a child.
+///
+/// # Safety
+/// `node` must point to a node, and `child` be one of eight.
 #[inline(always)]
 pub(super) unsafe fn reference(node: *const u8, child: usize) -> Ref {
     // SAFETY: a node holds its references behind six rows of 32 bytes.
