@@ -203,7 +203,7 @@ impl Film {
     }
 
     fn check_counts(&self, other: &Film) -> Result<(), FilmError> {
-        let most = |film: &Film| film.counts.iter().copied().max().unwrap_or(0);
+        let most = |film: &Film| film.counts.iter().chain(&film.iterations).copied().max().unwrap_or(0);
         let total = u64::from(most(self)) + u64::from(most(other));
         if total > u64::from(MAX_SAMPLES) {
             Err(FilmError::TooManySamples { samples: total })

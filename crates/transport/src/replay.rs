@@ -52,7 +52,7 @@ pub fn replay(
     }
     let mut eye = Eye::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);
-    let photons = integrator.merging().map(|merging| Photons::trace(&eye, merging, &[whole], sample));
+    let photons = integrator.merging().map(|merging| Photons::trace(&eye, merging, &[whole], sample).0);
     eye.photons = photons.as_ref();
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);

@@ -70,10 +70,21 @@ pub struct EmissionSample {
     pub primitive: Primitive,
 }
 
+impl LightSample {
+    /// Cosine between the direction and the light's normal; 1 where there is no normal.
+    pub fn cos(&self) -> f32 {
+        cos_at(self.n_light, self.wi)
+    }
+}
+
+fn cos_at(n_light: Vec3, direction: Vec3) -> f32 {
+    if n_light == Vec3::ZERO { 1.0 } else { n_light.dot(direction).abs() }
+}
+
 impl EmissionSample {
     /// Cosine between the ray and the light's normal; 1 where there is no normal.
     pub fn cos(&self) -> f32 {
-        if self.n_light == Vec3::ZERO { 1.0 } else { self.n_light.dot(self.direction).abs() }
+        cos_at(self.n_light, self.direction)
     }
 
     /// The ray, at a time in seconds. It cannot meet the triangle that it leaves.

@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
 use super::walk::Vertex;
-use super::{Partial, Photons, cos_at_light};
+use super::{Partial, Photons};
 use crate::medium::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
@@ -37,7 +37,7 @@ pub(crate) fn to_light(task: &mut Task, z: &Vertex, index: usize, u: Vec2) -> Rg
         return Rgb::BLACK;
     }
     let distance = sample.point.map_or(0.0, |point| point.distance(z.surface.p));
-    let cos_light = cos_at_light(sample.n_light, sample.wi);
+    let cos_light = sample.cos();
     // Of a light without extent the point is certain: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };

@@ -19,9 +19,7 @@ pub(crate) use walk::{Vertex, Walk};
 
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::lights::EmissionSample;
-use bilux_scene::surface::{Surface, offset_origin};
-use bilux_scene::{Ray, TransportMode};
+use bilux_scene::{Surface, TransportMode};
 
 /// The recursive part of the weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug, Default)]
@@ -132,33 +130,13 @@ fn begin_at_light(task: &mut Task, time: f32, eta: f32) -> Option<Walk> {
     let scene = task.scene();
     let light = &scene.lights()[index].light;
     let sample = light.sample_le(&scene.bounds(), time, u_point, u_direction)?;
-    let cos = cos_at_light(sample.n_light, sample.direction);
+    let cos = sample.cos();
     let pdf_emission = sample.pdf_emission * probability;
     let pdf_direct = sample.pdf_direct * task.lights.probability(index);
     let beta = sample.le * (cos / pdf_emission);
-    let partial = Partial::of_light(
-        pdf_direct,
-        pdf_emission,
-        cos_if_near(light.is_infinite(), cos),
-        light.is_delta(),
-        eta,
-    );
+    let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta(), eta);
     // The start of a ray from infinity is known by area already.
-    Some(Walk::new(TransportMode::Importance, spawn(&sample, time), beta, partial, light.is_infinite()))
-}
-
-fn cos_if_near(is_infinite: bool, cos: f32) -> f32 {
-    if is_infinite { 1.0 } else { cos }
-}
-
-/// 1 where a light has no normal.
-pub(crate) fn cos_at_light(n_light: Vec3, direction: Vec3) -> f32 {
-    if n_light == Vec3::ZERO { 1.0 } else { n_light.dot(direction).abs() }
-}
-
-fn spawn(sample: &EmissionSample, time: f32) -> Ray {
-    let origin = offset_origin(sample.p, sample.p_error, sample.n_light, sample.direction);
-    Ray { time, exclude: sample.primitive, ..Ray::new(origin.to_array(), sample.direction.to_array()) }
+    Some(Walk::new(TransportMode::Importance, sample.spawn(time), beta, partial, light.is_infinite()))
 }
 
 /// Light that a camera path meets by chance: its radiance, and the densities with which the same path would have been

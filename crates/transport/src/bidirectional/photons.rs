@@ -6,7 +6,7 @@ use crate::eye::Eye;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Scene, Tracer};
+use bilux_scene::{Counters, Scene, Tracer};
 use rayon::prelude::*;
 
 /// How camera paths and light paths are merged.
@@ -53,8 +53,14 @@ pub struct Photons {
 }
 
 impl Photons {
-    /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many.
-    pub(crate) fn trace(eye: &Eye, merging: &Merging, tiles: &[Window], iteration: u32) -> Photons {
+    /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many. Also how
+    /// many rays that took.
+    pub(crate) fn trace(
+        eye: &Eye,
+        merging: &Merging,
+        tiles: &[Window],
+        iteration: u32,
+    ) -> (Photons, Counters) {
         let scene = eye.scene;
         let pixels: usize = tiles.iter().map(Window::pixels).sum();
         let step = pixels.div_ceil(merging.max_light_paths.max(1) as usize).max(1) as u32;
@@ -69,7 +75,7 @@ impl Photons {
         let radius = merging.radius(scene, iteration);
         let eta = std::f32::consts::PI * radius * radius * followed as f32;
         let of_tile = |tile: &Window| {
-            let mut tracer = Tracer::new(scene, false);
+            let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
                 let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
@@ -84,10 +90,12 @@ impl Photons {
                     depth: vertex.depth,
                 }));
             }
-            photons
+            (photons, tracer.counters)
         };
-        let parts: Vec<Vec<Photon>> = tiles.par_iter().map(of_tile).collect();
-        Photons::new(parts.concat(), radius, eta)
+        let (parts, counters): (Vec<Vec<Photon>>, Vec<Counters>) = tiles.par_iter().map(of_tile).unzip();
+        let mut counted = Counters::default();
+        counters.into_iter().for_each(|counters| counted += counters);
+        (Photons::new(parts.concat(), radius, eta), counted)
     }
 
     /// In the order of their cells, and within a cell in the order in which they are given.

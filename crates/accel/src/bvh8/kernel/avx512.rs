@@ -1,12 +1,8 @@
 //! AVX-512 on eight lanes: masks, and compression for more than two children.
 
-use super::View;
-use super::block::Axes;
 use super::level::{BatchLevel, Level};
 use super::stack::Stack;
-use super::tame::{self, TameRay};
 use crate::bvh8::layout::Ref;
-use crate::ray::Ray;
 use std::arch::x86_64::*;
 
 super::entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt");
@@ -15,28 +11,7 @@ super::batch_entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,
 struct Avx512;
 
 impl Level for Avx512 {
-    type Eight = __m256i;
-    type Tame = TameRay;
-    type Doubles = __m256d;
-
-    // SAFETY: as the trait demands.
-    #[inline(always)]
-    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
-        // SAFETY: as the trait demands.
-        unsafe { TameRay::new(ray, view) }
-    }
-
-    #[inline(always)]
-    unsafe fn splat(bits: u32) -> __m256i {
-        // SAFETY: as the trait demands.
-        unsafe { _mm256_set1_epi32(bits as i32) }
-    }
-
-    #[inline(always)]
-    unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
-        // SAFETY: as the trait demands.
-        unsafe { tame::reorder(numbers, axes) }
-    }
+    super::tame::of_eight!();
 
     // SAFETY: as the trait demands.
     #[inline(always)]

@@ -5,7 +5,7 @@
 
 use super::doubles::Doubles;
 use super::level::Level;
-use super::tame::halves;
+use super::tame::{SIZES, halves};
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Ray};
 use std::arch::x86_64::*;
@@ -42,8 +42,7 @@ impl BlockRay {
         // SAFETY: as the caller promises.
         unsafe {
             let (origin, direction) = halves(ray);
-            let keep = _mm_loadu_ps([0x7fff_ffff_u32, 0x7fff_ffff, 0x7fff_ffff, 0].as_ptr().cast());
-            let sizes = _mm_and_ps(direction, keep);
+            let sizes = _mm_and_ps(direction, _mm_loadu_ps(SIZES.as_ptr().cast()));
             let pairs = _mm_max_ps(sizes, _mm_shuffle_ps::<0b10_11_00_01>(sizes, sizes));
             let greatest = _mm_max_ps(pairs, _mm_shuffle_ps::<0b01_00_11_10>(pairs, pairs));
             let steepest = _mm_movemask_ps(_mm_cmpeq_ps(sizes, greatest));

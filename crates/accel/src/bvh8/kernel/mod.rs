@@ -146,6 +146,21 @@ pub(super) struct View<'a> {
     pub(super) outline: &'a Outline,
 }
 
+/// One query by a level: by the kernel for [`Query::PLAIN`], or by that for all others.
+#[cfg(target_arch = "x86_64")]
+macro_rules! ask {
+    ($level:ident, $plain:ident, $other:ident, $view:expr, $ray:expr, $query:expr, $count:expr) => {
+        // SAFETY: a structure holds a level that `available` found on this machine.
+        unsafe {
+            if $query.is_plain() {
+                $level::$plain($view.units, $view.outline, $ray, $count)
+            } else {
+                $level::$other($view, $ray, $query, $count)
+            }
+        }
+    };
+}
+
 /// The nearest hit.
 #[inline(always)]
 pub(super) fn closest<C: Count>(
@@ -155,19 +170,11 @@ pub(super) fn closest<C: Count>(
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
-    match (level, query.is_plain()) {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: a structure holds a level that `available` found on this machine.
-        (CpuLevel::Avx512, true) => unsafe { avx512::closest(view.units, view.outline, ray, count) },
+        CpuLevel::Avx512 => ask!(avx512, closest, closest_by, view, ray, query, count),
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx512, false) => unsafe { avx512::closest_by(view, ray, query, count) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx2, true) => unsafe { avx2::closest(view.units, view.outline, ray, count) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx2, false) => unsafe { avx2::closest_by(view, ray, query, count) },
+        CpuLevel::Avx2 => ask!(avx2, closest, closest_by, view, ray, query, count),
         _ => lesser_closest(level, view, ray, query, count),
     }
 }
@@ -181,13 +188,9 @@ fn lesser_closest<C: Count>(
     query: &Query,
     count: &mut C,
 ) -> Option<Hit> {
-    match (level, query.is_plain()) {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Sse42, true) => unsafe { sse42::closest(view.units, view.outline, ray, count) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Sse42, false) => unsafe { sse42::closest_by(view, ray, query, count) },
+        CpuLevel::Sse42 => ask!(sse42, closest, closest_by, view, ray, query, count),
         _ => plain::closest(view, ray, query, count),
     }
 }
@@ -201,19 +204,11 @@ pub(super) fn any<C: Count>(
     query: &Query,
     count: &mut C,
 ) -> bool {
-    match (level, query.is_plain()) {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx512, true) => unsafe { avx512::any(view.units, view.outline, ray, count) },
+        CpuLevel::Avx512 => ask!(avx512, any, any_by, view, ray, query, count),
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx512, false) => unsafe { avx512::any_by(view, ray, query, count) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx2, true) => unsafe { avx2::any(view.units, view.outline, ray, count) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Avx2, false) => unsafe { avx2::any_by(view, ray, query, count) },
+        CpuLevel::Avx2 => ask!(avx2, any, any_by, view, ray, query, count),
         _ => lesser_any(level, view, ray, query, count),
     }
 }
@@ -221,13 +216,9 @@ pub(super) fn any<C: Count>(
 /// [`any`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
 #[inline(never)]
 fn lesser_any<C: Count>(level: CpuLevel, view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
-    match (level, query.is_plain()) {
+    match level {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Sse42, true) => unsafe { sse42::any(view.units, view.outline, ray, count) },
-        #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
-        (CpuLevel::Sse42, false) => unsafe { sse42::any_by(view, ray, query, count) },
+        CpuLevel::Sse42 => ask!(sse42, any, any_by, view, ray, query, count),
         _ => plain::any(view, ray, query, count),
     }
 }
@@ -242,7 +233,7 @@ pub(super) fn closest_each(
 ) {
     match level {
         #[cfg(target_arch = "x86_64")]
-        // SAFETY: as above.
+        // SAFETY: a structure holds a level that `available` found on this machine.
         CpuLevel::Avx512 => unsafe { avx512::closest_each(view, rays, query, hits) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.

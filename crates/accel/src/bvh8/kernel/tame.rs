@@ -14,7 +14,6 @@
 //! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
 
 use super::View;
-use super::block::Axes;
 use super::level::Boxes;
 use crate::bvh8::outline::FAR_PAD;
 use crate::ray::Ray;
@@ -99,15 +98,34 @@ impl TameRay {
     }
 }
 
-/// See [`super::level::Level::reorder`].
-///
-/// # Safety
-/// The machine must have AVX.
-#[inline(always)]
-pub(super) unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128 {
-    // SAFETY: as the caller promises.
-    unsafe { _mm_permutevar_ps(numbers, _mm_load_si128(axes.order.as_ptr().cast())) }
+/// What a level is that has eight lanes, four doubles, and FMA.
+macro_rules! of_eight {
+    () => {
+        type Eight = __m256i;
+        type Tame = super::tame::TameRay;
+        type Doubles = __m256d;
+
+        // SAFETY: as the trait demands.
+        #[inline(always)]
+        unsafe fn tame(ray: &$crate::Ray, view: &super::View<'_>) -> Option<Self::Tame> {
+            // SAFETY: as the trait demands.
+            unsafe { super::tame::TameRay::new(ray, view) }
+        }
+
+        #[inline(always)]
+        unsafe fn splat(bits: u32) -> __m256i {
+            // SAFETY: as the trait demands.
+            unsafe { _mm256_set1_epi32(bits as i32) }
+        }
+
+        #[inline(always)]
+        unsafe fn reorder(numbers: __m128, axes: &super::block::Axes) -> __m128 {
+            // SAFETY: as the trait demands.
+            unsafe { _mm_permutevar_ps(numbers, _mm_load_si128(axes.order.as_ptr().cast())) }
+        }
+    };
 }
+pub(super) use of_eight;
 
 /// The origin and the direction of a ray, and what stands behind each of them.
 ///
