@@ -39,7 +39,7 @@ pub mod visibility;
 
 pub use accelerator::{Accelerator, Traverse, TreeShape};
 pub use bvh::Bvh;
-pub use bvh8::{Bvh8, RefitError};
+pub use bvh8::{Bvh8, CompactBvh8, RefitError};
 pub use counters::Counters;
 pub use cpu_level::CpuLevel;
 pub use instancing::{Instance, TopLevel, TwoLevel};

@@ -16,6 +16,7 @@ pub const ACCELERATORS: &[AcceleratorEntry] = &[
     kd_tree::ENTRY,
     bvh::ENTRY,
     bvh8::ENTRY,
+    bvh8::COMPACT,
 ];
 
 /// The structure that `auto` stands for: the fastest.

@@ -101,7 +101,7 @@ fn check_kinds(
     brute: &dyn Accelerator,
     kinds: &[(&'static str, Vec<Ray>)],
 ) {
-    let own = name.starts_with("bvh8");
+    let own = name.starts_with("bvh8 ");
     for (kind, rays) in &kinds[..if own { kinds.len() } else { 1 }] {
         let name = format!("{name}, {kind}");
         let filter = |hit: &Hit| !hit.primitive.is_multiple_of(3) && hit.u < 0.7;

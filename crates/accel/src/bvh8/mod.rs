@@ -4,6 +4,7 @@
 //! triangles four by four, for the same reason. What was tried stands in `docs/adr/0008-bvh8.md`.
 
 mod build;
+mod compact;
 mod kernel;
 mod layout;
 mod mapped;
@@ -21,11 +22,12 @@ use crate::cpu_level::CpuLevel;
 use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
-use bilux_math::{Aabb, Vec3, registry::Entry};
-use kernel::View;
+use bilux_math::{Aabb, registry::Entry};
+use kernel::{View, Wide};
 use mapped::Units;
 use outline::Outline;
 
+pub use compact::{CompactBvh8, ENTRY as COMPACT};
 pub use near::NearestPoint;
 pub use refit::RefitError;
 pub use storage::StorageError;
@@ -70,13 +72,13 @@ impl Traverse for Bvh8 {
     #[inline(always)]
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
         count.ray();
-        kernel::closest(self.level, self.view()?, ray, query, count)
+        kernel::closest::<Wide, C>(self.level, self.view()?, ray, query, count)
     }
 
     #[inline(always)]
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
-        self.view().is_some_and(|view| kernel::any(self.level, view, ray, query, count))
+        self.view().is_some_and(|view| kernel::any::<Wide, C>(self.level, view, ray, query, count))
     }
 
     fn closest_each(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
@@ -94,8 +96,7 @@ impl Traverse for Bvh8 {
     }
 
     fn bounds(&self) -> Aabb {
-        let [min, max] = self.outline.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
-        Aabb { min, max }
+        self.outline.bounds()
     }
 
     fn memory_bytes(&self) -> usize {

@@ -2,6 +2,7 @@
 
 use super::layout::Ref;
 use crate::triangle::PAD;
+use bilux_math::{Aabb, Vec3};
 
 /// Where the tree begins, and how large it is.
 #[derive(Clone, Copy, Debug)]
@@ -50,5 +51,11 @@ impl Outline {
             reach: [reach, reach, reach, reach, pace, pace, pace, pace],
             pad,
         }
+    }
+
+    /// The box around everything.
+    pub(super) fn bounds(&self) -> Aabb {
+        let [min, max] = self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+        Aabb { min, max }
     }
 }

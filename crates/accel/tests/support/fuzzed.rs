@@ -62,11 +62,11 @@ fn structures(mesh: &Arc<TriangleMesh>) -> Vec<(String, Box<dyn Accelerator>)> {
                 let options = BuildOptions { quality, cpu_level, ..BuildOptions::default() };
                 let built = build(row.entry.name, Arc::clone(mesh), &options).expect("a small mesh");
                 all.push((format!("{} {quality:?} {cpu_level:?}", row.entry.name), built));
-                if !["brute-simd", "bvh8"].contains(&row.entry.name) {
+                if !["brute-simd", "bvh8", "bvh8-compact"].contains(&row.entry.name) {
                     break;
                 }
             }
-            if !["bvh8", "bsp-sah"].contains(&row.entry.name) {
+            if !["bvh8", "bvh8-compact", "bsp-sah"].contains(&row.entry.name) {
                 break;
             }
         }

@@ -57,7 +57,7 @@ pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
             "brute-simd" => levels()
                 .map(|cpu_level| (cpu_level.name(), BuildOptions { cpu_level, ..plain.clone() }))
                 .collect(),
-            "bvh8" => levels()
+            "bvh8" | "bvh8-compact" => levels()
                 .flat_map(|cpu_level| {
                     [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("best", Quality::Best)]
                         .map(|(name, quality)| (name, BuildOptions { cpu_level, quality, ..plain.clone() }))

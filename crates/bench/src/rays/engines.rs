@@ -4,7 +4,7 @@ use super::embree::{Asked, Embree, KINDS, Packets, Tree};
 use super::{Batch, Mode};
 use crate::accels::{find, threads};
 use bilux::Error;
-use bilux::accel::{Accelerator, BuildError, Bvh, Bvh8, Hit, Query, Ray, TriangleMesh};
+use bilux::accel::{Accelerator, BuildError, Bvh, Bvh8, CompactBvh8, Hit, Query, Ray, TriangleMesh};
 use rayon::ThreadPool;
 use std::hint::black_box;
 use std::path::PathBuf;
@@ -111,6 +111,10 @@ fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<
         "bvh8" => {
             let tree = alone.install(|| Bvh8::new(mesh, &options)).map_err(failed)?;
             asked(name, tree.into(), begun, &[Mode::Single, Mode::Batch])
+        }
+        "bvh8-compact" => {
+            let tree = alone.install(|| CompactBvh8::new(mesh, &options)).map_err(failed)?;
+            asked(name, tree.into(), begun, &[Mode::Single])
         }
         _ => {
             let tree = alone.install(|| (row.build)(mesh.clone(), &options)).map_err(failed)?;

@@ -1,5 +1,6 @@
 //! AVX-512 on eight lanes: masks, and compression for more than two children.
 
+use super::form::Form;
 use super::level::{BatchLevel, Level};
 use super::stack::Stack;
 use crate::bvh8::layout::Ref;
@@ -21,11 +22,11 @@ impl Level for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn push_sorted(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
+    unsafe fn push_sorted<F: Form>(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
             let keys = sorted(mask, enter);
-            let references = _mm256_load_si256(node.add(192).cast());
+            let references = _mm256_load_si256(node.add(F::REFERENCES).cast());
             let sorted = _mm256_permutevar8x32_epi32(references, keys);
             _mm256_storeu_si256(stack.references().cast(), sorted);
             _mm256_storeu_si256(stack.distances().cast(), keys);
@@ -34,10 +35,10 @@ impl Level for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
+    unsafe fn push<F: Form>(node: *const u8, mask: u32, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
-            let references = _mm256_load_si256(node.add(192).cast());
+            let references = _mm256_load_si256(node.add(F::REFERENCES).cast());
             let kept = _mm256_maskz_compress_epi32(mask as u8, references);
             _mm256_storeu_si256(stack.references().cast(), kept);
             stack.grow(mask.count_ones() as usize);

@@ -1,5 +1,6 @@
 //! Many rays at once: made ready in vectors, then together where they run side by side, else each on a way of its own.
 
+use super::form::Wide;
 use super::level::BatchLevel;
 use super::packet::{self, Packet};
 use super::{View, body, plain, stream};
@@ -57,9 +58,9 @@ unsafe fn one<L: BatchLevel, const ANY: bool>(view: View<'_>, ray: &Ray, query: 
     // SAFETY: as the caller promises.
     unsafe {
         if ANY {
-            body::any::<L, Nothing, false>(view, ray, query, &mut Nothing).then_some(SOMETHING)
+            body::any::<L, Wide, Nothing, false>(view, ray, query, &mut Nothing).then_some(SOMETHING)
         } else {
-            body::closest::<L, Nothing, false>(view, ray, query, &mut Nothing)
+            body::closest::<L, Wide, Nothing, false>(view, ray, query, &mut Nothing)
         }
     }
 }
@@ -77,10 +78,10 @@ fn wild<const ANY: bool>(
         let index = left.trailing_zeros() as usize;
         left &= left - 1;
         if ANY {
-            let found = plain::any(view, &rays[index], query, &mut Nothing);
+            let found = plain::any::<Wide, _>(view, &rays[index], query, &mut Nothing);
             answer(index, found.then_some(SOMETHING));
         } else {
-            answer(index, plain::closest(view, &rays[index], query, &mut Nothing));
+            answer(index, plain::closest::<Wide, _>(view, &rays[index], query, &mut Nothing));
         }
     }
 }

@@ -4,6 +4,7 @@
 //! signs leave a triangle, in f64.
 
 use super::doubles::Doubles;
+use super::form::Form;
 use super::level::Level;
 use super::tame::{SIZES, halves};
 use crate::bvh8::layout::LANES;
@@ -13,8 +14,7 @@ use std::arch::x86_64::*;
 /// A ray with a lane for each triangle. Axes are those of sheared space.
 #[derive(Clone, Copy)]
 pub(super) struct BlockRay {
-    /// Bytes from the front of a block to the rows of each axis.
-    rows: [usize; 3],
+    axes: &'static Axes,
     /// Less the origin.
     back: [__m128; 3],
     shear: [__m128; 2],
@@ -53,7 +53,7 @@ impl BlockRay {
             let depth = _mm_shuffle_ps::<0b10_10_10_10>(direction, direction);
             let shear = _mm_div_ps(direction, depth);
             BlockRay {
-                rows: axes.rows,
+                axes,
                 back: [
                     _mm_shuffle_ps::<0>(back, back),
                     _mm_shuffle_ps::<0b01_01_01_01>(back, back),
@@ -68,16 +68,16 @@ impl BlockRay {
     /// A bit for each triangle that the signs of its edges do not reject, and all corners.
     ///
     /// # Safety
-    /// The machine must have SSE4.2, and `block` must point to a block.
+    /// The machine must have the level, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn signs(&self, block: *const u8) -> (u32, Sheared) {
-        // SAFETY: a block is aligned to 32 bytes and holds nine rows of four numbers.
+    pub(super) unsafe fn signs<L: Level, F: Form>(&self, block: *const u8) -> (u32, Sheared) {
+        // SAFETY: as the caller promises.
         unsafe {
+            let corners = F::corners::<L>(block, self.axes);
             let rows = |axis: usize| {
-                let row = block.add(self.rows[axis]).cast::<f32>();
-                let corner =
-                    |corner: usize| _mm_add_ps(self.back[axis], _mm_load_ps(row.add(corner * LANES)));
-                [corner(0), corner(1), corner(2)]
+                let [a, b, c] = corners[axis];
+                let back = self.back[axis];
+                [_mm_add_ps(back, a), _mm_add_ps(back, b), _mm_add_ps(back, c)]
             };
             let z = rows(2);
             let lean = |axis: usize| {
@@ -101,14 +101,14 @@ impl BlockRay {
     /// # Safety
     /// The machine must have the level of the doubles, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn cross<D: Doubles>(
+    pub(super) unsafe fn cross<D: Doubles, F: Form>(
         &self,
         block: *const u8,
         corners: Sheared,
         (ray, t_max): (&Ray, f32),
         culling: Culling,
     ) -> Crossings {
-        // SAFETY: as the caller promises; a block holds its primitives behind nine rows of four numbers.
+        // SAFETY: as the caller promises; the primitives of a block are aligned to 16 bytes.
         unsafe {
             // Not `map`, which would be compiled without the instructions of the level, and called.
             let wide = |[a, b, c]: [__m128; 3]| [D::widen(a), D::widen(b), D::widen(c)];
@@ -129,7 +129,7 @@ impl BlockRay {
             let t = along.div(det.mul(depth)).narrow();
             let within =
                 _mm_and_ps(_mm_cmpge_ps(t, _mm_set1_ps(ray.t_min)), _mm_cmple_ps(t, _mm_set1_ps(t_max)));
-            let primitives = _mm_load_si128(block.add(9 * LANES * 4).cast());
+            let primitives = _mm_load_si128(block.add(F::PRIMITIVES).cast());
             let excluded = _mm_cmpeq_epi32(primitives, _mm_set1_epi32(ray.exclude.index as i32));
             let within = _mm_andnot_ps(_mm_castsi128_ps(excluded), within);
             // No mesh has so many; places without a triangle do.
@@ -175,15 +175,15 @@ const ROW_BYTES: usize = 3 * LANES * 4;
 
 /// Which axes of space are x, y and z of sheared space, and bytes from the front of a block to the rows of each.
 #[repr(C, align(16))]
-pub(super) struct Axes {
+pub(in crate::bvh8) struct Axes {
     pub(super) order: [u32; 4],
     /// The same, byte by byte.
     pub(super) bytes: [u8; 16],
-    rows: [usize; 3],
+    pub(super) rows: [usize; 3],
 }
 
 /// By which components are the greatest, a bit for each: the last of them becomes z.
-const AXES: [Axes; 8] = [axes(2), axes(0), axes(1), axes(1), axes(2), axes(2), axes(2), axes(2)];
+static AXES: [Axes; 8] = [axes(2), axes(0), axes(1), axes(1), axes(2), axes(2), axes(2), axes(2)];
 
 const fn axes(z: usize) -> Axes {
     let (x, y) = ((z + 1) % 3, (z + 2) % 3);

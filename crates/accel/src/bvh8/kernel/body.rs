@@ -1,5 +1,6 @@
 //! The body of the wide kernels, which is the same for all levels.
 
+use super::form::Form;
 use super::level::{Boxes, Level, lanes};
 use super::stack::{Room, Stack};
 use super::{View, leaf, plain};
@@ -13,16 +14,16 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 /// # Safety
 /// `node` must point to a node, and `child` be one of eight.
 #[inline(always)]
-pub(super) unsafe fn reference(node: *const u8, child: usize) -> Ref {
-    // SAFETY: a node holds its references behind six rows of 32 bytes.
-    unsafe { Ref(*node.add(192 + child * 4).cast::<u32>()) }
+pub(super) unsafe fn reference<F: Form>(node: *const u8, child: usize) -> Ref {
+    // SAFETY: a node has eight references.
+    unsafe { Ref(*node.add(F::REFERENCES + child * 4).cast::<u32>()) }
 }
 
 /// Asks for the lines of a node, or of the first block of a leaf, so that they are there when their turn comes.
 #[inline(always)]
-pub(super) fn prefetch(base: *const u8, reference: Ref) {
+pub(super) fn prefetch<F: Form>(base: *const u8, reference: Ref) {
     let place = base.wrapping_add(reference.byte()).cast::<i8>();
-    for line in 0..4 {
+    for line in 0..F::LINES {
         // SAFETY: a prefetch reads nothing.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(place.wrapping_add(line * 64)) };
     }
@@ -30,7 +31,7 @@ pub(super) fn prefetch(base: *const u8, reference: Ref) {
 
 /// The nearest of the children of a mask that is not zero; the others go to the stack, the nearer on top.
 #[inline(always)]
-pub(super) unsafe fn choose<L: Level>(
+pub(super) unsafe fn choose<L: Level, F: Form>(
     base: *const u8,
     node: *const u8,
     mask: u32,
@@ -42,24 +43,24 @@ pub(super) unsafe fn choose<L: Level>(
         let first = mask.trailing_zeros() as usize;
         let rest = mask & (mask - 1);
         if rest == 0 {
-            return reference(node, first);
+            return reference::<F>(node, first);
         }
         let second = rest.trailing_zeros() as usize;
         let others = rest & (rest - 1);
         if others == 0 {
             let distances = lanes::<L>(enter);
-            let (a, b) = (reference(node, first), reference(node, second));
+            let (a, b) = (reference::<F>(node, first), reference::<F>(node, second));
             let (near, far) = (distances[first & 7], distances[second & 7]);
             let swap = far < near;
             let later = if swap { a } else { b };
-            prefetch(base, later);
+            prefetch::<F>(base, later);
             stack.put(later, if swap { near } else { far });
             return if swap { b } else { a };
         }
-        L::push_sorted(node, mask, enter, stack);
+        L::push_sorted::<F>(node, mask, enter, stack);
         let nearest = stack.take_reference();
         // Of those that wait, the next only: how many wait nobody can foresee.
-        prefetch(base, Ref(*stack.references().sub(1)));
+        prefetch::<F>(base, Ref(*stack.references().sub(1)));
         nearest
     }
 }
@@ -69,7 +70,7 @@ pub(super) unsafe fn choose<L: Level>(
 /// # Safety
 /// The machine must have the level, and the view must be sound.
 #[inline(always)]
-pub(super) unsafe fn closest<L: Level, C: Count, const PLAIN: bool>(
+pub(super) unsafe fn closest<L: Level, F: Form, C: Count, const PLAIN: bool>(
     view: View<'_>,
     ray: &Ray,
     query: &Query,
@@ -78,8 +79,8 @@ pub(super) unsafe fn closest<L: Level, C: Count, const PLAIN: bool>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match L::tame(ray, &view) {
-            Some(tame) => search::<L, C, PLAIN>(view, (ray, &tame, 0), query, count),
-            None => plain::closest(view, ray, query, count),
+            Some(tame) => search::<L, F, C, PLAIN>(view, (ray, &tame, 0), query, count),
+            None => plain::closest::<F, C>(view, ray, query, count),
         }
     }
 }
@@ -90,7 +91,7 @@ pub(super) unsafe fn closest<L: Level, C: Count, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`]; the ray must be tame.
 #[inline(always)]
-pub(super) unsafe fn search<L: Level, C: Count, const PLAIN: bool>(
+pub(super) unsafe fn search<L: Level, F: Form, C: Count, const PLAIN: bool>(
     view: View<'_>,
     (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
@@ -102,23 +103,23 @@ pub(super) unsafe fn search<L: Level, C: Count, const PLAIN: bool>(
         let mut nearest = Hit { t: ray.t_max, u: 0.0, v: 0.0, primitive: u32::MAX, instance: 0 };
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = start(base, view.outline.root, met);
+        let mut current = start::<F>(base, view.outline.root, met);
         let mut limit_bits = tame.limit_bits(nearest.t);
         let mut limit = L::splat(limit_bits);
         loop {
             count.node();
             let place = base.add(current.byte());
             if current.is_node() {
-                let (mask, enter) = L::meet(tame, place, limit);
-                count_early_outs::<L, C>(tame, place, mask, count);
+                let (mask, enter) = L::meet::<F, _>(tame, place, limit);
+                count_early_outs::<L, F, C>(tame, place, mask, count);
                 if mask != 0 {
-                    current = choose::<L>(base, place, mask, enter, &mut stack);
+                    current = choose::<L, F>(base, place, mask, enter, &mut stack);
                     continue;
                 }
             } else {
                 count.triangles(current.blocks() * LANES);
                 let before = nearest.t;
-                leaf::closest::<L, PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
+                leaf::closest::<L, F, PLAIN>(ray, (place, current.blocks()), query, &mut nearest);
                 if (PLAIN || query.early_out) && nearest.t < before {
                     limit_bits = tame.limit_bits(nearest.t);
                     limit = L::splat(limit_bits);
@@ -144,10 +145,10 @@ pub(super) unsafe fn search<L: Level, C: Count, const PLAIN: bool>(
 /// # Safety
 /// The root must be one.
 #[inline(always)]
-pub(super) unsafe fn start(base: *const u8, root: Ref, met: u32) -> Ref {
+pub(super) unsafe fn start<F: Form>(base: *const u8, root: Ref, met: u32) -> Ref {
     if met != 0 && met & (met - 1) == 0 {
         // SAFETY: only of nodes is it known what is met.
-        return unsafe { reference(base.add(root.byte()), met.trailing_zeros() as usize) };
+        return unsafe { reference::<F>(base.add(root.byte()), met.trailing_zeros() as usize) };
     }
     root
 }
@@ -157,13 +158,18 @@ pub(super) unsafe fn start(base: *const u8, root: Ref, met: u32) -> Ref {
 /// # Safety
 /// The machine must have the level, and the root must be one.
 #[inline(always)]
-pub(super) unsafe fn start_any<L: Level>(base: *const u8, root: Ref, met: u32, stack: &mut Stack) -> Ref {
+pub(super) unsafe fn start_any<L: Level, F: Form>(
+    base: *const u8,
+    root: Ref,
+    met: u32,
+    stack: &mut Stack,
+) -> Ref {
     if met == 0 {
         return root;
     }
     // SAFETY: as above.
     unsafe {
-        L::push(base.add(root.byte()), met, stack);
+        L::push::<F>(base.add(root.byte()), met, stack);
         stack.take_reference()
     }
 }
@@ -173,7 +179,7 @@ pub(super) unsafe fn start_any<L: Level>(base: *const u8, root: Ref, met: u32, s
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any<L: Level, C: Count, const PLAIN: bool>(
+pub(super) unsafe fn any<L: Level, F: Form, C: Count, const PLAIN: bool>(
     view: View<'_>,
     ray: &Ray,
     query: &Query,
@@ -182,8 +188,8 @@ pub(super) unsafe fn any<L: Level, C: Count, const PLAIN: bool>(
     // SAFETY: as the caller promises; references lead to whole nodes and leaves.
     unsafe {
         match L::tame(ray, &view) {
-            Some(tame) => search_any::<L, C, PLAIN>(view, (ray, &tame, 0), query, count),
-            None => plain::any(view, ray, query, count),
+            Some(tame) => search_any::<L, F, C, PLAIN>(view, (ray, &tame, 0), query, count),
+            None => plain::any::<F, C>(view, ray, query, count),
         }
     }
 }
@@ -193,7 +199,7 @@ pub(super) unsafe fn any<L: Level, C: Count, const PLAIN: bool>(
 /// # Safety
 /// As for [`search`].
 #[inline(always)]
-pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
+pub(super) unsafe fn search_any<L: Level, F: Form, C: Count, const PLAIN: bool>(
     view: View<'_>,
     (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
@@ -204,21 +210,21 @@ pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
-        let mut current = start_any::<L>(base, view.outline.root, met, &mut stack);
+        let mut current = start_any::<L, F>(base, view.outline.root, met, &mut stack);
         let limit = L::splat(tame.limit_bits(ray.t_max));
         loop {
             count.node();
             let place = base.add(current.byte());
             if current.is_node() {
-                let (mask, _) = L::meet(tame, place, limit);
+                let (mask, _) = L::meet::<F, _>(tame, place, limit);
                 if mask != 0 {
-                    L::push(place, mask, &mut stack);
+                    L::push::<F>(place, mask, &mut stack);
                     current = stack.take_reference();
                     continue;
                 }
             } else {
                 count.triangles(current.blocks() * LANES);
-                if leaf::any::<L, PLAIN>(ray, (place, current.blocks()), query) {
+                if leaf::any::<L, F, PLAIN>(ray, (place, current.blocks()), query) {
                     return true;
                 }
             }
@@ -235,7 +241,7 @@ pub(super) unsafe fn search_any<L: Level, C: Count, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-unsafe fn count_early_outs<L: Level, C: Count>(
+unsafe fn count_early_outs<L: Level, F: Form, C: Count>(
     boxes: &impl Boxes<Eight = L::Eight>,
     node: *const u8,
     mask: u32,
@@ -243,7 +249,7 @@ unsafe fn count_early_outs<L: Level, C: Count>(
 ) {
     if count.counters().is_some() {
         // SAFETY: as the caller promises.
-        let (all, _) = unsafe { L::meet(boxes, node, L::splat(f32::INFINITY.to_bits())) };
+        let (all, _) = unsafe { L::meet::<F, _>(boxes, node, L::splat(f32::INFINITY.to_bits())) };
         for _ in 0..(all & !mask).count_ones() {
             count.early_out();
         }

@@ -7,7 +7,7 @@ use std::arch::x86_64::*;
 ///
 /// # Safety
 /// All functions want a machine that has the level.
-pub(super) trait Doubles: Copy {
+pub(in crate::bvh8) trait Doubles: Copy {
     declare! {
         splat(x: f64) -> Self;
         widen(x: __m128) -> Self;

@@ -4,22 +4,25 @@
 //! keeps the compiler from doing it before it is known.
 
 use super::block::{BlockRay, Crossings};
+use super::form::Form;
 use super::level::Level;
-use crate::bvh8::layout::{BLOCK_UNITS, LANES, Unit};
+use crate::bvh8::layout::{LANES, Unit};
 use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;
 
 /// Where a leaf is, and how many blocks it has.
 pub(super) type Leaf = (*const u8, usize);
 
-pub(super) const BLOCK_BYTES: usize = BLOCK_UNITS * size_of::<Unit>();
+pub(super) const fn block_bytes<F: Form>() -> usize {
+    F::BLOCK_UNITS * size_of::<Unit>()
+}
 
 /// Keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive as high as that of no hit.
 ///
 /// # Safety
 /// The machine must have the level, the ray be tame, and the leaf be one.
 #[inline(always)]
-pub(super) unsafe fn closest<L: Level, const PLAIN: bool>(
+pub(super) unsafe fn closest<L: Level, F: Form, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
@@ -29,13 +32,13 @@ pub(super) unsafe fn closest<L: Level, const PLAIN: bool>(
     unsafe {
         let block_ray = BlockRay::new::<L>(black_box(ray));
         for index in 0..blocks {
-            let block = leaf.add(index * BLOCK_BYTES);
-            let signs = block_ray.signs(block);
+            let block = leaf.add(index * block_bytes::<F>());
+            let signs = block_ray.signs::<L, F>(block);
             if signs.0 == 0 {
                 continue;
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
-            let crossings = block_ray.cross::<L::Doubles>(block, signs.1, (ray, nearest.t), culling);
+            let crossings = block_ray.cross::<L::Doubles, F>(block, signs.1, (ray, nearest.t), culling);
             let mask = crossings.mask();
             if mask == 0 {
                 continue;
@@ -43,12 +46,12 @@ pub(super) unsafe fn closest<L: Level, const PLAIN: bool>(
             if PLAIN && mask & (mask - 1) == 0 {
                 let lane = mask.trailing_zeros() as usize & (LANES - 1);
                 let (t, [u, v]) = (crossings.t(), crossings.weights());
-                let (t, primitive) = (t[lane], primitive(block, lane));
+                let (t, primitive) = (t[lane], primitive::<F>(block, lane));
                 if t < nearest.t || primitive < nearest.primitive {
                     *nearest = Hit { t, u: u[lane], v: v[lane], primitive, instance: 0 };
                 }
             } else {
-                keep::<PLAIN>(block, &crossings, query, nearest);
+                keep::<F, PLAIN>(block, &crossings, query, nearest);
             }
         }
     }
@@ -57,7 +60,12 @@ pub(super) unsafe fn closest<L: Level, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-unsafe fn keep<const PLAIN: bool>(block: *const u8, crossings: &Crossings, query: &Query, nearest: &mut Hit) {
+unsafe fn keep<F: Form, const PLAIN: bool>(
+    block: *const u8,
+    crossings: &Crossings,
+    query: &Query,
+    nearest: &mut Hit,
+) {
     // SAFETY: as the caller promises.
     unsafe {
         let mut left = crossings.mask();
@@ -65,7 +73,7 @@ unsafe fn keep<const PLAIN: bool>(block: *const u8, crossings: &Crossings, query
         while left != 0 {
             let lane = left.trailing_zeros() as usize & (LANES - 1);
             left &= left - 1;
-            let primitive = primitive(block, lane);
+            let primitive = primitive::<F>(block, lane);
             if t[lane] < nearest.t || (t[lane] == nearest.t && primitive < nearest.primitive) {
                 let hit =
                     Hit { t: t[lane], u: weights[0][lane], v: weights[1][lane], primitive, instance: 0 };
@@ -82,7 +90,7 @@ unsafe fn keep<const PLAIN: bool>(block: *const u8, crossings: &Crossings, query
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any<L: Level, const PLAIN: bool>(
+pub(super) unsafe fn any<L: Level, F: Form, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
@@ -91,14 +99,14 @@ pub(super) unsafe fn any<L: Level, const PLAIN: bool>(
     unsafe {
         let block_ray = BlockRay::new::<L>(black_box(ray));
         for index in 0..blocks {
-            let block = leaf.add(index * BLOCK_BYTES);
-            let signs = block_ray.signs(block);
+            let block = leaf.add(index * block_bytes::<F>());
+            let signs = block_ray.signs::<L, F>(block);
             if signs.0 == 0 {
                 continue;
             }
             let culling = if PLAIN { Culling::None } else { query.culling };
-            let crossings = block_ray.cross::<L::Doubles>(block, signs.1, (ray, ray.t_max), culling);
-            if crossings.mask() != 0 && (PLAIN || keeps_any(block, &crossings, query)) {
+            let crossings = block_ray.cross::<L::Doubles, F>(block, signs.1, (ray, ray.t_max), culling);
+            if crossings.mask() != 0 && (PLAIN || keeps_any::<F>(block, &crossings, query)) {
                 return true;
             }
         }
@@ -111,12 +119,12 @@ pub(super) unsafe fn any<L: Level, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(never)]
-unsafe fn keeps_any(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
+unsafe fn keeps_any<F: Form>(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
     // SAFETY: as the caller promises.
     let (t, [u, v], mask) = unsafe { (crossings.t(), crossings.weights(), crossings.mask()) };
     (0..LANES).filter(|lane| mask >> lane & 1 == 1).any(|lane| {
         // SAFETY: as above.
-        let primitive = unsafe { primitive(block, lane) };
+        let primitive = unsafe { primitive::<F>(block, lane) };
         query.keeps(&Hit { t: t[lane], u: u[lane], v: v[lane], primitive, instance: 0 })
     })
 }
@@ -126,7 +134,7 @@ unsafe fn keeps_any(block: *const u8, crossings: &Crossings, query: &Query) -> b
 /// # Safety
 /// `block` must point to a block, and `lane` be below [`LANES`].
 #[inline(always)]
-unsafe fn primitive(block: *const u8, lane: usize) -> u32 {
-    // SAFETY: a block holds its primitives behind nine rows of 4 numbers.
-    unsafe { *block.cast::<u32>().add(9 * LANES + lane) }
+unsafe fn primitive<F: Form>(block: *const u8, lane: usize) -> u32 {
+    // SAFETY: a block has four primitives.
+    unsafe { *block.add(F::PRIMITIVES).cast::<u32>().add(lane) }
 }

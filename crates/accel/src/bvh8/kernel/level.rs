@@ -2,6 +2,7 @@
 
 use super::block::Axes;
 use super::doubles::Doubles;
+use super::form::Form;
 use super::packet::Wide;
 use super::stack::Stack;
 use super::{View, body::reference};
@@ -14,7 +15,7 @@ use std::arch::x86_64::{__m128, __m256i};
 /// # Safety
 /// Functions must be called only on machines that have the level, with pointers to whole nodes and stacks
 /// with room for [`WIDTH`] more.
-pub(super) trait Level {
+pub(in crate::bvh8) trait Level {
     /// A distance for each child.
     type Eight: Copy;
     /// A ray that is ready for boxes.
@@ -33,15 +34,15 @@ pub(super) trait Level {
     unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128;
     /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
     #[inline(always)]
-    unsafe fn meet<B: Boxes<Eight = Self::Eight>>(
+    unsafe fn meet<F: Form, B: Boxes<Eight = Self::Eight>>(
         ray: &B,
         node: *const u8,
         limit: Self::Eight,
     ) -> (u32, Self::Eight) {
         // SAFETY: as the trait demands.
         unsafe {
-            let (enter, leave) = ray.span(node, limit);
-            (Self::at_most(enter, leave), enter)
+            let (enter, leave) = ray.span::<F>(node, limit);
+            (Self::at_most(enter, leave) & F::occupied(node), enter)
         }
     }
     /// Puts the children of the mask on the stack, the nearest on top.
@@ -49,7 +50,7 @@ pub(super) trait Level {
     /// Sorted in, one after the other.
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn push_sorted(node: *const u8, mask: u32, enter: Self::Eight, stack: &mut Stack) {
+    unsafe fn push_sorted<F: Form>(node: *const u8, mask: u32, enter: Self::Eight, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
             let distances = lanes::<Self>(enter);
@@ -66,7 +67,7 @@ pub(super) trait Level {
                     place -= 1;
                 }
                 *enters.add(place) = distances[child];
-                *references.add(place) = reference(node, child).0;
+                *references.add(place) = reference::<F>(node, child).0;
             }
             stack.grow(size);
         }
@@ -74,13 +75,13 @@ pub(super) trait Level {
     /// Puts the children of the mask on the stack, in any order.
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn push(node: *const u8, mask: u32, stack: &mut Stack) {
+    unsafe fn push<F: Form>(node: *const u8, mask: u32, stack: &mut Stack) {
         let mut left = mask;
         while left != 0 {
             let child = left.trailing_zeros() as usize;
             left &= left - 1;
             // SAFETY: as the trait demands.
-            unsafe { stack.put(reference(node, child), 0) };
+            unsafe { stack.put(reference::<F>(node, child), 0) };
         }
     }
 }
@@ -101,7 +102,7 @@ pub(super) trait BatchLevel: Level<Eight = __m256i> {
 }
 
 /// A ray that can be held against boxes.
-pub(super) trait Boxes {
+pub(in crate::bvh8) trait Boxes {
     /// A distance for each child.
     type Eight;
 
@@ -109,7 +110,7 @@ pub(super) trait Boxes {
     ///
     /// # Safety
     /// The machine must have the level that the ray was made ready for, and `node` must point to a node.
-    unsafe fn span(&self, node: *const u8, limit: Self::Eight) -> (Self::Eight, Self::Eight);
+    unsafe fn span<F: Form>(&self, node: *const u8, limit: Self::Eight) -> (Self::Eight, Self::Eight);
 
     /// The bits of the least distance, as of [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
     /// negative, or nothing can be hit.

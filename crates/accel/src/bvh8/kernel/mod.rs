@@ -13,7 +13,7 @@ macro_rules! entries {
         /// # Safety
         /// The machine must have the level, and the view must be sound; as for all that follow.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest<C: $crate::counters::Count>(
+        pub(super) unsafe fn closest<F: super::Form, C: $crate::counters::Count>(
             units: &[super::Unit],
             outline: &super::Outline,
             ray: &$crate::Ray,
@@ -21,26 +21,26 @@ macro_rules! entries {
         ) -> Option<$crate::Hit> {
             let view = super::View { units, outline };
             // SAFETY: as the caller promises.
-            unsafe { super::body::closest::<$level, C, true>(view, ray, &$crate::Query::PLAIN, count) }
+            unsafe { super::body::closest::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
         }
 
         /// See [`super::closest`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest_by<C: $crate::counters::Count>(
+        pub(super) unsafe fn closest_by<F: super::Form, C: $crate::counters::Count>(
             view: super::View<'_>,
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
         ) -> Option<$crate::Hit> {
             // SAFETY: as the caller promises.
-            unsafe { super::body::closest::<$level, C, false>(view, ray, query, count) }
+            unsafe { super::body::closest::<$level, F, C, false>(view, ray, query, count) }
         }
 
         /// See [`super::any`]; for [`crate::Query::PLAIN`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn any<C: $crate::counters::Count>(
+        pub(super) unsafe fn any<F: super::Form, C: $crate::counters::Count>(
             units: &[super::Unit],
             outline: &super::Outline,
             ray: &$crate::Ray,
@@ -48,20 +48,20 @@ macro_rules! entries {
         ) -> bool {
             let view = super::View { units, outline };
             // SAFETY: as the caller promises.
-            unsafe { super::body::any::<$level, C, true>(view, ray, &$crate::Query::PLAIN, count) }
+            unsafe { super::body::any::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
         }
 
         /// See [`super::any`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn any_by<C: $crate::counters::Count>(
+        pub(super) unsafe fn any_by<F: super::Form, C: $crate::counters::Count>(
             view: super::View<'_>,
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
         ) -> bool {
             // SAFETY: as the caller promises.
-            unsafe { super::body::any::<$level, C, false>(view, ray, query, count) }
+            unsafe { super::body::any::<$level, F, C, false>(view, ray, query, count) }
         }
     };
 }
@@ -115,8 +115,10 @@ mod batch;
 mod block;
 #[cfg(target_arch = "x86_64")]
 mod body;
+mod compact;
 #[cfg(target_arch = "x86_64")]
 mod doubles;
+mod form;
 #[cfg(target_arch = "x86_64")]
 mod leaf;
 #[cfg(target_arch = "x86_64")]
@@ -139,6 +141,9 @@ use crate::counters::{Count, Nothing};
 use crate::cpu_level::CpuLevel;
 use crate::ray::{Hit, Query, Ray};
 
+pub(super) use compact::Compact;
+pub(super) use form::{Form, Wide};
+
 /// What is walked through. The root is a node or a leaf of `units`, and so is all that it refers to.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
@@ -153,9 +158,9 @@ macro_rules! ask {
         // SAFETY: a structure holds a level that `available` found on this machine.
         unsafe {
             if $query.is_plain() {
-                $level::$plain($view.units, $view.outline, $ray, $count)
+                $level::$plain::<F, C>($view.units, $view.outline, $ray, $count)
             } else {
-                $level::$other($view, $ray, $query, $count)
+                $level::$other::<F, C>($view, $ray, $query, $count)
             }
         }
     };
@@ -163,7 +168,7 @@ macro_rules! ask {
 
 /// The nearest hit.
 #[inline(always)]
-pub(super) fn closest<C: Count>(
+pub(super) fn closest<F: Form, C: Count>(
     level: CpuLevel,
     view: View<'_>,
     ray: &Ray,
@@ -175,13 +180,13 @@ pub(super) fn closest<C: Count>(
         CpuLevel::Avx512 => ask!(avx512, closest, closest_by, view, ray, query, count),
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Avx2 => ask!(avx2, closest, closest_by, view, ray, query, count),
-        _ => lesser_closest(level, view, ray, query, count),
+        _ => lesser_closest::<F, C>(level, view, ray, query, count),
     }
 }
 
 /// [`closest`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
 #[inline(never)]
-fn lesser_closest<C: Count>(
+fn lesser_closest<F: Form, C: Count>(
     level: CpuLevel,
     view: View<'_>,
     ray: &Ray,
@@ -191,13 +196,13 @@ fn lesser_closest<C: Count>(
     match level {
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Sse42 => ask!(sse42, closest, closest_by, view, ray, query, count),
-        _ => plain::closest(view, ray, query, count),
+        _ => plain::closest::<F, C>(view, ray, query, count),
     }
 }
 
 /// Whether there is any hit.
 #[inline(always)]
-pub(super) fn any<C: Count>(
+pub(super) fn any<F: Form, C: Count>(
     level: CpuLevel,
     view: View<'_>,
     ray: &Ray,
@@ -209,17 +214,23 @@ pub(super) fn any<C: Count>(
         CpuLevel::Avx512 => ask!(avx512, any, any_by, view, ray, query, count),
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Avx2 => ask!(avx2, any, any_by, view, ray, query, count),
-        _ => lesser_any(level, view, ray, query, count),
+        _ => lesser_any::<F, C>(level, view, ray, query, count),
     }
 }
 
 /// [`any`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
 #[inline(never)]
-fn lesser_any<C: Count>(level: CpuLevel, view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
+fn lesser_any<F: Form, C: Count>(
+    level: CpuLevel,
+    view: View<'_>,
+    ray: &Ray,
+    query: &Query,
+    count: &mut C,
+) -> bool {
     match level {
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Sse42 => ask!(sse42, any, any_by, view, ray, query, count),
-        _ => plain::any(view, ray, query, count),
+        _ => plain::any::<F, C>(view, ray, query, count),
     }
 }
 
@@ -240,7 +251,7 @@ pub(super) fn closest_each(
         CpuLevel::Avx2 => unsafe { avx2::closest_each(view, rays, query, hits) },
         _ => {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = closest(level, view, ray, query, &mut Nothing);
+                *hit = closest::<Wide, _>(level, view, ray, query, &mut Nothing);
             }
         }
     }
@@ -257,7 +268,7 @@ pub(super) fn any_each(level: CpuLevel, view: View<'_>, rays: &[Ray], query: &Qu
         CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, hits) },
         _ => {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = any(level, view, ray, query, &mut Nothing);
+                *hit = any::<Wide, _>(level, view, ray, query, &mut Nothing);
             }
         }
     }

@@ -2,30 +2,35 @@
 //! [`SlabRay`], the triangle test as it is.
 
 use super::View;
+use super::form::Form;
 use crate::bvh8::build::binary::MAX_DEPTH;
-use crate::bvh8::layout::{BLOCK_UNITS, LANES, NO_TRIANGLE, Ref, Unit, WIDTH, triangle};
+use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref, WIDTH};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
 use crate::slab::SlabRay;
 use crate::triangle::{Nearest, PreparedRay, hits};
-use bilux_math::{Aabb, Vec3};
 use std::ops::ControlFlow;
 
 #[inline(never)]
-pub(super) fn closest<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
+pub(super) fn closest<F: Form, C: Count>(
+    view: View<'_>,
+    ray: &Ray,
+    query: &Query,
+    count: &mut C,
+) -> Option<Hit> {
     let (prepared, slabs) = prepare(&view, ray)?;
     let mut nearest = Nearest::new(ray);
     let mut limit = slabs.limit(nearest.t);
-    walk(view, &slabs, limit, count, |leaf, count| {
+    walk::<F, C>(view, &slabs, limit, count, |leaf, count| {
         let before = nearest.t;
-        for (block, lane) in places(leaf) {
-            let (corners, primitive) = triangle(block, lane);
+        for (block, lane) in places::<F>(leaf) {
+            let (corners, primitive) = F::triangle(view.units, block, lane);
             if primitive == NO_TRIANGLE {
                 break;
             }
             nearest.test(&prepared, query, &corners, primitive);
         }
-        count.triangles(leaf.len() / BLOCK_UNITS * LANES);
+        count.triangles(leaf.blocks() * LANES);
         if query.early_out && nearest.t < before {
             limit = slabs.limit(nearest.t);
         }
@@ -35,13 +40,13 @@ pub(super) fn closest<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count:
 }
 
 #[inline(never)]
-pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
+pub(super) fn any<F: Form, C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
     let Some((prepared, slabs)) = prepare(&view, ray) else { return false };
     let limit = slabs.limit(ray.t_max);
     let mut found = false;
-    walk(view, &slabs, limit, count, |leaf, count| {
-        for (block, lane) in places(leaf) {
-            let (corners, primitive) = triangle(block, lane);
+    walk::<F, C>(view, &slabs, limit, count, |leaf, count| {
+        for (block, lane) in places::<F>(leaf) {
+            let (corners, primitive) = F::triangle(view.units, block, lane);
             if primitive == NO_TRIANGLE {
                 break;
             }
@@ -58,13 +63,14 @@ pub(super) fn any<C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mu
 
 fn prepare(view: &View<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
     let prepared = PreparedRay::new(ray)?;
-    let [min, max] = view.outline.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
-    let pad = prepared.pad(&Aabb { min, max });
+    let pad = prepared.pad(&view.outline.bounds());
     Some((prepared, SlabRay::new(ray.origin, ray.direction, ray.t_min, pad)))
 }
 
-fn places(leaf: &[Unit]) -> impl Iterator<Item = (&[Unit], usize)> {
-    leaf.chunks_exact(BLOCK_UNITS).flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
+/// The first units of the blocks of a leaf, each with the places in it.
+fn places<F: Form>(leaf: Ref) -> impl Iterator<Item = (usize, usize)> {
+    let blocks = (0..leaf.blocks()).map(move |block| leaf.unit() + block * F::BLOCK_UNITS);
+    blocks.flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
 }
 
 /// A subtree still to be visited, and where the ray enters it.
@@ -76,12 +82,12 @@ struct Waiting {
 
 /// Goes through the leaves that the ray meets up to `limit`, roughly the nearer first.
 #[inline(always)]
-fn walk<C: Count>(
+fn walk<F: Form, C: Count>(
     view: View<'_>,
     ray: &SlabRay,
     mut limit: f32,
     count: &mut C,
-    mut leaf: impl FnMut(&[Unit], &mut C) -> ControlFlow<(), f32>,
+    mut leaf: impl FnMut(Ref, &mut C) -> ControlFlow<(), f32>,
 ) {
     let mut stack =
         [Waiting { reference: view.outline.root, enter: f32::NEG_INFINITY }; MAX_DEPTH * (WIDTH - 1) + 1];
@@ -96,7 +102,7 @@ fn walk<C: Count>(
         }
         count.node();
         if !reference.is_node() {
-            match leaf(&view.units[reference.leaf_units()], count) {
+            match leaf(reference, count) {
                 ControlFlow::Continue(lower) => limit = lower,
                 ControlFlow::Break(()) => return,
             }
@@ -105,9 +111,7 @@ fn walk<C: Count>(
         let node = &view.units[reference.unit()..];
         let base = height;
         for child in 0..WIDTH {
-            let reference = Ref(node[6].0[child]);
-            let plane = |row: usize| f32::from_bits(node[row].0[child]);
-            let planes = [[plane(0), plane(1), plane(2)], [plane(3), plane(4), plane(5)]];
+            let (planes, reference) = F::child(node, child);
             let [enter, leave] = ray.span(&planes);
             if reference == Ref::EMPTY || enter > leave || leave < ray.nearest {
                 continue;

@@ -7,6 +7,7 @@
 use super::View;
 use super::block::Axes;
 use super::doubles::Halves;
+use super::form::Form;
 use super::level::{Boxes, Level};
 use super::tame::{LEAST, LEVEL, ROWS, SHORTEST, SIZES, halves};
 use crate::bvh8::outline::FAR_PAD;
@@ -129,12 +130,13 @@ impl Boxes for TameRay {
 
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
-    unsafe fn span(&self, node: *const u8, limit: [__m128i; 2]) -> ([__m128i; 2], [__m128i; 2]) {
-        // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
+    unsafe fn span<F: Form>(&self, node: *const u8, limit: [__m128i; 2]) -> ([__m128i; 2], [__m128i; 2]) {
+        // SAFETY: as the trait demands.
         unsafe {
+            let frame = F::frame4(node);
             let half = |from: usize, limit: __m128i| {
                 let distance = |row: usize, k: usize, origin: __m128| {
-                    let planes = _mm_load_ps(node.add(row + from).cast());
+                    let planes = F::planes4(node, row, from, k, &frame);
                     _mm_castps_si128(_mm_mul_ps(_mm_sub_ps(planes, origin), self.inverse[k]))
                 };
                 let enter = |k: usize| distance(self.enter_rows[k], k, self.enter[k]);
@@ -143,7 +145,7 @@ impl Boxes for TameRay {
                 let (c, d) = (_mm_min_epi32(leave(0), leave(1)), _mm_min_epi32(leave(2), limit));
                 (_mm_max_epi32(a, b), _mm_min_epi32(c, d))
             };
-            let (low, high) = (half(0, limit[0]), half(16, limit[1]));
+            let (low, high) = (half(0, limit[0]), half(4, limit[1]));
             ([low.0, high.0], [low.1, high.1])
         }
     }

@@ -13,7 +13,7 @@ pub(super) type Room = MaybeUninit<[u32; 2 * ROOM]>;
 
 /// What is still to be visited, and the bits of where the ray enters it, the last three of no meaning.
 #[derive(Clone, Copy)]
-pub(super) struct Stack {
+pub(in crate::bvh8) struct Stack {
     base: *mut u32,
     top: *mut u32,
 }

@@ -5,6 +5,7 @@
 
 use super::batch::SOMETHING;
 use super::body::{self, choose, prefetch, start, start_any};
+use super::form::Wide;
 use super::level::{BatchLevel, Boxes};
 use super::packet::{Lane, Packet, Ready};
 use super::stack::{Room, Stack};
@@ -60,11 +61,15 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
             answer(
                 index,
                 if ANY {
-                    let found =
-                        body::search_any::<L, Nothing, PLAIN>(view, (ray, &lane, met), query, &mut Nothing);
+                    let found = body::search_any::<L, Wide, Nothing, PLAIN>(
+                        view,
+                        (ray, &lane, met),
+                        query,
+                        &mut Nothing,
+                    );
                     found.then_some(SOMETHING)
                 } else {
-                    body::search::<L, Nothing, PLAIN>(view, (ray, &lane, met), query, &mut Nothing)
+                    body::search::<L, Wide, Nothing, PLAIN>(view, (ray, &lane, met), query, &mut Nothing)
                 },
             );
         }
@@ -141,9 +146,9 @@ impl<'r> Walk<'r> {
         let current = unsafe {
             let base = view.units.as_ptr().cast::<u8>();
             if ANY {
-                start_any::<L>(base, view.outline.root, met, &mut stack)
+                start_any::<L, Wide>(base, view.outline.root, met, &mut stack)
             } else {
-                start(base, view.outline.root, met)
+                start::<Wide>(base, view.outline.root, met)
             }
         };
         Walk { index, ray, lane, nearest, limit_bits, current, stack }
@@ -163,15 +168,15 @@ impl<'r> Walk<'r> {
         unsafe {
             let place = base.add(self.current.byte());
             if self.current.is_node() {
-                let (mask, enter) = L::meet(&self.lane, place, L::splat(self.limit_bits));
+                let (mask, enter) = L::meet::<Wide, _>(&self.lane, place, L::splat(self.limit_bits));
                 if mask != 0 {
                     self.current = if ANY {
-                        L::push(place, mask, &mut self.stack);
+                        L::push::<Wide>(place, mask, &mut self.stack);
                         self.stack.take_reference()
                     } else {
-                        choose::<L>(base, place, mask, enter, &mut self.stack)
+                        choose::<L, Wide>(base, place, mask, enter, &mut self.stack)
                     };
-                    prefetch(base, self.current);
+                    prefetch::<Wide>(base, self.current);
                     return true;
                 }
             } else if self.leaf::<L, ANY, PLAIN>(place, query) {
@@ -196,11 +201,11 @@ impl<'r> Walk<'r> {
         // SAFETY: as the caller promises.
         unsafe {
             if ANY {
-                let found = leaf::any::<L, PLAIN>(self.ray, leaf, query);
+                let found = leaf::any::<L, Wide, PLAIN>(self.ray, leaf, query);
                 self.nearest.primitive = if found { 0 } else { u32::MAX };
                 return found;
             }
-            leaf::closest::<L, PLAIN>(self.ray, leaf, query, &mut self.nearest);
+            leaf::closest::<L, Wide, PLAIN>(self.ray, leaf, query, &mut self.nearest);
         }
         if (PLAIN || query.early_out) && self.nearest.t < before {
             self.limit_bits = self.lane.limit_bits(self.nearest.t);
@@ -221,7 +226,7 @@ impl<'r> Walk<'r> {
                     if ANY { (self.stack.take_reference(), 0) } else { self.stack.take() };
                 self.current = reference;
                 if enter <= self.limit_bits | 7 {
-                    prefetch(base, self.current);
+                    prefetch::<Wide>(base, self.current);
                     return true;
                 }
             }

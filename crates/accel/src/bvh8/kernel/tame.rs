@@ -14,6 +14,7 @@
 //! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
 
 use super::View;
+use super::form::Form;
 use super::level::Boxes;
 use crate::bvh8::outline::FAR_PAD;
 use crate::ray::Ray;
@@ -156,11 +157,11 @@ impl Boxes for TameRay {
 
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
-    unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+    unsafe fn span<F: Form>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
         // SAFETY: as the trait demands.
         unsafe {
             let rows = (&self.enter_rows, &self.leave_rows);
-            span(node, rows, self.inverse, (self.enter_bias, self.leave_bias), (self.nearest, limit))
+            span::<F>(node, rows, self.inverse, (self.enter_bias, self.leave_bias), (self.nearest, limit))
         }
     }
 
@@ -182,17 +183,18 @@ impl Boxes for TameRay {
 /// # Safety
 /// As for [`Boxes::span`].
 #[inline(always)]
-pub(super) unsafe fn span(
+pub(super) unsafe fn span<F: Form>(
     node: *const u8,
     (enter_rows, leave_rows): (&[usize; 3], &[usize; 3]),
     inverse: [__m256; 3],
     (enter_bias, leave_bias): ([__m256; 3], [__m256; 3]),
     (nearest, limit): (__m256i, __m256i),
 ) -> (__m256i, __m256i) {
-    // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
+    // SAFETY: as the caller promises.
     unsafe {
+        let frame = F::frame8(node);
         let distance = |row: usize, k: usize, bias: __m256| {
-            let planes = _mm256_load_ps(node.add(row).cast());
+            let planes = F::planes8(node, row, k, &frame);
             _mm256_castps_si256(_mm256_fmadd_ps(planes, inverse[k], bias))
         };
         let enter = |k: usize| distance(enter_rows[k], k, enter_bias[k]);

@@ -21,7 +21,8 @@ pub(super) use wide::{Wide, declare, define};
 use super::View;
 use super::batch::SOMETHING;
 use super::body::{prefetch, reference};
-use super::leaf::BLOCK_BYTES;
+use super::form;
+use super::leaf::block_bytes;
 use super::level::BatchLevel;
 use super::stack::{Room, Stack};
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
@@ -96,7 +97,10 @@ impl Walk<'_> {
                     L::push_children(current, mask, enter, &mut stack);
                 }
                 while mask != 0 {
-                    prefetch(base, reference(node, mask.trailing_zeros() as usize));
+                    prefetch::<form::Wide>(
+                        base,
+                        reference::<form::Wide>(node, mask.trailing_zeros() as usize),
+                    );
                     mask &= mask - 1;
                 }
                 loop {
@@ -108,7 +112,7 @@ impl Walk<'_> {
                         continue;
                     }
                     let (node, child) = (base.add(parent.byte()), key as usize & 7);
-                    let reference = reference(node, child);
+                    let reference = reference::<form::Wide>(node, child);
                     if !reference.is_node() {
                         if self.leaf::<L::Wide, ANY>(base, node, child, reference) {
                             limit_bits = self.limit::<L::Wide>().to_bits();
@@ -185,7 +189,7 @@ impl Walk<'_> {
                 let mut group = Group::<W>::new(self.packet, &self.frustum, self.query, from);
                 let mut hits = 0;
                 for index in 0..leaf.blocks() {
-                    let block = base.add(leaf.byte() + index * BLOCK_BYTES);
+                    let block = base.add(leaf.byte() + index * block_bytes::<form::Wide>());
                     let primitives = block.add(9 * LANES * 4).cast::<u32>();
                     for lane in 0..LANES {
                         if *primitives.add(lane) == NO_TRIANGLE {

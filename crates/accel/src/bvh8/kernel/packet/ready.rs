@@ -2,6 +2,7 @@
 #![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
 
 use super::super::View;
+use super::super::form::Form;
 use super::super::level::{BatchLevel, Boxes};
 use super::super::tame::{ROWS, span};
 use super::rays::{Packet, Row};
@@ -112,7 +113,7 @@ impl Boxes for Lane<'_> {
 
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
-    unsafe fn span(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+    unsafe fn span<F: Form>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
         // SAFETY: as the trait demands; the packet is ready.
         unsafe {
             let all = |row: &Row<f32>| _mm256_set1_ps(*row.at(self.lane));
@@ -121,7 +122,7 @@ impl Boxes for Lane<'_> {
             let bias = (three(&packet.enter_bias), three(&packet.leave_bias));
             let nearest = _mm256_castps_si256(all(&packet.nearest));
             let [enter_rows, leave_rows] = self.rows;
-            span(node, (enter_rows, leave_rows), three(&packet.inverse), bias, (nearest, limit))
+            span::<F>(node, (enter_rows, leave_rows), three(&packet.inverse), bias, (nearest, limit))
         }
     }
 

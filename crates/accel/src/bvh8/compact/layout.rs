@@ -1,0 +1,156 @@
+//! How a compact tree lies in memory: the same 32-byte units, and of them nodes, leaves, and pools of corners.
+//!
+//! - A *node* is 3 units. The lowest corner of its children, three numbers. A word that holds, byte by byte, the
+//!   exponents of three steps, one an axis, and a bit for each child that there is. The lower and the upper planes of
+//!   eight children, axis by axis, each a byte: so many steps from the lowest corner. Eight references.
+//! - A *block* is one unit: for each corner of four triangles a byte that says which of a pool it is, how many units
+//!   further on the pool begins, and the primitives of the four. A leaf is one to `MAX_BLOCKS` of them.
+//! - A *pool* holds up to [`POOL`] corners, each once, for as many blocks before it as it suffices for.
+//!
+//! A step is a power of two, so that steps times their number is exact and only the sum is rounded, alike in every
+//! kernel, fused or not. A box is the least such that holds the true one *as it is read*. [Ylitie 2017, section 3.2]
+
+use crate::bvh::tree::union;
+use crate::bvh8::layout::{EMPTY, LANES, Planes, Ref, Unit, WIDTH};
+
+/// Units of a node.
+pub(in crate::bvh8) const NODE_UNITS: usize = 3;
+/// Units of a block.
+pub(in crate::bvh8) const BLOCK_UNITS: usize = 1;
+/// Corners of the largest pool: as many as a byte can tell apart.
+pub(in crate::bvh8) const POOL: usize = 256;
+/// Bytes from the front of a node to the first planes.
+pub(in crate::bvh8) const PLANES: usize = 16;
+/// Bytes from the front of a node to the references.
+pub(in crate::bvh8) const REFERENCES: usize = 64;
+/// Bytes from the front of a block to the primitives.
+pub(in crate::bvh8) const PRIMITIVES: usize = 16;
+/// Words of a corner.
+pub(super) const CORNER_WORDS: usize = 3;
+
+/// Places along an axis that a byte can name.
+#[derive(Clone, Copy)]
+struct Steps {
+    low: f32,
+    /// As a float holds it; 0 for steps of no length.
+    exponent: u8,
+}
+
+impl Steps {
+    /// The least steps that lead from one place to the other.
+    fn between(low: f32, high: f32) -> Steps {
+        let mut steps = Steps { low, exponent: 0 };
+        if high > low {
+            let least = (high * 0.5 - low * 0.5) / 127.5;
+            steps.exponent = (least.to_bits() >> 23).clamp(1, 254) as u8;
+            while steps.exponent < 254 && steps.at(u8::MAX) < high {
+                steps.exponent += 1;
+            }
+        }
+        steps
+    }
+
+    fn length(&self) -> f32 {
+        f32::from_bits(u32::from(self.exponent) << 23)
+    }
+
+    /// What every kernel reads.
+    fn at(&self, number: u8) -> f32 {
+        self.low + f32::from(number) * self.length()
+    }
+
+    /// The last place, or nearly, that is not above a plane.
+    fn below(&self, plane: f32) -> u8 {
+        let mut number = ((plane - self.low) / self.length()) as u8;
+        while number > 0 && self.at(number) > plane {
+            number -= 1;
+        }
+        number
+    }
+
+    /// The first place, or nearly, that is not below a plane.
+    fn above(&self, plane: f32) -> u8 {
+        let mut number = ((plane - self.low) / self.length()).ceil() as u8;
+        while number < u8::MAX && self.at(number) < plane {
+            number += 1;
+        }
+        number
+    }
+}
+
+/// Writes a node.
+pub(super) fn write_node(units: &mut [Unit], children: &[(Planes, Ref)]) {
+    let [low, high] = children.iter().fold(EMPTY, |all, (planes, _)| union(&all, planes));
+    let mut bytes = [0u8; (REFERENCES - PLANES) + 4];
+    for axis in 0..3 {
+        let steps = Steps::between(low[axis], high[axis]);
+        put(units, axis, steps.low.to_bits());
+        bytes[axis] = steps.exponent;
+        for (child, ([low, high], _)) in children.iter().enumerate() {
+            bytes[4 + axis * WIDTH + child] = steps.below(low[axis]);
+            bytes[4 + (3 + axis) * WIDTH + child] = steps.above(high[axis]);
+        }
+    }
+    bytes[3] = ((1u32 << children.len()) - 1) as u8;
+    for (k, word) in bytes.chunks_exact(4).enumerate() {
+        put(units, 3 + k, u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
+    }
+    for child in 0..WIDTH {
+        let reference = children.get(child).map_or(Ref::EMPTY, |(_, reference)| *reference);
+        put(units, REFERENCES / 4 + child, reference.0);
+    }
+}
+
+/// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is none.
+#[inline(always)]
+pub(in crate::bvh8) fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
+    let plane = |side: usize, axis: usize| {
+        let steps = Steps { low: f32::from_bits(word(node, axis)), exponent: byte(node, 12 + axis) };
+        steps.at(byte(node, PLANES + (side * 3 + axis) * WIDTH + child))
+    };
+    let planes = [0, 1].map(|side| [plane(side, 0), plane(side, 1), plane(side, 2)]);
+    (planes, Ref(word(node, REFERENCES / 4 + child)))
+}
+
+/// The children of a node.
+pub(super) fn children(node: &[Unit]) -> impl Iterator<Item = (Planes, Ref)> + '_ {
+    (0..WIDTH).map(|k| child(node, k)).filter(|(_, reference)| *reference != Ref::EMPTY)
+}
+
+/// A block whose pool is not yet known: which corners of it its triangles have, and their primitives.
+pub(super) fn block(corners: [[u8; 3]; LANES], primitives: [u32; LANES]) -> Unit {
+    let corner = |k: usize| u32::from_le_bytes(corners.map(|triangle| triangle[k]));
+    let [a, b, c, d] = primitives;
+    Unit([corner(0), corner(1), corner(2), 0, a, b, c, d])
+}
+
+/// Tells a block where its pool is.
+pub(super) fn link(units: &mut [Unit], block: usize, pool: usize) {
+    units[block].0[3] = (pool - block) as u32;
+}
+
+/// The corners of a triangle, and its primitive.
+#[inline(always)]
+pub(in crate::bvh8) fn triangle(units: &[Unit], block: usize, lane: usize) -> ([[f32; 3]; 3], u32) {
+    let Unit(words) = units[block];
+    let pool = &units[block + words[3] as usize..];
+    let corner = |k: usize| {
+        let first = usize::from((words[k] >> (8 * lane)) as u8) * CORNER_WORDS;
+        std::array::from_fn(|axis| f32::from_bits(word(pool, first + axis)))
+    };
+    ([corner(0), corner(1), corner(2)], words[PRIMITIVES / 4 + lane])
+}
+
+pub(super) fn put(units: &mut [Unit], word: usize, bits: u32) {
+    units[word / 8].0[word % 8] = bits;
+}
+
+#[inline(always)]
+fn word(units: &[Unit], word: usize) -> u32 {
+    units[word / 8].0[word % 8]
+}
+
+#[inline(always)]
+fn byte(units: &[Unit], byte: usize) -> u8 {
+    (word(units, byte / 4) >> (8 * (byte % 4))) as u8
+}

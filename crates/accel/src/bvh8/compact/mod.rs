@@ -1,0 +1,102 @@
+//! The wide tree in fewer bytes: boxes in steps of their node, each a byte a plane, and corners that triangles share.
+//!
+//! Less than half of what [`Bvh8`] takes where triangles share their corners, and slower rays; the same hits, to the bit.
+//! What was tried stands in `docs/adr/0008-bvh8.md`.
+
+pub(super) mod layout;
+mod pack;
+#[cfg(test)]
+mod tests;
+
+use super::Bvh8;
+use super::kernel::{self, Compact, View};
+use super::layout::{LANES, Ref, Unit};
+use super::outline::Outline;
+use crate::accelerator::{Traverse, TreeShape};
+use crate::counters::Count;
+use crate::cpu_level::CpuLevel;
+use crate::mesh::TriangleMesh;
+use crate::ray::{Hit, Query, Ray};
+use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
+use bilux_math::{Aabb, registry::Entry};
+
+/// Row of [`crate::ACCELERATORS`].
+pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
+    entry: Entry {
+        name: "bvh8-compact",
+        summary: "bvh8 in less than half of its memory, for slower rays: boxes in bytes, corners shared",
+        source: "Ylitie 2017",
+        parameters: &[],
+    },
+    build: |mesh, options| Ok(Box::new(CompactBvh8::new(&mesh, options)?)),
+};
+
+/// Boxes around boxes around triangles, eight by eight, in few bytes. It answers rays; what else a tree can be
+/// asked, [`Bvh8`] can. The mesh need not be kept.
+#[derive(Clone, Debug)]
+pub struct CompactBvh8 {
+    units: Vec<Unit>,
+    outline: Outline,
+    level: CpuLevel,
+}
+
+impl CompactBvh8 {
+    /// Builds one. The same tree whatever the number of threads.
+    ///
+    /// # Errors
+    /// When it, or the wide tree that it is made from, would take more than 8 GiB.
+    pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<CompactBvh8, BuildError> {
+        CompactBvh8::pack(&Bvh8::new(mesh, options)?)
+    }
+
+    /// The same tree, packed.
+    ///
+    /// # Errors
+    /// When it would take more than 8 GiB.
+    pub fn pack(wide: &Bvh8) -> Result<CompactBvh8, BuildError> {
+        let (units, root) = pack::pack(&wide.units, wide.outline.root)?;
+        Ok(CompactBvh8 { units, outline: Outline { root, ..wide.outline }, level: wide.level })
+    }
+
+    #[inline(always)]
+    fn view(&self) -> Option<View<'_>> {
+        (!self.units.is_empty()).then_some(View { units: &self.units, outline: &self.outline })
+    }
+}
+
+impl Traverse for CompactBvh8 {
+    #[inline(always)]
+    fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
+        count.ray();
+        kernel::closest::<Compact, C>(self.level, self.view()?, ray, query, count)
+    }
+
+    #[inline(always)]
+    fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
+        count.ray();
+        self.view().is_some_and(|view| kernel::any::<Compact, C>(self.level, view, ray, query, count))
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.outline.bounds()
+    }
+
+    fn memory_bytes(&self) -> usize {
+        size_of_val(&*self.units)
+    }
+
+    fn shape(&self) -> TreeShape {
+        let mut shape = TreeShape::default();
+        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![(self.outline.root, 1)] };
+        while let Some((reference, depth)) = stack.pop() {
+            if reference.is_node() {
+                shape.nodes += 1;
+                let children = layout::children(&self.units[reference.unit()..]);
+                stack.extend(children.map(|(_, child): (_, Ref)| (child, depth + 1)));
+            } else {
+                shape.add_leaf(depth, reference.blocks() * LANES);
+            }
+        }
+        shape
+    }
+}

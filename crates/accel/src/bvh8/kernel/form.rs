@@ -1,0 +1,142 @@
+//! How nodes and blocks are read: what the two layouts of a tree differ in.
+
+use crate::bvh8::layout::{self, Planes, Ref, Unit};
+
+#[cfg(target_arch = "x86_64")]
+use super::block::Axes;
+#[cfg(target_arch = "x86_64")]
+use super::level::Level;
+#[cfg(target_arch = "x86_64")]
+use crate::bvh8::layout::LANES;
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::*;
+
+/// A layout, as kernels read it.
+///
+/// # Safety
+/// Functions that take pointers must be given those of whole nodes or blocks of the layout, on machines that have the
+/// instructions that each names.
+pub(in crate::bvh8) trait Form {
+    /// Units of a block.
+    const BLOCK_UNITS: usize;
+    /// Bytes from the front of a node to the references.
+    #[cfg(target_arch = "x86_64")]
+    const REFERENCES: usize;
+    /// Bytes from the front of a block to the primitives.
+    #[cfg(target_arch = "x86_64")]
+    const PRIMITIVES: usize;
+    /// Cache lines of a node, or that a leaf begins with.
+    #[cfg(target_arch = "x86_64")]
+    const LINES: usize;
+    /// What all planes of a node are read with, in vectors of eight and of four.
+    #[cfg(target_arch = "x86_64")]
+    type Frame8: Copy;
+    #[cfg(target_arch = "x86_64")]
+    type Frame4: Copy;
+
+    /// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is none.
+    fn child(node: &[Unit], child: usize) -> (Planes, Ref);
+    /// What stands in one place of the block that begins at a unit.
+    fn triangle(units: &[Unit], block: usize, lane: usize) -> ([[f32; 3]; 3], u32);
+    // SAFETY: as the trait says.
+    /// A bit for each child that there is; more where boxes of others cannot be met.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn occupied(node: *const u8) -> u32;
+    // SAFETY: as the trait says.
+    /// With AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn frame8(node: *const u8) -> Self::Frame8;
+    // SAFETY: as the trait says.
+    /// The planes of eight children along an axis; `row` as of [`super::tame::ROWS`]. With AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn planes8(node: *const u8, row: usize, axis: usize, frame: &Self::Frame8) -> __m256;
+    // SAFETY: as the trait says.
+    /// With SSE4.2.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn frame4(node: *const u8) -> Self::Frame4;
+    // SAFETY: as the trait says.
+    /// The planes of four children, from the child `from` on. With SSE4.2.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn planes4(node: *const u8, row: usize, from: usize, axis: usize, frame: &Self::Frame4) -> __m128;
+    // SAFETY: as the trait says.
+    /// The corners of four triangles: `[axis][corner]`, axes in the order of sheared space. With the level.
+    #[cfg(target_arch = "x86_64")]
+    unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3];
+}
+
+/// The layout of [`crate::Bvh8`].
+pub(in crate::bvh8) struct Wide;
+
+impl Form for Wide {
+    const BLOCK_UNITS: usize = layout::BLOCK_UNITS;
+    #[cfg(target_arch = "x86_64")]
+    const REFERENCES: usize = 192;
+    #[cfg(target_arch = "x86_64")]
+    const PRIMITIVES: usize = 9 * LANES * 4;
+    #[cfg(target_arch = "x86_64")]
+    const LINES: usize = 4;
+    #[cfg(target_arch = "x86_64")]
+    type Frame8 = ();
+    #[cfg(target_arch = "x86_64")]
+    type Frame4 = ();
+
+    #[inline(always)]
+    fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
+        let plane = |row: usize| f32::from_bits(node[row].0[child]);
+        let planes = [[plane(0), plane(1), plane(2)], [plane(3), plane(4), plane(5)]];
+        (planes, Ref(node[6].0[child]))
+    }
+
+    #[inline(always)]
+    fn triangle(units: &[Unit], block: usize, lane: usize) -> ([[f32; 3]; 3], u32) {
+        layout::triangle(&units[block..block + layout::BLOCK_UNITS], lane)
+    }
+
+    // SAFETY: as the trait demands.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn occupied(_: *const u8) -> u32 {
+        // Empty boxes are met by no tame ray.
+        u32::MAX
+    }
+
+    // SAFETY: as the trait demands.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn frame8(_: *const u8) {}
+
+    // SAFETY: as the trait demands.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn planes8(node: *const u8, row: usize, _: usize, (): &()) -> __m256 {
+        // SAFETY: a node is aligned to 32 bytes and holds six rows of eight numbers.
+        unsafe { _mm256_load_ps(node.add(row).cast()) }
+    }
+
+    // SAFETY: as the trait demands.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn frame4(_: *const u8) {}
+
+    // SAFETY: as the trait demands.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn planes4(node: *const u8, row: usize, from: usize, _: usize, (): &()) -> __m128 {
+        // SAFETY: as above.
+        unsafe { _mm_load_ps(node.add(row + from * 4).cast()) }
+    }
+
+    // SAFETY: as the trait demands.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3] {
+        // SAFETY: a block is aligned to 32 bytes and holds nine rows of four numbers.
+        unsafe {
+            let rows = |axis: usize| {
+                let row = block.add(axes.rows[axis]).cast::<f32>();
+                [_mm_load_ps(row), _mm_load_ps(row.add(LANES)), _mm_load_ps(row.add(2 * LANES))]
+            };
+            [rows(0), rows(1), rows(2)]
+        }
+    }
+}
