@@ -27,6 +27,16 @@ impl Frame {
         }
     }
 
+    /// The same frame turned about its normal, so that its x axis is as near to `tangent` as may be; as it was where
+    /// the tangent is along the normal or zero.
+    #[inline]
+    pub fn along(self, tangent: Vec3) -> Frame {
+        match (tangent - self.n * tangent.dot(self.n)).try_normalize() {
+            Some(s) => Frame { s, t: self.n.cross(s), n: self.n },
+            None => self,
+        }
+    }
+
     /// World direction to local.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {

@@ -124,6 +124,7 @@ impl SceneBuilder {
             motion: object.motion.clone(),
             instanced: object.instanced,
             gives_light: !materials[object.material].emission().is_black(),
+            has_tangents: materials[object.material].needs_tangents(),
         });
         let geometry = Geometry::build(placed.collect(), accel)?;
         let parts = SceneParts::new(geometry, materials, lights, &panels, cameras);

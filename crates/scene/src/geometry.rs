@@ -24,6 +24,8 @@ pub struct Placed {
     pub instanced: bool,
     /// Its material gives light.
     pub gives_light: bool,
+    /// Its material asks for tangents.
+    pub has_tangents: bool,
 }
 
 /// All triangles, and the trees over them.
@@ -198,6 +200,13 @@ impl Geometry {
             let [a, b, c] = indices.map(|i| mesh.uvs[i]);
             a * weights[0] + b * weights[1] + c * weights[2]
         };
+        let tangent = if placed.has_tangents {
+            let corners = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
+            tangent(corners, indices.map(|i| mesh.uvs.get(i).copied()))
+                .unwrap_or_else(|| to_world.vector(Vec3::Y).cross(n_shade))
+        } else {
+            Vec3::ZERO
+        };
         let vertex_colour = |colours: &[Rgb]| {
             if colours.is_empty() {
                 return None;
@@ -211,6 +220,7 @@ impl Geometry {
             p_error,
             n_geom,
             n_shade,
+            tangent,
             uv,
             vertex_kd: vertex_colour(&mesh.vertex_kd),
             vertex_ks: vertex_colour(&mesh.vertex_ks),
@@ -219,6 +229,15 @@ impl Geometry {
             time: ray.time,
         }
     }
+}
+
+/// Along a triangle as its first texture coordinate grows; `None` where they say nothing of it. [pbrt 2023, 6.5.2]
+fn tangent([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<Vec3> {
+    let [uv_a, uv_b, uv_c] = [uvs[0]?, uvs[1]?, uvs[2]?];
+    let (b_side, c_side) = (uv_b - uv_a, uv_c - uv_a);
+    let determinant = b_side.perp_dot(c_side);
+    let along = (b - a) * c_side.y - (c - a) * b_side.y;
+    (along * 1f32.copysign(determinant)).try_normalize().filter(|_| determinant != 0.0)
 }
 
 fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f32; 3]; 3]> {

@@ -19,6 +19,9 @@ pub struct Surface {
     pub n_geom: Vec3,
     /// Unit shading normal, interpolated; `n_geom` where the mesh has none.
     pub n_shade: Vec3,
+    /// Along the surface, where its material tells directions apart: as u grows, or around the object's own y axis where
+    /// the mesh has no texture coordinates. Else, and where there is none, zero.
+    pub tangent: Vec3,
     /// Texture coordinates; the barycentric weights where the mesh has none.
     pub uv: Vec2,
     /// Diffuse reflectance of the vertices, if the mesh has one.

@@ -59,6 +59,33 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
     }
 }
 
+/// A panel over a ball of some material, and a matt one.
+fn panel_over(material: Spec) -> SceneBuilder {
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
+    let mut builder = without_mirrors(panel);
+    let last = builder.materials.len() - 1;
+    builder.materials[last] = material;
+    sky(&mut builder, 0.2);
+    builder
+}
+
+#[test]
+fn rough_metal_and_glass_look_the_same_from_both_ends() {
+    let brushed = Spec::new("", "conductor").with("metal", "copper").with("roughness", 0.5f32);
+    let brushed = brushed.with("anisotropy", 0.7f32).with("rotation", 30.0f32);
+    let frosted = Spec::new("", "dielectric").with("roughness", 0.5f32);
+    let frosted = frosted.with("absorption", Rgb::new(0.5, 0.2, 0.1));
+    let pane = Spec::new("", "dielectric").with("roughness", 0.6f32).with("thin", true);
+    for (name, material) in [("brushed copper", brushed), ("frosted glass", frosted), ("frosted pane", pane)]
+    {
+        let scene = built(&panel_over(material));
+        check(name, &scene, &["light", "bdpt"]);
+        let path = blocks(&scene, &*integrator("path"), 0);
+        let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
+        assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
+    }
+}
+
 /// No camera path finds what a mirror sends on from a light without extent.
 fn without_small_lights(mut builder: SceneBuilder) -> SceneBuilder {
     builder.lights.retain(|light| !["point", "spot", "directional"].contains(&light.kind.as_str()));

@@ -149,7 +149,8 @@ pub fn weight_times_density_is_eval(s: &Scatterer, _promise: Promise) -> Result<
     Ok(())
 }
 
-/// Helmholtz where promised; else refracted radiance is importance over the square of the relative index.
+/// Helmholtz where promised; else refracted radiance is importance over the square of the relative index, and
+/// importance is radiance with the directions exchanged.
 pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), String> {
     for (i, wo) in known_directions().into_iter().enumerate() {
         for k in 0..500 {
@@ -164,8 +165,17 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
             } else if let (Some(r), Some(t)) =
                 (draw(s, wo, 200 + i as u64, k, RADIANCE), draw(s, wo, 200 + i as u64, k, IMPORTANCE))
             {
+                // Snell's law, about the normal of the surface or of the facet that lies between the directions.
                 let sin = |d: Vec3| (1.0 - d.z * d.z).max(0.0).sqrt();
-                let eta = if r.transmits { sin(wo) / sin(r.wi) } else { 1.0 };
+                let eta = if r.transmits && r.is_delta { sin(wo) / sin(r.wi) } else { r.eta };
+                let exchanged = (s.eval)(r.wi, wo, IMPORTANCE).luminance() * r.wi.z.abs();
+                let there = (s.eval)(wo, r.wi, RADIANCE).luminance() * wo.z.abs();
+                if (exchanged - there).abs() > 2e-3 * there.max(1e-5) {
+                    return Err(format!(
+                        "wo {wo}, wi {}: radiance {there}, importance {exchanged} back",
+                        r.wi
+                    ));
+                }
                 let (radiance, importance) = (r.weight.luminance() * eta * eta, t.weight.luminance());
                 if (radiance - importance).abs() > 1e-2 * importance {
                     return Err(format!("wo {wo}: radiance·η² {radiance}, importance {importance}"));

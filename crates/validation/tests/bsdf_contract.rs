@@ -28,7 +28,7 @@ fn is_white(lobe: &Lobe) -> bool {
         Lobe::Lambert(l) => l.albedo == Rgb::WHITE,
         Lobe::Mirror(m) => m.reflectance == Rgb::WHITE,
         Lobe::Dielectric(d) => d.tint == Rgb::WHITE,
-        Lobe::Phong(_) => false,
+        Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) => false,
     }
 }
 
@@ -137,6 +137,7 @@ fn flat_surface() -> Surface {
         p_error: Vec3::ZERO,
         n_geom: Vec3::Z,
         n_shade: Vec3::Z,
+        tangent: Vec3::X,
         uv: Vec2::ZERO,
         vertex_kd: None,
         vertex_ks: None,
@@ -181,6 +182,17 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     wrong_choice.sample = Box::new(move |wo, c, u, mode| glass.sample(wo, c * 0.9, u, mode));
     let mut no_eta = Scatterer::from(glass);
     no_eta.sample = Box::new(move |wo, c, u, _| glass.sample(wo, c, u, TransportMode::Importance));
+    let Some((_, frosted)) =
+        BSDFS.iter().flat_map(|row| (row.cases)()).find(|(case, _)| *case == "diamond, scratched")
+    else {
+        unreachable!()
+    };
+    let mut not_divided = Scatterer::from(frosted);
+    not_divided.eval = Box::new(move |wo, wi, _| frosted.eval(wo, wi, TransportMode::Importance));
+    let mut round = Scatterer::from(frosted);
+    // Facets turned about the normal: right on average over all directions, and nowhere.
+    let across = |v: Vec3| Vec3::new(-v.y, v.x, v.z);
+    round.pdf = Box::new(move |wo, wi| frosted.pdf_solid_angle(across(wo), across(wi)));
     let mut forgetful = Scatterer::from(Bsdf::new(turned()[1], Vec3::Z, [Some(lambert), None, None]));
     let as_radiance = forgetful.sample;
     forgetful.sample = Box::new(move |wo, c, u, _| as_radiance(wo, c, u, TransportMode::Radiance));
@@ -200,6 +212,8 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
         ("2% lost", "energy", leaking, white),
         ("a wrong share of refraction", "samples follow the density", wrong_choice, adjoint),
         ("η² forgotten", "reciprocity, or else the adjoint", no_eta, adjoint),
+        ("η² forgotten in rough glass", "reciprocity, or else the adjoint", not_divided, adjoint),
+        ("scratches across each other", "samples follow the density", round, adjoint),
         ("a turned normal's adjoint forgotten", "the same from both ends", forgetful, white),
         ("a camera's rule for a light's mirror", "the same from both ends", ruled_as_from_a_camera(), white),
         ("η² forgotten", "the same from both ends", no_eta_either(glass), adjoint),

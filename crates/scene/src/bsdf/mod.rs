@@ -8,16 +8,22 @@
 //! same light between the same directions, what it found along `wo` leaves along `wi` by
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
+mod conductor;
 mod delta;
 mod dielectric;
+mod ggx;
 mod lambert;
 mod mirror;
 mod phong_lobe;
+mod rough_dielectric;
 
+pub use conductor::{Conductor, Fresnel, fresnel_conductor};
 pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
+pub use ggx::Ggx;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
 pub use phong_lobe::PhongLobe;
+pub use rough_dielectric::RoughDielectric;
 
 use bilux_math::{Frame, Rgb, Vec2, Vec3, registry::Entry};
 
@@ -58,6 +64,10 @@ pub enum Lobe {
     Dielectric(Dielectric),
     /// A cosine power around the mirrored direction, normalised.
     Phong(PhongLobe),
+    /// Metal, smooth or rough.
+    Conductor(Conductor),
+    /// Rough glass.
+    RoughDielectric(RoughDielectric),
 }
 
 macro_rules! each_lobe {
@@ -67,6 +77,8 @@ macro_rules! each_lobe {
             Lobe::Mirror($l) => $body,
             Lobe::Dielectric($l) => $body,
             Lobe::Phong($l) => $body,
+            Lobe::Conductor($l) => $body,
+            Lobe::RoughDielectric($l) => $body,
         }
     };
 }
@@ -99,14 +111,18 @@ impl Lobe {
     fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
         match self {
             Lobe::Dielectric(lobe) => lobe.transmitted(wo),
-            Lobe::Lambert(_) | Lobe::Mirror(_) | Lobe::Phong(_) => None,
+            _ => None,
         }
     }
 
     /// True when it has no width.
     #[inline]
     pub fn is_delta(&self) -> bool {
-        matches!(self, Lobe::Mirror(_) | Lobe::Dielectric(_))
+        match self {
+            Lobe::Mirror(_) | Lobe::Dielectric(_) => true,
+            Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
+            Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) => false,
+        }
     }
 
     /// About how much light it sends on, the weight by which it is chosen.
@@ -130,7 +146,17 @@ pub struct BsdfEntry {
 }
 
 /// Every lobe that there is.
-pub const BSDFS: &[BsdfEntry] = &[lambert::ENTRY, mirror::ENTRY, dielectric::ENTRY, phong_lobe::ENTRY];
+pub const BSDFS: &[BsdfEntry] = &[
+    lambert::ENTRY,
+    mirror::ENTRY,
+    conductor::ENTRY,
+    dielectric::ENTRY,
+    rough_dielectric::ENTRY,
+    phong_lobe::ENTRY,
+];
+
+/// Where a shading normal raises importance by more than this, its direction is the surface's own but for rounding.
+const MOST_TURNED: f32 = (1u64 << 60) as f32;
 
 /// A sum of lobes at a point of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -147,6 +173,13 @@ impl Bsdf {
     pub fn new(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; 3]) -> Bsdf {
         let total_strength = lobes.iter().flatten().map(Lobe::strength).sum();
         Bsdf { frame: Frame::from_normal(n_shade), n_geom, lobes, total_strength }
+    }
+
+    /// The same with the local x axis along a tangent, for lobes that tell directions apart; the zero vector
+    /// leaves it.
+    #[inline]
+    pub fn along(self, tangent: Vec3) -> Bsdf {
+        Bsdf { frame: self.frame.along(tangent), ..self }
     }
 
     /// True when all that it scatters goes into single directions.
@@ -221,7 +254,7 @@ impl Bsdf {
         }
         let turned = wo.dot(n).abs() * wi.dot(self.n_geom).abs();
         let ratio = turned / (wo.dot(self.n_geom).abs() * wi.dot(n).abs());
-        if ratio.is_finite() { scattered * ratio } else { Rgb::BLACK }
+        if ratio < MOST_TURNED { scattered * ratio } else { Rgb::BLACK }
     }
 
     /// True when what is reflected stays on its side of the triangle, and what is transmitted does not.

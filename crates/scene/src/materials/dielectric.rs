@@ -1,7 +1,8 @@
 //! `dielectric`: smooth glass, water, diamond.
 
+use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
 use super::{ABSORPTION, ETA, Material, MaterialEntry, THIN, colour_map, reflectance, spread};
-use crate::bsdf::{Bsdf, Dielectric, Lobe};
+use crate::bsdf::{Bsdf, Dielectric, Lobe, RoughDielectric};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
@@ -12,13 +13,16 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "dielectric",
-        summary: "smooth glass, water, diamond",
+        summary: "glass, water, diamond; frosted where it is rough",
         source: "Fresnel 1823",
         parameters: &[
             ETA,
             reflectance("tint", "factor on all light; white for real glass", "1"),
             ABSORPTION,
             THIN,
+            roughness("0"),
+            ANISOTROPY,
+            ROTATION,
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
         ],
@@ -29,6 +33,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             tint: colour_map(reader, "tint", textures)?,
             sigma_a: reader.colour("absorption"),
             thin: reader.bool("thin"),
+            roughness: Roughness::read(reader),
             gloss: reader.number("gloss").to_radians(),
             translucency: reader.number("translucency").to_radians(),
         }))
@@ -40,14 +45,21 @@ struct Glass {
     tint: ColourMap,
     sigma_a: Rgb,
     thin: bool,
+    roughness: Roughness,
     gloss: f32,
     translucency: f32,
 }
 
 impl Material for Glass {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let glass = Dielectric { eta: self.eta, tint: self.tint.at(surface.uv), thin: self.thin };
-        Bsdf::new(surface.n_shade, surface.n_geom, [Some(Lobe::Dielectric(glass)), None, None])
+        let Glass { eta, thin, .. } = *self;
+        let (tint, ggx) = (self.tint.at(surface.uv), self.roughness.ggx);
+        let glass = if RoughDielectric::is_rough(eta, thin, &ggx) {
+            Lobe::RoughDielectric(RoughDielectric { eta, tint, thin, ggx })
+        } else {
+            Lobe::Dielectric(Dielectric { eta, tint, thin })
+        };
+        Bsdf::new(surface.n_shade, surface.n_geom, [Some(glass), None, None]).along(surface.tangent)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
@@ -59,11 +71,15 @@ impl Material for Glass {
             eta: self.eta,
             sigma_a: self.sigma_a,
             thin: self.thin,
-            gloss: self.gloss,
-            translucency: self.translucency,
+            gloss: self.gloss.max(self.roughness.spread()),
+            translucency: self.translucency.max(self.roughness.spread()),
             fresnel: true,
             ..ClassicMaterial::default()
         }
+    }
+
+    fn needs_tangents(&self) -> bool {
+        self.roughness.has_direction()
     }
 
     fn sigma_a(&self) -> Rgb {

@@ -8,12 +8,18 @@
 //! | `phong` | as given | as given | as given | as given | as given | as given | where kt > 0 |
 //! | `diffuse` | reflectance | reflectance | 0 | 0 | – | 0 | no |
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
+//! | `conductor` | 0 | 0 | reflectance straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
+//!
+//! Roughness α spreads the reflected and refracted rays of `cook` by up to the arc tangent of α.
 
+mod conductor;
 mod dielectric;
 mod diffuse;
+mod metals;
 mod mirror;
 mod phong;
+mod roughness;
 
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
@@ -31,6 +37,10 @@ pub trait Material: Send + Sync {
     fn bsdf(&self, surface: &Surface) -> Bsdf;
     /// The same point under Equations 1 and 2.
     fn classic(&self, surface: &Surface) -> ClassicMaterial;
+    /// True when it tells directions along the surface apart, and so asks for [`Surface::tangent`].
+    fn needs_tangents(&self) -> bool {
+        false
+    }
     /// Radiance given out on both sides; black for what is no light.
     fn emission(&self) -> Rgb {
         Rgb::BLACK
@@ -54,7 +64,8 @@ pub struct MaterialEntry {
 pub type BuildMaterial = fn(&Reader, &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError>;
 
 /// Every material that there is.
-pub const MATERIALS: &[MaterialEntry] = &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, dielectric::ENTRY];
+pub const MATERIALS: &[MaterialEntry] =
+    &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, conductor::ENTRY, dielectric::ENTRY];
 
 /// Makes the material that a spec describes.
 ///

@@ -1,0 +1,130 @@
+//! Roughness: how the facets of a rough surface are turned, and how much of them is seen. The distribution of Trowbridge
+//! and Reitz, called GGX, with the masking and shadowing of Smith. [Walter 2007; Heitz 2014]
+//!
+//! Directions are local, with the normal as z, and seen from above: callers mirror what comes from below.
+
+use bilux_math::transcendental::sin_cos;
+use bilux_math::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, TAU};
+
+/// Facets that are turned as those of a stretched sphere. Along each of two directions across each other the stretch is
+/// the alpha of that direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    /// The stretch as a symmetric matrix: xx, xy, yy.
+    stretch: [f32; 3],
+    /// The lesser alpha; 0 for a smooth surface.
+    least: f32,
+}
+
+/// Below this alpha a surface is smooth, and no direction's alpha is less: f32 holds no sharper peaks.
+const LEAST_ALPHA: f32 = 1e-3;
+
+impl Ggx {
+    /// No roughness at all.
+    pub const SMOOTH: Ggx = Ggx { stretch: [0.0; 3], least: 0.0 };
+
+    /// Equally rough in all directions.
+    pub fn new(alpha: f32) -> Ggx {
+        Ggx::anisotropic(alpha, alpha, 0.0)
+    }
+
+    /// With an alpha along a direction, which the local x axis becomes when turned by `rotation` in radians, and
+    /// another across it.
+    pub fn anisotropic(alpha_along: f32, alpha_across: f32, rotation: f32) -> Ggx {
+        // Of two numbers `max` takes the one that is a number, if any is.
+        if !matches!(alpha_along.max(alpha_across), LEAST_ALPHA..) {
+            return Ggx::SMOOTH;
+        }
+        let (along, across) = (alpha_along.max(LEAST_ALPHA), alpha_across.max(LEAST_ALPHA));
+        let (sin, cos) = if along == across { (0.0, 1.0) } else { sin_cos(rotation) };
+        let xx = along * cos * cos + across * sin * sin;
+        let yy = along * sin * sin + across * cos * cos;
+        Ggx { stretch: [xx, (along - across) * sin * cos, yy], least: along.min(across) }
+    }
+
+    /// As users say it: roughness 0..=1, the square root of alpha; anisotropy 0..=1, how much smoother the surface is
+    /// along its brushing than across; and that direction against the local x axis, in radians. [OpenPBR 1.1]
+    pub fn from_roughness(roughness: f32, anisotropy: f32, rotation: f32) -> Ggx {
+        let narrowed = 1.0 - anisotropy;
+        let across = roughness * roughness * (2.0 / (1.0 + narrowed * narrowed)).sqrt();
+        Ggx::anisotropic(narrowed * across, across, rotation)
+    }
+
+    /// True for a surface that reflects in single directions.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.least == 0.0
+    }
+
+    #[inline]
+    fn stretched(&self, x: f32, y: f32) -> Vec2 {
+        let [xx, xy, yy] = self.stretch;
+        Vec2::new(xx * x + xy * y, xy * x + yy * y)
+    }
+
+    /// Density of facets over the directions that they face, weighted by their cosine. [Walter 2007, eq. 33]
+    #[inline]
+    pub(super) fn distribution(&self, m: Vec3) -> f32 {
+        let [xx, xy, yy] = self.stretch;
+        let determinant = xx * yy - xy * xy;
+        let back = Vec2::new(yy * m.x - xy * m.y, xx * m.y - xy * m.x) / determinant;
+        let q = back.length_squared() + m.z * m.z;
+        FRAC_1_PI / (determinant * q * q)
+    }
+
+    /// How long a direction is once stretched: cosθ·(1 + 2Λ), Λ the mean shadow. [Heitz 2014, eq. 72]
+    #[inline]
+    pub(super) fn shadow(&self, v: Vec3) -> f32 {
+        (self.stretched(v.x, v.y).length_squared() + v.z * v.z).sqrt()
+    }
+
+    /// Masking and shadowing of two directions together, height-correlated, over 4·cosθo, times 4·cosθo·cosθi over
+    /// that: what facets of density 1 reflect from `wi` to `wo`, f·|cosθi|. [Heitz 2014, eq. 99]
+    #[inline]
+    pub(super) fn visible(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let sum = self.shadow(wo) * wi.z + self.shadow(wi) * wo.z;
+        if sum > 0.0 { 0.5 * wi.z / sum } else { 0.0 }
+    }
+
+    /// Density over solid angle of the facets that `wo` sees, as [`Ggx::sample_visible`] draws them with a bound of
+    /// [`Ggx::FULL`], over their distribution and their cosine with `wo`.
+    #[inline]
+    pub(super) fn seen(&self, wo: Vec3) -> f32 {
+        2.0 / (wo.z + self.shadow(wo))
+    }
+
+    /// Density over solid angle of directions reflected about facets drawn within [`Ggx::bound`], over the facets'
+    /// distribution. [Eto 2023, eq. 8]
+    #[inline]
+    pub(super) fn reflected_within_bound(&self, wo: Vec3) -> f32 {
+        0.5 / (self.bound(wo) * wo.z + self.shadow(wo))
+    }
+
+    /// The whole cap of facets that can be seen.
+    pub(super) const FULL: f32 = 1.0;
+
+    /// How much of the cap of visible facets can reflect `wo` upwards. [Eto 2023, eq. 5]
+    #[inline]
+    pub(super) fn bound(&self, wo: Vec3) -> f32 {
+        let across = 1.0 + (1.0 - wo.z * wo.z).max(0.0).sqrt();
+        let (a2, s2) = (self.least.min(1.0) * self.least.min(1.0), across * across);
+        (1.0 - a2) * s2 / (s2 + a2 * wo.z * wo.z)
+    }
+
+    /// A facet that `wo`, above the surface, sees: a point of a spherical cap, since a reflected uniform direction of
+    /// the unit sphere is one above the stretched `wo`'s horizon. [Dupuy 2023]
+    #[inline]
+    pub(super) fn sample_visible(&self, wo: Vec3, u: Vec2, bound: f32) -> Vec3 {
+        let flat = self.stretched(wo.x, wo.y);
+        let above = Vec3::new(flat.x, flat.y, wo.z).normalize();
+        let lowest = bound * above.z;
+        let z = (1.0 - u.y) * (1.0 + lowest) - lowest;
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        let (sin, cos) = sin_cos(TAU * u.x);
+        let half = Vec3::new(r * cos, r * sin, z) + above;
+        let flat = self.stretched(half.x, half.y);
+        let m = Vec3::new(flat.x, flat.y, half.z.max(0.0));
+        m.try_normalize().unwrap_or(Vec3::Z)
+    }
+}

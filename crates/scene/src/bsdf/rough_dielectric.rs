@@ -1,0 +1,175 @@
+//! Rough glass: facets that reflect and refract by Fresnel's equations and Snell's law. [Walter 2007]
+
+use super::conductor::facet_between;
+use super::{BsdfEntry, BsdfSample, Ggx, Lobe, TransportMode, fresnel_dielectric, refract};
+use bilux_math::frame::reflect;
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2, Vec3};
+
+/// Row of [`super::BSDFS`].
+pub(super) const ENTRY: BsdfEntry = BsdfEntry {
+    entry: Entry {
+        name: "rough dielectric",
+        summary: "frosted glass: reflects and refracts about facets",
+        source: "Walter 2007",
+        parameters: &[],
+    },
+    reciprocal: false,
+    lossless: false,
+    cases: || {
+        let glass =
+            |eta, thin, ggx| Lobe::RoughDielectric(RoughDielectric { eta, tint: Rgb::WHITE, thin, ggx });
+        vec![
+            ("frosted", glass(1.5, false, Ggx::new(0.3))),
+            ("etched", glass(1.5, false, Ggx::new(0.1))),
+            ("bubble", glass(1.0 / 1.33, false, Ggx::new(0.2))),
+            ("diamond, scratched", glass(2.4, false, Ggx::anisotropic(0.1, 0.6, 0.4))),
+            ("pane", glass(1.5, true, Ggx::new(0.25))),
+        ]
+    },
+};
+
+/// Rough glass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughDielectric {
+    /// Refractive index of the inside over that of the outside.
+    pub eta: f32,
+    /// Factor on all light, 0..=1; white for real glass.
+    pub tint: Rgb,
+    /// A pane without thickness: what passes goes on as what is reflected would, on the other side.
+    pub thin: bool,
+    /// How its facets are turned; not smooth.
+    pub ggx: Ggx,
+}
+
+impl RoughDielectric {
+    /// True where the roughness shows: facets that hardly bend light let it through as a smooth boundary does, and
+    /// their width is lost to rounding.
+    pub fn is_rough(eta: f32, thin: bool, ggx: &Ggx) -> bool {
+        !ggx.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        self.eval_and_pdf(wo, wi, mode).0
+    }
+
+    #[inline]
+    pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.eval_and_pdf(wo, wi, TransportMode::Importance).1
+    }
+
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        let (f, pdf) = match (wo.z * wi.z > 0.0, self.thin) {
+            (true, _) => self.reflected(wo, wi, |reflected| reflected),
+            (false, true) => self.reflected(wo, Vec3::new(wi.x, wi.y, -wi.z), |reflected| 1.0 - reflected),
+            (false, false) => self.refracted(wo, wi, mode),
+        };
+        (self.tint * f, pdf)
+    }
+
+    /// Light that comes back from the facets, or through those of a pane; `share` is that of Fresnel's fraction.
+    #[inline]
+    fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32) {
+        let eta = self.eta_from(wo);
+        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (0.0, 0.0) };
+        let cos = wo.dot(m);
+        let density = self.ggx.distribution(m) * share(self.fresnel(cos, eta));
+        (density * self.ggx.visible(wo, wi), density * 0.25 * self.ggx.seen(wo))
+    }
+
+    /// Light that passes the facets. [Walter 2007, eq. 21]
+    #[inline]
+    fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32) {
+        let eta = self.eta_from(wo);
+        let side = 1f32.copysign(wo.z);
+        let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
+        let Some(m) = (wo + wi * eta).try_normalize().map(|m| m * 1f32.copysign(m.z)) else {
+            return (0.0, 0.0);
+        };
+        let (cos_o, cos_i) = (wo.dot(m), -wi.dot(m));
+        if cos_o <= 0.0 || cos_i <= 0.0 || wo.z == 0.0 || wi.z == 0.0 {
+            return (0.0, 0.0);
+        }
+        let spread = cos_o - eta * cos_i;
+        let per_angle = cos_i * cos_o * eta * eta / (spread * spread);
+        let density = self.ggx.distribution(m) * passed(cos_o, cos_i, eta) * per_angle;
+        let below = Vec3::new(wi.x, wi.y, -wi.z);
+        let f = density * 4.0 * self.ggx.visible(wo, below);
+        let f = if mode == TransportMode::Radiance { f / (eta * eta) } else { f };
+        if f.is_finite() { (f, density * self.ggx.seen(wo)) } else { (0.0, 0.0) }
+    }
+
+    pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        let eta = self.eta_from(wo);
+        let above = Vec3::new(wo.x, wo.y, wo.z.abs());
+        let m = self.ggx.sample_visible(above, u, Ggx::FULL);
+        let reflects = u_choice < self.fresnel(above.dot(m), eta);
+        let wi = match (reflects, self.thin) {
+            (true, _) => reflect(above, m),
+            (false, true) => reflect(above, m) * Vec3::new(1.0, 1.0, -1.0),
+            (false, false) => refract(above, m, eta)?,
+        };
+        if (wi.z > 0.0) != reflects {
+            return None;
+        }
+        let wi = Vec3::new(wi.x, wi.y, wi.z * 1f32.copysign(wo.z)).normalize();
+        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
+        (pdf_solid_angle > 0.0).then(|| BsdfSample {
+            wi,
+            weight: f / pdf_solid_angle,
+            pdf_solid_angle,
+            is_delta: false,
+            transmits: !reflects,
+            eta: if reflects || self.thin { 1.0 } else { eta },
+        })
+    }
+
+    /// The reflected fraction at a facet; of a pane, at both of its faces.
+    #[inline]
+    fn fresnel(&self, cos: f32, eta: f32) -> f32 {
+        if !self.thin {
+            return fresnel_dielectric(cos, eta);
+        }
+        let once = fresnel_dielectric(cos, self.eta);
+        2.0 * once / (1.0 + once)
+    }
+
+    /// Index of the far side over that of the side of `wo`.
+    #[inline]
+    fn eta_from(&self, wo: Vec3) -> f32 {
+        if wo.z > 0.0 { self.eta } else { 1.0 / self.eta }
+    }
+
+    #[inline]
+    pub(super) fn strength(&self) -> f32 {
+        self.tint.luminance()
+    }
+}
+
+/// What [`fresnel_dielectric`] lacks to 1, by the cosines on both sides: the same from both, and exact where next to
+/// nothing passes. `eta` is the index of the second side over that of the first.
+#[inline]
+fn passed(cos_o: f32, cos_i: f32, eta: f32) -> f32 {
+    let (parallel, perpendicular) = (eta * cos_o + cos_i, cos_o + eta * cos_i);
+    let product = 2.0 * eta * cos_o * cos_i;
+    product / (parallel * parallel) + product / (perpendicular * perpendicular)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_reflected_passes() {
+        for eta in [1.5f32, 1.0 / 1.5, 2.4] {
+            for i in 1..=40 {
+                let cos = i as f32 / 40.0;
+                let below = (1.0 - (1.0 - cos * cos) / (eta * eta)).max(0.0).sqrt();
+                let wanted = 1.0 - fresnel_dielectric(cos, eta);
+                let found = if below > 0.0 { passed(cos, below, eta) } else { 0.0 };
+                assert!((found - wanted).abs() < 1e-5, "eta {eta}, cos {cos}: {found}, {wanted}");
+            }
+        }
+    }
+}

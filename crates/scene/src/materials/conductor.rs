@@ -1,0 +1,124 @@
+//! `conductor`: metal, polished, satin or brushed.
+
+use super::metals::{METALS, NAMES};
+use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
+use super::{Material, MaterialEntry, colour_map, reflectance};
+use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
+use crate::classic::ClassicMaterial;
+use crate::error::SceneError;
+use crate::parameters::Reader;
+use crate::surface::Surface;
+use crate::texture::ColourMap;
+use bilux_math::Rgb;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use std::sync::Arc;
+
+pub(super) const ENTRY: MaterialEntry = MaterialEntry {
+    entry: Entry {
+        name: "conductor",
+        summary: "metal: polished, satin or brushed",
+        source: "Walter 2007",
+        parameters: &[
+            Parameter {
+                name: "metal",
+                summary: "a metal as it was measured",
+                unit: "",
+                kind: ParameterKind::Choice(NAMES),
+                default: "aluminium",
+            },
+            index("eta", "in place of a metal: the real part of its refractive index", 1e-3),
+            index("k", "in place of a metal: the imaginary part, the extinction", 0.0),
+            reflectance(
+                "reflectance",
+                "in place of a metal: reflected fraction of light that falls in straight",
+                "1",
+            ),
+            Parameter {
+                name: "edge",
+                summary: "with a reflectance: what remains of Schlick's law at 82 degrees",
+                unit: "",
+                kind: ParameterKind::Colour { min: 0.0, max: 1.0 },
+                default: "1",
+            },
+            roughness("0.3"),
+            ANISOTROPY,
+            ROTATION,
+        ],
+    },
+    build: |reader, textures| {
+        one_colour(reader)?;
+        let tint = colour_map(reader, "reflectance", textures)?;
+        let named = reader.text("metal");
+        let named = METALS.iter().find(|metal| metal.name == named);
+        let colour = match named {
+            _ if reader.is_given("reflectance") => Colour::Tinted { tint, edge: reader.colour("edge") },
+            Some(metal) if !reader.is_given("eta") => {
+                Colour::Metal(Fresnel::Complex { eta: metal.eta, k: metal.k })
+            }
+            _ => Colour::Metal(Fresnel::Complex { eta: reader.colour("eta"), k: reader.colour("k") }),
+        };
+        Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader) }))
+    },
+};
+
+const fn index(name: &'static str, summary: &'static str, min: f64) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Colour { min, max: 100.0 }, default: "1" }
+}
+
+/// Refuses two ways of saying one thing, and half of one.
+fn one_colour(reader: &Reader) -> Result<(), SceneError> {
+    let given: Vec<&str> =
+        ["metal", "eta", "reflectance"].into_iter().filter(|key| reader.is_given(key)).collect();
+    if let [first, second, ..] = given[..] {
+        let message = format!("'{first}' and '{second}' both say what metal this is: take one of them out");
+        return Err(SceneError::invalid(message, reader.span(second)));
+    }
+    let alone = [("eta", "k"), ("k", "eta"), ("edge", "reflectance")];
+    match alone.into_iter().find(|(key, with)| reader.is_given(key) && !reader.is_given(with)) {
+        Some((key, with)) => {
+            Err(SceneError::invalid(format!("'{key}' says nothing without '{with}'"), reader.span(key)))
+        }
+        None => Ok(()),
+    }
+}
+
+struct ConductorMaterial {
+    colour: Colour,
+    roughness: Roughness,
+}
+
+enum Colour {
+    Metal(Fresnel),
+    Tinted { tint: ColourMap, edge: Rgb },
+}
+
+impl ConductorMaterial {
+    fn fresnel(&self, surface: &Surface) -> Fresnel {
+        match &self.colour {
+            Colour::Metal(fresnel) => *fresnel,
+            Colour::Tinted { tint, edge } => Fresnel::tinted(tint.at(surface.uv), *edge),
+        }
+    }
+}
+
+impl Material for ConductorMaterial {
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        let metal = Conductor { fresnel: self.fresnel(surface), ggx: self.roughness.ggx };
+        let lobes = [Some(Lobe::Conductor(metal)), None, None];
+        Bsdf::new(surface.n_shade, surface.n_geom, lobes).along(surface.tangent)
+    }
+
+    fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        ClassicMaterial {
+            ks: self.fresnel(surface).at(1.0),
+            exponent: self.roughness.exponent(),
+            reflectivity: 1.0,
+            gloss: self.roughness.spread(),
+            ..ClassicMaterial::default()
+        }
+    }
+
+    fn needs_tangents(&self) -> bool {
+        self.roughness.has_direction()
+    }
+}
