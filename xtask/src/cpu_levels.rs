@@ -48,6 +48,7 @@ const PICTURES: &[Picture] = &[
     Picture { name: "path-bvh", scene: CORNELL, render: &["-i", "path", "--accel", "bvh"] },
     Picture { name: "path-bsp", scene: CORNELL, render: &["-i", "path", "--accel", "bsp"] },
     Picture { name: "path-bvh8", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8"] },
+    Picture { name: "path-compact", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8-compact"] },
     Picture { name: "cast-simd", scene: TEAPOTS, render: &["-i", "cast", "--accel", "brute-simd"] },
 ];
 

@@ -21,6 +21,11 @@ const WORKS: &[&str] = &[
     "bounce-single-sse4.2",
     "shadow-single-sse4.2",
     "bounce-single-baseline",
+    "primary-compact-avx2",
+    "bounce-compact-avx2",
+    "shadow-compact-avx2",
+    "bounce-compact-sse4.2",
+    "bounce-compact-baseline",
 ];
 const TABLE: &str = "crates/accel/instructions.tsv";
 /// More than this over the table is a slow-down; less than this below it is worth a new table.

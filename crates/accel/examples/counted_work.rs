@@ -4,11 +4,13 @@
 //! cargo xtask instructions        # counts all of them and compares with crates/accel/instructions.tsv
 //! counted_work primary-single-avx2
 //! ```
-//! A work is a class of rays (`primary`, `bounce`, `shadow`), a way of asking (`single`, `batch`) and a CPU level. What
-//! counts happens in the function `asked`. Prints the number of rays, and of hits.
+//! A work is a class of rays (`primary`, `bounce`, `shadow`), a way of asking (`single`, `batch`, or `compact`: `single`, of the
+//! compact layout) and a CPU level. What counts happens in the function `asked`. Prints the number of rays, and of hits.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
-use bilux_accel::{Accelerator, BuildOptions, Bvh8, CpuLevel, Primitive, Query, Ray, TriangleMesh};
+use bilux_accel::{
+    Accelerator, BuildOptions, Bvh8, CompactBvh8, CpuLevel, Primitive, Query, Ray, TriangleMesh,
+};
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::transcendental::{cos, sin};
 use std::error::Error;
@@ -36,6 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             asked(|| tree.any_hits(&rays, &Query::default(), &mut hits));
             hits.into_iter().filter(|hit| *hit).count()
         }
+        (_, "compact") => compact(&CompactBvh8::pack(&tree)?, &rays, class),
         ("shadow", _) => asked(|| rays.iter().filter(|ray| tree.any_hit(ray, &Query::default())).count()),
         (_, "batch") => {
             let mut hits = vec![None; rays.len()];
@@ -46,6 +49,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     println!("{} {hits}", rays.len());
     Ok(())
+}
+
+/// How many of the rays hit something in a compact tree.
+#[inline(never)]
+fn compact(tree: &CompactBvh8, rays: &[Ray], class: &str) -> usize {
+    if class == "shadow" {
+        asked(|| rays.iter().filter(|ray| tree.any_hit(ray, &Query::default())).count())
+    } else {
+        asked(|| rays.iter().filter_map(|ray| tree.closest_hit(ray, &Query::default())).count())
+    }
 }
 
 /// What is counted.

@@ -8,7 +8,7 @@
 //! - A *pool* holds up to [`POOL`] corners, each once, for as many blocks before it as it suffices for.
 //!
 //! A step is a power of two, so that steps times their number is exact and only the sum is rounded, alike in every
-//! kernel, fused or not. A box is the least such that holds the true one *as it is read*. [Ylitie 2017, section 3.2]
+//! kernel, fused or not. A box is the least such that holds the true one *as it is read*. [Ylitie 2017]
 
 use crate::bvh::tree::union;
 use crate::bvh8::layout::{EMPTY, LANES, Planes, Ref, Unit, WIDTH};
@@ -50,11 +50,13 @@ impl Steps {
         steps
     }
 
+    #[inline(always)]
     fn length(&self) -> f32 {
         f32::from_bits(u32::from(self.exponent) << 23)
     }
 
     /// What every kernel reads.
+    #[inline(always)]
     fn at(&self, number: u8) -> f32 {
         self.low + f32::from(number) * self.length()
     }
@@ -104,11 +106,18 @@ pub(super) fn write_node(units: &mut [Unit], children: &[(Planes, Ref)]) {
 /// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is none.
 #[inline(always)]
 pub(in crate::bvh8) fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
-    let plane = |side: usize, axis: usize| {
-        let steps = Steps { low: f32::from_bits(word(node, axis)), exponent: byte(node, 12 + axis) };
-        steps.at(byte(node, PLANES + (side * 3 + axis) * WIDTH + child))
+    let node: &[Unit; NODE_UNITS] = match node.first_chunk() {
+        Some(node) => node,
+        None => return (EMPTY, Ref::EMPTY),
     };
-    let planes = [0, 1].map(|side| [plane(side, 0), plane(side, 1), plane(side, 2)]);
+    let exponents = word(node, 3).to_le_bytes();
+    let plane = |side: usize, axis: usize| {
+        let steps = Steps { low: f32::from_bits(word(node, axis)), exponent: exponents[axis] };
+        let first = PLANES / 4 + (side * 3 + axis) * 2;
+        let row = u64::from(word(node, first)) | u64::from(word(node, first + 1)) << 32;
+        steps.at((row >> (8 * child)) as u8)
+    };
+    let planes = [[plane(0, 0), plane(0, 1), plane(0, 2)], [plane(1, 0), plane(1, 1), plane(1, 2)]];
     (planes, Ref(word(node, REFERENCES / 4 + child)))
 }
 
@@ -148,9 +157,4 @@ pub(super) fn put(units: &mut [Unit], word: usize, bits: u32) {
 #[inline(always)]
 fn word(units: &[Unit], word: usize) -> u32 {
     units[word / 8].0[word % 8]
-}
-
-#[inline(always)]
-fn byte(units: &[Unit], byte: usize) -> u8 {
-    (word(units, byte / 4) >> (8 * (byte % 4))) as u8
 }

@@ -47,9 +47,8 @@ impl Packer<'_> {
     }
 
     fn leaf(&mut self, leaf: &[Unit]) -> Ref {
-        let corners = leaf.chunks_exact(layout::BLOCK_UNITS).flat_map(layout::triangles);
-        let new = corners.flat_map(|(corners, _)| corners).filter(|p| self.pool.find(p).is_err()).count();
-        if self.pool.corners.len() + new > POOL {
+        let most = leaf.len() / layout::BLOCK_UNITS * LANES * 3;
+        if self.pool.corners.len() + most > POOL && self.pool.corners.len() + self.new_corners(leaf) > POOL {
             self.close();
         }
         let at = self.units.len();
@@ -64,6 +63,12 @@ impl Packer<'_> {
             self.units.push(block(numbers, primitives));
         }
         Ref::leaf(at, self.units.len() - at)
+    }
+
+    /// How many corners of a leaf the pool does not have; those that the leaf has twice count twice.
+    fn new_corners(&self, leaf: &[Unit]) -> usize {
+        let corners = leaf.chunks_exact(layout::BLOCK_UNITS).flat_map(layout::triangles);
+        corners.flat_map(|(corners, _)| corners).filter(|corner| self.pool.find(corner).is_err()).count()
     }
 
     /// Writes the pool behind all that there is, and begins a new one.

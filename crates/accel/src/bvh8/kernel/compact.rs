@@ -149,19 +149,40 @@ impl Form for Compact {
         unsafe {
             let pool =
                 block.add(block.cast::<u32>().add(3).read() as usize * size_of::<Unit>()).cast::<f32>();
-            let corner = |place: usize| {
-                let number = usize::from(*block.add(place));
-                L::reorder(_mm_loadu_ps(pool.add(number * 3)), axes)
-            };
-            let four = |k: usize| {
-                let (a, b) = (corner(4 * k), corner(4 * k + 1));
-                let (c, d) = (corner(4 * k + 2), corner(4 * k + 3));
-                let (ab, cd) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
-                let z = _mm_movelh_ps(_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
-                [_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab), z]
-            };
-            let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (four(0), four(1), four(2));
+            let ([ax, ay, az], [bx, by, bz], [cx, cy, cz]) = (
+                four::<L>(pool, block, axes),
+                four::<L>(pool, block.add(4), axes),
+                four::<L>(pool, block.add(8), axes),
+            );
             [[ax, bx, cx], [ay, by, cy], [az, bz, cz]]
         }
     }
+}
+
+/// Four corners of a pool, axis by axis, that four bytes name.
+///
+/// # Safety
+/// The machine must have the level, the pool must have the corners, and a number behind the last.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+unsafe fn four<L: Level>(pool: *const f32, numbers: *const u8, axes: &Axes) -> [__m128; 3] {
+    // SAFETY: as the caller promises.
+    unsafe {
+        let (a, b) = (corner::<L>(pool, *numbers, axes), corner::<L>(pool, *numbers.add(1), axes));
+        let (c, d) = (corner::<L>(pool, *numbers.add(2), axes), corner::<L>(pool, *numbers.add(3), axes));
+        let (ab, cd) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
+        let z = _mm_movelh_ps(_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
+        [_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab), z]
+    }
+}
+
+/// A corner in the order of sheared space.
+///
+/// # Safety
+/// As for [`four`].
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+unsafe fn corner<L: Level>(pool: *const f32, number: u8, axes: &Axes) -> __m128 {
+    // SAFETY: as the caller promises.
+    unsafe { L::reorder(_mm_loadu_ps(pool.add(usize::from(number) * 3)), axes) }
 }

@@ -125,6 +125,59 @@ impl TameRay {
     }
 }
 
+impl TameRay {
+    /// See [`Boxes::span`]; of four children. Functions, as closures would be compiled without the instructions.
+    ///
+    /// # Safety
+    /// As for [`Boxes::span`].
+    #[inline(always)]
+    unsafe fn half<F: Form, const FROM: usize>(
+        &self,
+        node: *const u8,
+        frame: &F::Frame4,
+        limit: __m128i,
+    ) -> (__m128i, __m128i) {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let (a, b) = (self.enter::<F, FROM>(node, 0, frame), self.enter::<F, FROM>(node, 1, frame));
+            let enter = _mm_max_epi32(_mm_max_epi32(a, b), self.enter::<F, FROM>(node, 2, frame));
+            let (a, b) = (self.leave::<F, FROM>(node, 0, frame), self.leave::<F, FROM>(node, 1, frame));
+            let leave = _mm_min_epi32(_mm_min_epi32(a, b), self.leave::<F, FROM>(node, 2, frame));
+            (_mm_max_epi32(enter, self.nearest), _mm_min_epi32(leave, limit))
+        }
+    }
+
+    // SAFETY: as above.
+    #[inline(always)]
+    unsafe fn enter<F: Form, const FROM: usize>(
+        &self,
+        node: *const u8,
+        k: usize,
+        frame: &F::Frame4,
+    ) -> __m128i {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let planes = F::planes4(node, self.enter_rows[k], FROM, k, frame);
+            _mm_castps_si128(_mm_mul_ps(_mm_sub_ps(planes, self.enter[k]), self.inverse[k]))
+        }
+    }
+
+    // SAFETY: as above.
+    #[inline(always)]
+    unsafe fn leave<F: Form, const FROM: usize>(
+        &self,
+        node: *const u8,
+        k: usize,
+        frame: &F::Frame4,
+    ) -> __m128i {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let planes = F::planes4(node, self.leave_rows[k], FROM, k, frame);
+            _mm_castps_si128(_mm_mul_ps(_mm_sub_ps(planes, self.leave[k]), self.inverse[k]))
+        }
+    }
+}
+
 impl Boxes for TameRay {
     type Eight = [__m128i; 2];
 
@@ -134,18 +187,8 @@ impl Boxes for TameRay {
         // SAFETY: as the trait demands.
         unsafe {
             let frame = F::frame4(node);
-            let half = |from: usize, limit: __m128i| {
-                let distance = |row: usize, k: usize, origin: __m128| {
-                    let planes = F::planes4(node, row, from, k, &frame);
-                    _mm_castps_si128(_mm_mul_ps(_mm_sub_ps(planes, origin), self.inverse[k]))
-                };
-                let enter = |k: usize| distance(self.enter_rows[k], k, self.enter[k]);
-                let leave = |k: usize| distance(self.leave_rows[k], k, self.leave[k]);
-                let (a, b) = (_mm_max_epi32(enter(0), enter(1)), _mm_max_epi32(enter(2), self.nearest));
-                let (c, d) = (_mm_min_epi32(leave(0), leave(1)), _mm_min_epi32(leave(2), limit));
-                (_mm_max_epi32(a, b), _mm_min_epi32(c, d))
-            };
-            let (low, high) = (half(0, limit[0]), half(4, limit[1]));
+            let low = self.half::<F, 0>(node, &frame, limit[0]);
+            let high = self.half::<F, 4>(node, &frame, limit[1]);
             ([low.0, high.0], [low.1, high.1])
         }
     }
