@@ -34,6 +34,8 @@ pub enum ParameterKind {
         /// Greatest channel.
         max: f64,
     },
+    /// The name of a material.
+    Material,
     /// Three coordinates.
     Vector,
     /// One of these words.

@@ -4,7 +4,7 @@ use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
 use crate::geometry::{Geometry, Placed};
 use crate::lights::{self, BuiltLight};
-use crate::materials::{self, Material};
+use crate::materials::{self, Ingredients, Material};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec};
 use crate::scene::{Scene, SceneLight, SceneParts};
@@ -106,7 +106,7 @@ impl SceneBuilder {
         let mut materials: Vec<Arc<dyn Material>> = self
             .materials
             .iter()
-            .map(|spec| materials::build(spec, &self.textures))
+            .map(|spec| materials::build(spec, &Ingredients::new(&self.textures, &self.materials)))
             .collect::<Result<_, _>>()?;
         let mut objects = self.objects.clone();
         for object in &objects {
@@ -144,7 +144,7 @@ impl SceneBuilder {
                 BuiltLight::Light(light) => lights_found.push(SceneLight::new(&spec.name, light)),
                 BuiltLight::Surface { mesh, emission, classic } => {
                     let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
-                    materials.push(materials::build(&black, &[])?);
+                    materials.push(materials::build(&black, &Ingredients::default())?);
                     if let Some(colour) = classic {
                         panels.push((objects.len(), colour));
                     }

@@ -43,6 +43,8 @@ pub enum Value {
     List(Vec<Value>),
     /// An index into [`crate::SceneBuilder::textures`]; readers put it in place of a file's name.
     Texture(usize),
+    /// An index into [`crate::SceneBuilder::materials`]; readers put it in place of a material's name.
+    Material(usize),
 }
 
 impl Value {
@@ -223,6 +225,14 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The material under a key, as an index; one that is not there where nothing or no material is.
+    pub fn material(&self, key: &str) -> usize {
+        match self.value(key) {
+            Value::Material(index) => index,
+            _ => usize::MAX,
+        }
+    }
+
     fn value(&self, key: &str) -> Value {
         if let Some((value, _)) = self.spec.parameters.find(key) {
             return value.clone();
@@ -236,7 +246,9 @@ impl<'a> Reader<'a> {
 fn parse_default(kind: ParameterKind, text: &str) -> Value {
     match kind {
         ParameterKind::Bool => Value::Bool(text == "true"),
-        ParameterKind::Text | ParameterKind::Choice(_) => Value::Text(text.to_owned()),
+        ParameterKind::Text | ParameterKind::Material | ParameterKind::Choice(_) => {
+            Value::Text(text.to_owned())
+        }
         _ => {
             let numbers: Vec<Value> =
                 text.split_whitespace().filter_map(|w| w.parse().ok().map(Value::Number)).collect();
@@ -288,6 +300,7 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
             format!("one of {}{}", words.join(", "), meant(value, words)),
         ),
         ParameterKind::Text => (matches!(value, Value::Text(_)), "text".to_owned()),
+        ParameterKind::Material => (matches!(value, Value::Material(_)), "the name of a material".to_owned()),
     };
     if fits { Ok(()) } else { Err(wanted) }
 }
@@ -307,5 +320,6 @@ fn describe(value: &Value) -> String {
         Value::Text(t) => format!("\"{t}\""),
         Value::List(list) => format!("[{}]", list.iter().map(describe).collect::<Vec<_>>().join(", ")),
         Value::Texture(_) => "a texture".to_owned(),
+        Value::Material(_) => "a material".to_owned(),
     }
 }

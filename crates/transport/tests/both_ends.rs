@@ -4,7 +4,7 @@ mod common;
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec};
+use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
 use common::statistics::{agreement, blocks};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life};
@@ -84,6 +84,28 @@ fn rough_metal_and_glass_look_the_same_from_both_ends() {
         let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
         assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
     }
+}
+
+#[test]
+fn a_mixture_with_a_mirror_in_it_looks_the_same_from_both_ends() {
+    let mixed = |builder: &mut SceneBuilder, a: Spec, b: Spec, amount: f32| {
+        let (a, b) = (builder.add_material(a), builder.add_material(b));
+        let spec = Spec::new("", "mix").with("a", Value::Material(a)).with("b", Value::Material(b));
+        spec.with("amount", amount)
+    };
+    let mut builder = panel_over(Spec::new("", "mirror"));
+    let gold = Spec::new("", "conductor").with("metal", "gold").with("roughness", 0.5f32);
+    let enamel = mixed(&mut builder, diffuse(Rgb::new(0.1, 0.4, 0.7)), Spec::new("", "mirror"), 0.3);
+    let ball = builder.objects.last().unwrap().material;
+    builder.materials[ball] = mixed(&mut builder, gold, enamel, 0.6);
+    // The inner mix is a material of its own.
+    let inner = builder.materials.len() - 1;
+    assert_eq!(builder.materials[inner].kind, "mix");
+    let scene = built(&builder);
+    check("enamel", &scene, &["bdpt"]);
+    let path = blocks(&scene, &*integrator("path"), 0);
+    let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
+    assert!(p > UNLIKELY, "enamel: path and vcm: p = {p}");
 }
 
 /// No camera path finds what a mirror sends on from a light without extent.

@@ -4,8 +4,8 @@ use bilux_math::frame::reflect;
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::{BSDFS, BsdfEntry, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
-use bilux_scene::materials::MATERIALS;
-use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode};
+use bilux_scene::materials::{Ingredients, MATERIALS};
+use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Value};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer, the_same_from_both_ends};
 use bilux_validation::chi_square::uniforms;
 
@@ -35,7 +35,12 @@ fn is_white(lobe: &Lobe) -> bool {
 #[test]
 fn every_registered_material_keeps_the_contract_too() {
     for row in MATERIALS {
-        let material = bilux_scene::materials::build(&Spec::new("", row.entry.name), &[]).unwrap();
+        let parts = [Spec::new("", "diffuse"), Spec::new("", "conductor")];
+        let mut spec = Spec::new("", row.entry.name);
+        if row.entry.name == "mix" {
+            spec = spec.with("a", Value::Material(0)).with("b", Value::Material(1));
+        }
+        let material = bilux_scene::materials::build(&spec, &Ingredients::new(&[], &parts)).unwrap();
         let bsdf = material.bsdf(&flat_surface());
         let reciprocal = row.entry.name != "dielectric";
         for (check, run) in CHECKS {
@@ -88,6 +93,47 @@ fn sums_of_lobes_about_a_turned_normal_do_too() {
             }
         }
     }
+}
+
+/// Lobes with and without width, each with its weight.
+fn mixture(n_shade: Vec3, n_geom: Vec3) -> Bsdf {
+    let cases: Vec<(&str, Lobe)> = BSDFS.iter().flat_map(|row| (row.cases)()).collect();
+    let part = |name: &str| {
+        let (_, lobe) = cases.iter().find(|(case, _)| *case == name).unwrap();
+        Bsdf::new(n_shade, n_geom, [Some(*lobe), None, None]).along(Vec3::new(1.0, 0.5, 0.0))
+    };
+    let metal = part("polished").mixed(&part("brushed"), 0.7);
+    metal.mixed(&part("frosted").mixed(&part("glass"), 0.4), 0.6)
+}
+
+#[test]
+fn mixtures_scatter_the_same_from_both_ends() {
+    let promise = Promise { reciprocal: false, lossless: false };
+    for n_shade in turned().into_iter().chain([Vec3::Z]) {
+        let result = the_same_from_both_ends(&mixture(n_shade, Vec3::Z).into(), promise);
+        assert_eq!(result, Ok(()), "about {n_shade}");
+    }
+}
+
+#[test]
+fn a_mixture_gives_each_part_its_share() {
+    let white =
+        Bsdf::new(Vec3::Z, Vec3::Z, [Some(Lobe::Lambert(Lambert { albedo: Rgb::WHITE })), None, None]);
+    let mirror =
+        Bsdf::new(Vec3::Z, Vec3::Z, [Some(Lobe::Mirror(Mirror { reflectance: Rgb::grey(0.2) })), None, None]);
+    let both = white.mixed(&mirror, 0.25);
+    assert!(!both.is_delta() && mirror.is_delta() && mirror.mixed(&mirror, 0.5).is_delta());
+    let wo = Vec3::new(0.6, 0.0, 0.8);
+    let mut sums = [0.0f64; 2];
+    const N: u64 = 100_000;
+    for (choice, u) in (0..N).map(|i| uniforms(700, i)) {
+        let sample = both.sample(wo, choice, u, TransportMode::Radiance).unwrap();
+        sums[usize::from(sample.is_delta)] += f64::from(sample.weight.g) / N as f64;
+        let (f, pdf) = both.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
+        // What a light in that direction would be weighted with: the density of the wide part alone.
+        assert!(sample.is_delta || (f.g / pdf - sample.weight.g).abs() < 1e-5);
+    }
+    assert!((sums[0] - 0.75).abs() < 0.005 && (sums[1] - 0.05).abs() < 0.001, "{sums:?}");
 }
 
 #[test]

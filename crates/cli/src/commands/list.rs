@@ -137,6 +137,7 @@ fn kind_text(kind: ParameterKind) -> String {
         ParameterKind::Vector => "x, y, z".to_owned(),
         ParameterKind::Choice(words) => words.join("|"),
         ParameterKind::Text => "text".to_owned(),
+        ParameterKind::Material => "a material's name".to_owned(),
     }
 }
 

@@ -12,19 +12,21 @@ impl Native<'_, '_> {
     pub(super) fn bring_materials(&mut self, model: &SceneBuilder) -> usize {
         let first = self.scene.materials.len();
         for spec in &model.materials {
-            let spec = self.moved_textures(spec);
+            let spec = self.moved(spec, first);
             self.scene.materials.push(spec);
         }
         self.scene.textures.extend(model.textures.iter().cloned());
         first
     }
 
-    /// A spec of a scene whose textures come after ours.
-    fn moved_textures(&self, spec: &Spec) -> Spec {
+    /// A spec of a scene whose textures come after ours, and whose materials begin at `first`.
+    fn moved(&self, spec: &Spec, first: usize) -> Spec {
         let mut spec = spec.clone();
         for (_, value, _) in &mut spec.parameters.0 {
-            if let Value::Texture(index) = value {
-                *index += self.scene.textures.len();
+            match value {
+                Value::Texture(index) => *index += self.scene.textures.len(),
+                Value::Material(index) => *index += first,
+                _ => {}
             }
         }
         spec

@@ -31,6 +31,9 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     for part in &parts {
         part.root.check_keys("a scene", KEYS.into_iter())?;
         native.settings(&part.root)?;
+        native.names_of_materials(part)?;
+    }
+    for part in &parts {
         native.materials(part)?;
     }
     for part in &parts {
@@ -73,20 +76,28 @@ impl Native<'_, '_> {
         Ok(())
     }
 
-    fn materials(&mut self, part: &Part) -> Result<(), FormatError> {
+    /// Names come first, since materials may be made of others in any order.
+    fn names_of_materials(&mut self, part: &Part) -> Result<(), FormatError> {
         for table in part.root.tables("material")? {
-            let spec = self.material(table, part)?;
-            let (name, at) = (spec.name.clone(), spec.span.clone());
+            let (name, at) = (table.text("name")?.unwrap_or_default(), table.at.clone());
             if name.is_empty() {
                 let what = "name (what models call the material)".to_owned();
                 return Err(SceneError::Missing { what, at }.into());
             }
-            let index = self.scene.add_material(spec);
-            if let Some((_, first)) = self.materials.insert(name.clone(), (index, at.clone())) {
+            let index = self.materials.len();
+            if let Some((_, first)) = self.materials.insert(name.to_owned(), (index, at.clone())) {
                 let message =
                     format!("there is a material '{name}' already, at {first}: give this one another name");
                 return Err(SceneError::invalid(message, &at).into());
             }
+        }
+        Ok(())
+    }
+
+    fn materials(&mut self, part: &Part) -> Result<(), FormatError> {
+        for table in part.root.tables("material")? {
+            let spec = self.material(table, part)?;
+            self.scene.add_material(spec);
         }
         Ok(())
     }

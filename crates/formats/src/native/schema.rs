@@ -106,7 +106,7 @@ fn values(kind: ParameterKind) -> Value {
         }
         ParameterKind::Vector => vector(),
         ParameterKind::Choice(words) => json!({ "enum": words }),
-        ParameterKind::Text => json!({ "type": "string" }),
+        ParameterKind::Text | ParameterKind::Material => json!({ "type": "string" }),
     }
 }
 
@@ -122,7 +122,7 @@ fn default_value(parameter: &Parameter) -> Option<Value> {
     Some(match parameter.kind {
         _ if text.is_empty() => return None,
         ParameterKind::Bool => json!(text == "true"),
-        ParameterKind::Choice(_) | ParameterKind::Text => json!(text),
+        ParameterKind::Choice(_) | ParameterKind::Text | ParameterKind::Material => json!(text),
         _ => match <[Value; 1]>::try_from(numbers) {
             Ok([one]) => one,
             Err(several) => json!(several),

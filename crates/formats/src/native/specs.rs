@@ -4,7 +4,7 @@ use super::document::{Item, Node, Table};
 use super::include::Part;
 use super::scene::Native;
 use crate::FormatError;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, Value};
 
@@ -15,6 +15,11 @@ impl Native<'_, '_> {
     pub(super) fn material(&mut self, table: &Table, part: &Part) -> Result<Spec, FormatError> {
         let rows: Vec<&Entry> = MATERIALS.iter().map(|row| &row.entry).collect();
         self.spec(table, part, "material", None, &rows, &[])
+    }
+
+    /// True for a key of a material that names another.
+    fn names_material(row: &Entry, key: &str) -> bool {
+        row.parameters.iter().any(|p| p.name == key && p.kind == ParameterKind::Material)
     }
 
     pub(super) fn light(&mut self, table: &Table, part: &Part) -> Result<Spec, FormatError> {
@@ -69,7 +74,12 @@ impl Native<'_, '_> {
         let name = table.text("name")?.unwrap_or_default();
         let mut spec = Spec { span: table.at.clone(), ..Spec::new(name, kind) };
         for (key, at, item) in table.entries.iter().filter(|(key, ..)| !structural().any(|k| k == key)) {
-            if let Some(value) = self.value(key, item, part)? {
+            let value = if Self::names_material(row, key) {
+                Some(Value::Material(self.material_named(item)?))
+            } else {
+                self.value(key, item, part)?
+            };
+            if let Some(value) = value {
                 spec.parameters.set_at(key, value, at.clone());
             }
         }

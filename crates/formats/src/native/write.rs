@@ -163,6 +163,10 @@ fn value_text(
             Some(file) => format!("{{ texture = {} }}", quoted(&file)),
             None => return Ok(None),
         },
+        Value::Material(index) => match material_names(&scene.materials).get(*index) {
+            Some(name) => quoted(name),
+            None => return Ok(None),
+        },
     }))
 }
 

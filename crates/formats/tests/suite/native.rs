@@ -302,7 +302,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ("[[material]]\nkind = \"phong\"\n", "scene.toml:1:1: name (what models call the material)"),
         (
             "[[material]]\nname = \"a\"\n",
-            "scene.toml:1:1: kind (of the material: phong, diffuse, mirror, dielectric)",
+            "scene.toml:1:1: kind (of the material: phong, diffuse, mirror, conductor, dielectric, mix)",
         ),
         ("[[material]]\nname = \"a\"\nkind = \"glas\"\n", "scene.toml:3:8: there is no material 'glas'"),
         (
@@ -489,4 +489,31 @@ fn the_examples_of_the_manual_are_scenes() {
         let scene = read(&path, &ReadOptions { strict: true, ..Default::default() }).unwrap();
         assert!(scene.build(&Default::default(), [0.0, 1.0], 1.0).is_ok());
     }
+}
+
+#[test]
+fn materials_are_mixed_by_name_in_any_order() {
+    let mix = "[[material]]\nname = \"m\"\nkind = \"mix\"\na = \"matt\"\nb = \"metal\"\namount = 0.3\n";
+    let parts = "[[material]]\nname = \"matt\"\nkind = \"diffuse\"\n\
+                 [[material]]\nname = \"metal\"\nkind = \"conductor\"\nmetal = \"gold\"\n";
+    let model = "[[model]]\nshape = \"quad\"\nmaterial = \"m\"\n";
+    let built = |text: &str| {
+        let scene = read_text("toml", text)?;
+        scene.build(&Default::default(), [0.0, 0.0], 1.0).map(|_| scene).map_err(FormatError::from)
+    };
+    let scene = built(&format!("{mix}{parts}{model}")).unwrap();
+    let part = |key: &str| scene.materials[0].parameters.find(key).unwrap().0.clone();
+    assert_eq!((part("a"), part("b")), (Value::Material(1), Value::Material(2)));
+    let refusal = |text: &str| built(text).err().unwrap().to_string();
+    let misspelt = refusal(&format!("{mix}{}", parts.replace("\"metal\"\nkind", "\"metall\"\nkind")));
+    assert!(misspelt.contains("there is no material 'metal'; did you mean 'metall'?"), "{misspelt}");
+    let itself = refusal(&format!("{}{parts}", mix.replace("\"matt\"", "\"m\"")));
+    assert!(itself.contains("or one with itself"), "{itself}");
+    let phongs =
+        parts.replace("\"diffuse\"", "\"phong\"").replace("\"conductor\"\nmetal = \"gold\"", "\"phong\"");
+    let many = refusal(&format!("{mix}{phongs}"));
+    assert!(many.contains("in 6 ways"), "{many}");
+    let lamp = parts.replace("\"diffuse\"", "\"diffuse\"\nemission = 1");
+    let glows = refusal(&format!("{mix}{lamp}"));
+    assert!(glows.contains("'a' gives light"), "{glows}");
 }

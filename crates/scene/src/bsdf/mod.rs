@@ -163,16 +163,42 @@ const MOST_TURNED: f32 = (1u64 << 60) as f32;
 pub struct Bsdf {
     frame: Frame,
     n_geom: Vec3,
-    lobes: [Option<Lobe>; 3],
+    lobes: [Option<Lobe>; MOST_LOBES],
+    /// What each lobe's light is multiplied by.
+    weights: [f32; MOST_LOBES],
     total_strength: f32,
 }
+
+/// So many lobes are summed at most.
+pub const MOST_LOBES: usize = 4;
 
 impl Bsdf {
     /// A sum of at most three lobes around a shading normal.
     #[inline]
     pub fn new(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; 3]) -> Bsdf {
         let total_strength = lobes.iter().flatten().map(Lobe::strength).sum();
-        Bsdf { frame: Frame::from_normal(n_shade), n_geom, lobes, total_strength }
+        let [a, b, c] = lobes;
+        let (lobes, weights) = ([a, b, c, None], [1.0; MOST_LOBES]);
+        Bsdf { frame: Frame::from_normal(n_shade), n_geom, lobes, weights, total_strength }
+    }
+
+    /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal. Lobes beyond
+    /// [`MOST_LOBES`] are left out.
+    pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
+        let mut sum = Bsdf { lobes: [None; MOST_LOBES], total_strength: 0.0, ..*self };
+        let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
+        let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
+        for (i, (weight, lobe)) in parts.enumerate().take(MOST_LOBES) {
+            (sum.lobes[i], sum.weights[i]) = (Some(*lobe), weight);
+            sum.total_strength += weight * lobe.strength();
+        }
+        sum
+    }
+
+    /// The lobes, each with its weight.
+    #[inline]
+    fn weighted(&self) -> impl Iterator<Item = (f32, &Lobe)> {
+        self.weights.iter().zip(&self.lobes).filter_map(|(w, lobe)| Some((*w, lobe.as_ref()?)))
     }
 
     /// The same with the local x axis along a tangent, for lobes that tell directions apart; the zero vector
@@ -194,7 +220,7 @@ impl Bsdf {
             return Rgb::BLACK;
         }
         let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        let scattered = self.lobes.iter().flatten().map(|lobe| lobe.eval(local_wo, local_wi, mode)).sum();
+        let scattered = self.weighted().map(|(w, lobe)| lobe.eval(local_wo, local_wi, mode) * w).sum();
         self.carried(scattered, self.frame.n, wo, wi, mode)
     }
 
@@ -204,8 +230,8 @@ impl Bsdf {
             return 0.0;
         }
         let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        let weighted = |lobe: &Lobe| lobe.strength() * lobe.pdf_solid_angle(wo, wi);
-        self.lobes.iter().flatten().map(weighted).sum::<f32>() / self.total_strength
+        let weighted = |(w, lobe): (f32, &Lobe)| w * lobe.strength() * lobe.pdf_solid_angle(wo, wi);
+        self.weighted().map(weighted).sum::<f32>() / self.total_strength
     }
 
     /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
@@ -213,10 +239,10 @@ impl Bsdf {
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
         let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
-        for lobe in self.lobes.iter().flatten() {
+        for (weight, lobe) in self.weighted() {
             let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
-            scattered += f;
-            pdf += lobe.strength() * p;
+            scattered += f * weight;
+            pdf += weight * lobe.strength() * p;
         }
         let scattered = if self.sides_agree(wo, wi) {
             self.carried(scattered, self.frame.n, wo, wi, mode)
@@ -231,10 +257,11 @@ impl Bsdf {
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let (index, u_choice) = self.choose(u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
-        let share = chosen.strength() / self.total_strength;
+        let weight = self.weights[index];
+        let share = weight * chosen.strength() / self.total_strength;
         if chosen.is_delta() {
             let mut sample = self.sample_delta(chosen, wo, u_choice, mode)?;
-            sample.weight = sample.weight / share;
+            sample.weight *= weight / share;
             sample.pdf_solid_angle *= share;
             return (sample.pdf_solid_angle > 0.0).then_some(sample);
         }
@@ -268,8 +295,8 @@ impl Bsdf {
     fn choose(&self, u: f32) -> Option<(usize, f32)> {
         let mut rest = u * self.total_strength;
         let mut last = None;
-        for (i, lobe) in self.lobes.iter().enumerate() {
-            let strength = lobe.as_ref().map_or(0.0, Lobe::strength);
+        for (i, (weight, lobe)) in self.weights.iter().zip(&self.lobes).enumerate() {
+            let strength = lobe.as_ref().map_or(0.0, |lobe| weight * lobe.strength());
             if strength <= 0.0 {
                 continue;
             }

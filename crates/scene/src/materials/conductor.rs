@@ -45,9 +45,9 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             ROTATION,
         ],
     },
-    build: |reader, textures| {
+    build: |reader, ingredients| {
         one_colour(reader)?;
-        let tint = colour_map(reader, "reflectance", textures)?;
+        let tint = colour_map(reader, "reflectance", ingredients)?;
         let named = reader.text("metal");
         let named = METALS.iter().find(|metal| metal.name == named);
         let colour = match named {

@@ -27,10 +27,10 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
         ],
     },
-    build: |reader, textures| {
+    build: |reader, ingredients| {
         Ok(Arc::new(Glass {
             eta: reader.number("eta"),
-            tint: colour_map(reader, "tint", textures)?,
+            tint: colour_map(reader, "tint", ingredients)?,
             sigma_a: reader.colour("absorption"),
             thin: reader.bool("thin"),
             roughness: Roughness::read(reader),

@@ -16,9 +16,9 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         source: "Lambert 1760",
         parameters: &[reflectance("reflectance", "reflected fraction of the light", "0.7"), EMISSION],
     },
-    build: |reader, textures| {
+    build: |reader, ingredients| {
         Ok(Arc::new(Diffuse {
-            reflectance: colour_map(reader, "reflectance", textures)?,
+            reflectance: colour_map(reader, "reflectance", ingredients)?,
             emission: reader.colour("emission"),
         }))
     },

@@ -20,9 +20,9 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION,
         ],
     },
-    build: |reader, textures| {
+    build: |reader, ingredients| {
         Ok(Arc::new(MirrorMaterial {
-            reflectance: colour_map(reader, "reflectance", textures)?,
+            reflectance: colour_map(reader, "reflectance", ingredients)?,
             gloss: reader.number("gloss").to_radians(),
             emission: reader.colour("emission"),
         }))

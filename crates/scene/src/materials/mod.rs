@@ -10,6 +10,7 @@
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
 //! | `conductor` | 0 | 0 | reflectance straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
+//! | `mix` | in between | in between | in between | in between | in between | in between | as what lets light in |
 //!
 //! Roughness α spreads the reflected and refracted rays of `cook` by up to the arc tangent of α.
 
@@ -18,13 +19,14 @@ mod dielectric;
 mod diffuse;
 mod metals;
 mod mirror;
+mod mix;
 mod phong;
 mod roughness;
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
-use crate::parameters::{Reader, Spec};
+use crate::parameters::{Reader, Span, Spec};
 use crate::surface::Surface;
 use crate::texture::{ColourMap, Texture};
 use bilux_math::Rgb;
@@ -40,6 +42,10 @@ pub trait Material: Send + Sync {
     /// True when it tells directions along the surface apart, and so asks for [`Surface::tangent`].
     fn needs_tangents(&self) -> bool {
         false
+    }
+    /// In how many ways it scatters light at most: lobes of its [`Bsdf`].
+    fn most_lobes(&self) -> usize {
+        1
     }
     /// Radiance given out on both sides; black for what is no light.
     fn emission(&self) -> Rgb {
@@ -60,32 +66,66 @@ pub struct MaterialEntry {
     pub build: BuildMaterial,
 }
 
-/// How a material is made from its parameters and the scene's textures.
-pub type BuildMaterial = fn(&Reader, &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError>;
+/// How a material is made from its parameters and what else is in the scene.
+pub type BuildMaterial = fn(&Reader, &Ingredients) -> Result<Arc<dyn Material>, SceneError>;
+
+/// What materials are made of.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ingredients<'a> {
+    /// The scene's textures.
+    pub textures: &'a [Arc<Texture>],
+    /// The scene's materials, for those that are made of others.
+    pub materials: &'a [Spec],
+    /// How many materials this one is already a part of.
+    depth: usize,
+}
+
+/// Each way of scattering needs a material, so that no mix that is allowed is deeper.
+const DEEPEST: usize = MOST_LOBES - 1;
+
+impl<'a> Ingredients<'a> {
+    /// Those of a whole scene.
+    pub fn new(textures: &'a [Arc<Texture>], materials: &'a [Spec]) -> Ingredients<'a> {
+        Ingredients { textures, materials, depth: 0 }
+    }
+
+    /// Another material of the scene, as a part of the one that is being made.
+    fn material(&self, index: usize, at: &Span) -> Result<Arc<dyn Material>, SceneError> {
+        let Some(spec) = self.materials.get(index) else {
+            return Err(SceneError::invalid(format!("no material {index}"), at));
+        };
+        if self.depth >= DEEPEST {
+            let message = format!("materials are mixed more than {DEEPEST} deep, or one with itself");
+            return Err(SceneError::invalid(message, at));
+        }
+        build(spec, &Ingredients { depth: self.depth + 1, ..*self })
+    }
+}
 
 /// Every material that there is.
 pub const MATERIALS: &[MaterialEntry] =
-    &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, conductor::ENTRY, dielectric::ENTRY];
+    &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, conductor::ENTRY, dielectric::ENTRY, mix::ENTRY];
 
 /// Makes the material that a spec describes.
 ///
 /// # Errors
 /// When no row has its kind, or a parameter is wrong.
-pub fn build(spec: &Spec, textures: &[Arc<Texture>]) -> Result<Arc<dyn Material>, SceneError> {
+pub fn build(spec: &Spec, ingredients: &Ingredients) -> Result<Arc<dyn Material>, SceneError> {
     let names = MATERIALS.iter().map(|row| row.entry.name);
     let row = MATERIALS
         .iter()
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
-    (row.build)(&Reader::new(spec, &row.entry)?, textures)
+    (row.build)(&Reader::new(spec, &row.entry)?, ingredients)
 }
 
 /// The colour or texture under a key.
-fn colour_map(reader: &Reader, key: &str, textures: &[Arc<Texture>]) -> Result<ColourMap, SceneError> {
+fn colour_map(reader: &Reader, key: &str, ingredients: &Ingredients) -> Result<ColourMap, SceneError> {
     let texture = match reader.texture(key) {
         None => None,
         Some(index) => Some(
-            textures
+            ingredients
+                .textures
                 .get(index)
                 .cloned()
                 .ok_or_else(|| SceneError::invalid(format!("no texture {index}"), reader.span(key)))?,

@@ -45,14 +45,14 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION,
         ],
     },
-    build: |reader, textures| {
+    build: |reader, ingredients| {
         let ambient = if reader.is_given("ka") { "ka" } else { "kd" };
         Ok(Arc::new(Phong {
-            ka: colour_map(reader, ambient, textures)?,
+            ka: colour_map(reader, ambient, ingredients)?,
             ambient_follows_kd: !reader.is_given("ka"),
-            kd: colour_map(reader, "kd", textures)?,
-            ks: colour_map(reader, "ks", textures)?,
-            kt: colour_map(reader, "kt", textures)?,
+            kd: colour_map(reader, "kd", ingredients)?,
+            ks: colour_map(reader, "ks", ingredients)?,
+            kt: colour_map(reader, "kt", ingredients)?,
             constants: ClassicMaterial {
                 exponent: reader.number("exponent"),
                 reflectivity: reader.number("reflectivity"),
@@ -111,6 +111,10 @@ impl Material for Phong {
             fresnel: !kt.is_black(),
             ..self.constants
         }
+    }
+
+    fn most_lobes(&self) -> usize {
+        3
     }
 
     fn emission(&self) -> Rgb {

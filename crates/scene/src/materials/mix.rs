@@ -1,0 +1,109 @@
+//! `mix`: two materials in one place, each for a share of the light.
+
+use super::{Ingredients, Material, MaterialEntry, colour_map, reflectance};
+use crate::bsdf::{Bsdf, MOST_LOBES};
+use crate::classic::ClassicMaterial;
+use crate::error::SceneError;
+use crate::parameters::Reader;
+use crate::surface::Surface;
+use crate::texture::ColourMap;
+use bilux_math::Rgb;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use std::sync::Arc;
+
+pub(super) const ENTRY: MaterialEntry = MaterialEntry {
+    entry: Entry {
+        name: "mix",
+        summary: "two materials in one place, each for a share of the light",
+        source: "",
+        parameters: &[
+            part("a", "the first material, by its name"),
+            part("b", "the second material, by its name; may be a mix itself"),
+            reflectance(
+                "amount",
+                "how much of the second: 0 is all of the first; the luminance of a texture",
+                "0.5",
+            ),
+        ],
+    },
+    build: |reader, ingredients| {
+        let (a, b) = (read_part(reader, ingredients, "a")?, read_part(reader, ingredients, "b")?);
+        let lobes = a.most_lobes() + b.most_lobes();
+        if lobes > MOST_LOBES {
+            let message = format!(
+                "these materials scatter light in {lobes} ways together, and a mix has at most {MOST_LOBES}: \
+                 a phong material has 3, others have 1"
+            );
+            return Err(SceneError::invalid(message, reader.span("a")));
+        }
+        Ok(Arc::new(Mix { a, b, amount: colour_map(reader, "amount", ingredients)? }))
+    },
+};
+
+const fn part(name: &'static str, summary: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Material, default: "" }
+}
+
+fn read_part(reader: &Reader, ingredients: &Ingredients, key: &str) -> Result<Arc<dyn Material>, SceneError> {
+    let material = ingredients.material(reader.material(key), reader.span(key))?;
+    if !material.emission().is_black() {
+        let message =
+            format!("'{key}' gives light, which a mix cannot: give an object of its own that material");
+        return Err(SceneError::invalid(message, reader.span(key)));
+    }
+    Ok(material)
+}
+
+struct Mix {
+    a: Arc<dyn Material>,
+    b: Arc<dyn Material>,
+    amount: ColourMap,
+}
+
+impl Mix {
+    /// The share of the second material.
+    fn share(&self, surface: &Surface) -> f32 {
+        self.amount.at(surface.uv).luminance().clamp(0.0, 1.0)
+    }
+}
+
+impl Material for Mix {
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        match self.share(surface) {
+            0.0 => self.a.bsdf(surface),
+            1.0 => self.b.bsdf(surface),
+            share => self.a.bsdf(surface).mixed(&self.b.bsdf(surface), share),
+        }
+    }
+
+    fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        let (a, b, share) = (self.a.classic(surface), self.b.classic(surface), self.share(surface));
+        let number = |a: f32, b: f32| a + (b - a) * share;
+        // What light meets inside is that of the part that lets it in.
+        let clear = if a.kt.is_black() { b } else { a };
+        ClassicMaterial {
+            ka: a.ka.lerp(b.ka, share),
+            kd: a.kd.lerp(b.kd, share),
+            ks: a.ks.lerp(b.ks, share),
+            kt: a.kt.lerp(b.kt, share),
+            exponent: number(a.exponent, b.exponent),
+            reflectivity: number(a.reflectivity, b.reflectivity),
+            gloss: number(a.gloss, b.gloss),
+            ..clear
+        }
+    }
+
+    fn needs_tangents(&self) -> bool {
+        self.a.needs_tangents() || self.b.needs_tangents()
+    }
+
+    fn most_lobes(&self) -> usize {
+        self.a.most_lobes() + self.b.most_lobes()
+    }
+
+    /// What is inside does not depend on where light came in: the denser of the two.
+    fn sigma_a(&self) -> Rgb {
+        let (a, b) = (self.a.sigma_a(), self.b.sigma_a());
+        Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b))
+    }
+}
