@@ -140,7 +140,7 @@ impl SceneBuilder {
     ) -> Result<BuiltLights, SceneError> {
         let (mut lights_found, mut panels) = (Vec::new(), Vec::new());
         for spec in &self.lights {
-            match lights::build(spec)? {
+            match lights::build(spec, &self.textures)? {
                 BuiltLight::Light(light) => lights_found.push(SceneLight::new(&spec.name, light)),
                 BuiltLight::Surface { mesh, emission, classic } => {
                     let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);

@@ -4,11 +4,12 @@ mod common;
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Value};
+use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
 use common::statistics::{agreement, blocks};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life};
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// Less likely than this by chance: a bug.
 const UNLIKELY: f64 = 1e-4;
@@ -84,6 +85,20 @@ fn rough_metal_and_glass_look_the_same_from_both_ends() {
         let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
         assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
     }
+}
+
+#[test]
+fn a_picture_of_the_sky_gives_the_same_from_both_ends() {
+    let texels = (0..32 * 16).map(|i| {
+        let (x, y) = (i % 32, i / 32);
+        let sun = if (12..14).contains(&x) && y == 4 { 40.0 } else { 0.0 };
+        Rgb::new(0.3, 0.4, 0.6) * (1.0 - y as f32 / 16.0) + Rgb::new(1.0, 0.8, 0.5) * sun
+    });
+    let picture = Texture { name: String::new(), width: 32, height: 16, texels: texels.collect() };
+    let light = Spec::new("", "environment").with("radiance", Value::Texture(0)).with("rotation", 20.0f32);
+    let mut builder = without_mirrors(light);
+    builder.textures.push(Arc::new(picture));
+    check("picture", &built(&builder), &["light", "bdpt"]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use bilux_math::{Aabb, DMat4, Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec
 use bilux_scene::generators::shapes::{cuboid, icosphere, quad};
 use bilux_scene::{
     AccelChoice, ClassicLight, EmissionSample, LIGHTS, Light, LightSample, Mesh, Object, Primitive,
-    SceneBuilder, Spec, Surface,
+    SceneBuilder, Spec, Surface, Texture, Value,
 };
 use bilux_validation::light_contract::{CHECKS, LightCase};
 use std::f64::consts::TAU;
@@ -105,6 +105,19 @@ fn cases() -> Vec<LightCase> {
         with_light("narrow spot", spot(2.0, 1.0)),
         with_light("panel", beside.with("edge_v", Vec3::new(0.3, 0.3, 0.8))),
     ]);
+    let sun = |x: usize, y: usize| if (x, y) == (41, 9) { 900.0 } else { 0.0 };
+    let sky = |x: usize, y: usize| Rgb::new(0.2, 0.4, 0.7) * (1.0 - y as f32 / 32.0) + Rgb::WHITE * sun(x, y);
+    let picture = Arc::new(Texture {
+        name: "sky".to_owned(),
+        width: 64,
+        height: 32,
+        texels: (0..64 * 32).map(|i| sky(i % 64, i / 64)).collect(),
+    });
+    cases.push(case("picture", 0.0, |builder| {
+        builder.textures.push(picture);
+        let spec = Spec::new("", "environment").with("radiance", Value::Texture(0));
+        builder.lights.push(spec.with("scale", Rgb::new(1.0, 0.5, 0.8)).with("rotation", 130.0f32));
+    }));
     cases.extend(luminous_meshes());
     cases
 }
@@ -208,6 +221,9 @@ const PLANTED: &[Bug] = &[
     ("the sky upside down", "sky", "direct light finds what was sent", |s| EmissionSample {
         direction: -s.direction,
         ..s
+    }),
+    ("a picture's density of another place", "picture", "direct light finds what was sent", |s| {
+        EmissionSample { pdf_direct: s.pdf_direct * 1.01, ..s }
     }),
     ("one side only", "panel", "flux through a plane is the same both ways", |s| {
         let up = s.n_light * if s.n_light.y < 0.0 { 1.0 } else { -1.0 };

@@ -20,7 +20,7 @@ impl Native<'_, '_> {
     }
 
     /// A spec of a scene whose textures come after ours, and whose materials begin at `first`.
-    fn moved(&self, spec: &Spec, first: usize) -> Spec {
+    pub(super) fn moved(&self, spec: &Spec, first: usize) -> Spec {
         let mut spec = spec.clone();
         for (_, value, _) in &mut spec.parameters.0 {
             match value {

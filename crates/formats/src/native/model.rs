@@ -12,7 +12,7 @@ use crate::formats::{format_named, read_source, unknown};
 use crate::reading::{Source, bytes_of};
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::generators::GENERATORS;
-use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec};
+use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -203,7 +203,13 @@ impl Native<'_, '_> {
         }
         for word in item.list("with", "a list of \"lights\" and \"cameras\"")? {
             match word.text("with")? {
-                "lights" => self.scene.lights.extend(model.lights.iter().cloned()),
+                "lights" => {
+                    let lights: Vec<Spec> = model.lights.iter().map(|light| self.moved(light, 0)).collect();
+                    if lights.iter().any(|light| light.parameters.0.iter().any(|(_, v, _)| is_texture(v))) {
+                        self.scene.textures.extend(model.textures.iter().cloned());
+                    }
+                    self.scene.lights.extend(lights);
+                }
                 "cameras" => self.scene.cameras.extend(model.cameras.iter().cloned()),
                 other => {
                     let known = ["lights", "cameras"];
@@ -213,4 +219,8 @@ impl Native<'_, '_> {
         }
         Ok(())
     }
+}
+
+fn is_texture(value: &Value) -> bool {
+    matches!(value, Value::Texture(_))
 }

@@ -15,7 +15,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         source: "Phong 1975",
         parameters: &[colour("colour", "light that is everywhere", "", "0.3")],
     },
-    build: |reader| Ok(BuiltLight::Light(Arc::new(Ambient { colour: reader.colour("colour") }))),
+    build: |reader, _| Ok(BuiltLight::Light(Arc::new(Ambient { colour: reader.colour("colour") }))),
 };
 
 struct Ambient {

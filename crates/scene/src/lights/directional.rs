@@ -24,7 +24,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             CLASSIC,
         ],
     },
-    build: |reader| {
+    build: |reader, _| {
         let towards = (-reader.vector("direction")).try_normalize().ok_or_else(|| {
             SceneError::invalid("a light's direction must not be zero", reader.span("direction"))
         })?;

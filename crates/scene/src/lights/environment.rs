@@ -1,8 +1,10 @@
-//! `environment`: light from all around, infinitely far: one colour, or a sky that changes with height.
+//! `environment`: light from all around, infinitely far: one colour, a sky that changes with height, or a picture.
 
 use super::distant::{disc_pdf_area, sample_disc};
+use super::environment_map::EnvironmentMap;
 use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample};
 use crate::classic::ClassicLight;
+use crate::error::SceneError;
 use crate::surface::Surface;
 use bilux_accel::Primitive;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -13,10 +15,24 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "environment",
-        summary: "light from all around: one colour, or a sky that changes with height",
+        summary: "light from all around: one colour, a sky that changes with height, or a picture",
         source: "",
         parameters: &[
-            super::colour("radiance", "what comes from every direction", "W/(m² sr)", "1"),
+            Parameter {
+                name: "radiance",
+                summary: "what comes from every direction; a picture by longitude and latitude, its middle towards -z",
+                unit: "W/(m² sr)",
+                kind: ParameterKind::ColourTexture { min: 0.0, max: 1e12 },
+                default: "1",
+            },
+            super::colour("scale", "factor on all of it", "", "1"),
+            Parameter {
+                name: "rotation",
+                summary: "turns a picture about the y axis, to the right",
+                unit: "degrees",
+                kind: ParameterKind::Number { min: -360.0, max: 360.0 },
+                default: "0",
+            },
             sky("zenith", "what comes from straight above; -1 for radiance"),
             sky("horizon", "what comes from the sides; -1 for radiance"),
             sky("ground", "what comes from straight below; -1 for radiance"),
@@ -29,17 +45,25 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             },
         ],
     },
-    build: |reader| {
+    build: |reader, textures| {
+        let (scale, backdrop) = (reader.colour("scale"), reader.bool("backdrop"));
+        if let Some(index) = reader.texture("radiance") {
+            let missing = || SceneError::invalid(format!("no texture {index}"), reader.span("radiance"));
+            let picture = textures.get(index).ok_or_else(missing)?.clone();
+            let rotation = reader.number("rotation").to_radians();
+            let map = EnvironmentMap::new(picture, scale, rotation, backdrop);
+            return Ok(BuiltLight::Light(Arc::new(map)));
+        }
         let radiance = reader.colour("radiance");
         let part = |key| {
             let colour = reader.colour(key);
-            if colour.r < 0.0 { radiance } else { colour }
+            (if colour.r < 0.0 { radiance } else { colour }) * scale
         };
         Ok(BuiltLight::Light(Arc::new(Environment {
             zenith: part("zenith"),
             horizon: part("horizon"),
             ground: part("ground"),
-            backdrop: reader.bool("backdrop"),
+            backdrop,
         })))
     },
 };

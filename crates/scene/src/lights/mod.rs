@@ -9,6 +9,7 @@ mod ambient;
 mod directional;
 mod distant;
 mod environment;
+mod environment_map;
 mod mesh_light;
 mod point;
 mod rect;
@@ -22,6 +23,7 @@ use crate::mesh::Mesh;
 use crate::parameters::{Reader, Spec};
 use crate::surface::Surface;
 use crate::surface::{leaving, offset_origin};
+use crate::texture::Texture;
 use bilux_accel::{Primitive, Ray};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
@@ -171,8 +173,8 @@ pub enum BuiltLight {
 pub struct LightEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
-    /// Makes one from its parameters.
-    pub build: fn(&Reader) -> Result<BuiltLight, SceneError>,
+    /// Makes one from its parameters and the scene's textures.
+    pub build: fn(&Reader, &[Arc<Texture>]) -> Result<BuiltLight, SceneError>,
 }
 
 /// Every light that there is.
@@ -183,13 +185,13 @@ pub const LIGHTS: &[LightEntry] =
 ///
 /// # Errors
 /// When no row has its kind, or a parameter is wrong.
-pub fn build(spec: &Spec) -> Result<BuiltLight, SceneError> {
+pub fn build(spec: &Spec, textures: &[Arc<Texture>]) -> Result<BuiltLight, SceneError> {
     let names = LIGHTS.iter().map(|row| row.entry.name);
     let row = LIGHTS
         .iter()
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("light", &spec.kind, names, &spec.span))?;
-    (row.build)(&Reader::new(spec, &row.entry)?)
+    (row.build)(&Reader::new(spec, &row.entry)?, textures)
 }
 
 /// The colour for Equations 1 and 2 of something that gives `intensity` (W/sr) from `position`.

@@ -22,7 +22,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             CLASSIC,
         ],
     },
-    build: |reader| {
+    build: |reader, _| {
         Ok(BuiltLight::Light(Arc::new(Point {
             position: reader.vector("position"),
             intensity: reader.colour("intensity"),

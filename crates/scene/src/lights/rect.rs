@@ -20,7 +20,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             CLASSIC,
         ],
     },
-    build: |reader| {
+    build: |reader, _| {
         let (p, u, v) = (reader.vector("position"), reader.vector("edge_u"), reader.vector("edge_v"));
         let area = u.cross(v).length();
         if !(area > 0.0 && area.is_finite()) {

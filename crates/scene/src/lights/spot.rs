@@ -27,7 +27,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             CLASSIC,
         ],
     },
-    build: |reader| {
+    build: |reader, _| {
         let position = reader.vector("position");
         let axis = (reader.vector("look_at") - position).try_normalize().ok_or_else(|| {
             SceneError::invalid("a spot must not look at the point where it stands", reader.span("look_at"))

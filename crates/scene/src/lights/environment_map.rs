@@ -1,0 +1,249 @@
+//! A picture of all that is around, infinitely far: latitude and longitude, its middle towards -z, +y above.
+//!
+//! Directions are drawn by how much light comes from there: first a row of cells, then a cell, then any direction in it.
+//! A cell's chance is that of its light once neighbouring texels are blended, as they are looked up.
+
+use super::distant::{disc_pdf_area, sample_disc};
+use super::{EmissionSample, Light, LightSample};
+use crate::classic::ClassicLight;
+use crate::surface::Surface;
+use crate::texture::Texture;
+use bilux_accel::Primitive;
+use bilux_math::transcendental::{acos, atan2, sin_cos, sin_cos_f64};
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Light from a picture.
+pub(super) struct EnvironmentMap {
+    texture: Arc<Texture>,
+    scale: Rgb,
+    /// By how much the picture is turned, as a part of a whole turn.
+    turn: f32,
+    is_backdrop: bool,
+    /// Cells a row, and rows.
+    columns: usize,
+    rows: usize,
+    /// Heights of the rows' edges on the unit sphere, downwards.
+    heights: Vec<f64>,
+    /// For each row the share of all light in it and the rows above.
+    row_cdf: Vec<f64>,
+    /// For each cell the share of its row's light in it and the cells to its left.
+    cell_cdf: Vec<f64>,
+    /// Radiance averaged over all directions.
+    mean: Rgb,
+}
+
+/// So many cells at most on each side, of pictures however large.
+const MOST: (usize, usize) = (2048, 1024);
+/// So many rows are looked at to add up what a small picture gives.
+const FINE: usize = 512;
+/// Even where the picture is black a direction has this share of an even sky's density.
+const FLOOR: f64 = 1e-3;
+
+impl EnvironmentMap {
+    /// A picture whose colours are multiplied by `scale`, turned to the right by `rotation` in radians.
+    pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
+        let (columns, rows) = (texture.width.min(MOST.0), texture.height.min(MOST.1));
+        let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
+        let mut map = EnvironmentMap {
+            texture,
+            scale,
+            turn: rotation / TAU,
+            is_backdrop,
+            columns,
+            rows,
+            heights: (0..=rows).map(height).collect(),
+            row_cdf: Vec::new(),
+            cell_cdf: Vec::new(),
+            mean: Rgb::BLACK,
+        };
+        map.add_up();
+        map
+    }
+
+    fn add_up(&mut self) {
+        let (width, height) = (self.texture.width, self.texture.height);
+        if self.texture.texels.len() != width * height || width == 0 || height == 0 {
+            (self.columns, self.rows) = (0, 0);
+            return;
+        }
+        let fine = FINE.div_ceil(height).max(2);
+        let mut cells = vec![0.0f64; self.columns * self.rows];
+        let (mut sum, mut total) = ([0.0f64; 3], 0.0f64);
+        for y in 0..height * fine {
+            let at = |y: usize| std::f64::consts::PI * y as f64 / (height * fine) as f64;
+            let solid_angle = sin_cos_f64(0.5 * (at(y) + at(y + 1))).0;
+            let row = (y / fine * self.rows / height) * self.columns;
+            for x in 0..width * fine {
+                let at = Vec2::new((x as f32 + 0.5) / fine as f32, (y as f32 + 0.5) / fine as f32);
+                let colour =
+                    (self.texel(at) * self.scale).map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 });
+                cells[row + x / fine * self.columns / width] += f64::from(colour.luminance()) * solid_angle;
+                (0..3).for_each(|c| sum[c] += f64::from(colour[c]) * solid_angle);
+                total += solid_angle;
+            }
+        }
+        self.mean = Rgb::from_array(sum.map(|c| (c / total) as f32));
+        self.build_cdfs(&cells);
+    }
+
+    fn build_cdfs(&mut self, cells: &[f64]) {
+        let all: f64 = cells.iter().sum();
+        let even = if all > 0.0 { all / (4.0 * std::f64::consts::PI) } else { 1.0 };
+        let floor = |row: usize| FLOOR * even * self.solid_angle(row);
+        let mut rows = Vec::with_capacity(self.rows);
+        let mut row_sum = 0.0;
+        let mut cell_cdf = Vec::with_capacity(cells.len());
+        for (row, cells) in cells.chunks_exact(self.columns).enumerate() {
+            let (floor, begin) = (floor(row), cell_cdf.len());
+            let mut sum = 0.0;
+            for cell in cells {
+                sum += cell + floor;
+                cell_cdf.push(sum);
+            }
+            cell_cdf[begin..].iter_mut().for_each(|c| *c /= sum);
+            row_sum += sum;
+            rows.push(row_sum);
+        }
+        rows.iter_mut().for_each(|r| *r /= row_sum);
+        (self.row_cdf, self.cell_cdf) = (rows, cell_cdf);
+    }
+
+    /// Solid angle of each cell of a row.
+    fn solid_angle(&self, row: usize) -> f64 {
+        (self.heights[row] - self.heights[row + 1]) * std::f64::consts::TAU / self.columns as f64
+    }
+
+    /// The picture at a place in texels, blended, round about and cut off at the poles.
+    fn texel(&self, at: Vec2) -> Rgb {
+        let (width, height) = (self.texture.width, self.texture.height);
+        let (x, y) = (at.x - 0.5, at.y - 0.5);
+        let (fx, fy) = (x - x.floor(), y - y.floor());
+        let column = |x: f32| (x as i64).rem_euclid(width as i64) as usize;
+        let row = |y: f32| (y.max(0.0) as usize).min(height - 1);
+        let (x0, x1) = (column(x.floor()), column(x.floor() + 1.0));
+        let (y0, y1) = (row(y.floor()), row(y.floor() + 1.0));
+        let texel = |x: usize, y: usize| self.texture.texels[y * width + x];
+        texel(x0, y0).lerp(texel(x1, y0), fx).lerp(texel(x0, y1).lerp(texel(x1, y1), fx), fy)
+    }
+
+    /// Where in the picture a direction is, 0..=1 from the left and from the top.
+    fn place(&self, direction: Vec3) -> Vec2 {
+        let u = 0.5 + atan2(direction.x, -direction.z) / TAU - self.turn;
+        Vec2::new(u - u.floor(), acos(direction.y.clamp(-1.0, 1.0)) / PI)
+    }
+
+    /// Density over solid angle; zero where there is no picture.
+    fn pdf(&self, direction: Vec3) -> f32 {
+        if self.is_backdrop || self.rows == 0 {
+            return 0.0;
+        }
+        let place = self.place(direction);
+        let row = ((place.y * self.rows as f32) as usize).min(self.rows - 1);
+        let column = ((place.x * self.columns as f32) as usize).min(self.columns - 1);
+        let share = share(&self.row_cdf, row) * share(self.cells_of(row), column);
+        (share / self.solid_angle(row)) as f32
+    }
+
+    fn cells_of(&self, row: usize) -> &[f64] {
+        &self.cell_cdf[row * self.columns..(row + 1) * self.columns]
+    }
+
+    /// A direction towards the picture, with its density.
+    fn sample(&self, u: Vec2) -> Option<(Vec3, f32)> {
+        if self.is_backdrop || self.rows == 0 {
+            return None;
+        }
+        let (row, down) = choose(&self.row_cdf, u.y);
+        let (column, right) = choose(self.cells_of(row), u.x);
+        let (top, bottom) = (self.heights[row], self.heights[row + 1]);
+        let y = top + (bottom - top) * down;
+        let turned = (column as f64 + right) / self.columns as f64;
+        let (sin, cos) = sin_cos((turned as f32 + self.turn - 0.5) * TAU);
+        let r = (1.0 - y * y).max(0.0).sqrt() as f32;
+        let direction = Vec3::new(r * sin, y as f32, -r * cos).normalize();
+        let pdf = self.pdf(direction);
+        (pdf > 0.0).then_some((direction, pdf))
+    }
+}
+
+fn share(cdf: &[f64], i: usize) -> f64 {
+    cdf[i] - if i == 0 { 0.0 } else { cdf[i - 1] }
+}
+
+/// What a number picks, and how far into it the number lies.
+fn choose(cdf: &[f64], u: f32) -> (usize, f64) {
+    let u = f64::from(u);
+    let i = cdf.partition_point(|&c| c <= u).min(cdf.len() - 1);
+    let (share, end) = (share(cdf, i), cdf[i]);
+    (i, if share > 0.0 { (1.0 - (end - u) / share).clamp(0.0, 1.0) } else { 0.5 })
+}
+
+impl Light for EnvironmentMap {
+    fn sample_li(&self, _from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
+        let (wi, pdf_solid_angle) = self.sample(u)?;
+        let (li, n_light) = (self.le(wi), Vec3::ZERO);
+        Some(LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 })
+    }
+
+    fn li_pdf_solid_angle(&self, _from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
+        if hit.is_some() { 0.0 } else { self.pdf(wi) }
+    }
+
+    fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
+        let (towards, pdf_direct) = self.sample(u_direction)?;
+        let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
+        (pdf_emission > 0.0).then(|| EmissionSample {
+            p: sample_disc(bounds, -towards, u_point),
+            p_error: Vec3::ZERO,
+            n_light: Vec3::ZERO,
+            direction: -towards,
+            le: self.le(towards),
+            pdf_emission,
+            pdf_direct,
+            primitive: Primitive::NONE,
+        })
+    }
+
+    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        if self.is_backdrop { 0.0 } else { pdf_direct * disc_pdf_area(bounds) }
+    }
+
+    fn is_infinite(&self) -> bool {
+        true
+    }
+
+    fn le(&self, direction: Vec3) -> Rgb {
+        if self.rows == 0 {
+            return Rgb::BLACK;
+        }
+        let (width, height) = (self.texture.width as f32, self.texture.height as f32);
+        self.texel(self.place(direction) * Vec2::new(width, height)) * self.scale
+    }
+
+    fn is_backdrop(&self) -> bool {
+        self.is_backdrop
+    }
+
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn power(&self, bounds: &Aabb) -> f32 {
+        let radius = bounds.radius();
+        if self.is_backdrop { 0.0 } else { self.mean.luminance() * 4.0 * PI * PI * radius * radius }
+    }
+
+    fn classic(&self, _from: Vec3, _time: f32, _u: Vec2, _extent: f32) -> Option<ClassicLight> {
+        None
+    }
+
+    fn classic_colour(&self, _bounds: &Aabb) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn classic_ambient(&self) -> Rgb {
+        if self.is_backdrop { Rgb::BLACK } else { self.mean }
+    }
+}
