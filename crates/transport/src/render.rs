@@ -171,7 +171,8 @@ pub fn render(
     let whole = Window::whole(settings.width, settings.height).tiles(TILE);
     for iteration in settings.samples.clone() {
         let mut eye = Eye::new(scene, camera, integrator, settings);
-        let (photons, counters) = pool.install(|| Photons::trace(&eye, merging, &whole, iteration));
+        let (photons, counters) =
+            pool.install(|| Photons::trace(&eye, merging, &whole, iteration, |eta| merging.ways(eta)));
         rendered.counters += counters;
         eye.photons = Some(&photons);
         let pass = passes(&(iteration..iteration + 1));

@@ -1,6 +1,6 @@
 //! One sample once more, with all that happens on its way.
 
-use crate::bidirectional::Photons;
+use crate::bidirectional::{Merging, Photons};
 use crate::error::{FilmError, RenderError};
 use crate::eye::Eye;
 use crate::film::{MAX_SIDE, scale_exponent};
@@ -52,7 +52,9 @@ pub fn replay(
     }
     let mut eye = Eye::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);
-    let photons = integrator.merging().map(|merging| Photons::trace(&eye, merging, &[whole], sample).0);
+    let trace =
+        |merging: &Merging| Photons::trace(&eye, merging, &[whole], sample, |eta| merging.ways(eta)).0;
+    let photons = integrator.merging().map(trace);
     eye.photons = photons.as_ref();
     let mut tracer = Tracer::new(scene, false);
     let (ray, mut task) = eye.sample(&mut tracer, x, y, sample);

@@ -1,15 +1,19 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
 use super::walk::Vertex;
-use super::{Partial, Photons};
+use super::{Found, Lanes, Photons, Ways};
 use crate::medium::transmittance;
 use crate::task::Task;
-use bilux_math::{Rgb, Vec2, Vec3, warp};
+use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
 
-/// The vertex of a light path seen from the camera (t = 1): where on the film, the light there (as an integral over the
-/// whole film), and the weights of all other ways as a part of this one's.
-pub(crate) fn to_camera(task: &mut Task, y: &Vertex) -> Option<(Vec2, Rgb, f32)> {
+/// The vertex of a light path seen from the camera (t = 1): where on the film, and the light there as an integral over the
+/// whole film.
+pub(crate) fn to_camera<const N: usize>(
+    task: &mut Task,
+    y: &Vertex<N>,
+    ways: &Ways<N>,
+) -> Option<(Vec2, Found<N>)> {
     let u_lens = task.sampler.next_2d();
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
@@ -18,23 +22,30 @@ pub(crate) fn to_camera(task: &mut Task, y: &Vertex) -> Option<(Vec2, Rgb, f32)>
         return None;
     }
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
-    let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo));
+    let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo), ways);
     let passed = transmittance(y.sigma_a, seen.p.distance(y.surface.p));
-    Some((seen.film, y.beta * scattered * passed * seen.density, others))
+    let light = y.beta * scattered * passed * seen.density;
+    Some((seen.film, Found { light, own: ways.splats, others }))
 }
 
-/// A point sampled on a light (s = 1): the light that comes from there along the camera path, weighted.
-pub(crate) fn to_light(task: &mut Task, z: &Vertex, index: usize, u: Vec2) -> Rgb {
+/// A point sampled on a light (s = 1), and the light that comes from there along the camera path.
+pub(crate) fn to_light<const N: usize>(
+    task: &mut Task,
+    z: &Vertex<N>,
+    index: usize,
+    u: Vec2,
+    ways: &Ways<N>,
+) -> Option<Found<N>> {
     let probability = task.lights.probability(index);
     let scene = task.scene();
     let light = &scene.lights()[index].light;
     if probability == 0.0 {
-        return Rgb::BLACK;
+        return None;
     }
-    let Some(sample) = light.sample_li(z.surface.p, z.surface.time, u) else { return Rgb::BLACK };
+    let sample = light.sample_li(z.surface.p, z.surface.time, u)?;
     let (scattered, pdf) = z.bsdf.eval_and_pdf(z.wo, sample.wi, TransportMode::Radiance);
     if scattered.is_black() || task.tracer.occluded(&z.surface.spawn_to_light(&sample)) {
-        return Rgb::BLACK;
+        return None;
     }
     let distance = sample.point.map_or(0.0, |point| point.distance(z.surface.p));
     let cos_light = sample.cos();
@@ -43,40 +54,49 @@ pub(crate) fn to_light(task: &mut Task, z: &Vertex, index: usize, u: Vec2) -> Rg
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
     let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_direct / area_to_angle, -sample.wi, cos_light)
         * task.lights.emission_probability(index);
-    let by_scattering = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
+    let met = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
-    let by_light_path = z.partial.others(arriving, z.bsdf.pdf_solid_angle(sample.wi, z.wo));
-    let weight = 1.0 / (1.0 + by_scattering + by_light_path);
+    let from_light = z.partial.others(arriving, z.bsdf.pdf_solid_angle(sample.wi, z.wo), ways);
     let passed = transmittance(z.sigma_a, distance);
-    z.beta * scattered * sample.li * passed * (weight / (sample.pdf_solid_angle * probability))
+    let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
+    Some(Found { light, own: Lanes::ONE, others: Lanes::ONE * met + from_light })
 }
 
-/// A camera vertex and a light vertex (s, t > 1): the light between them, weighted.
-pub(crate) fn to_vertex(task: &mut Task, z: &Vertex, y: &Vertex) -> Rgb {
+/// A camera vertex and a light vertex (s, t > 1), and the light between them.
+pub(crate) fn to_vertex<const N: usize>(
+    task: &mut Task,
+    z: &Vertex<N>,
+    y: &Vertex<N>,
+    ways: &Ways<N>,
+) -> Option<Found<N>> {
     let between = y.surface.p - z.surface.p;
     let distance2 = between.length_squared();
-    let Some(direction) = between.try_normalize() else { return Rgb::BLACK };
+    let direction = between.try_normalize()?;
     let (f_z, pdf_z) = z.bsdf.eval_and_pdf(z.wo, direction, TransportMode::Radiance);
     if f_z.is_black() {
-        return Rgb::BLACK;
+        return None;
     }
     let (f_y, pdf_y) = y.bsdf.eval_and_pdf(y.wo, -direction, TransportMode::Importance);
     if f_y.is_black() || task.tracer.occluded(&spawn_between(z, y)) {
-        return Rgb::BLACK;
+        return None;
     }
-    let cos = |vertex: &Vertex| vertex.surface.n_geom.dot(direction).abs();
-    let by_camera_path =
-        y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo));
-    let by_light_path = z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo));
-    let weight = 1.0 / (1.0 + by_camera_path + by_light_path);
+    let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
+    let pdf_back = |vertex: &Vertex<N>, direction| vertex.bsdf.pdf_solid_angle(direction, vertex.wo);
+    let from_camera = y.partial.others(pdf_z * cos(y) / distance2, pdf_back(y, -direction), ways);
+    let from_light = z.partial.others(pdf_y * cos(z) / distance2, pdf_back(z, direction), ways);
     let passed = transmittance(z.sigma_a, distance2.sqrt());
-    z.beta * f_z * f_y * y.beta * passed * (weight / distance2)
+    let light = z.beta * f_z * f_y * y.beta * passed / distance2;
+    Some(Found { light, own: ways.joins, others: from_camera + from_light })
 }
 
-/// A camera vertex and all photons around it: the light that they bring, weighted where there are other ways.
-pub(crate) fn merged(task: &Task, photons: &Photons, z: &Vertex, is_only_way: bool) -> Rgb {
-    let (mut sum, per_eta) = (Rgb::BLACK, 1.0 / photons.eta());
+/// A camera vertex and all photons around it, with the light that each brings.
+pub(crate) fn merged<const N: usize>(
+    task: &Task,
+    photons: &Photons<N>,
+    z: &Vertex<N>,
+    mut visit: impl FnMut(&Found<N>),
+) {
     photons.around(z.surface.p, |y| {
         // On the same surface, not on the other side of a sheet or around a corner.
         if z.depth + y.depth + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
@@ -88,20 +108,14 @@ pub(crate) fn merged(task: &Task, photons: &Photons, z: &Vertex, is_only_way: bo
         }
         // Photons come per area of the surface itself; `eval` has the cosine to the shading normal in it.
         let cos = z.surface.n_geom.dot(y.wo).abs();
-        let others = if is_only_way {
-            0.0
-        } else {
-            let back = z.bsdf.pdf_solid_angle(y.wo, z.wo);
-            let by_camera_path = Partial::others_than_merging(y.d_vcm, y.d_vm, pdf, per_eta);
-            by_camera_path + Partial::others_than_merging(z.partial.d_vcm, z.partial.d_vm, back, per_eta)
-        };
-        sum += scattered * y.beta * (1.0 / (cos * (1.0 + others)));
+        let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo));
+        let others = y.partial.before(pdf) + from_light;
+        visit(&Found { light: z.beta * scattered * y.beta * (1.0 / cos), own: photons.ways().eta, others });
     });
-    z.beta * sum * per_eta
 }
 
 /// From one surface to another, ending just before the second.
-fn spawn_between(z: &Vertex, y: &Vertex) -> Ray {
+fn spawn_between<const N: usize>(z: &Vertex<N>, y: &Vertex<N>) -> Ray {
     let ray = z.surface.spawn_to(y.surface.p);
     let direction = Vec3::from(ray.direction);
     let length = direction.length();

@@ -12,80 +12,75 @@
 mod connect;
 mod photons;
 mod walk;
+mod ways;
 
 pub(crate) use connect::{merged, to_camera, to_light, to_vertex};
 pub use photons::{Merging, Photons};
 pub(crate) use walk::{Vertex, Walk};
+pub(crate) use ways::{Found, Lanes, Tally, Way, Ways};
 
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Surface, TransportMode};
 
 /// The recursive part of the weights. [Georgiev 2012]
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Partial {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Partial<const N: usize = 1> {
     /// dVCM: 1 over the density of the last step, times the density of joining there instead.
     pub(crate) d_vcm: f32,
+    /// How much of it counts, since there are so many ways that join there.
+    pub(crate) joined: Lanes<N>,
     /// dVC: the same, summed over the steps before.
-    pub(crate) d_vc: f32,
-    /// dVM: the same for merging.
-    pub(crate) d_vm: f32,
-    /// η: how many light paths a merged vertex counts, over area; 0 where nothing is merged.
-    pub(crate) eta: f32,
+    pub(crate) d_vc: Lanes<N>,
 }
 
-impl Partial {
+impl<const N: usize> Partial<N> {
+    /// Of a camera path that has met nothing yet.
+    pub(crate) const START: Partial<N> = Partial { d_vcm: 0.0, joined: Lanes::ZERO, d_vc: Lanes::ZERO };
+
     /// Of a light path that leaves its light with the cosine `cos`.
-    fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool, eta: f32) -> Partial {
+    fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
-        let mut partial = Partial { d_vcm: pdf_direct / pdf_emission, d_vc, d_vm: 0.0, eta };
-        partial.d_vm = d_vc * partial.per_eta();
-        partial
+        Partial { d_vcm: pdf_direct / pdf_emission, joined: Lanes::ZERO, d_vc: Lanes::ONE * d_vc }
     }
 
     /// Of a camera path that has met its first surface, given the density of doing so over area.
-    pub(crate) fn of_camera(pdf_area: f32, eta: f32) -> Partial {
-        Partial { d_vcm: 1.0 / pdf_area, d_vc: 0.0, d_vm: 0.0, eta }
+    pub(crate) fn of_camera(pdf_area: f32, ways: &Ways<N>) -> Partial<N> {
+        let d_vcm = 1.0 / pdf_area;
+        Partial { d_vcm, joined: ways.splats * d_vcm, d_vc: Lanes::ZERO }
     }
 
-    /// 1 / η, or 0 where nothing is merged.
-    fn per_eta(&self) -> f32 {
-        if self.eta > 0.0 { 1.0 / self.eta } else { 0.0 }
-    }
-
-    /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`.
-    fn arrive(&mut self, distance2: f32, cos: f32) {
+    /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`, where `joins` ways join
+    /// the last vertex with this one.
+    fn arrive(&mut self, distance2: f32, cos: f32, joins: Lanes<N>) {
         self.d_vcm *= distance2 / cos;
-        self.d_vc /= cos;
-        self.d_vm /= cos;
+        self.joined = joins * self.d_vcm;
+        self.d_vc = self.d_vc * (1.0 / cos);
     }
 
     /// On leaving under the cosine `cos`, with densities there and back; `None` where there is only one direction.
-    fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>) {
+    fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, ways: &Ways<N>) {
         match pdfs {
             None => {
                 self.d_vcm = 0.0;
-                self.d_vc *= cos;
-                self.d_vm *= cos;
+                self.d_vc = self.d_vc * cos;
             }
             Some((pdf, pdf_back)) => {
-                let merged = self.d_vcm * self.per_eta() + 1.0;
-                self.d_vc = cos / pdf * (self.d_vc * pdf_back + self.d_vcm + self.eta);
-                self.d_vm = cos / pdf * (self.d_vm * pdf_back + merged);
+                self.d_vc = (self.d_vc * pdf_back + self.joined + ways.eta) * (cos / pdf);
                 self.d_vcm = 1.0 / pdf;
             }
         }
     }
 
-    /// Weight against all other ways, of which the vertex before this subpath's end would be found with `pdf_area`, and
-    /// the one before that with `pdf_back`, as a part of 1.
-    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> f32 {
-        pdf_area * (self.eta + self.d_vcm + self.d_vc * pdf_back)
+    /// How often all ways together find what the vertex before this subpath's end would be found by with `pdf_area`, and
+    /// the one before that with `pdf_back`.
+    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32, ways: &Ways<N>) -> Lanes<N> {
+        (ways.eta + self.before(pdf_back)) * pdf_area
     }
 
-    /// The same for merging at this vertex, the step on from it having the density `pdf` over solid angle.
-    fn others_than_merging(d_vcm: f32, d_vm: f32, pdf: f32, per_eta: f32) -> f32 {
-        d_vcm * per_eta + d_vm * pdf
+    /// The same over the density of coming to this vertex, without merging there.
+    fn before(&self, pdf_back: f32) -> Lanes<N> {
+        self.joined + self.d_vc * pdf_back
     }
 }
 
@@ -100,9 +95,14 @@ impl Task<'_, '_> {
 }
 
 /// A path from a light: every surface that it meets and that scatters into more than single directions, in order.
-pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32, eta: f32) -> Vec<Vertex> {
+pub(crate) fn light_vertices<const N: usize>(
+    task: &mut Task,
+    time: f32,
+    roulette_depth: u32,
+    ways: &Ways<N>,
+) -> Vec<Vertex<N>> {
     let mut vertices = Vec::new();
-    let Some(mut walk) = begin_at_light(task, time, eta) else { return vertices };
+    let Some(mut walk) = begin_at_light(task, time, ways) else { return vertices };
     while let Some(vertex) = walk.meet(task) {
         // The last event of the longest path is at the camera's side.
         let ends = vertex.depth + 1 >= task.max_depth;
@@ -119,7 +119,7 @@ pub(crate) fn light_vertices(task: &mut Task, time: f32, roulette_depth: u32, et
     vertices
 }
 
-fn begin_at_light(task: &mut Task, time: f32, eta: f32) -> Option<Walk> {
+fn begin_at_light<'w, const N: usize>(task: &mut Task, time: f32, ways: &'w Ways<N>) -> Option<Walk<'w, N>> {
     task.sampler.enter(LIGHT_STREAM);
     let (u_light, u_point, u_direction) =
         (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
@@ -134,25 +134,39 @@ fn begin_at_light(task: &mut Task, time: f32, eta: f32) -> Option<Walk> {
     let pdf_emission = sample.pdf_emission * probability;
     let pdf_direct = sample.pdf_direct * task.lights.probability(index);
     let beta = sample.le * (cos / pdf_emission);
-    let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta(), eta);
+    let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
     // The start of a ray from infinity is known by area already.
-    Some(Walk::new(TransportMode::Importance, sample.spawn(time), beta, partial, light.is_infinite()))
+    let by_area = light.is_infinite();
+    Some(Walk::new(TransportMode::Importance, sample.spawn(time), beta, partial, by_area, ways))
 }
 
-/// Light that a camera path meets by chance: its radiance, and the densities with which the same path would have been
-/// found by picking the point on the light, and by a path from it.
-pub(crate) struct Found {
+/// Light that a camera path meets by chance (s = 0): its radiance, and the densities with which the same path would have
+/// been found by picking the point on the light, and by a path from it.
+pub(crate) struct Met {
     pub(crate) radiance: Rgb,
     /// Over area; from infinity, over solid angle.
-    pub(crate) pdf_direct: f32,
-    pub(crate) pdf_emission: f32,
+    pdf_direct: f32,
+    pdf_emission: f32,
 }
 
-/// Light from infinity that a camera path meets where it leaves the scene, weighted.
-pub(crate) fn from_infinity(task: &Task, walk: &Walk) -> Rgb {
+impl Met {
+    /// What no other way finds.
+    fn only(radiance: Rgb) -> Met {
+        Met { radiance, pdf_direct: 0.0, pdf_emission: 0.0 }
+    }
+
+    /// The same for a camera path that carries `beta`.
+    pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Found<N> {
+        let picked = Lanes::ONE * (partial.d_vcm * self.pdf_direct);
+        let others = picked + partial.d_vc * self.pdf_emission;
+        Found { light: beta * self.radiance, own: Lanes::ONE, others }
+    }
+}
+
+/// Light from infinity that a camera path meets where it leaves the scene.
+pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(Met)) {
     let scene = task.scene();
     let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
-    let mut sum = Rgb::BLACK;
     for (index, light) in scene.lights().iter().enumerate() {
         let light = &light.light;
         let radiance = light.le(direction);
@@ -160,34 +174,31 @@ pub(crate) fn from_infinity(task: &Task, walk: &Walk) -> Rgb {
             continue;
         }
         if walk.depth == 0 || light.is_backdrop() {
-            sum += radiance;
+            visit(Met::only(radiance));
             continue;
         }
         let pdf = light.li_pdf_solid_angle(origin, direction, None);
-        let pdf_direct = pdf * task.lights.probability(index);
         let pdf_emission = light.emission_pdf(&scene.bounds(), pdf, -direction, 1.0)
             * task.lights.emission_probability(index);
-        let others = walk.partial.d_vcm * pdf_direct + walk.partial.d_vc * pdf_emission;
-        sum += radiance * (1.0 / (1.0 + others));
+        visit(Met { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
     }
-    sum
 }
 
 /// What a surface gives out towards `wo`; `None` where nothing.
-pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Found> {
+pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Met> {
     let scene = task.scene();
     let radiance = scene.material(surface).emission();
     if radiance.is_black() {
         return None;
     }
     let Some(index) = scene.light_index_of(surface.object) else {
-        return Some(Found { radiance, pdf_direct: 0.0, pdf_emission: 0.0 });
+        return Some(Met::only(radiance));
     };
     let light = &scene.lights()[index].light;
     let pdf_area = light.pdf_area(surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_area, wo, cos);
-    Some(Found {
+    Some(Met {
         radiance,
         pdf_direct: pdf_area * task.lights.probability(index),
         pdf_emission: pdf_emission * task.lights.emission_probability(index),

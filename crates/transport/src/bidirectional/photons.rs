@@ -1,7 +1,7 @@
 //! What the light paths of one iteration leave in the scene, to be found by place: the vertices that camera paths merge
 //! with. [Jensen 1996; Georgiev 2012]
 
-use super::light_vertices;
+use super::{Lanes, Partial, Ways, light_vertices};
 use crate::eye::Eye;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
@@ -18,9 +18,16 @@ pub struct Merging {
     pub alpha: f32,
     /// The most light paths of an iteration whose vertices are kept.
     pub max_light_paths: u32,
+    /// Which ways of finding a path there are beside merging.
+    pub(crate) ways: Ways,
 }
 
 impl Merging {
+    /// All ways of an iteration whose photons give this η.
+    pub(crate) fn ways(&self, eta: f32) -> Ways {
+        Ways { eta: Lanes([eta]), ..self.ways }
+    }
+
     /// The radius of an iteration, in metres: it depends on nothing but the iteration's number. [Knaus 2011, eq. 20]
     fn radius(&self, scene: &Scene, iteration: u32) -> f32 {
         let shrunk = bilux_math::transcendental::powf(iteration as f32 + 1.0, 0.5 * (self.alpha - 1.0));
@@ -30,37 +37,37 @@ impl Merging {
 
 /// A vertex of a light path.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Photon {
+pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) p: Vec3,
     /// Where it came from.
     pub(crate) wo: Vec3,
     pub(crate) n_geom: Vec3,
     pub(crate) beta: Rgb,
-    pub(crate) d_vcm: f32,
-    pub(crate) d_vm: f32,
+    pub(crate) partial: Partial<N>,
     /// Scattering events before it.
     pub(crate) depth: u32,
 }
 
 /// All of an iteration, in a grid whose cells are as wide as the discs that merge.
-pub struct Photons {
+pub struct Photons<const N: usize = 1> {
     radius: f32,
-    /// Expected light paths on each square metre that they are merged over: η of [Georgiev 2012].
-    eta: f32,
-    photons: Vec<Photon>,
+    /// With the expected light paths on each square metre that they are merged over: η of [Georgiev 2012].
+    ways: Ways<N>,
+    photons: Vec<Photon<N>>,
     /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
     starts: Vec<u32>,
 }
 
-impl Photons {
+impl<const N: usize> Photons<N> {
     /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many. Also how
-    /// many rays that took.
+    /// many rays that took. `ways` are all ways there are, given η.
     pub(crate) fn trace(
         eye: &Eye,
         merging: &Merging,
         tiles: &[Window],
         iteration: u32,
-    ) -> (Photons, Counters) {
+        ways: impl FnOnce(f32) -> Ways<N>,
+    ) -> (Photons<N>, Counters) {
         let scene = eye.scene;
         let pixels: usize = tiles.iter().map(Window::pixels).sum();
         let step = pixels.div_ceil(merging.max_light_paths.max(1) as usize).max(1) as u32;
@@ -73,33 +80,32 @@ impl Photons {
             .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
             .sum::<usize>();
         let radius = merging.radius(scene, iteration);
-        let eta = std::f32::consts::PI * radius * radius * followed as f32;
+        let ways = ways(std::f32::consts::PI * radius * radius * followed as f32);
         let of_tile = |tile: &Window| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
                 let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-                let vertices = light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), eta);
+                let vertices = light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), &ways);
                 photons.extend(vertices.iter().map(|vertex| Photon {
                     p: vertex.surface.p,
                     wo: vertex.wo,
                     n_geom: vertex.surface.n_geom,
                     beta: vertex.beta,
-                    d_vcm: vertex.partial.d_vcm,
-                    d_vm: vertex.partial.d_vm,
+                    partial: vertex.partial,
                     depth: vertex.depth,
                 }));
             }
             (photons, tracer.counters)
         };
-        let (parts, counters): (Vec<Vec<Photon>>, Vec<Counters>) = tiles.par_iter().map(of_tile).unzip();
+        let (parts, counters): (Vec<Vec<Photon<N>>>, Vec<Counters>) = tiles.par_iter().map(of_tile).unzip();
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
-        (Photons::new(parts.concat(), radius, eta), counted)
+        (Photons::new(parts.concat(), radius, ways), counted)
     }
 
     /// In the order of their cells, and within a cell in the order in which they are given.
-    fn new(photons: Vec<Photon>, radius: f32, eta: f32) -> Photons {
+    fn new(photons: Vec<Photon<N>>, radius: f32, ways: Ways<N>) -> Photons<N> {
         let buckets = photons.len().next_power_of_two();
         let hash = |p: Vec3| bucket(cell(p, radius), buckets);
         let mut keys: Vec<(u32, u32)> =
@@ -113,15 +119,16 @@ impl Photons {
             starts[i + 1] += starts[i];
         }
         let photons = keys.par_iter().map(|(_, i)| photons[*i as usize]).collect();
-        Photons { radius, eta, photons, starts }
+        Photons { radius, ways, photons, starts }
     }
 
-    pub(crate) fn eta(&self) -> f32 {
-        self.eta
+    /// All ways of finding a path that there are in this iteration.
+    pub(crate) fn ways(&self) -> &Ways<N> {
+        &self.ways
     }
 
     /// Calls `visit` with every photon that is no further than the radius from a point.
-    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Photon)) {
+    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Photon<N>)) {
         let buckets = self.starts.len() - 1;
         // Cells are two radii wide: what is near lies in the point's own or in the nearer neighbour on each axis.
         let middle = cell(p, self.radius);

@@ -1,20 +1,20 @@
 //! A subpath while it grows, from whichever end.
 
-use super::Partial;
+use super::{Lanes, Partial, Ways};
 use crate::medium::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, Ray, Surface, TransportMode};
 
 /// A surface that a subpath has met.
-pub(crate) struct Vertex {
+pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) surface: Surface,
     pub(crate) bsdf: Bsdf,
     /// Where the subpath came from, a unit vector.
     pub(crate) wo: Vec3,
     /// What arrives, over the density of having come here.
     pub(crate) beta: Rgb,
-    pub(crate) partial: Partial,
+    pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
     /// Absorption on the side of `wo`.
@@ -22,12 +22,12 @@ pub(crate) struct Vertex {
 }
 
 /// A subpath on its way to the next vertex.
-pub(crate) struct Walk {
+pub(crate) struct Walk<'w, const N: usize = 1> {
     /// What it carries: radiance from the camera on, importance from a light.
     mode: TransportMode,
     pub(crate) ray: Ray,
     pub(crate) beta: Rgb,
-    pub(crate) partial: Partial,
+    pub(crate) partial: Partial<N>,
     /// Scattering events so far.
     pub(crate) depth: u32,
     /// True while all events have been without width: what only the camera sees may still be seen.
@@ -40,11 +40,20 @@ pub(crate) struct Walk {
     full: f32,
     /// Absorption where the ray goes, as far as is known.
     sigma_a: Rgb,
+    /// How its vertices may be found otherwise.
+    ways: &'w Ways<N>,
 }
 
-impl Walk {
+impl<'w, const N: usize> Walk<'w, N> {
     /// A subpath with nothing but its first ray.
-    pub(crate) fn new(mode: TransportMode, ray: Ray, beta: Rgb, partial: Partial, by_area: bool) -> Walk {
+    pub(crate) fn new(
+        mode: TransportMode,
+        ray: Ray,
+        beta: Rgb,
+        partial: Partial<N>,
+        by_area: bool,
+        ways: &'w Ways<N>,
+    ) -> Walk<'w, N> {
         let full = beta.max_channel();
         Walk {
             ray,
@@ -57,11 +66,12 @@ impl Walk {
             full,
             sigma_a: Rgb::BLACK,
             mode,
+            ways,
         }
     }
 
     /// The next surface; `None` where the ray leaves the scene.
-    pub(crate) fn meet(&mut self, task: &mut Task) -> Option<Vertex> {
+    pub(crate) fn meet(&mut self, task: &mut Task) -> Option<Vertex<N>> {
         let Some(surface) = task.tracer.closest(&self.ray) else {
             task.note(self.depth, || {
                 format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction)
@@ -78,21 +88,24 @@ impl Walk {
         self.sigma_a = sigma_a;
         self.beta *= transmittance(sigma_a, surface.t);
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
-        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs());
+        // The first surface of a light path is joined with the light by picking a point there.
+        let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
+        let joins = if is_at_light { Lanes::ONE } else { self.ways.joins };
+        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins);
         self.by_area = false;
         let bsdf = material.bsdf(&surface);
         Some(Vertex { surface, bsdf, wo, beta: self.beta, partial: self.partial, depth: self.depth, sigma_a })
     }
 
     /// Goes on from a vertex; false when the subpath ends there.
-    pub(crate) fn scatter(&mut self, vertex: &Vertex, roulette_depth: u32, task: &mut Task) -> bool {
+    pub(crate) fn scatter(&mut self, vertex: &Vertex<N>, roulette_depth: u32, task: &mut Task) -> bool {
         let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
         let u_survival = task.sampler.next_1d();
         let Some(sample) = vertex.bsdf.sample(vertex.wo, u_choice, u, self.mode) else { return false };
         let cos = vertex.surface.n_geom.dot(sample.wi).abs();
         let pdfs = (!sample.is_delta)
             .then(|| (sample.pdf_solid_angle, vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo)));
-        self.partial.leave(cos, pdfs);
+        self.partial.leave(cos, pdfs, self.ways);
         self.follow(vertex, &sample, task);
         self.survives(u_survival, roulette_depth)
     }
@@ -101,7 +114,7 @@ impl Walk {
         if self.mode == TransportMode::Radiance { "the camera's path" } else { "the light's path" }
     }
 
-    fn follow(&mut self, vertex: &Vertex, sample: &BsdfSample, task: &Task) {
+    fn follow(&mut self, vertex: &Vertex<N>, sample: &BsdfSample, task: &Task) {
         self.beta *= sample.weight;
         self.depth += 1;
         self.specular &= sample.is_delta;

@@ -4,14 +4,14 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
-    Partial, Photons, Vertex, Walk, emitted, from_infinity, light_vertices, merged, to_camera, to_light,
-    to_vertex,
+    Found, Lanes, Partial, Photons, Tally, Vertex, Walk, Way, Ways, emitted, from_infinity, light_vertices,
+    merged, to_camera, to_light, to_vertex,
 };
 use crate::splats::Splats;
 use crate::task::Task;
-use bilux_math::Rgb;
 use bilux_math::registry::Entry;
-use bilux_scene::{Ray, Reader, TransportMode};
+use bilux_math::{Rgb, Vec2};
+use bilux_scene::{Ray, TransportMode};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -23,17 +23,16 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
-    build: |reader| Ok(Box::new(Bdpt::new(reader))),
+    build: |reader| Ok(Box::new(Bdpt { roulette_depth: reader.integer("roulette_depth") as u32 })),
 };
 
-pub(super) struct Bdpt {
+struct Bdpt {
     roulette_depth: u32,
 }
 
 impl PixelIntegrator for Bdpt {
-    /// Without light paths: what the camera path finds, weighted as if there were some.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        self.camera_path(ray, &[], task)
+        of_camera_path(ray, task, &Ways::BOTH_ENDS, self.roulette_depth)
     }
 
     fn splats(&self) -> bool {
@@ -45,89 +44,136 @@ impl PixelIntegrator for Bdpt {
     }
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        let light_path = light_vertices(task, ray.time, self.roulette_depth, eta(task));
-        for y in &light_path {
-            task.enter_light_vertex(y.depth);
-            if let Some((film, light, others)) = to_camera(task, y) {
-                splats.add(film, light * (1.0 / (1.0 + others)));
+        let mut sum = Sum { here: Rgb::BLACK, splats };
+        BothEnds::new(&Ways::BOTH_ENDS, self.roulette_depth).sample(ray, is_wanted, task, &mut sum);
+        sum.here
+    }
+}
+
+/// One path from each end, and all that is found with them.
+pub(super) struct BothEnds<'a, const N: usize = 1> {
+    ways: &'a Ways<N>,
+    photons: Option<&'a Photons<N>>,
+    roulette_depth: u32,
+}
+
+impl<'a, const N: usize> BothEnds<'a, N> {
+    /// Without merging.
+    pub(super) fn new(ways: &'a Ways<N>, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { ways, photons: None, roulette_depth }
+    }
+
+    /// With photons that camera paths are merged with.
+    pub(super) fn merging(photons: &'a Photons<N>, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { ways: photons.ways(), photons: Some(photons), roulette_depth }
+    }
+
+    /// Follows both paths; that from the camera where it `is_wanted`.
+    pub(super) fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, tally: &mut impl Tally<N>) {
+        let light_path = if self.ways.splats == Lanes::ZERO && self.ways.joins == Lanes::ZERO {
+            Vec::new()
+        } else {
+            light_vertices(task, ray.time, self.roulette_depth, self.ways)
+        };
+        if self.ways.splats != Lanes::ZERO {
+            for y in &light_path {
+                task.enter_light_vertex(y.depth);
+                if let Some((film, found)) = to_camera(task, y, self.ways) {
+                    tally.there(film, &found);
+                }
             }
         }
-        if is_wanted { self.camera_path(ray, &light_path, task) } else { Rgb::BLACK }
-    }
-}
-
-/// How many light paths a merged vertex counts; 0 where nothing is merged.
-fn eta(task: &Task) -> f32 {
-    task.photons.map_or(0.0, Photons::eta)
-}
-
-impl Bdpt {
-    pub(super) fn new(reader: &Reader) -> Bdpt {
-        Bdpt { roulette_depth: reader.integer("roulette_depth") as u32 }
+        if is_wanted {
+            let joined = if self.ways.joins == Lanes::ZERO { &[] } else { &light_path[..] };
+            self.camera_path(ray, joined, task, tally);
+        }
     }
 
-    fn camera_path(&self, ray: &Ray, light_path: &[Vertex], task: &mut Task) -> Rgb {
-        let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::default(), false);
-        let mut sum = Rgb::BLACK;
+    fn camera_path(&self, ray: &Ray, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
+        let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.ways);
         loop {
             let Some(mut z) = walk.meet(task) else {
-                return sum + walk.beta * from_infinity(task, &walk);
+                from_infinity(task, &walk, |met| tally.here(Way::Met, &met.by(walk.beta, &walk.partial)));
+                return;
             };
             if z.depth == 0 {
                 let density = task.camera.density(&walk.ray, z.surface.t);
-                z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), eta(task));
+                z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), self.ways);
                 walk.partial = z.partial;
             }
-            sum += z.beta * self.emission(&z, task);
+            // s = 0: the path has met a light by itself.
+            if let Some(met) = emitted(task, &z.surface, z.wo) {
+                let seen = || Found::only(z.beta * met.radiance);
+                tally.here(Way::Met, &if z.depth == 0 { seen() } else { met.by(z.beta, &z.partial) });
+            }
             if z.depth >= task.max_depth {
-                return sum;
+                return;
             }
             task.sampler.enter(u64::from(z.depth) + 1);
-            sum += self.lights(&z, task) + self.connections(&z, light_path, task);
-            if let Some(photons) = task.photons
-                && !z.bsdf.is_delta()
-            {
-                sum += merged(task, photons, &z, false);
+            self.lights(&z, task, tally);
+            if !z.bsdf.is_delta() {
+                self.joins(&z, light_path, task, tally);
+                if let Some(photons) = self.photons {
+                    merged(task, photons, &z, |found| tally.here(Way::Merged, found));
+                }
             }
             if !walk.scatter(&z, self.roulette_depth, task) {
-                return sum;
-            }
-        }
-    }
-
-    /// s = 0: the path has met a light by itself.
-    fn emission(&self, z: &Vertex, task: &Task) -> Rgb {
-        match emitted(task, &z.surface, z.wo) {
-            None => Rgb::BLACK,
-            Some(found) if z.depth == 0 => found.radiance,
-            Some(found) => {
-                let others = z.partial.d_vcm * found.pdf_direct + z.partial.d_vc * found.pdf_emission;
-                found.radiance * (1.0 / (1.0 + others))
+                return;
             }
         }
     }
 
     /// s = 1: a point on a light is sampled.
-    fn lights(&self, z: &Vertex, task: &mut Task) -> Rgb {
+    fn lights(&self, z: &Vertex<N>, task: &mut Task, tally: &mut impl Tally<N>) {
         let lights = task.lights;
         let u = task.sampler.next_1d();
-        let mut sum = Rgb::BLACK;
         for index in lights.sample(u) {
             let u = task.sampler.next_2d();
-            if !z.bsdf.is_delta() {
-                sum += to_light(task, z, index, u);
+            if !z.bsdf.is_delta()
+                && let Some(found) = to_light(task, z, index, u, self.ways)
+            {
+                tally.here(Way::Picked, &found);
             }
         }
-        sum
     }
 
     /// s, t > 1: the path is joined with every vertex of the light path.
-    fn connections(&self, z: &Vertex, light_path: &[Vertex], task: &mut Task) -> Rgb {
-        if z.bsdf.is_delta() {
-            return Rgb::BLACK;
-        }
+    fn joins(&self, z: &Vertex<N>, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
         let max_depth = task.max_depth;
-        let short_enough = light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth);
-        short_enough.fold(Rgb::BLACK, |sum, y| sum + to_vertex(task, z, y))
+        for y in light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth) {
+            if let Some(found) = to_vertex(task, z, y, self.ways) {
+                tally.here(Way::Joined, &found);
+            }
+        }
+    }
+}
+
+/// What a camera path finds without a light path, weighted as if there were some.
+pub(super) fn of_camera_path(ray: &Ray, task: &mut Task, ways: &Ways, roulette_depth: u32) -> Rgb {
+    /// Adds up what is in the pixel itself.
+    struct Here(Rgb);
+    impl Tally<1> for Here {
+        fn here(&mut self, _way: Way, found: &Found) {
+            self.0 += found.weighted();
+        }
+        fn there(&mut self, _film: Vec2, _found: &Found) {}
+    }
+    let mut sum = Here(Rgb::BLACK);
+    BothEnds::new(ways, roulette_depth).camera_path(ray, &[], task, &mut sum);
+    sum.0
+}
+
+/// Adds up what is found, by its weight.
+pub(super) struct Sum<'a, 's> {
+    pub(super) here: Rgb,
+    pub(super) splats: &'a mut Splats<'s>,
+}
+
+impl Tally<1> for Sum<'_, '_> {
+    fn here(&mut self, _way: Way, found: &Found) {
+        self.here += found.weighted();
+    }
+    fn there(&mut self, film: Vec2, found: &Found) {
+        self.splats.add(film, found.weighted());
     }
 }

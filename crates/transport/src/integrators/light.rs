@@ -3,7 +3,7 @@
 //! by other means: it is here to show what light paths are good for, and as one of `bdpt`'s ways.
 
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{light_vertices, to_camera};
+use crate::bidirectional::{Ways, light_vertices, to_camera};
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;
@@ -42,10 +42,11 @@ impl PixelIntegrator for Light {
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
-        for vertex in light_vertices(task, ray.time, self.roulette_depth, 0.0) {
+        for vertex in light_vertices(task, ray.time, self.roulette_depth, &Ways::BOTH_ENDS) {
             task.enter_light_vertex(vertex.depth);
-            if let Some((film, light, _)) = to_camera(task, &vertex) {
-                splats.add(film, light);
+            if let Some((film, found)) = to_camera(task, &vertex, &Ways::BOTH_ENDS) {
+                // There is no other way.
+                splats.add(film, found.light);
             }
         }
         emitted

@@ -1,6 +1,6 @@
 //! What those that merge paths can be told.
 
-use crate::bidirectional::Merging;
+use crate::bidirectional::{Merging, Ways};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::Reader;
 
@@ -30,10 +30,11 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
     default: "1048576",
 };
 
-pub(super) fn read(reader: &Reader) -> Merging {
+pub(super) fn read(reader: &Reader, ways: Ways) -> Merging {
     Merging {
         radius: reader.number("radius"),
         alpha: reader.number("alpha"),
         max_light_paths: reader.integer("light_paths") as u32,
+        ways,
     }
 }

@@ -3,7 +3,7 @@
 //! [Hachisuka 2009; Knaus 2011]
 
 use super::{IntegratorEntry, PixelIntegrator, merging};
-use crate::bidirectional::{Merging, Partial, Walk, emitted, from_infinity, merged};
+use crate::bidirectional::{Found, Lanes, Merging, Partial, Walk, Ways, emitted, from_infinity, merged};
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -22,7 +22,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     build: |reader| {
         Ok(Box::new(Sppm {
             roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: merging::read(reader),
+            merging: merging::read(reader, Ways::CAMERA),
         }))
     },
 };
@@ -34,15 +34,17 @@ struct Sppm {
 
 impl PixelIntegrator for Sppm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::default(), false);
+        let mut walk =
+            Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, &Ways::CAMERA);
         let mut sum = Rgb::BLACK;
         loop {
             let Some(z) = walk.meet(task) else {
-                return sum + walk.beta * from_infinity(task, &walk);
+                // Lights that are seen, in mirrors too; what they give to other surfaces, photons bring.
+                from_infinity(task, &walk, |met| sum += walk.beta * met.radiance);
+                return sum;
             };
-            // Lights that are seen, in mirrors too; what they give to other surfaces, photons bring.
-            if let Some(found) = emitted(task, &z.surface, z.wo) {
-                sum += z.beta * found.radiance;
+            if let Some(met) = emitted(task, &z.surface, z.wo) {
+                sum += z.beta * met.radiance;
             }
             if z.depth >= task.max_depth {
                 return sum;
@@ -50,7 +52,8 @@ impl PixelIntegrator for Sppm {
             if let Some(photons) = task.photons
                 && !z.bsdf.is_delta()
             {
-                sum += merged(task, photons, &z, true);
+                // There is no other way.
+                merged(task, photons, &z, |found| sum += Found { others: Lanes::ZERO, ..*found }.weighted());
             }
             task.sampler.enter(u64::from(z.depth) + 1);
             // What goes on into more than single directions has been counted.

@@ -2,9 +2,9 @@
 //! path that lie next to each other count as one, at the price of a little blur that goes away with the iterations. So
 //! light is found that passes mirrors or glass at both ends. [Georgiev 2012; Hachisuka 2012]
 
-use super::bdpt::Bdpt;
+use super::bdpt::{BothEnds, Sum, of_camera_path};
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::Merging;
+use crate::bidirectional::{Merging, Ways};
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;
@@ -26,17 +26,23 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
-    build: |reader| Ok(Box::new(Vcm { bdpt: Bdpt::new(reader), merging: super::merging::read(reader) })),
+    build: |reader| {
+        Ok(Box::new(Vcm {
+            roulette_depth: reader.integer("roulette_depth") as u32,
+            merging: super::merging::read(reader, Ways::BOTH_ENDS),
+        }))
+    },
 };
 
-struct Vcm {
-    bdpt: Bdpt,
-    merging: Merging,
+/// Which ways there are, [`Merging::ways`] tells.
+pub(super) struct Vcm {
+    pub(super) roulette_depth: u32,
+    pub(super) merging: Merging,
 }
 
 impl PixelIntegrator for Vcm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        self.bdpt.radiance(ray, task)
+        of_camera_path(ray, task, &self.merging.ways(0.0), self.roulette_depth)
     }
 
     fn splats(&self) -> bool {
@@ -48,10 +54,17 @@ impl PixelIntegrator for Vcm {
     }
 
     fn roulette_depth(&self) -> u32 {
-        self.bdpt.roulette_depth()
+        self.roulette_depth
     }
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
-        self.bdpt.sample(ray, is_wanted, task, splats)
+        let mut sum = Sum { here: Rgb::BLACK, splats };
+        let unmerged = self.merging.ways(0.0);
+        let both_ends = match task.photons {
+            Some(photons) => BothEnds::merging(photons, self.roulette_depth),
+            None => BothEnds::new(&unmerged, self.roulette_depth),
+        };
+        both_ends.sample(ray, is_wanted, task, &mut sum);
+        sum.here
     }
 }

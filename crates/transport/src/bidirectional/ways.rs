@@ -1,0 +1,101 @@
+//! Which ways of finding a path there are, and what one of them has found before it is weighted against the others.
+//!
+//! All of it is done for `N` sets of ways at once. The first is the one by which light is weighted. The others are
+//! rivals, whose weights `auto` compares with its own; where there are none, `N` is 1 and they cost nothing.
+
+use bilux_math::{Rgb, Vec2};
+use std::ops::{Add, Mul};
+
+/// A number for each of the sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
+
+/// How many of each way there are for one camera path. A light that is picked (s = 1) and one that is met by
+/// chance (s = 0) are always one each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ways<const N: usize = 1> {
+    /// Light paths that are seen from the camera (t = 1).
+    pub(crate) splats: Lanes<N>,
+    /// Light paths whose vertices are joined with those of the camera path (s, t > 1).
+    pub(crate) joins: Lanes<N>,
+    /// η: light paths that a merged vertex counts, over area.
+    pub(crate) eta: Lanes<N>,
+}
+
+/// What one way has found of one path.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<const N: usize = 1> {
+    /// Its light, over the density with which one camera path finds it in this way.
+    pub(crate) light: Rgb,
+    /// How often it is found in this way.
+    pub(crate) own: Lanes<N>,
+    /// How often in all others.
+    pub(crate) others: Lanes<N>,
+}
+
+/// Which way it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// A light was met by chance (s = 0).
+    Met,
+    /// A point on a light was picked (s = 1).
+    Picked,
+    /// Two subpaths were joined (s, t > 1).
+    Joined,
+    /// Two vertices were merged.
+    Merged,
+}
+
+/// Takes what is found.
+pub(crate) trait Tally<const N: usize> {
+    /// In the pixel of the camera path.
+    fn here(&mut self, way: Way, found: &Found<N>);
+    /// At a point of the film (0..=1 on both axes), as an integral over the whole of it.
+    fn there(&mut self, film: Vec2, found: &Found<N>);
+}
+
+impl Ways {
+    /// Paths from the camera alone.
+    pub(crate) const CAMERA: Ways = Ways { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]) };
+    /// All that need no merging.
+    pub(crate) const BOTH_ENDS: Ways = Ways { splats: Lanes([1.0]), joins: Lanes([1.0]), ..Ways::CAMERA };
+}
+
+impl<const N: usize> Found<N> {
+    /// What is found in no other way.
+    pub(crate) fn only(light: Rgb) -> Found<N> {
+        Found { light, own: Lanes::ONE, others: Lanes::ZERO }
+    }
+
+    /// The balance heuristic. [Veach 1997, eq. 9.8]
+    pub(crate) fn weighted(&self) -> Rgb {
+        self.light * (1.0 / (self.own.0[0] + self.others.0[0]))
+    }
+}
+
+impl<const N: usize> Lanes<N> {
+    pub(crate) const ONE: Lanes<N> = Lanes([1.0; N]);
+    pub(crate) const ZERO: Lanes<N> = Lanes([0.0; N]);
+}
+
+impl<const N: usize> Add for Lanes<N> {
+    type Output = Lanes<N>;
+    #[inline(always)]
+    fn add(mut self, other: Lanes<N>) -> Lanes<N> {
+        for (x, y) in self.0.iter_mut().zip(other.0) {
+            *x += y;
+        }
+        self
+    }
+}
+
+impl<const N: usize> Mul<f32> for Lanes<N> {
+    type Output = Lanes<N>;
+    #[inline(always)]
+    fn mul(mut self, factor: f32) -> Lanes<N> {
+        for x in &mut self.0 {
+            *x *= factor;
+        }
+        self
+    }
+}
