@@ -9,7 +9,9 @@ use bilux_scene::{
     AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
-use bilux_transport::{Film, Filter, PixelAnchor, Progress, RenderSettings, Replay, SamplePlace, Window};
+use bilux_transport::{
+    Choice, Film, Filter, PixelAnchor, Progress, RenderSettings, Replay, SamplePlace, Window,
+};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -34,6 +36,8 @@ pub struct Outcome {
     pub counters: Counters,
     /// It was stopped before the end; the film holds what there is.
     pub cancelled: bool,
+    /// What an integrator that chooses has chosen, and why.
+    pub choice: Option<Choice>,
     linear_transfer: bool,
 }
 
@@ -111,11 +115,6 @@ impl Job {
         &self.settings
     }
 
-    /// Samples that [`Job::render`] will take.
-    pub fn sample_count(&self) -> u64 {
-        self.render.sample_count(&*self.integrator)
-    }
-
     /// Renders.
     ///
     /// # Errors
@@ -129,6 +128,7 @@ impl Job {
             film,
             counters: rendered.counters,
             cancelled: rendered.cancelled,
+            choice: rendered.choice,
             linear_transfer: self.settings.linear_transfer,
         })
     }

@@ -9,9 +9,6 @@ use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec};
 use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 
-/// The integrator that `auto` stands for.
-pub const AUTO_INTEGRATOR: &str = "path";
-
 /// What `[render]` and `--set` understand, beside the parameters of the integrator.
 pub const RENDER: Entry = Entry {
     name: "render",
@@ -197,9 +194,8 @@ pub fn parse_size(text: &str) -> Option<(u32, u32)> {
 
 fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {
     let name = reader.text("integrator");
-    let wanted = if name == "auto" { AUTO_INTEGRATOR } else { &name };
-    let names = INTEGRATORS.iter().map(|row| row.entry.name).chain(["auto"]);
-    let found = INTEGRATORS.iter().find(|row| row.entry.name == wanted);
+    let names = INTEGRATORS.iter().map(|row| row.entry.name);
+    let found = INTEGRATORS.iter().find(|row| row.entry.name == name);
     Ok(found.ok_or_else(|| SceneError::unknown("integrator", &name, names, reader.span("integrator")))?)
 }
 

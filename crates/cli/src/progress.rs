@@ -16,7 +16,7 @@ pub struct Report {
     bar: Option<ProgressBar>,
     lines: bool,
     label: String,
-    total: u64,
+    total: AtomicU64,
     samples: AtomicU64,
     rays: AtomicU64,
     begun: Instant,
@@ -27,8 +27,8 @@ pub struct Report {
 const LINE_EVERY: Duration = Duration::from_secs(5);
 
 impl Report {
-    /// A report on `total` samples of what `label` names.
-    pub fn new(label: &str, total: u64, common: &Common, interrupt: Interrupt) -> Report {
+    /// A report on what `label` names.
+    pub fn new(label: &str, common: &Common, interrupt: Interrupt) -> Report {
         let terminal = std::io::stderr().is_terminal();
         let style = match common.progress {
             _ if common.quiet => ProgressStyle::None,
@@ -38,7 +38,7 @@ impl Report {
         };
         let bar = (style == ProgressStyle::Bar).then(|| {
             let template = "{prefix} [{bar:32}] {percent:>3}%  {msg}  {eta} left";
-            let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr_with_hz(10));
             bar.set_style(BarStyle::with_template(template).unwrap_or_else(|_| BarStyle::default_bar()));
             bar.set_prefix(label.to_owned());
             bar
@@ -49,7 +49,7 @@ impl Report {
             bar,
             lines: style == ProgressStyle::Lines,
             label: label.to_owned(),
-            total,
+            total: AtomicU64::new(1),
             samples: AtomicU64::new(0),
             rays: AtomicU64::new(0),
             begun: now,
@@ -75,7 +75,7 @@ impl Report {
             return;
         }
         *last = Instant::now();
-        let share = samples as f64 / self.total.max(1) as f64;
+        let share = samples as f64 / self.total.load(Ordering::Relaxed).max(1) as f64;
         let left = self.begun.elapsed().as_secs_f64() * (1.0 - share) / share.max(1e-9);
         output::say(format_args!(
             "{}: {:.0}%, {:.2} Mrays/s, {left:.0} s left",
@@ -87,6 +87,13 @@ impl Report {
 }
 
 impl Progress for Report {
+    fn begin(&self, samples: u64) {
+        self.total.store(samples, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            bar.set_length(samples);
+        }
+    }
+
     fn advance(&self, samples: u64, rays: u64) {
         let samples = self.samples.fetch_add(samples, Ordering::Relaxed) + samples;
         self.rays.fetch_add(rays, Ordering::Relaxed);

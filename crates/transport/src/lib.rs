@@ -14,6 +14,7 @@ pub mod integrators;
 mod light_choice;
 mod medium;
 pub mod partial;
+pub mod plan;
 pub mod render;
 pub mod replay;
 pub mod sampler;
@@ -28,6 +29,7 @@ pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};
 pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrator};
 pub use light_choice::LightChoice;
+pub use plan::{Choice, Plan, Rival};
 pub use render::{
     DEFAULT_MAX_DEPTH, MAX_DEPTH, PixelAnchor, Progress, RenderSettings, Rendered, Silent, render,
 };

@@ -6,6 +6,7 @@ use crate::eye::Eye;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
 use crate::integrators::PixelIntegrator;
+use crate::plan::{Choice, Plan};
 use crate::splats::{Iterations, Splats};
 use crate::window::Window;
 use bilux_accel::Counters;
@@ -118,6 +119,8 @@ impl RenderSettings {
 pub trait Progress: Sync {
     /// So many samples and rays more.
     fn advance(&self, samples: u64, rays: u64);
+    /// So many samples are going to be taken.
+    fn begin(&self, _samples: u64) {}
     /// True when the work is to stop; what is finished is kept.
     fn is_cancelled(&self) -> bool;
 }
@@ -142,6 +145,8 @@ pub struct Rendered {
     pub counters: Counters,
     /// True when it was stopped. Then [`Film::coverage`] tells which samples are in; each is there whole.
     pub cancelled: bool,
+    /// What an integrator that chooses has chosen.
+    pub choice: Option<Choice>,
 }
 
 /// Renders the samples asked for.
@@ -162,8 +167,14 @@ pub fn render(
         .stack_size(STACK_BYTES)
         .build()
         .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })?;
+    let (choice, planned, counters) = match pool.install(|| integrator.plan(scene, camera, settings)) {
+        Some(Plan { choice, integrator, counters }) => (Some(choice), Some(integrator), counters),
+        None => (None, None, Counters::default()),
+    };
+    let integrator = planned.as_deref().unwrap_or(integrator);
+    progress.begin(settings.sample_count(integrator));
     let tiles = settings.walked(integrator).tiles(TILE);
-    let mut rendered = Rendered { film, counters: Counters::default(), cancelled: false };
+    let mut rendered = Rendered { film, counters, cancelled: false, choice };
     let Some(merging) = integrator.merging() else {
         let eye = Eye::new(scene, camera, integrator, settings);
         return all_passes(&pool, eye, tiles, passes(&settings.samples), progress, rendered);
@@ -193,7 +204,7 @@ fn all_passes(
     progress: &dyn Progress,
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
-    let Rendered { film, mut counters, .. } = before;
+    let Rendered { film, mut counters, choice, .. } = before;
     let work = Work {
         eye,
         progress,
@@ -210,7 +221,7 @@ fn all_passes(
         return Err(error.into());
     }
     let (film, cancelled) = work.finish();
-    Ok(Rendered { film, counters, cancelled })
+    Ok(Rendered { film, counters, cancelled, choice })
 }
 
 /// Ranges of samples that double in length, so that the first picture is there soon.

@@ -50,6 +50,8 @@ pub fn replay(
     if x >= width || y >= height {
         return Err(RenderError::Pixel { x, y, width, height });
     }
+    let plan = integrator.plan(scene, camera, settings);
+    let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     let mut eye = Eye::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);
     let trace =

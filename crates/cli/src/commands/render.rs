@@ -8,7 +8,7 @@ use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder};
-use bilux::transport::Window;
+use bilux::transport::{Choice, Window};
 use bilux::{Job, Outcome};
 use serde_json::json;
 use std::io::Read;
@@ -149,7 +149,7 @@ fn finish(
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
-    let report = Report::new(&label, job.sample_count(), common, interrupt.clone());
+    let report = Report::new(&label, common, interrupt.clone());
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     write(job, &outcome, output, arguments)?;
@@ -160,6 +160,13 @@ fn finish(
         bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
     }
     if !common.quiet {
+        if let Some(choice) = &outcome.choice {
+            output::say(format_args!(
+                "{}: {} chose {choice}",
+                output.display(),
+                job.settings().integrator.entry.name
+            ));
+        }
         let s = job.settings();
         output::say(format_args!(
             "{}: {}x{}, {} by {}, {:.2} s after {build_seconds:.2} s of building, {:.2} Mrays/s{}",
@@ -209,6 +216,15 @@ fn tell_odd_samples(outcome: &Outcome) {
     }
 }
 
+/// Which ways of finding light were chosen, and what was expected of each.
+fn choice(choice: &Choice) -> serde_json::Value {
+    let rivals = choice.rivals.iter().map(|rival| {
+        // An error without end is none that JSON can say.
+        json!({ "name": rival.name, "error": rival.error, "nanoseconds": rival.nanoseconds })
+    });
+    json!({ "chosen": choice.best().name, "rivals": rivals.collect::<Vec<_>>() })
+}
+
 fn stats(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds: f64) -> serde_json::Value {
     let (s, c) = (job.settings(), &outcome.counters);
     let trees: Vec<_> = job
@@ -233,6 +249,6 @@ fn stats(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
         "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
         "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
-        "tree": trees.first(),
+        "tree": trees.first(), "choice": outcome.choice.as_ref().map(choice),
     })
 }

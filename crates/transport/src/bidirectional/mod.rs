@@ -17,7 +17,7 @@ mod ways;
 pub(crate) use connect::{merged, to_camera, to_light, to_vertex};
 pub use photons::{Merging, Photons};
 pub(crate) use walk::{Vertex, Walk};
-pub(crate) use ways::{Found, Lanes, Tally, Way, Ways};
+pub(crate) use ways::{Found, Lanes, Step, Tally, Way, Ways};
 
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};

@@ -23,6 +23,12 @@ pub struct Merging {
 }
 
 impl Merging {
+    /// Area of the disc that an iteration merges over, in square metres.
+    pub(crate) fn area(&self, scene: &Scene, iteration: u32) -> f32 {
+        let radius = self.radius(scene, iteration);
+        std::f32::consts::PI * radius * radius
+    }
+
     /// All ways of an iteration whose photons give this η.
     pub(crate) fn ways(&self, eta: f32) -> Ways {
         Ways { eta: Lanes([eta]), ..self.ways }
@@ -80,7 +86,7 @@ impl<const N: usize> Photons<N> {
             .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
             .sum::<usize>();
         let radius = merging.radius(scene, iteration);
-        let ways = ways(std::f32::consts::PI * radius * radius * followed as f32);
+        let ways = ways(merging.area(scene, iteration) * followed as f32);
         let of_tile = |tile: &Window| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();

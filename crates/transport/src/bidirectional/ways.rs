@@ -46,8 +46,29 @@ pub(crate) enum Way {
     Merged,
 }
 
+/// A step that takes time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// A ray of a light path, and what is done where it arrives.
+    Light,
+    /// The same of a camera path.
+    Camera,
+    /// A light path's vertex is shown to the camera.
+    Seen,
+    /// A point on a light is picked.
+    Picked,
+    /// Two vertices are joined.
+    Joined,
+    /// Photons are looked for around a vertex.
+    Lookup,
+}
+
 /// Takes what is found.
 pub(crate) trait Tally<const N: usize> {
+    /// Steps are about to be taken.
+    #[inline(always)]
+    fn spend(&mut self, _step: Step, _count: usize) {}
+
     /// In the pixel of the camera path.
     fn here(&mut self, way: Way, found: &Found<N>);
     /// At a point of the film (0..=1 on both axes), as an integral over the whole of it.
@@ -59,6 +80,18 @@ impl Ways {
     pub(crate) const CAMERA: Ways = Ways { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]) };
     /// All that need no merging.
     pub(crate) const BOTH_ENDS: Ways = Ways { splats: Lanes([1.0]), joins: Lanes([1.0]), ..Ways::CAMERA };
+}
+
+impl<const N: usize> Ways<N> {
+    /// Single sets as lanes.
+    pub(crate) fn together(mut sets: impl Iterator<Item = Ways>) -> Ways<N> {
+        let mut all = Ways { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO };
+        for k in 0..N {
+            let Some(set) = sets.next() else { break };
+            (all.splats.0[k], all.joins.0[k], all.eta.0[k]) = (set.splats.0[0], set.joins.0[0], set.eta.0[0]);
+        }
+        all
+    }
 }
 
 impl<const N: usize> Found<N> {

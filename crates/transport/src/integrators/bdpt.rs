@@ -4,8 +4,8 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
-    Found, Lanes, Partial, Photons, Tally, Vertex, Walk, Way, Ways, emitted, from_infinity, light_vertices,
-    merged, to_camera, to_light, to_vertex,
+    Found, Lanes, Partial, Photons, Step, Tally, Vertex, Walk, Way, Ways, emitted, from_infinity,
+    light_vertices, merged, to_camera, to_light, to_vertex,
 };
 use crate::splats::Splats;
 use crate::task::Task;
@@ -73,11 +73,15 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         let light_path = if self.ways.splats == Lanes::ZERO && self.ways.joins == Lanes::ZERO {
             Vec::new()
         } else {
-            light_vertices(task, ray.time, self.roulette_depth, self.ways)
+            let rays = task.tracer.counters.rays;
+            let vertices = light_vertices(task, ray.time, self.roulette_depth, self.ways);
+            tally.spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
+            vertices
         };
         if self.ways.splats != Lanes::ZERO {
             for y in &light_path {
                 task.enter_light_vertex(y.depth);
+                tally.spend(Step::Seen, 1);
                 if let Some((film, found)) = to_camera(task, y, self.ways) {
                     tally.there(film, &found);
                 }
@@ -92,6 +96,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
     fn camera_path(&self, ray: &Ray, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
         let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.ways);
         loop {
+            tally.spend(Step::Camera, 1);
             let Some(mut z) = walk.meet(task) else {
                 from_infinity(task, &walk, |met| tally.here(Way::Met, &met.by(walk.beta, &walk.partial)));
                 return;
@@ -114,6 +119,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             if !z.bsdf.is_delta() {
                 self.joins(&z, light_path, task, tally);
                 if let Some(photons) = self.photons {
+                    tally.spend(Step::Lookup, 1);
                     merged(task, photons, &z, |found| tally.here(Way::Merged, found));
                 }
             }
@@ -129,9 +135,11 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         let u = task.sampler.next_1d();
         for index in lights.sample(u) {
             let u = task.sampler.next_2d();
-            if !z.bsdf.is_delta()
-                && let Some(found) = to_light(task, z, index, u, self.ways)
-            {
+            if z.bsdf.is_delta() {
+                continue;
+            }
+            tally.spend(Step::Picked, 1);
+            if let Some(found) = to_light(task, z, index, u, self.ways) {
                 tally.here(Way::Picked, &found);
             }
         }
@@ -141,6 +149,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
     fn joins(&self, z: &Vertex<N>, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
         let max_depth = task.max_depth;
         for y in light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth) {
+            tally.spend(Step::Joined, 1);
             if let Some(found) = to_vertex(task, z, y, self.ways) {
                 tally.here(Way::Joined, &found);
             }

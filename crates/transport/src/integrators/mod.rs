@@ -1,5 +1,6 @@
 //! How the light that comes along a camera ray is found. One integrator a file; the table is [`INTEGRATORS`].
 
+mod auto;
 mod bdpt;
 mod cast;
 mod cook;
@@ -12,11 +13,13 @@ mod vcm;
 mod whitted;
 
 use crate::bidirectional::Merging;
+use crate::plan::Plan;
+use crate::render::RenderSettings;
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{Ray, Reader, SceneError, Spec};
+use bilux_scene::{Camera, Ray, Reader, Scene, SceneError, Spec};
 
 /// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render()`].
 pub trait PixelIntegrator: Send + Sync {
@@ -38,6 +41,12 @@ pub trait PixelIntegrator: Send + Sync {
     /// When roulette begins on the light paths of an iteration.
     fn roulette_depth(&self) -> u32 {
         0
+    }
+
+    /// What renders in its place, if it is one that chooses: by scene, camera and the film's settings, whatever samples
+    /// and pixels of it are wanted.
+    fn plan(&self, _scene: &Scene, _camera: &dyn Camera, _film: &RenderSettings) -> Option<Plan> {
+        None
     }
 
     /// A sample of a pixel: [`PixelIntegrator::radiance`], where it `is_wanted` (pixels that were cropped away have only
@@ -98,6 +107,7 @@ const ROULETTE_DEPTH: Parameter = Parameter {
 
 /// Every integrator that there is.
 pub const INTEGRATORS: &[IntegratorEntry] = &[
+    auto::ENTRY,
     cast::ENTRY,
     whitted::ENTRY,
     cook::ENTRY,

@@ -38,7 +38,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     },
 };
 
-struct Path {
+pub(super) struct Path {
     sampling: Sampling,
     roulette_depth: u32,
 }
@@ -126,6 +126,11 @@ impl PixelIntegrator for Path {
 }
 
 impl Path {
+    /// With both ways of finding lights.
+    pub(super) fn new(roulette_depth: u32) -> Path {
+        Path { sampling: Sampling::Mis, roulette_depth }
+    }
+
     /// Light from infinity that the ray meets, weighted against having sampled it.
     fn background(&self, task: &mut Task, walk: &Walk) -> Rgb {
         let direction = Vec3::from(walk.ray.direction);

@@ -1,0 +1,172 @@
+//! `auto`: decides from a first look which ways of finding light are worth their time in this scene, and then uses these.
+//! [Grittmann 2022]
+//!
+//! The look depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop, range of samples,
+//! or time. None of its samples is in the picture.
+
+mod cost;
+mod pilot;
+
+use super::path::Path;
+use super::vcm::Vcm;
+use super::{IntegratorEntry, PixelIntegrator, merging};
+use crate::bidirectional::{Lanes, Merging, Ways};
+use crate::eye::Eye;
+use crate::plan::{Choice, Plan, Rival};
+use crate::render::RenderSettings;
+use crate::task::Task;
+use bilux_math::Rgb;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::{Camera, Ray, Scene};
+use pilot::Block;
+
+pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
+    entry: Entry {
+        name: "auto",
+        summary: "path tracing, with light paths, joins and photons where a first look finds them worth their time",
+        source: "Grittmann 2022",
+        parameters: &[
+            Parameter {
+                name: "merge",
+                summary: "whether vertices that lie close together may count as one, which blurs a little",
+                unit: "",
+                kind: ParameterKind::Choice(&["auto", "never"]),
+                default: "auto",
+            },
+            super::ROULETTE_DEPTH,
+            merging::radius(1e-6),
+            merging::ALPHA,
+            merging::LIGHT_PATHS,
+        ],
+    },
+    covers: "L(D|G|S)*E",
+    classic: false,
+    default_spp: 64,
+    build: |reader| {
+        Ok(Box::new(Auto {
+            may_merge: reader.text("merge") == "auto",
+            roulette_depth: reader.integer("roulette_depth") as u32,
+            merging: merging::read(reader, Ways::BOTH_ENDS),
+        }))
+    },
+};
+
+struct Auto {
+    may_merge: bool,
+    roulette_depth: u32,
+    merging: Merging,
+}
+
+/// A set of ways, beside those that a camera path has by itself.
+struct Set {
+    name: &'static str,
+    sees: bool,
+    joins: bool,
+    merges: bool,
+}
+
+/// What there is to choose from, the simplest first.
+const SETS: [Set; 6] = [
+    Set { name: "path", sees: false, joins: false, merges: false },
+    Set { name: "path and light", sees: true, joins: false, merges: false },
+    Set { name: "bdpt", sees: true, joins: true, merges: false },
+    Set { name: "path and photons", sees: false, joins: false, merges: true },
+    Set { name: "path, light and photons", sees: true, joins: false, merges: true },
+    Set { name: "vcm", sees: true, joins: true, merges: true },
+];
+
+/// A set has to be so much better than one that stands before it, or that does not blur.
+const WORTH_MORE: f64 = 1.1;
+
+/// A set that cannot find more than this part of the light is none.
+const MAY_BE_LOST: f64 = 1e-4;
+
+/// The iteration whose radius stands for all.
+const TYPICAL_ITERATION: u32 = 16;
+
+impl PixelIntegrator for Auto {
+    /// Without a plan: path tracing.
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        Path::new(self.roulette_depth).radiance(ray, task)
+    }
+
+    fn roulette_depth(&self) -> u32 {
+        self.roulette_depth
+    }
+
+    fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
+        let settings = pilot::settings(film);
+        let eye = Eye::new(scene, camera, self, &settings);
+        let light_paths = (u64::from(film.width) * u64::from(film.height))
+            .min(u64::from(self.merging.max_light_paths)) as f32;
+        let eta = self.merging.area(scene, TYPICAL_ITERATION) * light_paths;
+        let ways = |set: &Set| Ways {
+            splats: Lanes([f32::from(set.sees)]),
+            joins: Lanes([f32::from(set.joins)]),
+            eta: Lanes([if set.merges { eta } else { 0.0 }]),
+        };
+        let lanes = |own: f32| {
+            let all = std::iter::once(self.merging.ways(own)).chain(SETS.iter().map(ways));
+            Ways::together(all)
+        };
+        let seen = pilot::look(&eye, &self.merging, lanes);
+        let rivals: Vec<Rival> = SETS
+            .iter()
+            .enumerate()
+            .map(|(i, set)| Rival {
+                name: set.name,
+                error: error(&seen.blocks, i + 1),
+                nanoseconds: seen.steps.nanoseconds(&ways(set)),
+            })
+            .collect();
+        let choice = Choice { chosen: self.choose(&rivals), rivals };
+        Some(Plan { integrator: self.made_of(&SETS[choice.chosen]), choice, counters: seen.counters })
+    }
+}
+
+impl Auto {
+    fn choose(&self, rivals: &[Rival]) -> usize {
+        let mut best = 0;
+        for (i, set) in SETS.iter().enumerate().skip(1) {
+            if set.merges && !self.may_merge {
+                continue;
+            }
+            if rivals[i].time_to_error() * WORTH_MORE < rivals[best].time_to_error() {
+                best = i;
+            }
+        }
+        best
+    }
+
+    fn made_of(&self, set: &Set) -> Box<dyn PixelIntegrator> {
+        if !set.sees && !set.joins && !set.merges {
+            return Box::new(Path::new(self.roulette_depth));
+        }
+        let mut merging = self.merging;
+        merging.ways.splats = Lanes([f32::from(set.sees)]);
+        merging.ways.joins = Lanes([f32::from(set.joins)]);
+        if !set.merges {
+            merging.radius = 0.0;
+        }
+        Box::new(Vcm { roulette_depth: self.roulette_depth, merging })
+    }
+}
+
+/// Relative error of one sample with the ways of a lane, as a mean over blocks. The worst block of a hundred is left out:
+/// what no set of ways finds well tells nothing about any of them.
+fn error(blocks: &[Block], lane: usize) -> f64 {
+    let light: f64 = blocks.iter().map(|block| block.mean).sum();
+    if blocks.iter().map(|block| block.lost[lane]).sum::<f64>() > MAY_BE_LOST * light {
+        return f64::INFINITY;
+    }
+    let dark = DARK * light / blocks.len() as f64;
+    let of =
+        |block: &Block, lane: usize| block.variance[lane].max(0.0) / (block.mean * block.mean + dark * dark);
+    let mut kept: Vec<&Block> = blocks.iter().collect();
+    kept.sort_by(|a, b| of(a, 0).total_cmp(&of(b, 0)));
+    kept.truncate(blocks.len() - blocks.len().div_ceil(100));
+    kept.iter().map(|block| of(block, lane)).sum::<f64>() / kept.len().max(1) as f64
+}
+
+/// So dark, as a part of the mean, that nobody sees the noise of what is darker.
+const DARK: f64 = 0.3;

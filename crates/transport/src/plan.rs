@@ -1,0 +1,71 @@
+//! What an integrator that chooses has chosen, and why.
+
+use crate::integrators::PixelIntegrator;
+use bilux_scene::Counters;
+use std::fmt;
+
+/// A choice among sets of ways of finding light.
+pub struct Plan {
+    /// What makes the picture.
+    pub integrator: Box<dyn PixelIntegrator>,
+    /// The choice.
+    pub choice: Choice,
+    /// What the rays took by which it was made.
+    pub counters: Counters,
+}
+
+/// What was chosen, and what else there was.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// Which of the rivals.
+    pub chosen: usize,
+    /// What there was to choose from.
+    pub rivals: Vec<Rival>,
+}
+
+/// A set of ways, and what is expected of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// What it is called.
+    pub name: &'static str,
+    /// Expected relative variance of one sample of a pixel; infinite where it would miss some of the light.
+    pub error: f64,
+    /// What a sample of a pixel takes, in nanoseconds of no machine in particular.
+    pub nanoseconds: f64,
+}
+
+impl Rival {
+    /// Proportional to the time that a picture of a given error takes.
+    pub fn time_to_error(&self) -> f64 {
+        self.error * self.nanoseconds
+    }
+}
+
+impl Choice {
+    /// The set that was chosen.
+    pub fn best(&self) -> &Rival {
+        &self.rivals[self.chosen]
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.best().name)?;
+        let best = self.best().time_to_error();
+        let mut others = self.rivals.iter().enumerate().filter(|(i, _)| *i != self.chosen).peekable();
+        if others.peek().is_some() {
+            write!(f, " (to the same noise")?;
+        }
+        let mut mark = "";
+        for (_, rival) in others {
+            match rival.time_to_error() / best {
+                ratio if ratio.is_finite() => {
+                    write!(f, "{mark} {} takes {ratio:.2} times as long", rival.name)?
+                }
+                _ => write!(f, "{mark} {} would miss light", rival.name)?,
+            }
+            mark = ",";
+        }
+        write!(f, ")")
+    }
+}
