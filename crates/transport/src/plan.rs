@@ -28,16 +28,26 @@ pub struct Choice {
 pub struct Rival {
     /// What it is called.
     pub name: &'static str,
-    /// Expected relative variance of one sample of a pixel; infinite where it would miss some of the light.
+    /// Expected relative variance of one sample of a pixel.
     pub error: f64,
+    /// The part of the light that it cannot find, 0..=1.
+    pub lost: f64,
     /// What a sample of a pixel takes, in nanoseconds of no machine in particular.
     pub nanoseconds: f64,
 }
+
+/// So much of the light more or less is none.
+const MAY_BE_LOST: f64 = 1e-4;
 
 impl Rival {
     /// Proportional to the time that a picture of a given error takes.
     pub fn time_to_error(&self) -> f64 {
         self.error * self.nanoseconds
+    }
+
+    /// True when it misses light that the other finds.
+    pub fn misses_more_than(&self, other: &Rival) -> bool {
+        self.lost > other.lost + MAY_BE_LOST
     }
 }
 
@@ -58,11 +68,9 @@ impl fmt::Display for Choice {
         }
         let mut mark = "";
         for (_, rival) in others {
-            match rival.time_to_error() / best {
-                ratio if ratio.is_finite() => {
-                    write!(f, "{mark} {} takes {ratio:.2} times as long", rival.name)?
-                }
-                _ => write!(f, "{mark} {} would miss light", rival.name)?,
+            write!(f, "{mark} {} takes {:.2} times as long", rival.name, rival.time_to_error() / best)?;
+            if rival.misses_more_than(self.best()) {
+                write!(f, " and misses {:.2}% of the light", rival.lost * 100.0)?;
             }
             mark = ",";
         }

@@ -306,7 +306,7 @@ fn a_way_that_is_weighted_wrongly_is_found_out() {
 #[test]
 fn a_crop_and_a_range_of_samples_show_the_same_splats() {
     let scene = built(&mixed());
-    for name in ["light", "bdpt"] {
+    for name in ["light", "bdpt", "auto"] {
         let whole = RenderSettings { threads: 2, ..RenderSettings::new(20, 18, 6) };
         let film = shoot(&scene, &*integrator(name), &whole).film;
         let window = Window { x: 5, y: 7, width: 9, height: 4 };

@@ -219,8 +219,9 @@ fn tell_odd_samples(outcome: &Outcome) {
 /// Which ways of finding light were chosen, and what was expected of each.
 fn choice(choice: &Choice) -> serde_json::Value {
     let rivals = choice.rivals.iter().map(|rival| {
-        // An error without end is none that JSON can say.
-        json!({ "name": rival.name, "error": rival.error, "nanoseconds": rival.nanoseconds })
+        json!({
+            "name": rival.name, "error": rival.error, "lost": rival.lost, "nanoseconds": rival.nanoseconds,
+        })
     });
     json!({ "chosen": choice.best().name, "rivals": rivals.collect::<Vec<_>>() })
 }

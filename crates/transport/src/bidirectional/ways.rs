@@ -78,6 +78,11 @@ pub(crate) trait Tally<const N: usize> {
 impl Ways {
     /// Paths from the camera alone.
     pub(crate) const CAMERA: Ways = Ways { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]) };
+    /// With light paths that are seen from the camera or not, and joined or not.
+    pub(crate) fn beside_merging(splats: bool, joins: bool) -> Ways {
+        Ways { splats: Lanes([f32::from(splats)]), joins: Lanes([f32::from(joins)]), ..Ways::CAMERA }
+    }
+
     /// All that need no merging.
     pub(crate) const BOTH_ENDS: Ways = Ways { splats: Lanes([1.0]), joins: Lanes([1.0]), ..Ways::CAMERA };
 }

@@ -30,6 +30,14 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
     default: "1048576",
 };
 
+/// Whether subpaths are joined, and whether light paths are seen from the camera.
+pub(super) const JOINS: Parameter = switch("joins", "join the vertices of both ends");
+pub(super) const SPLATS: Parameter = switch("splats", "show light paths to the camera");
+
+const fn switch(name: &'static str, summary: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }
+}
+
 pub(super) fn read(reader: &Reader, ways: Ways) -> Merging {
     Merging {
         radius: reader.number("radius"),

@@ -21,15 +21,18 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             super::merging::radius(0.0),
             super::merging::ALPHA,
             super::merging::LIGHT_PATHS,
+            super::merging::JOINS,
+            super::merging::SPLATS,
         ],
     },
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
     build: |reader| {
+        let ways = Ways::beside_merging(reader.bool("splats"), reader.bool("joins"));
         Ok(Box::new(Vcm {
             roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: super::merging::read(reader, Ways::BOTH_ENDS),
+            merging: super::merging::read(reader, ways),
         }))
     },
 };

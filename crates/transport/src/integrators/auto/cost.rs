@@ -20,10 +20,10 @@ const CAMERA: f64 = 330.0;
 const SEEN: f64 = 170.0;
 const PICKED: f64 = 210.0;
 const JOINED: f64 = 150.0;
-const LOOKUP: f64 = 150.0;
-const MERGED: f64 = 45.0;
+const LOOKUP: f64 = 250.0;
+const MERGED: f64 = 80.0;
 /// What a photon takes to be kept, found a cell and looked at by nobody.
-const KEPT: f64 = 60.0;
+const KEPT: f64 = 150.0;
 
 impl Steps {
     pub(super) fn count(&mut self, step: Step, count: usize) {

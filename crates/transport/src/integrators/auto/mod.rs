@@ -34,7 +34,13 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
                 default: "auto",
             },
             super::ROULETTE_DEPTH,
-            merging::radius(1e-6),
+            Parameter {
+                name: "radius",
+                summary: "as that of vcm; 0 for three pixels as the camera sees them",
+                unit: "",
+                kind: ParameterKind::Number { min: 0.0, max: 1.0 },
+                default: "0",
+            },
             merging::ALPHA,
             merging::LIGHT_PATHS,
         ],
@@ -78,8 +84,8 @@ const SETS: [Set; 6] = [
 /// A set has to be so much better than one that stands before it, or that does not blur.
 const WORTH_MORE: f64 = 1.1;
 
-/// A set that cannot find more than this part of the light is none.
-const MAY_BE_LOST: f64 = 1e-4;
+/// Photons are merged over so many pixels to begin with, where nothing else is said.
+const PIXELS: f32 = 3.0;
 
 /// The iteration whose radius stands for all.
 const TYPICAL_ITERATION: u32 = 16;
@@ -97,30 +103,38 @@ impl PixelIntegrator for Auto {
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
         let settings = pilot::settings(film);
         let eye = Eye::new(scene, camera, self, &settings);
-        let light_paths = (u64::from(film.width) * u64::from(film.height))
-            .min(u64::from(self.merging.max_light_paths)) as f32;
-        let eta = self.merging.area(scene, TYPICAL_ITERATION) * light_paths;
+        let mut merging = self.merging;
+        if merging.radius == 0.0 {
+            merging.radius = PIXELS * pilot::pixel_radius(&eye, film) / scene.bounds().radius();
+        }
+        let light_paths =
+            (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
+        let eta = merging.area(scene, TYPICAL_ITERATION) * light_paths;
         let ways = |set: &Set| Ways {
-            splats: Lanes([f32::from(set.sees)]),
-            joins: Lanes([f32::from(set.joins)]),
             eta: Lanes([if set.merges { eta } else { 0.0 }]),
+            ..Ways::beside_merging(set.sees, set.joins)
         };
         let lanes = |own: f32| {
-            let all = std::iter::once(self.merging.ways(own)).chain(SETS.iter().map(ways));
+            let all = std::iter::once(merging.ways(own)).chain(SETS.iter().map(ways));
             Ways::together(all)
         };
-        let seen = pilot::look(&eye, &self.merging, lanes);
+        let seen = pilot::look(&eye, &merging, lanes);
         let rivals: Vec<Rival> = SETS
             .iter()
             .enumerate()
             .map(|(i, set)| Rival {
                 name: set.name,
                 error: error(&seen.blocks, i + 1),
+                lost: lost(&seen.blocks, i + 1),
                 nanoseconds: seen.steps.nanoseconds(&ways(set)),
             })
             .collect();
         let choice = Choice { chosen: self.choose(&rivals), rivals };
-        Some(Plan { integrator: self.made_of(&SETS[choice.chosen]), choice, counters: seen.counters })
+        Some(Plan {
+            integrator: self.made_of(&SETS[choice.chosen], merging),
+            choice,
+            counters: seen.counters,
+        })
     }
 }
 
@@ -128,26 +142,23 @@ impl Auto {
     fn choose(&self, rivals: &[Rival]) -> usize {
         let mut best = 0;
         for (i, set) in SETS.iter().enumerate().skip(1) {
-            if set.merges && !self.may_merge {
-                continue;
-            }
-            if rivals[i].time_to_error() * WORTH_MORE < rivals[best].time_to_error() {
+            let (rival, held) = (&rivals[i], &rivals[best]);
+            let is_better = rival.time_to_error() * WORTH_MORE < held.time_to_error();
+            let finds_more = held.misses_more_than(rival);
+            let finds_all = !rival.misses_more_than(held);
+            if (self.may_merge || !set.merges) && (finds_more || (is_better && finds_all)) {
                 best = i;
             }
         }
         best
     }
 
-    fn made_of(&self, set: &Set) -> Box<dyn PixelIntegrator> {
+    fn made_of(&self, set: &Set, merging: Merging) -> Box<dyn PixelIntegrator> {
         if !set.sees && !set.joins && !set.merges {
             return Box::new(Path::new(self.roulette_depth));
         }
-        let mut merging = self.merging;
-        merging.ways.splats = Lanes([f32::from(set.sees)]);
-        merging.ways.joins = Lanes([f32::from(set.joins)]);
-        if !set.merges {
-            merging.radius = 0.0;
-        }
+        let radius = if set.merges { merging.radius } else { 0.0 };
+        let merging = Merging { radius, ways: Ways::beside_merging(set.sees, set.joins), ..merging };
         Box::new(Vcm { roulette_depth: self.roulette_depth, merging })
     }
 }
@@ -156,16 +167,20 @@ impl Auto {
 /// what no set of ways finds well tells nothing about any of them.
 fn error(blocks: &[Block], lane: usize) -> f64 {
     let light: f64 = blocks.iter().map(|block| block.mean).sum();
-    if blocks.iter().map(|block| block.lost[lane]).sum::<f64>() > MAY_BE_LOST * light {
-        return f64::INFINITY;
-    }
     let dark = DARK * light / blocks.len() as f64;
     let of =
         |block: &Block, lane: usize| block.variance[lane].max(0.0) / (block.mean * block.mean + dark * dark);
     let mut kept: Vec<&Block> = blocks.iter().collect();
     kept.sort_by(|a, b| of(a, 0).total_cmp(&of(b, 0)));
-    kept.truncate(blocks.len() - blocks.len().div_ceil(100));
+    kept.truncate(blocks.len() - blocks.len() / 100);
     kept.iter().map(|block| of(block, lane)).sum::<f64>() / kept.len().max(1) as f64
+}
+
+/// The part of the light that the ways of a lane cannot find.
+fn lost(blocks: &[Block], lane: usize) -> f64 {
+    let sum = |of: fn(&Block, usize) -> f64| blocks.iter().map(|block| of(block, lane)).sum::<f64>();
+    let light = sum(|block, _| block.mean);
+    if light > 0.0 { sum(|block, lane| block.lost[lane]) / light } else { 0.0 }
 }
 
 /// So dark, as a part of the mean, that nobody sees the noise of what is darker.

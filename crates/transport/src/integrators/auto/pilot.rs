@@ -68,6 +68,26 @@ pub(super) fn settings(film: &RenderSettings) -> RenderSettings {
     }
 }
 
+/// The radius of a disc as large as what a pixel of the film shows of the first surface there, in metres: the median over
+/// the pilot's pixels.
+pub(super) fn pixel_radius(eye: &Eye, film: &RenderSettings) -> f32 {
+    let mut tracer = Tracer::new(eye.scene, false);
+    let pixels = film.width as f32 * film.height as f32;
+    let whole = Window::whole(eye.settings.width, eye.settings.height);
+    let mut areas: Vec<f32> = (0..whole.pixels())
+        .map(|i| whole.position(i))
+        .filter_map(|(x, y)| {
+            let (ray, task) = eye.sample(&mut tracer, x, y, 0);
+            let camera = task.camera;
+            let surface = task.tracer.closest(&ray)?;
+            let cos = surface.n_geom.dot(ray.direction.into()).abs();
+            Some(1.0 / (camera.density(&ray, surface.t) * cos * pixels)).filter(|area| area.is_finite())
+        })
+        .collect();
+    areas.sort_by(f32::total_cmp);
+    areas.get(areas.len() / 2).map_or(0.0, |area| (area / std::f32::consts::PI).sqrt())
+}
+
 /// Takes the samples. `ways` tells all lanes, given the η of the pilot's own photons.
 pub(super) fn look(eye: &Eye, merging: &Merging, ways: impl Fn(f32) -> Ways<LANES>) -> Pilot {
     let size = Vec2::new(eye.settings.width as f32, eye.settings.height as f32);
