@@ -10,7 +10,7 @@ use bilux_scene::{
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Choice, Film, Filter, PixelAnchor, Progress, RenderSettings, Replay, SamplePlace, Window,
+    Choice, Film, Filter, PixelAnchor, Progress, Reached, RenderSettings, Replay, SamplePlace, Window,
 };
 use std::ops::Range;
 use std::path::Path;
@@ -38,6 +38,8 @@ pub struct Outcome {
     pub cancelled: bool,
     /// What an integrator that chooses has chosen, and why.
     pub choice: Option<Choice>,
+    /// How far it came, where noise or time could end it.
+    pub reached: Option<Reached>,
     linear_transfer: bool,
 }
 
@@ -129,6 +131,7 @@ impl Job {
             counters: rendered.counters,
             cancelled: rendered.cancelled,
             choice: rendered.choice,
+            reached: rendered.reached,
             linear_transfer: self.settings.linear_transfer,
         })
     }
@@ -211,6 +214,7 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         pixel_anchor: if settings.corner_anchor { PixelAnchor::Corner } else { PixelAnchor::Centre },
         filter: Filter::named(&settings.filter)?,
         count_work: false,
+        stop: settings.stop,
     })
 }
 

@@ -6,8 +6,10 @@ use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec};
+use bilux_transport::Stop;
 use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+use std::time::Duration;
 
 /// What `[render]` and `--set` understand, beside the parameters of the integrator.
 pub const RENDER: Entry = Entry {
@@ -19,6 +21,15 @@ pub const RENDER: Entry = Entry {
         text("accel", "what finds the triangles that rays hit", "auto"),
         text("size", "width and height of the picture, as WxH", "512x512"),
         integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"),
+        number(
+            "noise",
+            "stop when the noise is at most this part of the light, on average; 0 for all samples",
+            "",
+            0.0,
+            10.0,
+            "0",
+        ),
+        number("time_limit", "stop after this time; 0 for all samples", "s", 0.0, 1e9, "0"),
         integer("seed", "another number gives other noise", 0, i64::MAX, "0"),
         integer("max_depth", "scattering events after the camera; 0 is emission only", 0, 10_000, "16"),
         integer("threads", "threads at work; 0 for all cores", 0, 4096, "0"),
@@ -106,6 +117,8 @@ pub struct Settings {
     pub height: u32,
     /// Samples per pixel.
     pub spp: u32,
+    /// What ends the picture before all samples are taken.
+    pub stop: Stop,
     /// Seed.
     pub seed: u64,
     /// Scattering events after the camera.
@@ -148,7 +161,9 @@ impl Settings {
         let integrator_parameters = integrator_parameters(integrator, rest)?;
         let (width, height) = parse_size(&reader.text("size"))
             .ok_or_else(|| SceneError::invalid(no_size(&reader.text("size")), reader.span("size")))?;
+        let stop = stop(&reader);
         let spp = match reader.integer("spp") {
+            0 if stop.is_any() => MOST_SPP,
             0 => integrator.default_spp,
             n => u32::try_from(n).unwrap_or(u32::MAX),
         };
@@ -160,6 +175,7 @@ impl Settings {
             width,
             height,
             spp,
+            stop,
             seed: reader.integer("seed") as u64,
             max_depth: reader.integer("max_depth") as u32,
             threads: reader.integer("threads") as usize,
@@ -178,6 +194,14 @@ impl Settings {
             linear_transfer: reader.text("transfer") == "linear",
         })
     }
+}
+
+/// Samples of a pixel at which a picture ends in any case, where a stop but no number of samples is given.
+const MOST_SPP: u32 = 1 << 16;
+
+fn stop(reader: &Reader) -> Stop {
+    let above_zero = |key: &str| Some(reader.number(key)).filter(|&x| x > 0.0);
+    Stop { noise: above_zero("noise"), time_limit: above_zero("time_limit").map(Duration::from_secs_f32) }
 }
 
 /// What is said of a text that [`parse_size`] does not take.

@@ -121,6 +121,12 @@ pub struct Render {
     /// Samples per pixel
     #[arg(long, value_name = "N")]
     pub spp: Option<u32>,
+    /// Stop when the noise is at most this part of the light, on average: 0.02 is smooth
+    #[arg(long, value_name = "REL")]
+    pub noise: Option<f32>,
+    /// Stop after this time
+    #[arg(long, value_name = "SECONDS")]
+    pub time_limit: Option<f32>,
     /// Another number gives other noise
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

@@ -16,6 +16,8 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("build", "--build", text(&a.build)),
         ("size", "--size", text(&a.size)),
         ("spp", "--spp", whole(a.spp.map(u64::from))),
+        ("noise", "--noise", number(a.noise)),
+        ("time_limit", "--time-limit", number(a.time_limit)),
         ("seed", "--seed", whole(a.seed)),
         ("threads", "--threads", whole(a.threads.map(u64::from))),
         ("max_depth", "--max-depth", whole(a.max_depth.map(u64::from))),
@@ -40,6 +42,15 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
     }
     if a.spp == Some(0) {
         bail!("--spp has to be at least 1");
+    }
+    // A number of samples that the scene file gives is no reason to stop short of what was asked for here.
+    if a.spp.is_none() && (a.noise.is_some() || a.time_limit.is_some()) {
+        parameters.set_at("spp", Value::Integer(0), from_flag("--noise"));
+    }
+    for (flag, given) in [("--noise", a.noise), ("--time-limit", a.time_limit)] {
+        if given.is_some_and(|x| x.is_nan() || x <= 0.0) {
+            bail!("{flag} has to be above 0");
+        }
     }
     Ok(parameters)
 }

@@ -83,6 +83,9 @@ pub enum FilmError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
+    /// A part of a picture cannot know when the whole is good enough.
+    #[error("a target of noise or time is for whole pictures: leave out the crop and the range of samples")]
+    StopOfPart,
     /// The film cannot be made.
     #[error(transparent)]
     Film(#[from] FilmError),

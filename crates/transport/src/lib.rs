@@ -19,6 +19,7 @@ pub mod render;
 pub mod replay;
 pub mod sampler;
 mod splats;
+pub mod stop;
 mod task;
 mod trouble;
 pub mod window;
@@ -36,6 +37,7 @@ pub use render::{
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
 pub use splats::Splats;
+pub use stop::{Reached, Stop};
 pub use task::{Event, Task};
 pub use trouble::{SamplePlace, Trouble};
 pub use window::{Coverage, Window};

@@ -8,6 +8,7 @@ use crate::filters::Filter;
 use crate::integrators::PixelIntegrator;
 use crate::plan::{Choice, Plan};
 use crate::splats::{Iterations, Splats};
+use crate::stop::{Reached, Stop, Watch};
 use crate::window::Window;
 use bilux_accel::Counters;
 use bilux_scene::{Camera, Scene, Tracer};
@@ -57,6 +58,8 @@ pub struct RenderSettings {
     pub filter: Filter,
     /// Count nodes and triangle tests, not only rays.
     pub count_work: bool,
+    /// What may end it before all samples are taken.
+    pub stop: Stop,
 }
 
 /// Which point stands for a pixel.
@@ -84,6 +87,7 @@ impl RenderSettings {
             pixel_anchor: PixelAnchor::Centre,
             filter: Filter::default(),
             count_work: false,
+            stop: Stop::default(),
         }
     }
 
@@ -107,6 +111,9 @@ impl RenderSettings {
         let spp = self.spp;
         if start >= end || end > spp || spp > MAX_SAMPLES {
             return Err(RenderError::Samples { start, end, spp });
+        }
+        if self.stop.is_any() && (self.crop.is_some() || self.samples != (0..spp)) {
+            return Err(RenderError::StopOfPart);
         }
         if self.max_depth > MAX_DEPTH {
             return Err(RenderError::Depth { depth: self.max_depth });
@@ -147,6 +154,8 @@ pub struct Rendered {
     pub cancelled: bool,
     /// What an integrator that chooses has chosen.
     pub choice: Option<Choice>,
+    /// How far it came, where it could end early ([`RenderSettings::stop`]).
+    pub reached: Option<Reached>,
 }
 
 /// Renders the samples asked for.
@@ -174,24 +183,41 @@ pub fn render(
     let integrator = planned.as_deref().unwrap_or(integrator);
     progress.begin(settings.sample_count(integrator));
     let tiles = settings.walked(integrator).tiles(TILE);
-    let mut rendered = Rendered { film, counters, cancelled: false, choice };
-    let Some(merging) = integrator.merging() else {
-        let eye = Eye::new(scene, camera, integrator, settings);
-        return all_passes(&pool, eye, tiles, passes(&settings.samples), progress, rendered);
+    let mut rendered = Rendered { film, counters, cancelled: false, choice, reached: None };
+    let eye = || Eye::new(scene, camera, integrator, settings);
+    let take = |samples: &Range<u32>, mut rendered: Rendered| {
+        let Some(merging) = integrator.merging() else {
+            return all_passes(&pool, eye(), tiles.clone(), passes(samples), progress, rendered);
+        };
+        let whole = Window::whole(settings.width, settings.height).tiles(TILE);
+        for iteration in samples.clone() {
+            let mut eye = eye();
+            let (photons, counters) =
+                pool.install(|| Photons::trace(&eye, merging, &whole, iteration, |eta| merging.ways(eta)));
+            rendered.counters += counters;
+            eye.photons = Some(&photons);
+            let pass = vec![iteration..iteration + 1];
+            rendered = all_passes(&pool, eye, tiles.clone(), pass, progress, rendered)?;
+            if rendered.cancelled {
+                break;
+            }
+        }
+        Ok(rendered)
     };
-    let whole = Window::whole(settings.width, settings.height).tiles(TILE);
-    for iteration in settings.samples.clone() {
-        let mut eye = Eye::new(scene, camera, integrator, settings);
-        let (photons, counters) =
-            pool.install(|| Photons::trace(&eye, merging, &whole, iteration, |eta| merging.ways(eta)));
-        rendered.counters += counters;
-        eye.photons = Some(&photons);
-        let pass = passes(&(iteration..iteration + 1));
-        rendered = all_passes(&pool, eye, tiles.clone(), pass, progress, rendered)?;
-        if rendered.cancelled {
-            break;
+    if !settings.stop.is_any() {
+        return take(&settings.samples, rendered);
+    }
+    let mut watch = Watch::new(settings);
+    while !rendered.cancelled
+        && let Some(samples) = watch.next()
+    {
+        rendered = take(&samples, rendered)?;
+        if !rendered.cancelled {
+            watch.look(&rendered.film, &samples);
+            progress.begin(settings.walked(integrator).pixels() as u64 * u64::from(watch.expected()));
         }
     }
+    rendered.reached = watch.reached;
     Ok(rendered)
 }
 
@@ -204,7 +230,7 @@ fn all_passes(
     progress: &dyn Progress,
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
-    let Rendered { film, mut counters, choice, .. } = before;
+    let Rendered { film, mut counters, choice, reached, .. } = before;
     let work = Work {
         eye,
         progress,
@@ -221,7 +247,7 @@ fn all_passes(
         return Err(error.into());
     }
     let (film, cancelled) = work.finish();
-    Ok(Rendered { film, counters, cancelled, choice })
+    Ok(Rendered { film, counters, cancelled, choice, reached })
 }
 
 /// Ranges of samples that double in length, so that the first picture is there soon.

@@ -8,7 +8,7 @@ use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder};
-use bilux::transport::{Choice, Window};
+use bilux::transport::{Choice, Reached, Window};
 use bilux::{Job, Outcome};
 use serde_json::json;
 use std::io::Read;
@@ -168,6 +168,9 @@ fn finish(
             ));
         }
         let s = job.settings();
+        if let Some(reached) = &outcome.reached {
+            output::say(format_args!("{}: {}", output.display(), how_far(reached)));
+        }
         output::say(format_args!(
             "{}: {}x{}, {} by {}, {:.2} s after {build_seconds:.2} s of building, {:.2} Mrays/s{}",
             output.display(),
@@ -216,6 +219,12 @@ fn tell_odd_samples(outcome: &Outcome) {
     }
 }
 
+/// Where a picture ended that could end early.
+fn how_far(reached: &Reached) -> String {
+    let noise = reached.noise.map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
+    format!("{} samples a pixel{noise}", reached.spp)
+}
+
 /// Which ways of finding light were chosen, and what was expected of each.
 fn choice(choice: &Choice) -> serde_json::Value {
     let rivals = choice.rivals.iter().map(|rival| {
@@ -250,6 +259,7 @@ fn stats(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
         "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
         "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
-        "tree": trees.first(), "choice": outcome.choice.as_ref().map(choice),
+        "tree": trees.first(), "reached": outcome.reached.map(|r| json!({ "spp": r.spp, "noise": r.noise })),
+        "choice": outcome.choice.as_ref().map(choice),
     })
 }

@@ -1,0 +1,154 @@
+//! When a picture is good enough, or has taken long enough. Both are asked between passes over the whole film.
+
+use crate::film::Film;
+use crate::render::RenderSettings;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+/// What ends a picture before all of its samples are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stop {
+    /// Noise that is low enough: see [`Reached::noise`].
+    pub noise: Option<f32>,
+    /// Time that may pass.
+    pub time_limit: Option<Duration>,
+}
+
+/// How far a picture has come that may end early.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached {
+    /// Samples of each pixel.
+    pub spp: u32,
+    /// What is left of the noise, where it was asked for: the standard error of a pixel as a part of the light around
+    /// it, as a mean over blocks of 8 × 8 pixels. What is darker than [`DARK`] of the mean counts as that bright.
+    pub noise: Option<f32>,
+}
+
+/// So dark, as a part of the picture's mean, that nobody sees the noise of what is darker.
+pub const DARK: f32 = 0.3;
+
+/// Side of a block whose noise is told as one number, in pixels.
+const BLOCK: u32 = 8;
+
+impl Stop {
+    /// True when anything may end the picture early.
+    pub fn is_any(&self) -> bool {
+        *self != Stop::default()
+    }
+}
+
+/// Watches a film while samples are added.
+pub(crate) struct Watch {
+    stop: Stop,
+    begun: Instant,
+    samples: Range<u32>,
+    done: u32,
+    /// Luminances of the film when it had so many samples, at the last two powers of 2: later samples are told from
+    /// earlier ones by what they changed.
+    snapshots: [Option<(u32, Vec<f32>)>; 2],
+    pub(crate) reached: Option<Reached>,
+}
+
+impl Watch {
+    pub(crate) fn new(settings: &RenderSettings) -> Watch {
+        let (stop, samples) = (settings.stop, settings.samples.clone());
+        Watch { stop, begun: Instant::now(), samples, done: 0, snapshots: [None, None], reached: None }
+    }
+
+    /// The next samples to take; `None` when it is enough.
+    pub(crate) fn next(&mut self) -> Option<Range<u32>> {
+        let left = self.samples.len() as u32 - self.done;
+        // In quarters of a power of 2, so that not much more is taken than was needed.
+        let mut length =
+            (self.done.next_power_of_two() / if self.done.is_power_of_two() { 4 } else { 8 }).max(1);
+        if let Some(limit) = self.stop.time_limit
+            && self.done > 0
+        {
+            let elapsed = self.begun.elapsed();
+            let each = elapsed.as_secs_f64() / f64::from(self.done);
+            let fits = (limit.saturating_sub(elapsed).as_secs_f64() / each.max(1e-9)) as u32;
+            length = length.min(fits);
+        }
+        let is_fine =
+            matches!((self.noise(), self.stop.noise), (Some(noise), Some(enough)) if noise <= enough);
+        length = if is_fine { 0 } else { length.min(left) };
+        let start = self.samples.start + self.done;
+        (length > 0).then(|| start..start + length)
+    }
+
+    /// Looks at the film after some more samples.
+    pub(crate) fn look(&mut self, film: &Film, samples: &Range<u32>) {
+        self.done += samples.len() as u32;
+        let mut noise = None;
+        if self.stop.noise.is_some() {
+            let light: Vec<f32> = film.to_rgb().into_iter().map(|pixel| pixel.luminance()).collect();
+            noise = self.measure(&light, film);
+            if self.done.is_power_of_two() {
+                self.snapshots.swap(0, 1);
+                self.snapshots[1] = Some((self.done, light));
+            }
+        }
+        self.reached = Some(Reached { spp: self.done, noise });
+    }
+
+    fn noise(&self) -> Option<f32> {
+        self.reached?.noise
+    }
+
+    /// About how many samples of a pixel it is going to be, as far as can be told.
+    pub(crate) fn expected(&self) -> u32 {
+        let most = self.samples.len() as u32;
+        if self.done == 0 {
+            return most;
+        }
+        let done = f64::from(self.done);
+        let by_time = self.stop.time_limit.map_or(f64::INFINITY, |limit| {
+            done * limit.as_secs_f64() / self.begun.elapsed().as_secs_f64().max(1e-9)
+        });
+        let by_noise = match (self.noise(), self.stop.noise) {
+            (Some(noise), Some(enough)) => done * (f64::from(noise) / f64::from(enough)).max(1.0).powi(2),
+            _ => f64::INFINITY,
+        };
+        by_time.min(by_noise).clamp(done, f64::from(most)) as u32
+    }
+
+    /// Of n samples the mean differs from that of the first m of them by σ²(1/m - 1/n) in the square; its own error is σ²/n.
+    fn measure(&self, now: &[f32], film: &Film) -> Option<f32> {
+        let (m, before) = self.snapshots.iter().flatten().find(|(m, _)| *m < self.done)?;
+        let to_own = f64::from(*m) / f64::from(self.done - m);
+        let mean = now.iter().map(|&x| f64::from(x)).sum::<f64>() / now.len() as f64;
+        let dark = (f64::from(DARK) * mean).max(f64::MIN_POSITIVE);
+        let (mut sum, mut blocks) = (0.0, 0u32);
+        for tile in film.window().tiles(BLOCK) {
+            let (mut light, mut squares) = (0.0, 0.0);
+            for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {
+                let Some(i) = film.window().index(x, y) else { continue };
+                let (a, b) = (f64::from(before[i]), f64::from(now[i]));
+                light += b;
+                squares += (b - a) * (b - a);
+            }
+            let pixels = tile.pixels() as f64;
+            let (light, variance) = (light / pixels, squares / pixels * to_own);
+            sum += (variance / (light * light + dark * dark)).sqrt();
+            blocks += 1;
+        }
+        Some((sum / f64::from(blocks.max(1))) as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_come_in_quarters_of_a_power_of_two() {
+        let settings = RenderSettings::new(1, 1, 40);
+        let mut watch = Watch::new(&settings);
+        let mut ends = Vec::new();
+        while let Some(samples) = watch.next() {
+            watch.done += samples.len() as u32;
+            ends.push(samples.end);
+        }
+        assert_eq!(ends, [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40]);
+    }
+}
