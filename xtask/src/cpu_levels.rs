@@ -49,6 +49,8 @@ const PICTURES: &[Picture] = &[
     Picture { name: "path-bsp", scene: CORNELL, render: &["-i", "path", "--accel", "bsp"] },
     Picture { name: "path-bvh8", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8"] },
     Picture { name: "path-compact", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8-compact"] },
+    Picture { name: "vcm", scene: CORNELL, render: &["-i", "vcm"] },
+    Picture { name: "auto", scene: CORNELL, render: &["-i", "auto"] },
     Picture { name: "cast-simd", scene: TEAPOTS, render: &["-i", "cast", "--accel", "brute-simd"] },
 ];
 
