@@ -196,7 +196,7 @@ pub fn render(
                 pool.install(|| Photons::trace(&eye, merging, &whole, iteration, |eta| merging.ways(eta)));
             rendered.counters += counters;
             eye.photons = Some(&photons);
-            let pass = vec![iteration..iteration + 1];
+            let pass = passes(&(iteration..iteration + 1));
             rendered = all_passes(&pool, eye, tiles.clone(), pass, progress, rendered)?;
             if rendered.cancelled {
                 break;

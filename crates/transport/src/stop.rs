@@ -106,7 +106,10 @@ impl Watch {
             done * limit.as_secs_f64() / self.begun.elapsed().as_secs_f64().max(1e-9)
         });
         let by_noise = match (self.noise(), self.stop.noise) {
-            (Some(noise), Some(enough)) => done * (f64::from(noise) / f64::from(enough)).max(1.0).powi(2),
+            (Some(noise), Some(enough)) => {
+                let above = (f64::from(noise) / f64::from(enough)).max(1.0);
+                done * above * above
+            }
             _ => f64::INFINITY,
         };
         by_time.min(by_noise).clamp(done, f64::from(most)) as u32

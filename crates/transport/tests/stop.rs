@@ -36,10 +36,11 @@ fn the_noise_that_is_told_is_the_noise_that_there_is() {
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)) {
                 let i = (y * 48 + x) as usize;
                 light += truth[i];
-                squares += (f64::from(pixels[i].luminance()) - truth[i]).powi(2);
+                let apart = f64::from(pixels[i].luminance()) - truth[i];
+                squares += apart * apart;
             }
             let n = tile.pixels() as f64;
-            (squares / n / ((light / n).powi(2) + dark * dark)).sqrt()
+            (squares / n / (light / n * light / n + dark * dark)).sqrt()
         };
         let tiles = Window::whole(48, 40).tiles(8);
         let there = tiles.iter().map(of_block).sum::<f64>() / tiles.len() as f64;
