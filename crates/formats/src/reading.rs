@@ -30,13 +30,22 @@ impl Source<'_> {
     }
 }
 
+/// What the texels of a texture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Texels {
+    /// Colours, in linear light.
+    Colours,
+    /// Numbers, as the file has them: of all channels, or of one.
+    Numbers(Option<usize>),
+}
+
 /// What all readers of one job share.
 pub(crate) struct Reading<'o> {
     pub(crate) options: &'o ReadOptions,
     pub(crate) budget: Budget,
     /// Nothing outside this folder is opened.
     root: Option<PathBuf>,
-    textures: HashMap<PathBuf, Arc<Texture>>,
+    textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
     texture_bytes: u64,
     /// Scenes put into other scenes, each read once.
     pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
@@ -159,15 +168,16 @@ impl<'o> Reading<'o> {
         self.budget.give_back(bytes.len() as u64);
     }
 
-    /// A picture as a texture in linear light; decoded once however often it is named.
+    /// A picture as a texture; decoded once however often it is named.
     pub(crate) fn texture(
         &mut self,
         folder: Option<&Path>,
         name: &str,
+        holds: Texels,
         at: &Span,
     ) -> Result<Arc<Texture>, FormatError> {
         let path = self.locate(folder, name, at)?;
-        if let Some(texture) = self.textures.get(&path) {
+        if let Some(texture) = self.textures.get(&(path.clone(), holds)) {
             return Ok(texture.clone());
         }
         let bytes = self.load(&path)?;
@@ -175,19 +185,22 @@ impl<'o> Reading<'o> {
         // The decoder's planes and the texels are held side by side for a moment.
         let limits = Limits::new(self.budget.left() / 2);
         let decoded = bilux_pictures::read_bytes(&bytes, hint, &limits);
-        let picture = decoded
-            .map_err(|e| {
-                FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
-            })?
-            .into_linear();
+        let picture = decoded.map_err(|e| {
+            FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
+        })?;
+        let picture = if holds == Texels::Colours { picture.into_linear() } else { picture };
         self.hold_texels(picture.pixel_count(), name)?;
         let (width, height) = (picture.width(), picture.height());
-        let texels = picture.to_rgb().ok_or_else(|| {
+        let mut texels = picture.to_rgb().ok_or_else(|| {
             FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
         })?;
         self.release(bytes);
-        let texture = Arc::new(Texture { name: name.to_owned(), width, height, texels });
-        self.textures.insert(path, texture.clone());
+        if let Texels::Numbers(Some(channel)) = holds {
+            texels.iter_mut().for_each(|texel| *texel = Rgb::grey(texel[channel]));
+        }
+        let is_data = holds != Texels::Colours;
+        let texture = Arc::new(Texture { name: name.to_owned(), width, height, texels, is_data });
+        self.textures.insert((path, holds), texture.clone());
         Ok(texture)
     }
 }

@@ -1,7 +1,7 @@
 //! One job of writing: files are made in memory, and reach the disk only when all are done.
 
 use crate::{FormatError, WriteOptions};
-use bilux_pictures::{Picture, write_atomically};
+use bilux_pictures::{ColourSpace, Picture, write_atomically};
 use bilux_scene::{SceneBuilder, Span, Warning};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -48,7 +48,11 @@ impl<'o> Writing<'o> {
         let bright = texture.texels.iter().any(|t| !t.is_finite() || t.max_channel() > 1.0);
         let format = if bright { "exr" } else { "png" };
         let name = format!("{}-texture-{}.{format}", self.stem, index + 1);
-        let picture = Picture::from_rgb(texture.width, texture.height, texture.texels.clone())?;
+        let mut picture = Picture::from_rgb(texture.width, texture.height, texture.texels.clone())?;
+        if texture.is_data && !bright {
+            // As the file holds them, so that no curve is laid over numbers.
+            picture.colour_space = ColourSpace::Srgb;
+        }
         let bytes = bilux_pictures::write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
         self.beside.push((name.clone(), bytes));
         self.textures.push((index, name.clone()));

@@ -34,6 +34,13 @@ pub enum ParameterKind {
         /// Greatest channel.
         max: f64,
     },
+    /// As [`ParameterKind::Number`], or a texture in its place.
+    NumberTexture {
+        /// Least value.
+        min: f64,
+        /// Greatest value.
+        max: f64,
+    },
     /// The name of a material.
     Material,
     /// Three coordinates.

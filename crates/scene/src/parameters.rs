@@ -189,6 +189,16 @@ impl<'a> Reader<'a> {
         self.value(key).as_number().unwrap_or_default() as f32
     }
 
+    /// The least and the greatest number that a key may have; both 0 where it is none.
+    pub fn range(&self, key: &str) -> [f64; 2] {
+        match self.parameters.iter().find(|p| p.name == key).map(|p| p.kind) {
+            Some(ParameterKind::Number { min, max } | ParameterKind::NumberTexture { min, max }) => {
+                [min, max]
+            }
+            _ => [0.0; 2],
+        }
+    }
+
     /// A whole number.
     pub fn integer(&self, key: &str) -> i64 {
         self.value(key).as_number().unwrap_or_default() as i64
@@ -217,7 +227,7 @@ impl<'a> Reader<'a> {
         triple(&self.value(key)).map_or(Rgb::WHITE, Rgb::from_array)
     }
 
-    /// The texture given in place of a colour, if one is.
+    /// The texture given in place of a colour or a number, if one is.
     pub fn texture(&self, key: &str) -> Option<usize> {
         match self.value(key) {
             Value::Texture(index) => Some(index),
@@ -290,6 +300,10 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
             matches!(value, Value::Texture(_))
                 || triple(value).is_some_and(|t| t.iter().all(|&c| number_in(Some(f64::from(c)), min, max))),
             format!("a colour [r, g, b] with each from {min} to {max}, or {{ texture = \"FILE\" }}"),
+        ),
+        ParameterKind::NumberTexture { min, max } => (
+            matches!(value, Value::Texture(_)) || number_in(value.as_number(), min, max),
+            format!("a number from {min} to {max}, or {{ texture = \"FILE\" }}"),
         ),
         ParameterKind::Vector => (
             triple(value).is_some_and(|t| t.iter().all(|c| c.is_finite())),

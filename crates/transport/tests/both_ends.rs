@@ -94,7 +94,8 @@ fn a_picture_of_the_sky_gives_the_same_from_both_ends() {
         let sun = if (12..14).contains(&x) && y == 4 { 40.0 } else { 0.0 };
         Rgb::new(0.3, 0.4, 0.6) * (1.0 - y as f32 / 16.0) + Rgb::new(1.0, 0.8, 0.5) * sun
     });
-    let picture = Texture { name: String::new(), width: 32, height: 16, texels: texels.collect() };
+    let picture =
+        Texture { name: String::new(), width: 32, height: 16, texels: texels.collect(), is_data: false };
     let light = Spec::new("", "environment").with("radiance", Value::Texture(0)).with("rotation", 20.0f32);
     let mut builder = without_mirrors(light);
     builder.textures.push(Arc::new(picture));

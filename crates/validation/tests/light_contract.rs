@@ -112,6 +112,7 @@ fn cases() -> Vec<LightCase> {
         width: 64,
         height: 32,
         texels: (0..64 * 32).map(|i| sky(i % 64, i / 64)).collect(),
+        is_data: false,
     });
     cases.push(case("picture", 0.0, |builder| {
         builder.textures.push(picture);

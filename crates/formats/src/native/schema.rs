@@ -2,6 +2,7 @@
 
 use super::place::KEYFRAME_KEYS;
 use super::shapes::SHAPES;
+use super::specs::CHANNELS;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS};
@@ -95,19 +96,25 @@ fn values(kind: ParameterKind) -> Value {
         ParameterKind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
         ParameterKind::Colour { min, max } => json!({ "oneOf": colour(min, max) }),
         ParameterKind::ColourTexture { min, max } => {
-            let file = described("string", "a picture, relative to this file");
-            let texture = json!({
-                "type": "object",
-                "additionalProperties": false,
-                "properties": { "texture": file },
-                "required": ["texture"],
-            });
-            json!({ "oneOf": colour(min, max).into_iter().chain([texture]).collect::<Vec<_>>() })
+            json!({ "oneOf": colour(min, max).into_iter().chain([texture(&[])]).collect::<Vec<_>>() })
+        }
+        ParameterKind::NumberTexture { min, max } => {
+            let number = json!({ "type": "number", "minimum": min, "maximum": max });
+            let channel = json!({ "enum": CHANNELS, "description": "the channel that is read" });
+            json!({ "oneOf": [number, texture(&[("channel", channel)])] })
         }
         ParameterKind::Vector => vector(),
         ParameterKind::Choice(words) => json!({ "enum": words }),
         ParameterKind::Text | ParameterKind::Material => json!({ "type": "string" }),
     }
+}
+
+/// A picture in place of a value.
+fn texture(extra: &[(&str, Value)]) -> Value {
+    let mut all: Map<String, Value> =
+        extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+    all.insert("texture".to_owned(), described("string", "a picture, relative to this file"));
+    json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["texture"] })
 }
 
 fn vector() -> Value {

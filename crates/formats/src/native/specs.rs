@@ -4,6 +4,7 @@ use super::document::{Item, Node, Table};
 use super::include::Part;
 use super::scene::Native;
 use crate::FormatError;
+use crate::reading::Texels;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, Value};
@@ -77,7 +78,8 @@ impl Native<'_, '_> {
             let value = if Self::names_material(row, key) {
                 Some(Value::Material(self.material_named(item)?))
             } else {
-                self.value(key, item, part)?
+                let kind = row.parameters.iter().find(|p| p.name == key).map(|p| p.kind);
+                self.value(key, kind, item, part)?
             };
             if let Some(value) = value {
                 spec.parameters.set_at(key, value, at.clone());
@@ -88,12 +90,23 @@ impl Native<'_, '_> {
     }
 
     /// A parameter's value; `None` for a texture that is missing, so that the default holds.
-    fn value(&mut self, key: &str, item: &Item, part: &Part) -> Result<Option<Value>, FormatError> {
+    fn value(
+        &mut self,
+        key: &str,
+        kind: Option<ParameterKind>,
+        item: &Item,
+        part: &Part,
+    ) -> Result<Option<Value>, FormatError> {
         let Node::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
-        table.check_keys(&format!("the texture of '{key}'"), ["texture"].into_iter())?;
+        let holds = match kind {
+            Some(ParameterKind::NumberTexture { .. }) => Texels::Numbers(channel(table)?),
+            _ => Texels::Colours,
+        };
+        let keys = ["texture", "channel"].into_iter().take(if holds == Texels::Colours { 1 } else { 2 });
+        table.check_keys(&format!("the texture of '{key}'"), keys)?;
         let file = table.find("texture").ok_or_else(|| missing("texture (a file)", table))?;
         let name = file.text("texture")?;
-        match self.reading.texture(part.folder.as_deref(), name, &file.at) {
+        match self.reading.texture(part.folder.as_deref(), name, holds, &file.at) {
             Ok(texture) => {
                 self.scene.textures.push(texture);
                 Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
@@ -106,6 +119,19 @@ impl Native<'_, '_> {
                 Ok(None)
             }
         }
+    }
+}
+
+/// The channels that a number can be read from.
+pub(super) const CHANNELS: [&str; 3] = ["r", "g", "b"];
+
+/// `channel = "g"`: which one a number is read from.
+fn channel(table: &Table) -> Result<Option<usize>, FormatError> {
+    let Some(item) = table.find("channel") else { return Ok(None) };
+    let name = item.text("channel")?;
+    match CHANNELS.iter().position(|known| *known == name) {
+        Some(index) => Ok(Some(index)),
+        None => Err(SceneError::unknown("channel", name, CHANNELS, &item.at).into()),
     }
 }
 

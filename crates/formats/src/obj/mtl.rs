@@ -2,7 +2,7 @@
 
 use crate::FormatError;
 use crate::float::parse_f32;
-use crate::reading::{Oddities, Reading, Source};
+use crate::reading::{Oddities, Reading, Source, Texels};
 use crate::text::{Cursor, Places, name_of, quoted};
 use bilux_math::Rgb;
 use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
@@ -225,7 +225,7 @@ impl Library<'_, '_, '_> {
         at: &Span,
         scene: &mut SceneBuilder,
     ) -> Result<Option<Arc<Texture>>, FormatError> {
-        match self.reading.texture(self.source.folder, file, at) {
+        match self.reading.texture(self.source.folder, file, Texels::Colours, at) {
             Ok(texture) => Ok(Some(texture)),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {

@@ -4,7 +4,7 @@ use super::body::Body;
 use super::header::{Element, Property, Scalar, read_header};
 use crate::FormatError;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
-use crate::reading::{Oddities, Reading, Source, plain_material};
+use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
@@ -356,7 +356,7 @@ impl Ply<'_, '_, '_> {
         materials: &mut HashMap<String, usize>,
     ) -> Result<(), FormatError> {
         let at = self.places.at(offset);
-        match self.reading.texture(self.source.folder, file, &at) {
+        match self.reading.texture(self.source.folder, file, Texels::Colours, &at) {
             Ok(texture) => {
                 let mut spec = plain_material(false, !self.soup.specular.is_empty());
                 spec.parameters.set_at("kd", Value::Texture(scene.textures.len()), at);

@@ -368,6 +368,43 @@ fn textures_are_read_and_missing_ones_are_warnings() {
     assert!(read(&path, &ReadOptions { strict: true, ..Default::default() }).is_err());
 }
 
+#[test]
+fn textures_of_numbers_are_read_as_they_are_and_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut picture = bilux_pictures::Picture::from_rgb(1, 1, vec![Rgb::new(0.2, 0.4, 0.6)]).unwrap();
+    picture.colour_space = bilux_pictures::ColourSpace::Srgb;
+    bilux_pictures::write(folder.path().join("t.png"), &picture, &Default::default()).unwrap();
+    let path = folder.path().join("main.toml");
+    let write_material = |lines: &str| {
+        let text = format!(
+            "[[material]]\nname = \"m\"\nkind = \"dielectric\"\n{lines}\n[[model]]\nshape = \"box\"\n"
+        );
+        std::fs::write(&path, text).unwrap();
+    };
+    write_material(
+        "roughness = { texture = \"t.png\" }\nanisotropy = { texture = \"t.png\", channel = \"g\" }\ntint = { texture = \"t.png\" }",
+    );
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    let texels: Vec<(Rgb, bool)> = scene.textures.iter().map(|t| (t.texels[0], t.is_data)).collect();
+    assert_eq!(texels[..2], [(Rgb::new(0.2, 0.4, 0.6), true), (Rgb::grey(0.4), true)]);
+    // Colours are decoded still.
+    assert!((texels[2].0.g - 0.1329).abs() < 1e-3 && !texels[2].1, "{texels:?}");
+    scene.build(&Default::default(), [0.0, 0.0], 1.0).unwrap();
+    let back = there_and_back(&scene, folder.path());
+    assert_eq!(back.textures[0].texels, scene.textures[0].texels);
+    assert!((back.textures[2].texels[0].g - texels[2].0.g).abs() < 1e-6);
+    for (lines, wanted) in [
+        ("eta = { texture = \"t.png\" }", "eta is a texture, but has to be a number from 0.1 to 10"),
+        ("tint = { texture = \"t.png\", channel = \"r\" }", "channel"),
+        ("roughness = { texture = \"t.png\", channel = \"red\" }", "there is no channel 'red'"),
+        ("roughness = 2", "has to be a number from 0 to 1, or { texture = \"FILE\" }"),
+    ] {
+        write_material(lines);
+        let message = read(&path, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(message.contains(wanted), "{lines}: {message}");
+    }
+}
+
 fn there_and_back(scene: &SceneBuilder, folder: &Path) -> SceneBuilder {
     let path = folder.join("out.toml");
     assert_eq!(write(&path, scene, &WriteOptions::default()).unwrap(), []);

@@ -57,7 +57,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             }
             _ => Colour::Metal(Fresnel::Complex { eta: reader.colour("eta"), k: reader.colour("k") }),
         };
-        Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader) }))
+        Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader, ingredients)? }))
     },
 };
 
@@ -103,7 +103,7 @@ impl ConductorMaterial {
 
 impl Material for ConductorMaterial {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let metal = Conductor { fresnel: self.fresnel(surface), ggx: self.roughness.ggx };
+        let metal = Conductor { fresnel: self.fresnel(surface), ggx: self.roughness.at(surface) };
         let lobes = [Some(Lobe::Conductor(metal)), None, None];
         Bsdf::new(surface.n_shade, surface.n_geom, lobes).along(surface.tangent)
     }
@@ -111,9 +111,9 @@ impl Material for ConductorMaterial {
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         ClassicMaterial {
             ks: self.fresnel(surface).at(1.0),
-            exponent: self.roughness.exponent(),
+            exponent: self.roughness.exponent(surface),
             reflectivity: 1.0,
-            gloss: self.roughness.spread(),
+            gloss: self.roughness.spread(surface),
             ..ClassicMaterial::default()
         }
     }

@@ -33,7 +33,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             tint: colour_map(reader, "tint", ingredients)?,
             sigma_a: reader.colour("absorption"),
             thin: reader.bool("thin"),
-            roughness: Roughness::read(reader),
+            roughness: Roughness::read(reader, ingredients)?,
             gloss: reader.number("gloss").to_radians(),
             translucency: reader.number("translucency").to_radians(),
         }))
@@ -53,7 +53,7 @@ struct Glass {
 impl Material for Glass {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let Glass { eta, thin, .. } = *self;
-        let (tint, ggx) = (self.tint.at(surface.uv), self.roughness.ggx);
+        let (tint, ggx) = (self.tint.at(surface.uv), self.roughness.at(surface));
         let glass = if RoughDielectric::is_rough(eta, thin, &ggx) {
             Lobe::RoughDielectric(RoughDielectric { eta, tint, thin, ggx })
         } else {
@@ -63,6 +63,7 @@ impl Material for Glass {
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        let spread = self.roughness.spread(surface);
         ClassicMaterial {
             ks: Rgb::WHITE,
             kt: self.tint.at(surface.uv),
@@ -71,8 +72,8 @@ impl Material for Glass {
             eta: self.eta,
             sigma_a: self.sigma_a,
             thin: self.thin,
-            gloss: self.gloss.max(self.roughness.spread()),
-            translucency: self.translucency.max(self.roughness.spread()),
+            gloss: self.gloss.max(spread),
+            translucency: self.translucency.max(spread),
             fresnel: true,
             ..ClassicMaterial::default()
         }

@@ -1,12 +1,12 @@
 //! `mix`: two materials in one place, each for a share of the light.
 
-use super::{Ingredients, Material, MaterialEntry, colour_map, reflectance};
+use super::{Ingredients, Material, MaterialEntry, number_map};
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
-use crate::texture::ColourMap;
+use crate::texture::NumberMap;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
@@ -19,11 +19,13 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         parameters: &[
             part("a", "the first material, by its name"),
             part("b", "the second material, by its name; may be a mix itself"),
-            reflectance(
-                "amount",
-                "how much of the second: 0 is all of the first; the luminance of a texture",
-                "0.5",
-            ),
+            Parameter {
+                name: "amount",
+                summary: "how much of the second: 0 is all of the first",
+                unit: "",
+                kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
+                default: "0.5",
+            },
         ],
     },
     build: |reader, ingredients| {
@@ -36,7 +38,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             );
             return Err(SceneError::invalid(message, reader.span("a")));
         }
-        Ok(Arc::new(Mix { a, b, amount: colour_map(reader, "amount", ingredients)? }))
+        Ok(Arc::new(Mix { a, b, amount: number_map(reader, "amount", ingredients)? }))
     },
 };
 
@@ -57,13 +59,13 @@ fn read_part(reader: &Reader, ingredients: &Ingredients, key: &str) -> Result<Ar
 struct Mix {
     a: Arc<dyn Material>,
     b: Arc<dyn Material>,
-    amount: ColourMap,
+    amount: NumberMap,
 }
 
 impl Mix {
     /// The share of the second material.
     fn share(&self, surface: &Surface) -> f32 {
-        self.amount.at(surface.uv).luminance().clamp(0.0, 1.0)
+        self.amount.at(surface.uv)
     }
 }
 

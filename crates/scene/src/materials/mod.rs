@@ -28,7 +28,7 @@ use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::{Reader, Span, Spec};
 use crate::surface::Surface;
-use crate::texture::{ColourMap, Texture};
+use crate::texture::{ColourMap, NumberMap, Texture};
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
@@ -121,17 +121,23 @@ pub fn build(spec: &Spec, ingredients: &Ingredients) -> Result<Arc<dyn Material>
 
 /// The colour or texture under a key.
 fn colour_map(reader: &Reader, key: &str, ingredients: &Ingredients) -> Result<ColourMap, SceneError> {
-    let texture = match reader.texture(key) {
-        None => None,
-        Some(index) => Some(
-            ingredients
-                .textures
-                .get(index)
-                .cloned()
-                .ok_or_else(|| SceneError::invalid(format!("no texture {index}"), reader.span(key)))?,
-        ),
-    };
-    Ok(ColourMap { colour: reader.colour(key), texture })
+    Ok(ColourMap { colour: reader.colour(key), texture: texture(reader, key, ingredients)? })
+}
+
+/// The number or texture under a key.
+fn number_map(reader: &Reader, key: &str, ingredients: &Ingredients) -> Result<NumberMap, SceneError> {
+    let range = reader.range(key).map(|x| x as f32);
+    Ok(NumberMap { number: reader.number(key), range, texture: texture(reader, key, ingredients)? })
+}
+
+fn texture(
+    reader: &Reader,
+    key: &str,
+    ingredients: &Ingredients,
+) -> Result<Option<Arc<Texture>>, SceneError> {
+    let Some(index) = reader.texture(key) else { return Ok(None) };
+    let missing = || SceneError::invalid(format!("no texture {index}"), reader.span(key));
+    ingredients.textures.get(index).cloned().map(Some).ok_or_else(missing)
 }
 
 /// Shared by all materials: what a surface gives out by itself.

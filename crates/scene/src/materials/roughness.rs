@@ -1,39 +1,64 @@
 //! How rough a surface is, as users say it.
 
+use super::{Ingredients, number_map};
 use crate::bsdf::Ggx;
+use crate::error::SceneError;
 use crate::parameters::Reader;
+use crate::surface::Surface;
+use crate::texture::NumberMap;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::transcendental::atan;
 
 /// Roughness, the same in all directions or smoother along a brushing.
-#[derive(Clone, Copy)]
 pub(super) struct Roughness {
-    pub(super) ggx: Ggx,
-    anisotropy: f32,
-    /// The square of the roughness.
-    alpha: f32,
+    roughness: NumberMap,
+    anisotropy: NumberMap,
+    /// Of the brushing, in radians.
+    rotation: f32,
+    /// What it comes to where it is the same everywhere.
+    even: Option<Ggx>,
 }
 
 impl Roughness {
-    pub(super) fn read(reader: &Reader) -> Roughness {
-        let (roughness, anisotropy) = (reader.number("roughness"), reader.number("anisotropy"));
-        let ggx = Ggx::from_roughness(roughness, anisotropy, reader.number("rotation").to_radians());
-        Roughness { ggx, anisotropy, alpha: roughness * roughness }
+    pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Roughness, SceneError> {
+        let (roughness, anisotropy) =
+            (number_map(reader, "roughness", ingredients)?, number_map(reader, "anisotropy", ingredients)?);
+        let rotation = reader.number("rotation").to_radians();
+        let even = (roughness.texture.is_none() && anisotropy.texture.is_none())
+            .then(|| Ggx::from_roughness(roughness.number, anisotropy.number, rotation));
+        Ok(Roughness { roughness, anisotropy, rotation, even })
     }
 
-    /// True when it matters how the surface is turned.
+    /// The facets at a point.
+    #[inline]
+    pub(super) fn at(&self, surface: &Surface) -> Ggx {
+        self.even.unwrap_or_else(|| {
+            let uv = surface.uv;
+            Ggx::from_roughness(self.roughness.at(uv), self.anisotropy.at(uv), self.rotation)
+        })
+    }
+
+    /// True when it may matter how the surface is turned.
     pub(super) fn has_direction(&self) -> bool {
-        self.anisotropy > 0.0 && !self.ggx.is_smooth()
+        let is_rough = self.even.is_none_or(|ggx| !ggx.is_smooth());
+        is_rough && (self.anisotropy.texture.is_some() || self.anisotropy.number > 0.0)
+    }
+
+    /// The square of the roughness.
+    fn alpha(&self, surface: &Surface) -> f32 {
+        let roughness = self.roughness.at(surface.uv);
+        roughness * roughness
     }
 
     /// The greatest angle by which the classic modes spread rays, in radians.
-    pub(super) fn spread(&self) -> f32 {
-        atan(self.alpha)
+    pub(super) fn spread(&self, surface: &Surface) -> f32 {
+        atan(self.alpha(surface))
     }
 
     /// The exponent of a highlight about as wide, in the classic modes.
-    pub(super) fn exponent(&self) -> f32 {
-        (2.0 / (self.alpha * self.alpha) - 2.0).min(500.0)
+    pub(super) fn exponent(&self, surface: &Surface) -> f32 {
+        let alpha = self.alpha(surface);
+        (2.0 / (alpha * alpha) - 2.0).min(500.0)
     }
 }
 
@@ -42,7 +67,7 @@ pub(super) const fn roughness(default: &'static str) -> Parameter {
         name: "roughness",
         summary: "0 is polished, 1 as rough as can be; the square root of GGX's alpha",
         unit: "",
-        kind: ParameterKind::Number { min: 0.0, max: 1.0 },
+        kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
         default,
     }
 }
@@ -51,7 +76,7 @@ pub(super) const ANISOTROPY: Parameter = Parameter {
     name: "anisotropy",
     summary: "how much smoother it is along its brushing than across",
     unit: "",
-    kind: ParameterKind::Number { min: 0.0, max: 1.0 },
+    kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
     default: "0",
 };
 
