@@ -41,6 +41,8 @@ pub enum ParameterKind {
         /// Greatest value.
         max: f64,
     },
+    /// A texture of numbers; none by default.
+    Texture,
     /// The name of a material.
     Material,
     /// Three coordinates.

@@ -200,12 +200,13 @@ impl Geometry {
             let [a, b, c] = indices.map(|i| mesh.uvs[i]);
             a * weights[0] + b * weights[1] + c * weights[2]
         };
-        let tangent = if placed.has_tangents {
+        let (tangent, handedness) = if placed.has_tangents {
             let corners = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
-            tangent(corners, indices.map(|i| mesh.uvs.get(i).copied()))
-                .unwrap_or_else(|| to_world.vector(Vec3::Y).cross(n_shade))
+            tangents(corners, indices.map(|i| mesh.uvs.get(i).copied()))
+                .map(|(along_u, along_v)| (along_u, 1f32.copysign(n_shade.cross(along_u).dot(along_v))))
+                .unwrap_or_else(|| (to_world.vector(Vec3::Y).cross(n_shade), 1.0))
         } else {
-            Vec3::ZERO
+            (Vec3::ZERO, 1.0)
         };
         let vertex_colour = |colours: &[Rgb]| {
             if colours.is_empty() {
@@ -221,6 +222,7 @@ impl Geometry {
             n_geom,
             n_shade,
             tangent,
+            handedness,
             uv,
             vertex_kd: vertex_colour(&mesh.vertex_kd),
             vertex_ks: vertex_colour(&mesh.vertex_ks),
@@ -231,13 +233,16 @@ impl Geometry {
     }
 }
 
-/// Along a triangle as its first texture coordinate grows; `None` where they say nothing of it. [pbrt 2023, 6.5.2]
-fn tangent([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<Vec3> {
+/// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say
+/// nothing of it. [pbrt 2023, 6.5.2]
+fn tangents([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<(Vec3, Vec3)> {
     let [uv_a, uv_b, uv_c] = [uvs[0]?, uvs[1]?, uvs[2]?];
     let (b_side, c_side) = (uv_b - uv_a, uv_c - uv_a);
     let determinant = b_side.perp_dot(c_side);
-    let along = (b - a) * c_side.y - (c - a) * b_side.y;
-    (along * 1f32.copysign(determinant)).try_normalize().filter(|_| determinant != 0.0)
+    let sign = 1f32.copysign(determinant);
+    let along_u = ((b - a) * c_side.y - (c - a) * b_side.y) * sign;
+    let along_v = ((c - a) * b_side.x - (b - a) * c_side.x) * sign;
+    along_u.try_normalize().filter(|_| determinant != 0.0).map(|u| (u, along_v))
 }
 
 fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f32; 3]; 3]> {

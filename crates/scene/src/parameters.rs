@@ -256,7 +256,7 @@ impl<'a> Reader<'a> {
 fn parse_default(kind: ParameterKind, text: &str) -> Value {
     match kind {
         ParameterKind::Bool => Value::Bool(text == "true"),
-        ParameterKind::Text | ParameterKind::Material | ParameterKind::Choice(_) => {
+        ParameterKind::Text | ParameterKind::Texture | ParameterKind::Material | ParameterKind::Choice(_) => {
             Value::Text(text.to_owned())
         }
         _ => {
@@ -305,6 +305,7 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
             matches!(value, Value::Texture(_)) || number_in(value.as_number(), min, max),
             format!("a number from {min} to {max}, or {{ texture = \"FILE\" }}"),
         ),
+        ParameterKind::Texture => (matches!(value, Value::Texture(_)), "{ texture = \"FILE\" }".to_owned()),
         ParameterKind::Vector => (
             triple(value).is_some_and(|t| t.iter().all(|c| c.is_finite())),
             "three numbers [x, y, z]".to_owned(),

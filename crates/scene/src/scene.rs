@@ -205,7 +205,11 @@ impl<'s> Tracer<'s> {
                 _ => accelerator.closest_hit(ray, query),
             }
         }?;
-        Some(self.scene.parts.geometry.surface(ray, &hit))
+        let mut surface = self.scene.parts.geometry.surface(ray, &hit);
+        if surface.tangent != Vec3::ZERO {
+            surface.n_shade = self.scene.material(&surface).n_shade(&surface);
+        }
+        Some(surface)
     }
 
     /// True when anything is between a ray's ends.

@@ -22,6 +22,8 @@ pub struct Surface {
     /// Along the surface, where its material tells directions apart: as u grows, or around the object's own y axis where
     /// the mesh has no texture coordinates. Else, and where there is none, zero.
     pub tangent: Vec3,
+    /// 1 where v grows along n_shade × tangent, -1 where it grows the other way.
+    pub handedness: f32,
     /// Texture coordinates; the barycentric weights where the mesh has none.
     pub uv: Vec2,
     /// Diffuse reflectance of the vertices, if the mesh has one.

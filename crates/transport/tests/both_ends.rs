@@ -87,6 +87,36 @@ fn rough_metal_and_glass_look_the_same_from_both_ends() {
     }
 }
 
+/// Waves in both directions as a normal map.
+fn waves() -> Texture {
+    let texels = (0..64).map(|i| {
+        let lean = |k: i32| 0.5 + 0.45 * bilux_math::transcendental::sin_cos(k as f32 * PI / 4.0).0;
+        Rgb::new(lean(i % 8), lean(i / 8), 0.75)
+    });
+    Texture { name: String::new(), width: 8, height: 8, texels: texels.collect(), is_data: true }
+}
+
+#[test]
+fn normal_maps_look_the_same_from_both_ends() {
+    let satin = Spec::new("", "conductor").with("metal", "silver").with("roughness", 0.6f32);
+    let frosted = Spec::new("", "dielectric").with("roughness", 0.6f32);
+    for (name, material) in [("matt", diffuse(0.8f32)), ("satin", satin), ("frosted", frosted)] {
+        let mut builder = panel_over(material.with("normal", Value::Texture(0)));
+        builder.textures.push(Arc::new(waves()));
+        for (object, tiles) in [(0, 1.0), (3, 3.0)] {
+            let object = &mut builder.objects[object];
+            let mut mesh = (*object.mesh).clone();
+            mesh.uvs = mesh.positions.iter().map(|p| Vec2::new(p.x + 0.3 * p.y, p.z - p.y) * tiles).collect();
+            object.mesh = Arc::new(mesh);
+        }
+        builder.materials[0].parameters.set("normal", Value::Texture(0));
+        // From low above the floor, where many normals face away.
+        builder.cameras.clear();
+        look(&mut builder, Vec3::new(0.0, 0.6, 4.0), Vec3::new(0.0, 0.4, 0.0), 40.0);
+        check(name, &built(&builder), &["light", "bdpt"]);
+    }
+}
+
 #[test]
 fn a_picture_of_the_sky_gives_the_same_from_both_ends() {
     let texels = (0..32 * 16).map(|i| {

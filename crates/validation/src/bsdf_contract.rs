@@ -13,7 +13,7 @@ pub struct Scatterer {
     /// f·|cosθi|.
     pub eval: Box<dyn Fn(Vec3, Vec3, TransportMode) -> Rgb>,
     /// Density of `sample`.
-    pub pdf: Box<dyn Fn(Vec3, Vec3) -> f32>,
+    pub pdf: Box<dyn Fn(Vec3, Vec3, TransportMode) -> f32>,
     /// A direction.
     pub sample: SampleFn,
     /// Normal of the surface, where it is not that of the scattering.
@@ -27,7 +27,7 @@ impl From<Lobe> for Scatterer {
     fn from(lobe: Lobe) -> Scatterer {
         Scatterer {
             eval: Box::new(move |wo, wi, mode| lobe.eval(wo, wi, mode)),
-            pdf: Box::new(move |wo, wi| lobe.pdf_solid_angle(wo, wi)),
+            pdf: Box::new(move |wo, wi, _| lobe.pdf_solid_angle(wo, wi)),
             sample: Box::new(move |wo, choice, u, mode| lobe.sample(wo, choice, u, mode)),
             n_geom: Vec3::Z,
         }
@@ -38,7 +38,7 @@ impl From<Bsdf> for Scatterer {
     fn from(bsdf: Bsdf) -> Scatterer {
         Scatterer {
             eval: Box::new(move |wo, wi, mode| bsdf.eval(wo, wi, mode)),
-            pdf: Box::new(move |wo, wi| bsdf.pdf_solid_angle(wo, wi)),
+            pdf: Box::new(move |wo, wi, mode| bsdf.pdf_solid_angle(wo, wi, mode)),
             sample: Box::new(move |wo, choice, u, mode| bsdf.sample(wo, choice, u, mode)),
             n_geom: Vec3::Z,
         }
@@ -97,7 +97,7 @@ pub fn samples_follow_the_density(s: &Scatterer, _promise: Promise) -> Result<()
             continue;
         }
         let sample = |choice, u| (s.sample)(wo, choice, u, RADIANCE).map(|x| x.wi);
-        let p = p_value(SAMPLES, i as u64, sample, |wi| (s.pdf)(wo, wi));
+        let p = p_value(SAMPLES, i as u64, sample, |wi| (s.pdf)(wo, wi, RADIANCE));
         if p < bound {
             return Err(format!("χ² at wo {wo}: p = {p:.2e} < {bound:.2e}"));
         }
@@ -135,7 +135,7 @@ pub fn weight_times_density_is_eval(s: &Scatterer, _promise: Promise) -> Result<
     let both_modes = directions.flat_map(|(i, wo)| [(i, wo, RADIANCE), (i, wo, IMPORTANCE)]);
     for (i, wo, mode) in both_modes {
         for x in (0..2000).filter_map(|k| draw(s, wo, 100 + i as u64, k, mode)).filter(|x| !x.is_delta) {
-            let (f, pdf) = ((s.eval)(wo, x.wi, mode), (s.pdf)(wo, x.wi));
+            let (f, pdf) = ((s.eval)(wo, x.wi, mode), (s.pdf)(wo, x.wi, mode));
             let said = x.weight * x.pdf_solid_angle;
             let far = |a: f32, b: f32| (a - b).abs() > 2e-3 * a.abs().max(b.abs()).max(1e-6);
             if far(pdf, x.pdf_solid_angle) {
@@ -249,7 +249,7 @@ pub fn delta_lobes_hide(s: &Scatterer, _promise: Promise) -> Result<(), String> 
             (0..64).filter_map(|k| draw(s, wo, 400 + i as u64, k, RADIANCE)).collect();
         if !samples.is_empty() && samples.iter().all(|x| x.is_delta) {
             for x in &samples {
-                if (s.pdf)(wo, x.wi) != 0.0 || !(s.eval)(wo, x.wi, RADIANCE).is_black() {
+                if (s.pdf)(wo, x.wi, RADIANCE) != 0.0 || !(s.eval)(wo, x.wi, RADIANCE).is_black() {
                     return Err(format!("wo {wo}: a delta direction shows in eval or pdf"));
                 }
             }

@@ -66,10 +66,12 @@ fn a_turned_normal_scatters_the_same_from_both_ends() {
         |row: &'static BsdfEntry| (row.cases)().into_iter().map(|(case, lobe)| (row.entry.name, case, lobe));
     for (name, case, lobe) in BSDFS.iter().flat_map(named) {
         for n_shade in turned() {
-            let bsdf = Bsdf::new(n_shade, Vec3::Z, [Some(lobe), None, None]);
+            let bsdf = Bsdf::of(n_shade, Vec3::Z, lobe);
             for (check, run) in CHECKS.iter().filter(|(check, _)| checks.contains(check)) {
-                let result = run(&bsdf.into(), Promise { reciprocal: false, lossless: false });
-                assert_eq!(result, Ok(()), "{name} ({case}) about {n_shade}: {check}");
+                for bsdf in [bsdf, bsdf.bending()] {
+                    let result = run(&bsdf.into(), Promise { reciprocal: false, lossless: false });
+                    assert_eq!(result, Ok(()), "{name} ({case}) about {n_shade}: {check}");
+                }
             }
         }
     }
@@ -104,6 +106,37 @@ fn mixture(n_shade: Vec3, n_geom: Vec3) -> Bsdf {
     };
     let metal = part("polished").mixed(&part("brushed"), 0.7);
     metal.mixed(&part("frosted").mixed(&part("glass"), 0.4), 0.6)
+}
+
+#[test]
+fn a_normal_that_faces_away_is_bent_back() {
+    let lambert = Lobe::Lambert(Lambert { albedo: Rgb::WHITE });
+    let n = Vec3::new(0.8, 0.0, 0.6);
+    let (plain, bent) = (Bsdf::of(n, Vec3::Z, lambert), Bsdf::of(n, Vec3::Z, lambert).bending());
+    let (light, facing) = (Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
+    let mode = TransportMode::Radiance;
+    assert_eq!(plain.eval(facing, light, mode), bent.eval(facing, light, mode));
+    // Just before and just behind the normal's horizon there is no seam.
+    let seen = |x: f32| bent.eval(Vec3::new(-x, 0.0, 0.8).normalize(), light, mode).g;
+    assert!(
+        (seen(0.5999) - plain.eval(Vec3::new(-0.5999, 0.0, 0.8).normalize(), light, mode).g).abs() < 1e-3
+    );
+    assert!((seen(1.068) - seen(1.065)).abs() < 3e-3 && seen(3.0) > 0.05, "{} {}", seen(1.068), seen(1.065));
+    assert!(plain.eval(Vec3::new(-3.0, 0.0, 0.8).normalize(), light, mode).is_black());
+    let forgetful = {
+        let mut scatterer = Scatterer::from(bent);
+        let plain = Scatterer::from(plain);
+        scatterer.sample = Box::new(move |wo, c, u, mode| {
+            if mode == TransportMode::Importance {
+                (plain.sample)(wo, c, u, mode)
+            } else {
+                bent.sample(wo, c, u, mode)
+            }
+        });
+        scatterer
+    };
+    let promise = Promise { reciprocal: false, lossless: false };
+    assert!(the_same_from_both_ends(&forgetful, promise).is_err(), "light paths that never look back pass");
 }
 
 #[test]
@@ -165,7 +198,8 @@ fn importance_is_the_adjoint_of_radiance_for_any_two_normals() {
     for (i, (_, lobe)) in (0..5000).flat_map(|i| BSDFS.iter().flat_map(|r| (r.cases)()).map(move |c| (i, c)))
     {
         let (wo, wi, n_geom) = (direction(i, 0), direction(i, 3), direction(i, 6));
-        let bsdf = Bsdf::new(direction(i, 9), n_geom, [Some(lobe), None, None]);
+        let bsdf = Bsdf::of(direction(i, 9), n_geom, lobe);
+        let bsdf = if i % 2 == 0 { bsdf } else { bsdf.bending() };
         let importance = bsdf.eval(wo, wi, TransportMode::Importance) * wo.dot(n_geom).abs();
         let radiance = bsdf.eval(wi, wo, TransportMode::Radiance) * wi.dot(n_geom).abs();
         assert!(importance.is_finite(), "wo {wo}, wi {wi}");
@@ -184,6 +218,7 @@ fn flat_surface() -> Surface {
         n_geom: Vec3::Z,
         n_shade: Vec3::Z,
         tangent: Vec3::X,
+        handedness: 1.0,
         uv: Vec2::ZERO,
         vertex_kd: None,
         vertex_ks: None,
@@ -208,7 +243,7 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     let tilted = spoilt(&|s| {
         s.sample = Box::new(move |wo, c, u, mode| lambert.sample(wo, c, Vec2::new(u.x, u.y * u.y), mode));
     });
-    let denser = spoilt(&|s| s.pdf = Box::new(move |wo, wi| 1.05 * lambert.pdf_solid_angle(wo, wi)));
+    let denser = spoilt(&|s| s.pdf = Box::new(move |wo, wi, _| 1.05 * lambert.pdf_solid_angle(wo, wi)));
     let no_cosine =
         spoilt(&|s| s.eval = Box::new(move |wo, wi, mode| lambert.eval(wo, wi, mode) / wi.z.abs().max(1e-3)));
     let one_way = spoilt(&|s| {
@@ -238,12 +273,12 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     let mut round = Scatterer::from(frosted);
     // Facets turned about the normal: right on average over all directions, and nowhere.
     let across = |v: Vec3| Vec3::new(-v.y, v.x, v.z);
-    round.pdf = Box::new(move |wo, wi| frosted.pdf_solid_angle(across(wo), across(wi)));
+    round.pdf = Box::new(move |wo, wi, _| frosted.pdf_solid_angle(across(wo), across(wi)));
     let mut forgetful = Scatterer::from(Bsdf::new(turned()[1], Vec3::Z, [Some(lambert), None, None]));
     let as_radiance = forgetful.sample;
     forgetful.sample = Box::new(move |wo, c, u, _| as_radiance(wo, c, u, TransportMode::Radiance));
     let mut shown = Scatterer::from(mirror);
-    shown.pdf = Box::new(|_, _| 1.0);
+    shown.pdf = Box::new(|_, _, _| 1.0);
     let mut through = Scatterer::from(mirror);
     through.sample = Box::new(move |wo, c, u, mode| {
         mirror.sample(wo, c, u, mode).map(|x| bilux_scene::BsdfSample { wi: -x.wi, ..x })
@@ -293,7 +328,7 @@ fn no_eta_either(lobe: Lobe) -> Scatterer {
 
 fn spoilt_pdf(lobe: Lobe) -> Scatterer {
     let mut scatterer = Scatterer::from(lobe);
-    scatterer.pdf = Box::new(move |wo, wi| 1.05 * lobe.pdf_solid_angle(wo, wi));
+    scatterer.pdf = Box::new(move |wo, wi, _| 1.05 * lobe.pdf_solid_angle(wo, wi));
     scatterer
 }
 

@@ -135,6 +135,7 @@ fn kind_text(kind: ParameterKind) -> String {
         ParameterKind::Colour { min, max } => format!("colour {min}..={max}"),
         ParameterKind::ColourTexture { min, max } => format!("colour {min}..={max}, or a texture"),
         ParameterKind::NumberTexture { min, max } => format!("{min}..={max}, or a texture"),
+        ParameterKind::Texture => "texture".to_owned(),
         ParameterKind::Vector => "x, y, z".to_owned(),
         ParameterKind::Choice(words) => words.join("|"),
         ParameterKind::Text => "text".to_owned(),

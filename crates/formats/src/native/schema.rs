@@ -103,6 +103,7 @@ fn values(kind: ParameterKind) -> Value {
             let channel = json!({ "enum": CHANNELS, "description": "the channel that is read" });
             json!({ "oneOf": [number, texture(&[("channel", channel)])] })
         }
+        ParameterKind::Texture => texture(&[]),
         ParameterKind::Vector => vector(),
         ParameterKind::Choice(words) => json!({ "enum": words }),
         ParameterKind::Text | ParameterKind::Material => json!({ "type": "string" }),
@@ -128,6 +129,7 @@ fn default_value(parameter: &Parameter) -> Option<Value> {
     let numbers: Vec<Value> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     Some(match parameter.kind {
         _ if text.is_empty() => return None,
+        ParameterKind::Texture => return None,
         ParameterKind::Bool => json!(text == "true"),
         ParameterKind::Choice(_) | ParameterKind::Text | ParameterKind::Material => json!(text),
         _ => match <[Value; 1]>::try_from(numbers) {

@@ -100,9 +100,11 @@ impl Native<'_, '_> {
         let Node::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
         let holds = match kind {
             Some(ParameterKind::NumberTexture { .. }) => Texels::Numbers(channel(table)?),
+            Some(ParameterKind::Texture) => Texels::Numbers(None),
             _ => Texels::Colours,
         };
-        let keys = ["texture", "channel"].into_iter().take(if holds == Texels::Colours { 1 } else { 2 });
+        let has_channels = matches!(kind, Some(ParameterKind::NumberTexture { .. }));
+        let keys = ["texture", "channel"].into_iter().take(if has_channels { 2 } else { 1 });
         table.check_keys(&format!("the texture of '{key}'"), keys)?;
         let file = table.find("texture").ok_or_else(|| missing("texture (a file)", table))?;
         let name = file.text("texture")?;

@@ -8,6 +8,7 @@
 //! same light between the same directions, what it found along `wo` leaves along `wi` by
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
+mod bent;
 mod conductor;
 mod delta;
 mod dielectric;
@@ -34,6 +35,17 @@ pub enum TransportMode {
     Radiance,
     /// The path began at a light.
     Importance,
+}
+
+impl TransportMode {
+    /// What is carried along the same path from its other end.
+    #[inline]
+    pub fn reversed(self) -> TransportMode {
+        match self {
+            TransportMode::Radiance => TransportMode::Importance,
+            TransportMode::Importance => TransportMode::Radiance,
+        }
+    }
 }
 
 /// A sampled direction.
@@ -163,34 +175,67 @@ const MOST_TURNED: f32 = (1u64 << 60) as f32;
 pub struct Bsdf {
     frame: Frame,
     n_geom: Vec3,
+    /// Those that there are, without gaps, come first.
     lobes: [Option<Lobe>; MOST_LOBES],
     /// What each lobe's light is multiplied by.
     weights: [f32; MOST_LOBES],
+    /// By how much each lobe is chosen: weight times strength.
+    strengths: [f32; MOST_LOBES],
     total_strength: f32,
+    bends: bool,
 }
 
 /// So many lobes are summed at most.
 pub const MOST_LOBES: usize = 4;
 
 impl Bsdf {
+    /// A lobe around a shading normal.
+    #[inline(always)]
+    pub fn of(n_shade: Vec3, n_geom: Vec3, lobe: Lobe) -> Bsdf {
+        let strength = lobe.strength();
+        Bsdf {
+            frame: Frame::from_normal(n_shade),
+            n_geom,
+            lobes: [Some(lobe), None, None, None],
+            weights: [1.0; MOST_LOBES],
+            strengths: [strength, 0.0, 0.0, 0.0],
+            total_strength: strength,
+            bends: false,
+        }
+    }
+
     /// A sum of at most three lobes around a shading normal.
-    #[inline]
     pub fn new(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; 3]) -> Bsdf {
-        let total_strength = lobes.iter().flatten().map(Lobe::strength).sum();
-        let [a, b, c] = lobes;
-        let (lobes, weights) = ([a, b, c, None], [1.0; MOST_LOBES]);
-        Bsdf { frame: Frame::from_normal(n_shade), n_geom, lobes, weights, total_strength }
+        let mut sum = Bsdf {
+            frame: Frame::from_normal(n_shade),
+            n_geom,
+            lobes: [None; MOST_LOBES],
+            weights: [1.0; MOST_LOBES],
+            strengths: [0.0; MOST_LOBES],
+            total_strength: 0.0,
+            bends: false,
+        };
+        for (i, lobe) in lobes.into_iter().flatten().enumerate() {
+            sum.set(i, lobe, 1.0);
+        }
+        sum
+    }
+
+    fn set(&mut self, i: usize, lobe: Lobe, weight: f32) {
+        let strength = weight * lobe.strength();
+        (self.lobes[i], self.weights[i], self.strengths[i]) = (Some(lobe), weight, strength);
+        self.total_strength += strength;
     }
 
     /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal. Lobes beyond
     /// [`MOST_LOBES`] are left out.
     pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
-        let mut sum = Bsdf { lobes: [None; MOST_LOBES], total_strength: 0.0, ..*self };
+        let mut sum =
+            Bsdf { lobes: [None; MOST_LOBES], strengths: [0.0; MOST_LOBES], total_strength: 0.0, ..*self };
         let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
         let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
         for (i, (weight, lobe)) in parts.enumerate().take(MOST_LOBES) {
-            (sum.lobes[i], sum.weights[i]) = (Some(*lobe), weight);
-            sum.total_strength += weight * lobe.strength();
+            sum.set(i, *lobe, weight);
         }
         sum
     }
@@ -198,53 +243,74 @@ impl Bsdf {
     /// The lobes, each with its weight.
     #[inline]
     fn weighted(&self) -> impl Iterator<Item = (f32, &Lobe)> {
-        self.weights.iter().zip(&self.lobes).filter_map(|(w, lobe)| Some((*w, lobe.as_ref()?)))
+        self.weights.iter().zip(&self.lobes).map_while(|(w, lobe)| Some((*w, lobe.as_ref()?)))
     }
 
     /// The same with the local x axis along a tangent, for lobes that tell directions apart; the zero vector
     /// leaves it.
     #[inline]
-    pub fn along(self, tangent: Vec3) -> Bsdf {
-        Bsdf { frame: self.frame.along(tangent), ..self }
+    pub fn along(mut self, tangent: Vec3) -> Bsdf {
+        if tangent != Vec3::ZERO {
+            self.frame = self.frame.along(tangent);
+        }
+        self
+    }
+
+    /// The same where whoever looks from behind the shading normal sees it bent back, instead of black. Not where a
+    /// lobe leaves out directions, as Phong's does: what is seen about one normal nothing drawn about another may reach.
+    pub fn bending(self) -> Bsdf {
+        let is_narrow = self.weighted().any(|(_, lobe)| matches!(lobe, Lobe::Phong(_)));
+        Bsdf { bends: self.frame.n != self.n_geom && !is_narrow, ..self }
     }
 
     /// True when all that it scatters goes into single directions.
     #[inline]
     pub fn is_delta(&self) -> bool {
-        self.lobes.iter().flatten().all(Lobe::is_delta)
+        self.weighted().all(|(_, lobe)| lobe.is_delta())
     }
 
     /// f·|wi·n_shade| of all lobes with width; for importance f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|.
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
-        if !self.sides_agree(wo, wi) {
-            return Rgb::BLACK;
-        }
-        let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        let scattered = self.weighted().map(|(w, lobe)| lobe.eval(local_wo, local_wi, mode) * w).sum();
-        self.carried(scattered, self.frame.n, wo, wi, mode)
+        self.seen_along(if mode == TransportMode::Radiance { wo } else { wi }, |frame| {
+            if !self.sides_agree(frame.n, wo, wi) {
+                return Rgb::BLACK;
+            }
+            let (local_wo, local_wi) = (frame.to_local(wo), frame.to_local(wi));
+            let scattered = self.weighted().map(|(w, lobe)| lobe.eval(local_wo, local_wi, mode) * w).sum();
+            self.carried(scattered, frame.n, wo, wi, mode)
+        })
     }
 
     /// Density of [`Bsdf::sample`] over the lobes with width.
-    pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+    pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f32 {
         if self.total_strength <= 0.0 {
             return 0.0;
         }
-        let (wo, wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
-        let weighted = |(w, lobe): (f32, &Lobe)| w * lobe.strength() * lobe.pdf_solid_angle(wo, wi);
-        self.weighted().map(weighted).sum::<f32>() / self.total_strength
+        if self.bends { self.bent_pdf(wo, wi, mode) } else { self.pdf_about(&self.frame, wo, wi) }
+    }
+
+    #[inline]
+    fn pdf_about(&self, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
+        let (wo, wi) = (frame.to_local(wo), frame.to_local(wi));
+        let lobes = self.strengths.iter().zip(&self.lobes).map_while(|(s, lobe)| Some((s, lobe.as_ref()?)));
+        lobes.map(|(strength, lobe)| strength * lobe.pdf_solid_angle(wo, wi)).sum::<f32>()
+            / self.total_strength
     }
 
     /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
     #[inline]
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        if self.bends {
+            return (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi, mode));
+        }
         let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
-        for (weight, lobe) in self.weighted() {
+        for (i, (weight, lobe)) in self.weighted().enumerate() {
             let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
             scattered += f * weight;
-            pdf += weight * lobe.strength() * p;
+            pdf += self.strengths[i] * p;
         }
-        let scattered = if self.sides_agree(wo, wi) {
+        let scattered = if self.sides_agree(self.frame.n, wo, wi) {
             self.carried(scattered, self.frame.n, wo, wi, mode)
         } else {
             Rgb::BLACK
@@ -257,18 +323,28 @@ impl Bsdf {
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let (index, u_choice) = self.choose(u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
-        let weight = self.weights[index];
-        let share = weight * chosen.strength() / self.total_strength;
         if chosen.is_delta() {
+            let (weight, share) = (self.weights[index], self.strengths[index] / self.total_strength);
             let mut sample = self.sample_delta(chosen, wo, u_choice, mode)?;
             sample.weight *= weight / share;
             sample.pdf_solid_angle *= share;
             return (sample.pdf_solid_angle > 0.0).then_some(sample);
         }
-        let mut sample = chosen.sample(self.frame.to_local(wo), u_choice, u, mode)?;
-        sample.wi = self.frame.to_world(sample.wi).normalize();
+        let about = |frame: &Frame, u_choice: f32| {
+            let sample = chosen.sample(frame.to_local(wo), u_choice, u, mode)?;
+            Some(BsdfSample { wi: frame.to_world(sample.wi).normalize(), ..sample })
+        };
+        let mut sample = if self.bends {
+            self.sample_bent(wo, u_choice, mode, about)
+        } else {
+            about(&self.frame, u_choice)
+        }?;
         let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
         (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
+        if self.bends && !self.keeps_side(wo, &sample) {
+            // It was drawn about another normal than it is seen about, and the triangle alone tells what it is.
+            (sample.transmits, sample.eta) = (!sample.transmits, 1.0);
+        }
         (self.keeps_side(wo, &sample) && sample.pdf_solid_angle > 0.0).then_some(sample)
     }
 
@@ -295,8 +371,7 @@ impl Bsdf {
     fn choose(&self, u: f32) -> Option<(usize, f32)> {
         let mut rest = u * self.total_strength;
         let mut last = None;
-        for (i, (weight, lobe)) in self.weights.iter().zip(&self.lobes).enumerate() {
-            let strength = lobe.as_ref().map_or(0.0, |lobe| weight * lobe.strength());
+        for (i, &strength) in self.strengths.iter().enumerate() {
             if strength <= 0.0 {
                 continue;
             }
@@ -309,11 +384,11 @@ impl Bsdf {
         last
     }
 
-    /// Light must be on the same side of the triangle as of the interpolated surface, or it leaks through.
+    /// Light must be on the same side of the triangle as of the interpolated surface `n`, or it leaks through.
     #[inline]
-    fn sides_agree(&self, wo: Vec3, wi: Vec3) -> bool {
+    fn sides_agree(&self, n: Vec3, wo: Vec3, wi: Vec3) -> bool {
         let geometric = wo.dot(self.n_geom) * wi.dot(self.n_geom);
-        let shading = wo.dot(self.frame.n) * wi.dot(self.frame.n);
+        let shading = wo.dot(n) * wi.dot(n);
         geometric * shading > 0.0
     }
 }
@@ -333,7 +408,7 @@ mod tests {
             for (a, b) in cases.iter().zip(cases.iter().cycle().skip(i as usize % cases.len())) {
                 let bsdf = Bsdf::new(n, direction(i, 9), [Some(*a), Some(*b), None]);
                 let mode = TransportMode::Importance;
-                let apart = (bsdf.eval(wo, wi, mode), bsdf.pdf_solid_angle(wo, wi));
+                let apart = (bsdf.eval(wo, wi, mode), bsdf.pdf_solid_angle(wo, wi, mode));
                 assert_eq!(bsdf.eval_and_pdf(wo, wi, mode), apart);
                 let apart = (a.eval(wo, wi, mode), a.pdf_solid_angle(wo, wi));
                 assert_eq!(a.eval_and_pdf(wo, wi, mode), apart);

@@ -2,7 +2,7 @@
 
 use super::metals::{METALS, NAMES};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
-use super::{Material, MaterialEntry, colour_map, reflectance};
+use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance};
 use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -43,6 +43,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             roughness("0.3"),
             ANISOTROPY,
             ROTATION,
+            NORMAL,
+            NORMAL_SCALE,
         ],
     },
     build: |reader, ingredients| {
@@ -104,8 +106,7 @@ impl ConductorMaterial {
 impl Material for ConductorMaterial {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let metal = Conductor { fresnel: self.fresnel(surface), ggx: self.roughness.at(surface) };
-        let lobes = [Some(Lobe::Conductor(metal)), None, None];
-        Bsdf::new(surface.n_shade, surface.n_geom, lobes).along(surface.tangent)
+        Bsdf::of(surface.n_shade, surface.n_geom, Lobe::Conductor(metal)).along(surface.tangent)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

@@ -1,7 +1,9 @@
 //! `dielectric`: smooth glass, water, diamond.
 
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
-use super::{ABSORPTION, ETA, Material, MaterialEntry, THIN, colour_map, reflectance, spread};
+use super::{
+    ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, THIN, colour_map, reflectance, spread,
+};
 use crate::bsdf::{Bsdf, Dielectric, Lobe, RoughDielectric};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
@@ -25,6 +27,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             ROTATION,
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
+            NORMAL,
+            NORMAL_SCALE,
         ],
     },
     build: |reader, ingredients| {
@@ -59,7 +63,7 @@ impl Material for Glass {
         } else {
             Lobe::Dielectric(Dielectric { eta, tint, thin })
         };
-        Bsdf::new(surface.n_shade, surface.n_geom, [Some(glass), None, None]).along(surface.tangent)
+        Bsdf::of(surface.n_shade, surface.n_geom, glass).along(surface.tangent)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

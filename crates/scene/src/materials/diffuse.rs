@@ -1,6 +1,6 @@
 //! `diffuse`: matt, equally bright from everywhere.
 
-use super::{EMISSION, Material, MaterialEntry, colour_map, reflectance};
+use super::{EMISSION, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance};
 use crate::bsdf::{Bsdf, Lambert, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
@@ -14,7 +14,12 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         name: "diffuse",
         summary: "matt, equally bright from everywhere",
         source: "Lambert 1760",
-        parameters: &[reflectance("reflectance", "reflected fraction of the light", "0.7"), EMISSION],
+        parameters: &[
+            reflectance("reflectance", "reflected fraction of the light", "0.7"),
+            EMISSION,
+            NORMAL,
+            NORMAL_SCALE,
+        ],
     },
     build: |reader, ingredients| {
         Ok(Arc::new(Diffuse {
@@ -39,7 +44,7 @@ impl Diffuse {
 impl Material for Diffuse {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let lambert = Lobe::Lambert(Lambert { albedo: self.albedo(surface) });
-        Bsdf::new(surface.n_shade, surface.n_geom, [Some(lambert), None, None])
+        Bsdf::of(surface.n_shade, surface.n_geom, lambert)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

@@ -1,6 +1,6 @@
 //! `mirror`: reflects like polished metal.
 
-use super::{EMISSION, Material, MaterialEntry, colour_map, reflectance, spread};
+use super::{EMISSION, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance, spread};
 use crate::bsdf::{Bsdf, Lobe, Mirror};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
@@ -18,6 +18,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             reflectance("reflectance", "reflected fraction of the light", "0.95"),
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             EMISSION,
+            NORMAL,
+            NORMAL_SCALE,
         ],
     },
     build: |reader, ingredients| {
@@ -38,7 +40,7 @@ struct MirrorMaterial {
 impl Material for MirrorMaterial {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let mirror = Lobe::Mirror(Mirror { reflectance: self.reflectance.at(surface.uv) });
-        Bsdf::new(surface.n_shade, surface.n_geom, [Some(mirror), None, None])
+        Bsdf::of(surface.n_shade, surface.n_geom, mirror)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

@@ -1,6 +1,6 @@
 //! `mix`: two materials in one place, each for a share of the light.
 
-use super::{Ingredients, Material, MaterialEntry, number_map};
+use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, number_map};
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -26,6 +26,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
                 default: "0.5",
             },
+            NORMAL,
+            NORMAL_SCALE,
         ],
     },
     build: |reader, ingredients| {
@@ -47,7 +49,12 @@ const fn part(name: &'static str, summary: &'static str) -> Parameter {
 }
 
 fn read_part(reader: &Reader, ingredients: &Ingredients, key: &str) -> Result<Arc<dyn Material>, SceneError> {
-    let material = ingredients.material(reader.material(key), reader.span(key))?;
+    let index = reader.material(key);
+    let material = ingredients.material(index, reader.span(key))?;
+    if ingredients.materials[index].parameters.find("normal").is_some() {
+        let message = format!("'{key}' has a normal map, which its mix would not: give it to the mix");
+        return Err(SceneError::invalid(message, reader.span(key)));
+    }
     if !material.emission().is_black() {
         let message =
             format!("'{key}' gives light, which a mix cannot: give an object of its own that material");

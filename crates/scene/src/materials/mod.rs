@@ -20,6 +20,7 @@ mod diffuse;
 mod metals;
 mod mirror;
 mod mix;
+mod normal_map;
 mod phong;
 mod roughness;
 
@@ -29,8 +30,9 @@ use crate::error::SceneError;
 use crate::parameters::{Reader, Span, Spec};
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap, Texture};
-use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec3};
+use normal_map::{NORMAL, NORMAL_SCALE};
 use std::sync::Arc;
 
 /// Something that surfaces are made of.
@@ -39,6 +41,11 @@ pub trait Material: Send + Sync {
     fn bsdf(&self, surface: &Surface) -> Bsdf;
     /// The same point under Equations 1 and 2.
     fn classic(&self, surface: &Surface) -> ClassicMaterial;
+    /// The shading normal at a point, on the same side as `n_geom`: the interpolated one, unless there is a normal map.
+    /// Tracers ask for it, where there are tangents; the other functions find it in the surface.
+    fn n_shade(&self, surface: &Surface) -> Vec3 {
+        surface.n_shade
+    }
     /// True when it tells directions along the surface apart, and so asks for [`Surface::tangent`].
     fn needs_tangents(&self) -> bool {
         false
@@ -116,7 +123,8 @@ pub fn build(spec: &Spec, ingredients: &Ingredients) -> Result<Arc<dyn Material>
         .iter()
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
-    (row.build)(&Reader::new(spec, &row.entry)?, ingredients)
+    let reader = Reader::new(spec, &row.entry)?;
+    normal_map::apply((row.build)(&reader, ingredients)?, &reader, ingredients)
 }
 
 /// The colour or texture under a key.

@@ -4,7 +4,10 @@
 //! highlight (the rest of ks), and, where kt is given, smooth glass in place of all three. Where kd + ks > 1
 //! the lobes are scaled down together, so that it never gives out more light than it gets.
 
-use super::{ABSORPTION, EMISSION, ETA, Material, MaterialEntry, THIN, colour_map, reflectance, spread};
+use super::{
+    ABSORPTION, EMISSION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, THIN, colour_map, reflectance,
+    spread,
+};
 use crate::bsdf::{Bsdf, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
@@ -43,6 +46,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
             EMISSION,
+            NORMAL,
+            NORMAL_SCALE,
         ],
     },
     build: |reader, ingredients| {

@@ -22,7 +22,8 @@ pub(crate) fn to_camera<const N: usize>(
         return None;
     }
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
-    let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo), ways);
+    let others =
+        y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance), ways);
     let passed = transmittance(y.sigma_a, seen.p.distance(y.surface.p));
     let light = y.beta * scattered * passed * seen.density;
     Some((seen.film, Found { light, own: ways.splats, others }))
@@ -57,7 +58,8 @@ pub(crate) fn to_light<const N: usize>(
     let met = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
-    let from_light = z.partial.others(arriving, z.bsdf.pdf_solid_angle(sample.wi, z.wo), ways);
+    let from_light =
+        z.partial.others(arriving, z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance), ways);
     let passed = transmittance(z.sigma_a, distance);
     let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
     Some(Found { light, own: Lanes::ONE, others: Lanes::ONE * met + from_light })
@@ -82,9 +84,11 @@ pub(crate) fn to_vertex<const N: usize>(
         return None;
     }
     let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
-    let pdf_back = |vertex: &Vertex<N>, direction| vertex.bsdf.pdf_solid_angle(direction, vertex.wo);
-    let from_camera = y.partial.others(pdf_z * cos(y) / distance2, pdf_back(y, -direction), ways);
-    let from_light = z.partial.others(pdf_y * cos(z) / distance2, pdf_back(z, direction), ways);
+    let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
+    let from_camera =
+        y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y), ways);
+    let from_light =
+        z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z), ways);
     let passed = transmittance(z.sigma_a, distance2.sqrt());
     let light = z.beta * f_z * f_y * y.beta * passed / distance2;
     Some(Found { light, own: ways.joins, others: from_camera + from_light })
@@ -108,7 +112,7 @@ pub(crate) fn merged<const N: usize>(
         }
         // Photons come per area of the surface itself; `eval` has the cosine to the shading normal in it.
         let cos = z.surface.n_geom.dot(y.wo).abs();
-        let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo));
+        let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo, TransportMode::Importance));
         let others = y.partial.before(pdf) + from_light;
         visit(&Found { light: z.beta * scattered * y.beta * (1.0 / cos), own: photons.ways().eta, others });
     });

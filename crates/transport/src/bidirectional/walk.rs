@@ -103,8 +103,8 @@ impl<'w, const N: usize> Walk<'w, N> {
         let u_survival = task.sampler.next_1d();
         let Some(sample) = vertex.bsdf.sample(vertex.wo, u_choice, u, self.mode) else { return false };
         let cos = vertex.surface.n_geom.dot(sample.wi).abs();
-        let pdfs = (!sample.is_delta)
-            .then(|| (sample.pdf_solid_angle, vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo)));
+        let back = || vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo, self.mode.reversed());
+        let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
         self.partial.leave(cos, pdfs, self.ways);
         self.follow(vertex, &sample, task);
         self.survives(u_survival, roulette_depth)
