@@ -1,0 +1,27 @@
+//! Mitsuba 3, where its Python package is installed, renders the same boxes: `witness/cornell.py`.
+
+use std::process::Command;
+
+/// `python3`, or what `$BILUX_PYTHON` names.
+fn python() -> Command {
+    Command::new(std::env::var_os("BILUX_PYTHON").unwrap_or_else(|| "python3".into()))
+}
+
+fn agrees(options: &[&str]) -> bool {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/witness/cornell.py");
+    let status = python().args([script, env!("CARGO_BIN_EXE_bilux"), "--seeds", "6"]).args(options).status();
+    status.unwrap().success()
+}
+
+#[test]
+fn mitsuba_draws_the_same_cornell_boxes() {
+    let found = python().args(["-c", "import mitsuba, numpy"]).output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        println!(
+            "skipped: `pip install mitsuba numpy`, and name the interpreter in $BILUX_PYTHON if need be"
+        );
+        return;
+    }
+    assert!(agrees(&["--spp", "64", "--integrators", "path,bdpt,vcm"]));
+    assert!(!agrees(&["--spp", "64", "--integrators", "path", "--brighten", "1.05"]), "a bug of 5% passes");
+}
