@@ -17,7 +17,7 @@ fn agrees(options: &[&str]) -> bool {
 fn mitsuba_draws_the_same_cornell_boxes() {
     let found = python().args(["-c", "import mitsuba, numpy"]).output();
     if !found.is_ok_and(|output| output.status.success()) {
-        println!(
+        eprintln!(
             "skipped: `pip install mitsuba numpy`, and name the interpreter in $BILUX_PYTHON if need be"
         );
         return;
