@@ -1,4 +1,5 @@
 //! Mitsuba 3, where its Python package is installed, renders the same boxes: `witness/cornell.py`.
+#![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use std::process::Command;
 
