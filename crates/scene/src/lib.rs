@@ -29,7 +29,7 @@ pub use cameras::{CAMERAS, Camera, CameraConnection, CameraSample};
 pub use classic::{ClassicLight, ClassicMaterial};
 pub use error::{SceneError, Warning};
 pub use lights::{EmissionSample, LIGHTS, Light, LightSample};
-pub use materials::{MATERIALS, Material};
+pub use materials::{MATERIALS, Material, Nested};
 pub use mesh::Mesh;
 pub use parameters::{Parameters, Reader, Span, Spec, Value};
 pub use scene::{Scene, Tracer};

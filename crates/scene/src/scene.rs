@@ -37,6 +37,7 @@ pub(crate) struct SceneParts {
     object_lights: Vec<Option<u32>>,
     cameras: Vec<(String, Arc<dyn Camera>)>,
     classic_ambient: Rgb,
+    has_nested: bool,
 }
 
 impl SceneParts {
@@ -69,7 +70,9 @@ impl SceneParts {
             light.classic_colour = light.light.classic_colour(&bounds);
         }
         let classic_ambient = lights.iter().map(|l| l.light.classic_ambient()).sum();
-        SceneParts { geometry, materials, lights, object_lights, cameras, classic_ambient }
+        let of_object = |o: &crate::geometry::Placed| materials[o.material as usize].nested();
+        let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
+        SceneParts { geometry, materials, lights, object_lights, cameras, classic_ambient, has_nested }
     }
 }
 
@@ -147,8 +150,19 @@ impl Scene {
 
     /// What a surface is made of.
     pub fn material(&self, surface: &Surface) -> &dyn Material {
-        let object = &self.parts.geometry.objects()[surface.object as usize];
+        self.material_of(surface.object)
+    }
+
+    /// What an object is made of.
+    pub fn material_of(&self, object: u32) -> &dyn Material {
+        let object = &self.parts.geometry.objects()[object as usize];
         &*self.parts.materials[object.material as usize]
+    }
+
+    /// True when some object is of a medium with a priority.
+    #[inline]
+    pub fn has_nested(&self) -> bool {
+        self.parts.has_nested
     }
 
     /// Radiance from infinity in a direction away from the scene.

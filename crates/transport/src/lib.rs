@@ -12,7 +12,7 @@ pub mod film;
 pub mod filters;
 pub mod integrators;
 mod light_choice;
-mod medium;
+mod media;
 pub mod partial;
 pub mod plan;
 pub mod render;

@@ -15,6 +15,7 @@ mod dielectric;
 mod ggx;
 mod lambert;
 mod mirror;
+mod mixed;
 mod phong_lobe;
 mod rough_dielectric;
 
@@ -227,19 +228,6 @@ impl Bsdf {
         self.total_strength += strength;
     }
 
-    /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal. Lobes beyond
-    /// [`MOST_LOBES`] are left out.
-    pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
-        let mut sum =
-            Bsdf { lobes: [None; MOST_LOBES], strengths: [0.0; MOST_LOBES], total_strength: 0.0, ..*self };
-        let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
-        let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
-        for (i, (weight, lobe)) in parts.enumerate().take(MOST_LOBES) {
-            sum.set(i, *lobe, weight);
-        }
-        sum
-    }
-
     /// The lobes, each with its weight.
     #[inline]
     fn weighted(&self) -> impl Iterator<Item = (f32, &Lobe)> {
@@ -261,6 +249,18 @@ impl Bsdf {
     pub fn bending(self) -> Bsdf {
         let is_narrow = self.weighted().any(|(_, lobe)| matches!(lobe, Lobe::Phong(_)));
         Bsdf { bends: self.frame.n != self.n_geom && !is_narrow, ..self }
+    }
+
+    /// The same where the outside has this refractive index, and not that of air.
+    pub fn against(mut self, eta_outside: f32) -> Bsdf {
+        for lobe in self.lobes.iter_mut().flatten() {
+            match lobe {
+                Lobe::Dielectric(glass) if !glass.thin => glass.eta /= eta_outside,
+                Lobe::RoughDielectric(glass) if !glass.thin => *lobe = glass.against(eta_outside),
+                _ => {}
+            }
+        }
+        self
     }
 
     /// True when all that it scatters goes into single directions.

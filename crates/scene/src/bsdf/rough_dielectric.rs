@@ -1,7 +1,7 @@
 //! Rough glass: facets that reflect and refract by Fresnel's equations and Snell's law. [Walter 2007]
 
 use super::conductor::facet_between;
-use super::{BsdfEntry, BsdfSample, Ggx, Lobe, TransportMode, fresnel_dielectric, refract};
+use super::{BsdfEntry, BsdfSample, Dielectric, Ggx, Lobe, TransportMode, fresnel_dielectric, refract};
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -47,6 +47,16 @@ impl RoughDielectric {
     /// their width is lost to rounding.
     pub fn is_rough(eta: f32, thin: bool, ggx: &Ggx) -> bool {
         !ggx.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
+    }
+
+    /// The same where the outside has this refractive index; smooth where it is nearly that of the inside.
+    pub(super) fn against(&self, eta_outside: f32) -> Lobe {
+        let (eta, RoughDielectric { tint, thin, ggx, .. }) = (self.eta / eta_outside, *self);
+        if RoughDielectric::is_rough(eta, thin, &ggx) {
+            Lobe::RoughDielectric(RoughDielectric { eta, tint, thin, ggx })
+        } else {
+            Lobe::Dielectric(Dielectric { eta, tint, thin })
+        }
     }
 
     #[inline]

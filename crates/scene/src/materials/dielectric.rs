@@ -2,14 +2,15 @@
 
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
 use super::{
-    ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, THIN, colour_map, reflectance, spread,
+    ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, THIN, colour_map, reflectance,
+    spread,
 };
 use crate::bsdf::{Bsdf, Dielectric, Lobe, RoughDielectric};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
 
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
@@ -21,6 +22,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             ETA,
             reflectance("tint", "factor on all light; white for real glass", "1"),
             ABSORPTION,
+            PRIORITY,
             THIN,
             roughness("0"),
             ANISOTROPY,
@@ -36,6 +38,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             eta: reader.number("eta"),
             tint: colour_map(reader, "tint", ingredients)?,
             sigma_a: reader.colour("absorption"),
+            priority: reader.integer("priority") as u32,
             thin: reader.bool("thin"),
             roughness: Roughness::read(reader, ingredients)?,
             gloss: reader.number("gloss").to_radians(),
@@ -44,10 +47,20 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
 };
 
+const PRIORITY: Parameter = Parameter {
+    name: "priority",
+    summary: "where several of these overlap, that of the greatest priority is, and eta is over that of air; 0 takes no \
+              part in it",
+    unit: "",
+    kind: ParameterKind::Integer { min: 0, max: 1000 },
+    default: "0",
+};
+
 struct Glass {
     eta: f32,
     tint: ColourMap,
     sigma_a: Rgb,
+    priority: u32,
     thin: bool,
     roughness: Roughness,
     gloss: f32,
@@ -85,6 +98,10 @@ impl Material for Glass {
 
     fn needs_tangents(&self) -> bool {
         self.roughness.has_direction()
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        (self.priority > 0 && !self.thin).then_some(Nested { priority: self.priority, eta: self.eta })
     }
 
     fn sigma_a(&self) -> Rgb {

@@ -1,6 +1,6 @@
 //! `mix`: two materials in one place, each for a share of the light.
 
-use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, number_map};
+use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, number_map};
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -108,6 +108,10 @@ impl Material for Mix {
 
     fn most_lobes(&self) -> usize {
         self.a.most_lobes() + self.b.most_lobes()
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        self.a.nested().or(self.b.nested())
     }
 
     /// What is inside does not depend on where light came in: the denser of the two.

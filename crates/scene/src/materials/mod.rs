@@ -58,10 +58,23 @@ pub trait Material: Send + Sync {
     fn emission(&self) -> Rgb {
         Rgb::BLACK
     }
+    /// How what is inside stands against what it overlaps with; `None` for what takes no part in that.
+    fn nested(&self) -> Option<Nested> {
+        None
+    }
     /// Absorption per metre on the inside, by Beer's law; none where there is no inside.
     fn sigma_a(&self) -> Rgb {
         Rgb::BLACK
     }
+}
+
+/// A medium that may overlap with others: where several are, the one of the greatest priority is. [Schmidt 2002]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nested {
+    /// At least 1.
+    pub priority: u32,
+    /// Refractive index over that of air.
+    pub eta: f32,
 }
 
 /// A row of [`MATERIALS`].

@@ -1,7 +1,7 @@
 //! Normals from a picture, for any material: red along the tangent, green across it, blue away from the surface, each
 //! from -1 to 1 (tangent space, as OpenGL and glTF have it: green is up).
 
-use super::{Ingredients, Material, texture};
+use super::{Ingredients, Material, Nested, texture};
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -79,6 +79,10 @@ impl Material for NormalMapped {
 
     fn emission(&self) -> Rgb {
         self.material.emission()
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        self.material.nested()
     }
 
     fn sigma_a(&self) -> Rgb {

@@ -2,7 +2,6 @@
 
 use super::walk::Vertex;
 use super::{Found, Lanes, Photons, Ways};
-use crate::medium::transmittance;
 use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
@@ -18,13 +17,14 @@ pub(crate) fn to_camera<const N: usize>(
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
     let scattered = y.bsdf.eval(y.wo, seen.wi, TransportMode::Importance);
-    if scattered.is_black() || task.tracer.occluded(&y.surface.spawn_to(seen.p)) {
+    if scattered.is_black() {
         return None;
     }
+    let media = y.media_towards(task.scene(), seen.wi);
+    let passed = media.visible(task.tracer, &y.surface.spawn_to(seen.p), seen.p.distance(y.surface.p))?;
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others =
         y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance), ways);
-    let passed = transmittance(y.sigma_a, seen.p.distance(y.surface.p));
     let light = y.beta * scattered * passed * seen.density;
     Some((seen.film, Found { light, own: ways.splats, others }))
 }
@@ -45,10 +45,12 @@ pub(crate) fn to_light<const N: usize>(
     }
     let sample = light.sample_li(z.surface.p, z.surface.time, u)?;
     let (scattered, pdf) = z.bsdf.eval_and_pdf(z.wo, sample.wi, TransportMode::Radiance);
-    if scattered.is_black() || task.tracer.occluded(&z.surface.spawn_to_light(&sample)) {
+    if scattered.is_black() {
         return None;
     }
     let distance = sample.point.map_or(0.0, |point| point.distance(z.surface.p));
+    let media = z.media_towards(scene, sample.wi);
+    let passed = media.visible(task.tracer, &z.surface.spawn_to_light(&sample), distance)?;
     let cos_light = sample.cos();
     // Of a light without extent the point is certain: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
@@ -60,7 +62,6 @@ pub(crate) fn to_light<const N: usize>(
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let from_light =
         z.partial.others(arriving, z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance), ways);
-    let passed = transmittance(z.sigma_a, distance);
     let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
     Some(Found { light, own: Lanes::ONE, others: Lanes::ONE * met + from_light })
 }
@@ -80,16 +81,17 @@ pub(crate) fn to_vertex<const N: usize>(
         return None;
     }
     let (f_y, pdf_y) = y.bsdf.eval_and_pdf(y.wo, -direction, TransportMode::Importance);
-    if f_y.is_black() || task.tracer.occluded(&spawn_between(z, y)) {
+    if f_y.is_black() {
         return None;
     }
+    let media = z.media_towards(task.scene(), direction);
+    let passed = media.visible(task.tracer, &spawn_between(z, y), distance2.sqrt())?;
     let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
     let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
     let from_camera =
         y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y), ways);
     let from_light =
         z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z), ways);
-    let passed = transmittance(z.sigma_a, distance2.sqrt());
     let light = z.beta * f_z * f_y * y.beta * passed / distance2;
     Some(Found { light, own: ways.joins, others: from_camera + from_light })
 }

@@ -1,10 +1,10 @@
 //! A subpath while it grows, from whichever end.
 
 use super::{Lanes, Partial, Ways};
-use crate::medium::transmittance;
+use crate::media::Media;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, BsdfSample, Ray, Surface, TransportMode};
+use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
 /// A surface that a subpath has met.
 pub(crate) struct Vertex<const N: usize = 1> {
@@ -17,8 +17,15 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
-    /// Absorption on the side of `wo`.
-    pub(crate) sigma_a: Rgb,
+    /// On the side of `wo`.
+    media: Media,
+}
+
+impl<const N: usize> Vertex<N> {
+    /// The media in which light goes on along `direction`.
+    pub(crate) fn media_towards(&self, scene: &Scene, direction: Vec3) -> Media {
+        self.media.towards(scene, &self.surface, self.wo, direction)
+    }
 }
 
 /// A subpath on its way to the next vertex.
@@ -38,8 +45,8 @@ pub(crate) struct Walk<'w, const N: usize = 1> {
     eta_scale: f32,
     /// The greatest channel at the beginning, for light paths; survival is measured against it.
     full: f32,
-    /// Absorption where the ray goes, as far as is known.
-    sigma_a: Rgb,
+    /// Where the ray goes; known once it has met something.
+    media: Option<Media>,
     /// How its vertices may be found otherwise.
     ways: &'w Ways<N>,
 }
@@ -64,7 +71,7 @@ impl<'w, const N: usize> Walk<'w, N> {
             by_area,
             eta_scale: 1.0,
             full,
-            sigma_a: Rgb::BLACK,
+            media: None,
             mode,
             ways,
         }
@@ -72,7 +79,8 @@ impl<'w, const N: usize> Walk<'w, N> {
 
     /// The next surface; `None` where the ray leaves the scene.
     pub(crate) fn meet(&mut self, task: &mut Task) -> Option<Vertex<N>> {
-        let Some(surface) = task.tracer.closest(&self.ray) else {
+        let mut media = self.media.unwrap_or_else(|| Media::at_start(task.tracer, &self.ray));
+        let Some((surface, passed)) = media.closest(task.tracer, &self.ray) else {
             task.note(self.depth, || {
                 format!("{} leaves the scene towards {:?}", self.whose(), self.ray.direction)
             });
@@ -82,19 +90,15 @@ impl<'w, const N: usize> Walk<'w, N> {
             format!("{} meets object {} at {}", self.whose(), surface.object, surface.p)
         });
         let wo = -Vec3::from(self.ray.direction);
-        let material = task.scene().material(&surface);
-        let outside = surface.n_geom.dot(wo) >= 0.0;
-        let sigma_a = if outside { self.sigma_a } else { material.sigma_a() };
-        self.sigma_a = sigma_a;
-        self.beta *= transmittance(sigma_a, surface.t);
+        self.beta *= passed;
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
         // The first surface of a light path is joined with the light by picking a point there.
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
         let joins = if is_at_light { Lanes::ONE } else { self.ways.joins };
         self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins);
         self.by_area = false;
-        let bsdf = material.bsdf(&surface);
-        Some(Vertex { surface, bsdf, wo, beta: self.beta, partial: self.partial, depth: self.depth, sigma_a })
+        let bsdf = media.bsdf(task.scene(), &surface);
+        Some(Vertex { surface, bsdf, wo, beta: self.beta, partial: self.partial, depth: self.depth, media })
     }
 
     /// Goes on from a vertex; false when the subpath ends there.
@@ -119,12 +123,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.depth += 1;
         self.specular &= sample.is_delta;
         self.eta_scale *= sample.eta * sample.eta;
-        let goes_in = sample.wi.dot(vertex.surface.n_geom) < 0.0;
-        self.sigma_a = match (sample.transmits, goes_in) {
-            (false, _) => vertex.sigma_a,
-            (true, true) => task.scene().material(&vertex.surface).sigma_a(),
-            (true, false) => Rgb::BLACK,
-        };
+        self.media = Some(vertex.media_towards(task.scene(), sample.wi));
         self.ray = vertex.surface.spawn(sample.wi);
     }
 

@@ -5,7 +5,7 @@
 //! tracing [Cook 1984]; with all extents zero it draws no random number.
 
 use super::{Local, LocalRules};
-use crate::medium::transmittance;
+use crate::media::transmittance;
 use crate::sampler::PixelSampler;
 use crate::task::Task;
 use bilux_math::hash::hash_words;

@@ -1,6 +1,6 @@
 //! Whether light of the classic modes arrives.
 
-use crate::medium::transmittance;
+use crate::media::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{ClassicLight, Ray, Surface};

@@ -2,11 +2,11 @@
 //! sampled, and the two are joined by the power heuristic. [Kajiya 1986; Veach 1997, 9.2]
 
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::medium::transmittance;
+use crate::media::Media;
 use crate::task::Task;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, BsdfSample, Material, Ray, Surface, TransportMode};
+use bilux_scene::{Bsdf, BsdfSample, Material, Ray, Scene, Surface, TransportMode};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -49,8 +49,8 @@ struct Vertex<'a> {
     surface: &'a Surface,
     bsdf: &'a Bsdf,
     wo: Vec3,
-    /// Absorption between there and the lights.
-    sigma_a: Rgb,
+    /// On the side of `wo`.
+    media: &'a Media,
 }
 
 /// How light is found where both ways could find it.
@@ -75,8 +75,8 @@ struct Walk {
     last: Option<(Vec3, f32)>,
     /// True while all events have been without width: what only the camera sees may still be seen.
     specular: bool,
-    /// Absorption where the ray goes, as far as is known.
-    sigma_a: Rgb,
+    /// Where the ray goes.
+    media: Media,
 }
 
 impl PixelIntegrator for Path {
@@ -88,31 +88,30 @@ impl PixelIntegrator for Path {
             eta_scale: 1.0,
             last: None,
             specular: true,
-            sigma_a: Rgb::BLACK,
+            media: Media::at_start(task.tracer, ray),
         };
         let mut sum = Rgb::BLACK;
         loop {
-            let Some(surface) = task.tracer.closest(&walk.ray) else {
+            let Some((surface, passed)) = walk.media.closest(task.tracer, &walk.ray) else {
                 return sum + walk.beta * self.background(task, &walk);
             };
             let direction = Vec3::from(walk.ray.direction);
             let material = task.scene().material(&surface);
-            let outside = surface.n_geom.dot(direction) <= 0.0;
-            let sigma_a = if outside { walk.sigma_a } else { material.sigma_a() };
-            walk.beta *= transmittance(sigma_a, surface.t);
+            walk.beta *= passed;
             sum += walk.beta * self.emitted(task, &walk, &surface, material);
             if walk.depth >= task.max_depth {
                 return sum;
             }
             task.sampler.enter(u64::from(walk.depth) + 1);
-            let bsdf = material.bsdf(&surface);
-            sum += walk.beta * self.direct(task, &surface, &bsdf, -direction, sigma_a);
+            let bsdf = walk.media.bsdf(task.scene(), &surface);
+            let from = Vertex { surface: &surface, bsdf: &bsdf, wo: -direction, media: &walk.media };
+            sum += walk.beta * self.direct(task, &from);
             let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
             let Some(sample) = bsdf.sample(-direction, u_choice, u, TransportMode::Radiance) else {
                 task.note(walk.depth, || format!("is absorbed at {}", surface.p));
                 return sum;
             };
-            walk.scatter(&surface, material, &sample, sigma_a);
+            walk.scatter(task.scene(), &surface, &sample);
             task.note(walk.depth, || {
                 let kind = if sample.transmits { "transmitted" } else { "scattered" };
                 let object = surface.object;
@@ -173,7 +172,7 @@ impl Path {
     }
 
     /// Lights sampled from a surface: what they send along `wo`.
-    fn direct(&self, task: &mut Task, surface: &Surface, bsdf: &Bsdf, wo: Vec3, sigma_a: Rgb) -> Rgb {
+    fn direct(&self, task: &mut Task, from: &Vertex) -> Rgb {
         let lights = task.lights;
         let chosen = if lights.takes_all() {
             task.sampler.skip(1);
@@ -181,17 +180,16 @@ impl Path {
         } else {
             lights.sample(task.sampler.next_1d())
         };
-        if bsdf.is_delta() {
+        if from.bsdf.is_delta() {
             task.sampler.skip(chosen.len() as u32);
             return Rgb::BLACK;
         }
-        let from = Vertex { surface, bsdf, wo, sigma_a };
-        chosen.fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, &from))
+        chosen.fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, from))
     }
 
     /// One of them.
     fn light(&self, task: &mut Task, index: usize, from: &Vertex) -> Rgb {
-        let Vertex { surface, bsdf, wo, sigma_a } = *from;
+        let Vertex { surface, bsdf, wo, media } = *from;
         let probability = task.lights.probability(index);
         let light = &task.scene().lights()[index].light;
         if probability == 0.0 || (self.sampling == Sampling::Scattering && !light.is_delta()) {
@@ -211,12 +209,13 @@ impl Path {
             Sampling::Mis if !light.is_delta() => power_heuristic(light_pdf, pdf),
             _ => 1.0,
         };
-        if task.tracer.occluded(&surface.spawn_to_light(&sample)) {
-            return Rgb::BLACK;
-        }
         // Beyond the last surface there is no absorbing glass: its boundary would have blocked the ray.
         let distance = sample.point.map_or(0.0, |point| point.distance(surface.p));
-        scattered * sample.li * transmittance(sigma_a, distance) * (weight / light_pdf)
+        let media = media.towards(task.scene(), surface, wo, sample.wi);
+        match media.visible(task.tracer, &surface.spawn_to_light(&sample), distance) {
+            Some(passed) => scattered * sample.li * passed * (weight / light_pdf),
+            None => Rgb::BLACK,
+        }
     }
 
     /// Weight of light that scattering has found and light sampling could have found.
@@ -249,17 +248,14 @@ impl Path {
 
 impl Walk {
     /// The next ray.
-    fn scatter(&mut self, surface: &Surface, material: &dyn Material, sample: &BsdfSample, sigma_a: Rgb) {
+    fn scatter(&mut self, scene: &Scene, surface: &Surface, sample: &BsdfSample) {
+        let wo = -Vec3::from(self.ray.direction);
         self.beta *= sample.weight;
         self.depth += 1;
         self.specular &= sample.is_delta;
         self.last = (!sample.is_delta).then_some((surface.p, sample.pdf_solid_angle));
         self.eta_scale *= sample.eta * sample.eta;
-        self.sigma_a = match (sample.transmits, sample.wi.dot(surface.n_geom) < 0.0) {
-            (false, _) => sigma_a,
-            (true, true) => material.sigma_a(),
-            (true, false) => Rgb::BLACK,
-        };
+        self.media = self.media.towards(scene, surface, wo, sample.wi);
         self.ray = surface.spawn(sample.wi);
     }
 }

@@ -1,0 +1,18 @@
+//! Mixtures of sums of lobes.
+
+use super::{Bsdf, MOST_LOBES};
+
+impl Bsdf {
+    /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal. Lobes beyond
+    /// [`MOST_LOBES`] are left out.
+    pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
+        let mut sum =
+            Bsdf { lobes: [None; MOST_LOBES], strengths: [0.0; MOST_LOBES], total_strength: 0.0, ..*self };
+        let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
+        let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
+        for (i, (weight, lobe)) in parts.enumerate().take(MOST_LOBES) {
+            sum.set(i, *lobe, weight);
+        }
+        sum
+    }
+}

@@ -1,0 +1,220 @@
+//! What is between surfaces: nothing, or glass and water that absorb, where they overlap by priority.
+//!
+//! Glass and the water in it touch nowhere exactly: one is modelled to reach a little into the other, and where both are
+//! the medium of the greater priority is. The surface of the lesser one in there separates nothing: paths pass it, and
+//! it is no event. [Schmidt 2002]
+//!
+//! Materials without a priority take no part. Their refractive index is over that of whatever is around them.
+
+use bilux_math::transcendental::exp;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Bsdf, Nested, Ray, Scene, Surface, Tracer};
+
+/// So many media may lie in each other; more are passed as if they were not there.
+const MOST_NESTED: usize = 4;
+
+/// No object.
+const NONE: u32 = u32::MAX;
+
+/// Rays that look for what they start in pass so many surfaces at most.
+const MOST_SURFACES: usize = 64;
+
+/// What a path is in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Media {
+    /// Objects of a priority around.
+    around: [u32; MOST_NESTED],
+    /// Absorption of what the path goes through, as far as is known.
+    sigma_a: Rgb,
+}
+
+impl Media {
+    /// Nothing around.
+    const AIR: Media = Media { around: [NONE; MOST_NESTED], sigma_a: Rgb::BLACK };
+
+    /// What a path starts in: what it would leave without having entered it.
+    pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
+        let (mut media, scene) = (Media::AIR, tracer.scene);
+        if !scene.has_nested() {
+            return media;
+        }
+        let (mut ray, mut seen) = (*ray, [NONE; MOST_SURFACES]);
+        for i in 0..MOST_SURFACES {
+            let Some(surface) = tracer.closest(&ray) else { break };
+            let leaves = surface.n_geom.dot(Vec3::from(ray.direction)) > 0.0;
+            let is_first = !seen.contains(&surface.object);
+            if leaves && is_first && scene.material(&surface).nested().is_some() {
+                media.add(surface.object);
+            }
+            seen[i] = surface.object;
+            ray = beyond(&ray, &surface);
+        }
+        media.sigma_a = media.sigma_of_strongest(scene);
+        media
+    }
+
+    /// What a ray of unit direction meets first that separates two media, and the light that is left until there. From
+    /// then on these are the media on the side that it comes from.
+    #[inline]
+    pub(crate) fn closest(&mut self, tracer: &mut Tracer, ray: &Ray) -> Option<(Surface, Rgb)> {
+        let scene = tracer.scene;
+        let surface = tracer.closest(ray)?;
+        let direction = Vec3::from(ray.direction);
+        self.arrive(scene, &surface, direction);
+        let passed = transmittance(self.sigma_a, surface.t);
+        if self.separates(scene, &surface) {
+            return Some((surface, passed));
+        }
+        let (mut last, mut passed) = (surface, passed);
+        loop {
+            self.cross(scene, &last, direction);
+            let surface = tracer.closest(&beyond(ray, &last))?;
+            self.arrive(scene, &surface, direction);
+            passed *= transmittance(self.sigma_a, surface.t - last.t);
+            if self.separates(scene, &surface) {
+                return Some((surface, passed));
+            }
+            last = surface;
+        }
+    }
+
+    /// The light that is left at the end of a ray that begins in these media, `distance` metres long; `None` where
+    /// something is between its ends. Of light from infinity `distance` is 0: beyond the last surface nothing absorbs.
+    #[inline]
+    pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, distance: f32) -> Option<Rgb> {
+        if !tracer.scene.has_nested() {
+            return (!tracer.occluded(ray)).then(|| transmittance(self.sigma_a, distance));
+        }
+        let (mut media, mut rest, scene) = (*self, *ray, tracer.scene);
+        let direction = Vec3::from(ray.direction);
+        let (length, mut begin, mut passed) = (direction.length(), 0.0, Rgb::WHITE);
+        while let Some(surface) = tracer.closest(&rest) {
+            media.arrive(scene, &surface, direction);
+            if media.separates(scene, &surface) {
+                return None;
+            }
+            passed *= transmittance(media.sigma_a, (surface.t - begin) * length);
+            media.cross(scene, &surface, direction);
+            (begin, rest) = (surface.t, beyond(&rest, &surface));
+        }
+        Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
+    }
+
+    /// How a surface scatters that separates these media from others.
+    #[inline]
+    pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface) -> Bsdf {
+        let bsdf = scene.material(surface).bsdf(surface);
+        if !scene.has_nested() || scene.material(surface).nested().is_none() {
+            return bsdf;
+        }
+        match self.without(surface.object).strongest(scene) {
+            Some((_, outside)) => bsdf.against(outside.eta),
+            None => bsdf,
+        }
+    }
+
+    /// The media in which a path goes on from a surface where it came along `wo`.
+    #[inline]
+    pub(crate) fn towards(&self, scene: &Scene, surface: &Surface, wo: Vec3, direction: Vec3) -> Media {
+        let mut media = *self;
+        if wo.dot(surface.n_geom) * direction.dot(surface.n_geom) < 0.0 {
+            media.cross(scene, surface, direction);
+        }
+        media
+    }
+
+    /// On arrival: what is left is around, whether the path has entered it or begun there; what is entered is not.
+    #[inline]
+    fn arrive(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
+        let leaves = surface.n_geom.dot(direction) > 0.0;
+        if scene.has_nested() && scene.material(surface).nested().is_some() {
+            let object = surface.object;
+            if leaves != self.around.contains(&object) {
+                *self = if leaves { self.with(object) } else { self.without(object) };
+                self.sigma_a = self.sigma_of_strongest(scene);
+            }
+        } else if leaves {
+            self.sigma_a = scene.material(surface).sigma_a();
+        }
+    }
+
+    /// On passing a surface.
+    #[inline]
+    fn cross(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
+        let enters = direction.dot(surface.n_geom) < 0.0;
+        if scene.has_nested() {
+            if scene.material(surface).nested().is_some() {
+                *self = if enters { self.with(surface.object) } else { self.without(surface.object) };
+                self.sigma_a = self.sigma_of_strongest(scene);
+                return;
+            }
+            self.sigma_a = self.sigma_of_strongest(scene);
+        } else {
+            self.sigma_a = Rgb::BLACK;
+        }
+        if enters {
+            self.sigma_a = scene.material(surface).sigma_a();
+        }
+    }
+
+    /// False for a surface of a medium where one of greater priority is. Of equal ones it is that of the object that
+    /// comes first in the scene, so that it is the same from both ends of a path.
+    #[inline]
+    fn separates(&self, scene: &Scene, surface: &Surface) -> bool {
+        if !scene.has_nested() {
+            return true;
+        }
+        let Some(own) = scene.material(surface).nested() else { return true };
+        match self.without(surface.object).strongest(scene) {
+            Some((object, other)) => {
+                (own.priority, other_first(surface.object)) > (other.priority, other_first(object))
+            }
+            None => true,
+        }
+    }
+
+    /// The medium that prevails.
+    fn strongest(&self, scene: &Scene) -> Option<(u32, Nested)> {
+        let media = self.around.iter().filter(|&&object| object != NONE);
+        let media = media.filter_map(|&object| Some((object, scene.material_of(object).nested()?)));
+        media.max_by_key(|(object, nested)| (nested.priority, other_first(*object)))
+    }
+
+    fn sigma_of_strongest(&self, scene: &Scene) -> Rgb {
+        self.strongest(scene).map_or(Rgb::BLACK, |(object, _)| scene.material_of(object).sigma_a())
+    }
+
+    fn with(mut self, object: u32) -> Media {
+        self.add(object);
+        self
+    }
+
+    fn add(&mut self, object: u32) {
+        if !self.around.contains(&object)
+            && let Some(free) = self.around.iter_mut().find(|slot| **slot == NONE)
+        {
+            *free = object;
+        }
+    }
+
+    fn without(mut self, object: u32) -> Media {
+        self.around.iter_mut().filter(|slot| **slot == object).for_each(|slot| *slot = NONE);
+        self
+    }
+}
+
+/// Greater for what comes first.
+fn other_first(object: u32) -> std::cmp::Reverse<u32> {
+    std::cmp::Reverse(object)
+}
+
+/// The same ray, from behind a surface that it has met.
+fn beyond(ray: &Ray, surface: &Surface) -> Ray {
+    Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
+}
+
+/// The share of light that is left after a distance in metres, by Beer's law.
+#[inline]
+pub(crate) fn transmittance(sigma_a: Rgb, distance: f32) -> Rgb {
+    if sigma_a.is_black() { Rgb::WHITE } else { sigma_a.map(|sigma| exp(-sigma * distance)) }
+}
