@@ -7,6 +7,7 @@ pub mod build;
 pub mod frames;
 pub mod paper;
 pub mod rays;
+pub mod render;
 pub mod teapots;
 pub mod visibility;
 

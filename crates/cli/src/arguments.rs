@@ -301,7 +301,9 @@ pub struct List {
     bilux bench rays --against embree=libembree4.so.4  beside Embree\n  \
     bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
     bilux bench rays teapots3 --dump batches           meshes and rays for other programs\n  \
-    bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit")]
+    bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
+    bilux bench render --report measured              ten minutes, and a page to look at\n  \
+    bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16")]
 pub struct Bench {
     /// What to measure
     #[arg(value_enum)]
@@ -349,6 +351,27 @@ pub struct Bench {
     /// `rays`: write the hits of the rays of --rays FILE
     #[arg(long, value_name = "FILE")]
     pub hits: Option<PathBuf>,
+    /// `render`: which of its scenes (all)
+    #[arg(long = "scenes", value_name = "NAME,…", value_delimiter = ',')]
+    pub gallery: Vec<String>,
+    /// `render`: which integrators (path, bdpt, vcm, sppm, auto)
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub integrators: Vec<String>,
+    /// `render`: CPU seconds a picture, all threads together (1,4)
+    #[arg(long, value_name = "S,S,…", value_delimiter = ',')]
+    pub seconds: Vec<f64>,
+    /// `render`: pictures of each kind, over which medians are taken (5)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub seeds: Option<u32>,
+    /// `render`: threads; 0 for all cores
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub threads: u32,
+    /// `render`: write a page with pictures, maps of errors and curves into this folder
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// `render`: make references of so many --seconds by each of two integrators, as files in this folder
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["report", "integrators", "seeds"])]
+    pub make_references: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -365,4 +388,6 @@ pub enum BenchKind {
     Build,
     /// Rays a second, beside other libraries
     Rays,
+    /// Errors of integrators at equal time, on eight scenes
+    Render,
 }

@@ -33,6 +33,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Visibility => bilux_bench::visibility::run(&options, &tell)?,
         BenchKind::Build => bilux_bench::build::run(&options, &tell)?,
         BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &tell)?,
+        BenchKind::Render => render(arguments, &tell)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?);
@@ -45,6 +46,30 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     }
     Ok(DONE)
 }
+
+/// `bench render`, and the making of its references.
+fn render(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+    use bilux_bench::render::{Making, Options, make_references, run};
+    let defaults = Options::default();
+    if let Some(folder) = &arguments.make_references {
+        let seconds = arguments.seconds.last().copied().unwrap_or(MINUTE);
+        let scenes = arguments.gallery.clone();
+        let making = Making { folder: folder.clone(), scenes, seconds, threads: arguments.threads };
+        return Ok(make_references(&making, tell)?);
+    }
+    let options = Options {
+        scenes: arguments.gallery.clone(),
+        integrators: arguments.integrators.clone(),
+        seconds: if arguments.seconds.is_empty() { defaults.seconds } else { arguments.seconds.clone() },
+        seeds: arguments.seeds.unwrap_or(defaults.seeds),
+        threads: arguments.threads,
+        report: arguments.report.clone(),
+    };
+    Ok(run(&options, tell)?)
+}
+
+/// What a reference takes of each integrator where nothing is said, in seconds.
+const MINUTE: f64 = 60.0;
 
 /// What `bench rays` is told.
 fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays::Options> {

@@ -11,8 +11,10 @@
 mod copies;
 mod cornell;
 mod coverage;
+mod gallery;
 mod graft;
 mod interior;
+mod parts;
 mod scan;
 pub mod shapes;
 pub mod teapot;
@@ -45,6 +47,14 @@ pub const GENERATORS: &[GeneratorEntry] = &[
     cornell::SPHERES,
     interior::ENTRY,
     scan::ENTRY,
+    gallery::daylight::ENTRY,
+    gallery::indirect::ENTRY,
+    gallery::lampshades::ENTRY,
+    gallery::caustics::ENTRY,
+    gallery::pool::ENTRY,
+    gallery::bidirectional::ENTRY,
+    gallery::door_ajar::ENTRY,
+    gallery::many_lights::ENTRY,
 ];
 
 /// Makes the scene that a spec describes.

@@ -1,7 +1,7 @@
 //! Books on shelves, by colour.
 
+use super::super::parts::{between, chance, joined, placed, rounded, sharp};
 use super::furniture::{BOARDS, SHELF};
-use super::parts::{between, chance, joined, placed, rounded, sharp};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 

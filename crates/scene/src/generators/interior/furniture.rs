@@ -1,6 +1,6 @@
 //! Tables, chairs, shelves, an armchair and lamps. Each stands on y = 0 around its own axis.
 
-use super::parts::{between, joined, moved, placed, rounded, turned};
+use super::super::parts::{between, joined, moved, placed, rounded, turned};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 
@@ -8,7 +8,7 @@ use bilux_math::Vec3;
 pub(super) const TABLE: f32 = 0.75;
 
 /// 1.9 m by 0.95 m, on four turned legs.
-pub(super) fn table(n: u32) -> Mesh {
+pub(in crate::generators) fn table(n: u32) -> Mesh {
     let leg = turned(
         &[
             [0.0, 0.70],
@@ -40,7 +40,7 @@ pub(super) fn table(n: u32) -> Mesh {
 }
 
 /// Its back is towards -z.
-pub(super) fn chair(n: u32) -> Mesh {
+pub(in crate::generators) fn chair(n: u32) -> Mesh {
     let leg = turned(
         &[[0.0, 0.44], [0.017, 0.44], [0.019, 0.30], [0.015, 0.16], [0.012, 0.01], [0.0, 0.0]],
         5 * n,
@@ -64,7 +64,7 @@ pub(super) fn chair(n: u32) -> Mesh {
 }
 
 /// A cushion for a chair's seat.
-pub(super) fn cushion(n: u32) -> Mesh {
+pub(in crate::generators) fn cushion(n: u32) -> Mesh {
     rounded(between([-0.19, 0.462, -0.18], [0.19, 0.515, 0.20]), 0.026, 3 * n)
 }
 
@@ -73,7 +73,7 @@ pub(super) const BOARDS: [f32; 6] = [0.08, 0.46, 0.82, 1.16, 1.50, 1.86];
 pub(super) const SHELF: [f32; 2] = [1.3, 0.3];
 
 /// Open to the front, which is +z; its back is at z = 0.
-pub(super) fn shelf(n: u32) -> Mesh {
+pub(in crate::generators) fn shelf(n: u32) -> Mesh {
     let [width, depth] = SHELF;
     let (half, top) = (0.5 * width, BOARDS[5] + 0.02);
     let side = between([-0.012, 0.0, 0.0], [0.012, top, depth]);
@@ -86,7 +86,7 @@ pub(super) fn shelf(n: u32) -> Mesh {
 }
 
 /// Soft, facing +z.
-pub(super) fn armchair(n: u32) -> Mesh {
+pub(in crate::generators) fn armchair(n: u32) -> Mesh {
     let n = 3 * n;
     let arm = rounded(between([-0.085, 0.12, -0.38], [0.085, 0.60, 0.38]), 0.075, n);
     let back = rounded(between([-0.33, 0.0, -0.09], [0.33, 0.62, 0.09]), 0.085, n);
@@ -100,13 +100,13 @@ pub(super) fn armchair(n: u32) -> Mesh {
 }
 
 /// The armchair's feet.
-pub(super) fn feet(n: u32) -> Mesh {
+pub(in crate::generators) fn feet(n: u32) -> Mesh {
     let foot = turned(&[[0.0, 0.14], [0.03, 0.13], [0.024, 0.06], [0.016, 0.0], [0.0, 0.0]], 6 * n, n);
     joined([[-0.36, -0.3], [0.36, -0.3], [-0.36, 0.3], [0.36, 0.3]].map(|[x, z]| moved(&foot, [x, 0.0, z])))
 }
 
 /// Foot and pole of a lamp whose bulb is 1.48 up.
-pub(super) fn lamp_stand(n: u32) -> Mesh {
+pub(in crate::generators) fn lamp_stand(n: u32) -> Mesh {
     let outline = [
         [0.0, 1.46],
         [0.018, 1.455],
@@ -126,7 +126,7 @@ pub(super) fn lamp_stand(n: u32) -> Mesh {
 }
 
 /// A cone of cloth, open above and below, around a bulb at the origin.
-pub(super) fn shade(n: u32) -> Mesh {
+pub(in crate::generators) fn shade(n: u32) -> Mesh {
     let outline = [
         [0.118, 0.16],
         [0.121, 0.16],
@@ -140,7 +140,7 @@ pub(super) fn shade(n: u32) -> Mesh {
 }
 
 /// A bell of metal with its cord up to 1 m above, around a bulb at the origin.
-pub(super) fn pendant(n: u32) -> Mesh {
+pub(in crate::generators) fn pendant(n: u32) -> Mesh {
     let bell = [
         [0.0, 0.17],
         [0.022, 0.168],

@@ -2,11 +2,11 @@
 //! books.
 
 mod books;
-mod furniture;
-mod parts;
-mod soft;
-mod tableware;
+pub(super) mod furniture;
+pub(super) mod soft;
+pub(super) mod tableware;
 
+use super::parts::{between, chance, joined, moved, placed, rounded, sharp, turned};
 use super::teapot::Teapot;
 use super::{GeneratorEntry, integer};
 use crate::builder::{Object, SceneBuilder};
@@ -16,7 +16,6 @@ use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
 use bilux_math::{Aabb, Rgb, Vec3};
 use furniture::TABLE;
-use parts::{between, chance, joined, moved, placed, rounded, sharp};
 use std::sync::Arc;
 
 pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
@@ -179,7 +178,7 @@ impl Room {
         let mirrored = placed(&curtain, (Vec3::Y, 180.0), [x, y, z1 + 0.38]);
         self.put("curtains", "linen", joined([moved(&curtain, [x, y, z0 - 0.38]), mirrored]));
         let rod = [[0.0, 1.5], [0.02, 1.49], [0.02, 1.46], [0.011, 1.45], [0.011, -1.45], [0.02, -1.46]];
-        let rod = parts::turned(&[&rod[..], &[[0.02, -1.49], [0.0, -1.5]]].concat(), 8 * n, n);
+        let rod = turned(&[&rod[..], &[[0.02, -1.49], [0.0, -1.5]]].concat(), 8 * n, n);
         self.put("curtain rod", "brass", placed(&rod, (Vec3::X, 90.0), [x, y + 0.02, 0.5 * (z0 + z1)]));
     }
 

@@ -1,13 +1,13 @@
 //! Curtains, a rug and a plant: sheets that bend.
 
-use super::parts::{chance, joined, placed, sheet};
+use super::super::parts::{chance, joined, placed, sheet};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 use bilux_math::transcendental::sin_cos;
 use std::f32::consts::{PI, TAU};
 
 /// Hangs from y = 0 down to -2.25 and is 0.75 wide along z, in folds towards x.
-pub(super) fn curtain(n: u32) -> Mesh {
+pub(in crate::generators) fn curtain(n: u32) -> Mesh {
     sheet(112 * n, 16 * n, |u, v| {
         let phase = TAU * 6.5 * u + 0.7 * sin_cos(3.0 * v + 9.0 * u).0;
         let deep = 0.035 + 0.035 * v + 0.012 * sin_cos(23.0 * u).0;
@@ -22,7 +22,7 @@ pub(super) fn curtain(n: u32) -> Mesh {
 }
 
 /// 2.6 m by 1.8 m and as rough as wool.
-pub(super) fn rug(n: u32) -> Mesh {
+pub(in crate::generators) fn rug(n: u32) -> Mesh {
     let (columns, rows) = (56 * n, 40 * n);
     sheet(columns, rows, |u, v| {
         let (i, j) = ((u * columns as f32) as u32, (v * rows as f32) as u32);
@@ -33,7 +33,7 @@ pub(super) fn rug(n: u32) -> Mesh {
 }
 
 /// Leaves on stalks, from the middle of a pot up and outwards.
-pub(super) fn leaves(n: u32) -> Mesh {
+pub(in crate::generators) fn leaves(n: u32) -> Mesh {
     const LEAVES: u32 = 72;
     let leaf = |k: u32| {
         let rise = k as f32 / LEAVES as f32;

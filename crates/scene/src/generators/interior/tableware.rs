@@ -1,12 +1,12 @@
 //! What stands on the table. Each stands on y = 0 around its own axis.
 
+use super::super::parts::{joined, moved, placed, turned};
 use super::super::shapes::{torus, uv_sphere};
-use super::parts::{joined, moved, placed, turned};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 
 /// 26 cm wide.
-pub(super) fn plate(n: u32) -> Mesh {
+pub(in crate::generators) fn plate(n: u32) -> Mesh {
     let outline = [
         [0.0, 0.006],
         [0.075, 0.006],
@@ -24,7 +24,7 @@ pub(super) fn plate(n: u32) -> Mesh {
 }
 
 /// With a handle.
-pub(super) fn cup(n: u32) -> Mesh {
+pub(in crate::generators) fn cup(n: u32) -> Mesh {
     let outline = [
         [0.0, 0.008],
         [0.020, 0.010],
@@ -41,7 +41,7 @@ pub(super) fn cup(n: u32) -> Mesh {
 }
 
 /// A bowl for fruit, 30 cm wide.
-pub(super) fn bowl(n: u32) -> Mesh {
+pub(in crate::generators) fn bowl(n: u32) -> Mesh {
     let outline = [
         [0.0, 0.022],
         [0.05, 0.025],
@@ -57,7 +57,7 @@ pub(super) fn bowl(n: u32) -> Mesh {
 }
 
 /// Oranges that fill the bowl.
-pub(super) fn oranges(n: u32) -> Mesh {
+pub(in crate::generators) fn oranges(n: u32) -> Mesh {
     let lower = [[0.045, 0.0], [-0.022, 0.04], [-0.022, -0.04]].map(|[x, z]| [x, 0.072, z]);
     let rim = [[0.085, 0.035], [0.0, 0.092], [-0.085, 0.035], [-0.06, -0.07], [0.06, -0.07]];
     let rim = rim.map(|[x, z]| [x, 0.102, z]);
@@ -66,7 +66,7 @@ pub(super) fn oranges(n: u32) -> Mesh {
 }
 
 /// A bellied vase, 32 cm high.
-pub(super) fn vase(n: u32) -> Mesh {
+pub(in crate::generators) fn vase(n: u32) -> Mesh {
     let outline = [
         [0.026, 0.32],
         [0.030, 0.32],
@@ -82,7 +82,7 @@ pub(super) fn vase(n: u32) -> Mesh {
 }
 
 /// A stick with a candle in it.
-pub(super) fn candle(n: u32) -> [Mesh; 2] {
+pub(in crate::generators) fn candle(n: u32) -> [Mesh; 2] {
     let stick = [
         [0.0, 0.166],
         [0.020, 0.168],
@@ -101,7 +101,7 @@ pub(super) fn candle(n: u32) -> [Mesh; 2] {
 }
 
 /// A flower pot.
-pub(super) fn pot(n: u32) -> Mesh {
+pub(in crate::generators) fn pot(n: u32) -> Mesh {
     let outline = [
         [0.0, 0.30],
         [0.165, 0.30],

@@ -1,6 +1,6 @@
 //! What furniture is put together from: boxes with round edges, turned things, sheets. All with normals.
 
-use super::super::shapes::grid;
+use super::shapes::grid;
 use crate::mesh::Mesh;
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::transcendental::sin_cos;

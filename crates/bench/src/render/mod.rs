@@ -1,0 +1,297 @@
+//! Light transport: every integrator on eight scenes, each hard in another way, for equal CPU time, against references.
+//!
+//! Of a scene, an integrator and a budget, several pictures are rendered that differ in their seeds only; errors are
+//! medians over these. The number of samples comes from the speed that was measured just before, so that a picture is
+//! still a pure function of its settings. Only rendering counts, not the building of trees.
+
+mod cost;
+mod curves;
+mod errors;
+mod page;
+mod reference;
+mod table;
+
+pub use errors::{BLOCK, bias2, relmse, relmse_trimmed};
+pub use reference::{Making, Reference, make_references};
+
+use crate::{Report, Tell, median};
+use bilux::pictures::WriteOptions;
+use bilux::scene::error::nearest_name;
+use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
+use bilux::transport::INTEGRATORS;
+use bilux::{Error, Job, Quiet};
+use bilux_math::Rgb;
+use cost::Clock;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Width and height of the pictures: whole blocks of [`BLOCK`] pixels.
+pub const SIZE: (u32, u32) = (128, 96);
+
+/// The scenes, by the names of their generators, each with the file of its reference.
+pub const SCENES: &[(&str, &[u8])] = &[
+    ("daylight", include_bytes!("../../references/daylight.exr")),
+    ("indirect", include_bytes!("../../references/indirect.exr")),
+    ("lampshades", include_bytes!("../../references/lampshades.exr")),
+    ("caustics", include_bytes!("../../references/caustics.exr")),
+    ("pool", include_bytes!("../../references/pool.exr")),
+    ("bidirectional", include_bytes!("../../references/bidirectional.exr")),
+    ("door-ajar", include_bytes!("../../references/door-ajar.exr")),
+    ("many-lights", include_bytes!("../../references/many-lights.exr")),
+];
+
+/// What is measured where nothing is asked for, as far as it is there.
+const USUAL: [&str; 5] = ["path", "bdpt", "vcm", "sppm", "auto"];
+
+/// What the benchmark can be told.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Names of [`SCENES`]; all of them where there are none.
+    pub scenes: Vec<String>,
+    /// Names of integrators; the usual ones where there are none.
+    pub integrators: Vec<String>,
+    /// CPU seconds a picture, of all threads together.
+    pub seconds: Vec<f64>,
+    /// Pictures of each kind, at least 1.
+    pub seeds: u32,
+    /// Threads; 0 for all cores.
+    pub threads: u32,
+    /// Folder for a page with pictures and curves.
+    pub report: Option<PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            scenes: Vec::new(),
+            integrators: Vec::new(),
+            seconds: vec![1.0, 4.0],
+            seeds: 5,
+            threads: 0,
+            report: None,
+        }
+    }
+}
+
+/// What one integrator made of a scene within a budget.
+struct Row {
+    scene: &'static str,
+    integrator: String,
+    /// The budget, in CPU seconds.
+    seconds: f64,
+    /// What the pictures took in truth.
+    took: f64,
+    samples: u32,
+    relmse: f64,
+    relmse_trimmed: f64,
+    /// `None` of a single picture.
+    bias2: Option<f64>,
+    mean: f64,
+    /// `None` where the system does not tell.
+    peak_mb: Option<f64>,
+    /// The first of the pictures.
+    picture: Vec<Rgb>,
+}
+
+impl Row {
+    fn json(&self, reference: &Reference) -> Value {
+        json!({
+            "scene": self.scene, "integrator": self.integrator, "seconds": self.seconds, "samples": self.samples,
+            "relmse": self.relmse, "relmse_trimmed": self.relmse_trimmed, "bias2": self.bias2, "mean": self.mean,
+            "peak_mb": self.peak_mb, "cpu_seconds": self.took, "reference_mean": reference.mean(),
+            "reference_relmse": reference.relmse,
+        })
+    }
+}
+
+/// All that was measured of a scene.
+struct Measured {
+    scene: &'static str,
+    summary: &'static str,
+    reference: Reference,
+    /// How its pictures are shown.
+    shown: WriteOptions,
+    rows: Vec<Row>,
+}
+
+/// Measures.
+///
+/// # Errors
+/// When a scene or an integrator is not known, or the page cannot be written.
+pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+    let scenes = chosen_scenes(&options.scenes)?;
+    let integrators = chosen_integrators(&options.integrators)?;
+    if let Some(wrong) = options.seconds.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
+        return Err(Error::Settings(format!("--seconds {wrong}: a budget is a number of seconds above 0")));
+    }
+    if let Some(folder) = &options.report {
+        std::fs::create_dir_all(folder)
+            .map_err(|e| Error::Settings(format!("cannot make the folder '{}': {e}", folder.display())))?;
+    }
+    let cells = scenes.len() * integrators.len();
+    let mut bench =
+        Bench { options, tell, begun: Instant::now(), done: 0.0, all: cells as f64 * options.work() };
+    let mut measured = Vec::new();
+    for (name, bytes) in scenes {
+        measured.push(bench.scene(name, bytes, &integrators)?);
+    }
+    if let Some(folder) = &options.report {
+        page::write(folder, &measured, options)?;
+    }
+    let rows = measured.iter().flat_map(|m| m.rows.iter().map(|row| row.json(&m.reference))).collect();
+    Ok(Report { rows, text: table::text(&measured, options), picture: None })
+}
+
+impl Options {
+    /// CPU seconds of an integrator on a scene.
+    fn work(&self) -> f64 {
+        self.seconds.iter().sum::<f64>() * f64::from(self.seeds.max(1))
+    }
+}
+
+/// A run on its way.
+struct Bench<'a> {
+    options: &'a Options,
+    tell: Tell<'a>,
+    begun: Instant,
+    /// CPU seconds of the pictures that are there, and of all.
+    done: f64,
+    all: f64,
+}
+
+impl Bench<'_> {
+    fn scene(&mut self, name: &'static str, bytes: &[u8], integrators: &[String]) -> Result<Measured, Error> {
+        let scene = scene(name)?;
+        let reference = Reference::read(bytes)?;
+        let shown = Job::new(&scene, &settings("path", 1, 0, 1))?.write_options()?;
+        let entry = bilux::scene::generators::GENERATORS.iter().find(|row| row.entry.name == name);
+        let summary = entry.map_or("", |row| row.entry.summary);
+        let mut rows = Vec::new();
+        for integrator in integrators {
+            let mut speed = calibrate(&scene, integrator, &self.options.seconds, self.options.threads)?;
+            for &seconds in &self.options.seconds {
+                (self.tell)(&format!("{name}, {integrator}, {seconds} s{}", self.time_left()));
+                let row = self.cell(name, &scene, integrator, seconds, speed, &reference)?;
+                speed = f64::from(row.samples) / row.took.max(1e-3);
+                rows.push(row);
+            }
+        }
+        Ok(Measured { scene: name, summary, reference, shown, rows })
+    }
+
+    /// The pictures of one scene by one integrator within one budget. `speed` is samples of every pixel a CPU second.
+    fn cell(
+        &mut self,
+        name: &'static str,
+        scene: &SceneBuilder,
+        integrator: &str,
+        seconds: f64,
+        speed: f64,
+        reference: &Reference,
+    ) -> Result<Row, Error> {
+        let samples = ((speed * seconds).round() as u32).max(1);
+        let (mut took, mut peaks, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+        for seed in 1..=u64::from(self.options.seeds.max(1)) {
+            let shot = shoot(scene, &settings(integrator, samples, seed, self.options.threads))?;
+            self.done += seconds;
+            took.push(shot.seconds);
+            peaks.extend(shot.peak_mb);
+            pictures.push(shot.picture);
+        }
+        let over = |error: &dyn Fn(&[Rgb]) -> f64| median(pictures.iter().map(|p| error(p)).collect());
+        Ok(Row {
+            scene: name,
+            integrator: integrator.to_owned(),
+            seconds,
+            took: median(took),
+            samples,
+            relmse: over(&|p| relmse(p, &reference.pixels)),
+            relmse_trimmed: over(&|p| relmse_trimmed(p, &reference.pixels)),
+            bias2: bias2(&pictures, &reference.pixels, SIZE.0 as usize),
+            mean: over(&errors::mean),
+            peak_mb: (!peaks.is_empty()).then(|| median(peaks)),
+            picture: pictures.swap_remove(0),
+        })
+    }
+
+    fn time_left(&self) -> String {
+        if self.done == 0.0 {
+            return String::new();
+        }
+        let left = self.begun.elapsed().as_secs_f64() * (self.all - self.done) / self.done;
+        format!("; {left:.0} s left")
+    }
+}
+
+/// Samples of every pixel a CPU second, by ever longer renders until one takes a fifth of the smallest budget.
+fn calibrate(scene: &SceneBuilder, integrator: &str, budgets: &[f64], threads: u32) -> Result<f64, Error> {
+    let smallest = budgets.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut samples = 1;
+    loop {
+        let shot = shoot(scene, &settings(integrator, samples, 0, threads))?;
+        let speed = f64::from(samples) / shot.seconds.max(1e-3);
+        if shot.seconds >= 0.2 * smallest || samples > 1 << 20 {
+            return Ok(speed);
+        }
+        samples *= if shot.seconds < 0.04 * smallest { 4 } else { 2 };
+    }
+}
+
+/// A picture and what it took.
+struct Shot {
+    seconds: f64,
+    peak_mb: Option<f64>,
+    picture: Vec<Rgb>,
+}
+
+fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<Shot, Error> {
+    let job = Job::new(scene, settings)?;
+    let clock = Clock::start(job.settings().threads);
+    let outcome = job.render(&Quiet)?;
+    let (seconds, peak_mb) = clock.stop();
+    Ok(Shot { seconds, peak_mb, picture: outcome.film.to_rgb() })
+}
+
+fn settings(integrator: &str, samples: u32, seed: u64, threads: u32) -> Parameters {
+    let mut settings = Parameters::default();
+    settings.set("integrator", integrator);
+    settings.set("size", Setting::Text(format!("{}x{}", SIZE.0, SIZE.1)));
+    settings.set("spp", Setting::Integer(i64::from(samples)));
+    settings.set("seed", Setting::Integer(seed as i64));
+    settings.set("threads", Setting::Integer(i64::from(threads)));
+    settings
+}
+
+fn scene(name: &str) -> Result<SceneBuilder, Error> {
+    bilux::generate(&Spec::new("", name))
+}
+
+/// The rows of [`SCENES`] of these names, in their order there.
+fn chosen_scenes(names: &[String]) -> Result<Vec<(&'static str, &'static [u8])>, Error> {
+    let known: Vec<String> = SCENES.iter().map(|(name, _)| (*name).to_owned()).collect();
+    names.iter().try_for_each(|name| check("scene of `bench render`", name, &known))?;
+    let wanted = |name: &str| names.is_empty() || names.iter().any(|n| n == name);
+    Ok(SCENES.iter().copied().filter(|(name, _)| wanted(name)).collect())
+}
+
+fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
+    let known: Vec<String> =
+        INTEGRATORS.iter().filter(|row| !row.classic).map(|row| row.entry.name.to_owned()).collect();
+    if names.is_empty() {
+        return Ok(USUAL.map(str::to_owned).into_iter().filter(|name| known.contains(name)).collect());
+    }
+    names.iter().try_for_each(|name| check("integrator to measure", name, &known))?;
+    Ok(names.to_vec())
+}
+
+fn check(what: &str, name: &str, known: &[String]) -> Result<(), Error> {
+    if known.iter().any(|k| k == name) {
+        return Ok(());
+    }
+    let hint = match nearest_name(name, known) {
+        Some(nearest) => format!("did you mean '{nearest}'?"),
+        None => format!("there are {}", known.join(", ")),
+    };
+    Err(Error::Settings(format!("there is no {what} '{name}'; {hint}")))
+}

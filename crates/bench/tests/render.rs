@@ -1,0 +1,81 @@
+//! `bilux bench render`: its rows, its references, its page, and the scenes that it measures on.
+
+use bilux::scene::{Parameters, Spec, Value};
+use bilux::{Job, Quiet};
+use bilux_bench::render::{Options, Reference, SCENES, SIZE, relmse, run};
+use tempfile::TempDir;
+
+fn quick() -> Options {
+    Options {
+        scenes: vec!["daylight".to_owned()],
+        integrators: vec!["path".to_owned(), "bdpt".to_owned()],
+        seconds: vec![0.05],
+        seeds: 2,
+        ..Options::default()
+    }
+}
+
+#[test]
+fn rows_have_what_programs_ask_for_and_the_page_shows_it() {
+    let folder = TempDir::new().unwrap();
+    let report = run(&Options { report: Some(folder.path().join("page")), ..quick() }, &|_| {}).unwrap();
+    let names: Vec<_> = report.rows.iter().map(|row| row["integrator"].as_str().unwrap()).collect();
+    assert_eq!(names, ["path", "bdpt"]);
+    for row in &report.rows {
+        assert_eq!((row["scene"].as_str(), row["seconds"].as_f64()), (Some("daylight"), Some(0.05)));
+        let number = |key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}"));
+        assert!(number("samples") >= 1.0 && number("bias2") >= 0.0, "{row}");
+        assert!(number("relmse") > number("relmse_trimmed") && number("relmse_trimmed") > 0.0, "{row}");
+        assert!((number("mean") / number("reference_mean") - 1.0).abs() < 0.05, "{row}");
+        assert!(row["peak_mb"].is_null() || number("peak_mb") > 1.0, "{row}");
+    }
+    assert!(report.text.contains("daylight") && report.text.contains("bdpt"), "{}", report.text);
+    let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
+    // The reference, and a picture and a map of errors of each integrator; nothing from elsewhere.
+    assert_eq!(page.matches("data:image/png;base64,").count(), 5);
+    assert_eq!(page.matches("<svg").count(), 1);
+    assert!(!page.contains("http"));
+}
+
+#[test]
+fn what_is_not_there_is_told() {
+    let error = |options: Options| run(&options, &|_| {}).err().unwrap().to_string();
+    let named = |name: &str| vec![name.to_owned()];
+    assert!(error(Options { scenes: named("poll"), ..quick() }).contains("did you mean 'pool'?"));
+    assert!(error(Options { integrators: named("bdtp"), ..quick() }).contains("did you mean 'bdpt'?"));
+    assert!(error(Options { seconds: vec![0.0], ..quick() }).contains("above 0"));
+}
+
+/// Means of a picture of few pixels.
+fn coarse(scene: &str, integrator: &str, samples: i64) -> f64 {
+    let mut settings = Parameters::default();
+    settings.set("integrator", integrator);
+    settings.set("size", "32x24");
+    settings.set("spp", Value::Integer(samples));
+    let job = Job::new(&bilux::generate(&Spec::new("", scene)).unwrap(), &settings).unwrap();
+    assert!(job.warnings().is_empty(), "{scene}: {:?}", job.warnings());
+    let pixels = job.render(&Quiet).unwrap().film.to_rgb();
+    assert!(pixels.iter().all(|p| p.is_finite()), "{scene}, {integrator}");
+    // Single bright dots would outweigh the picture: light as it is seen.
+    let seen = pixels.iter().flat_map(|p| p.to_array()).map(|c| f64::from(c.min(2.0)));
+    seen.sum::<f64>() / (3 * pixels.len()) as f64
+}
+
+#[test]
+fn every_scene_looks_alike_from_both_ends_and_like_its_reference() {
+    for (name, bytes) in SCENES {
+        let reference = Reference::read(bytes).unwrap();
+        assert_eq!(reference.pixels.len(), (SIZE.0 * SIZE.1) as usize);
+        assert!(reference.relmse > 0.0 && reference.relmse < 0.02, "{name}: {}", reference.relmse);
+        assert!(reference.origin.contains("path") && reference.origin.contains("bdpt"), "{name}");
+        assert!(relmse(&reference.pixels, &reference.pixels) == 0.0 && bytes.len() < 100_000, "{name}");
+        let wanted = {
+            let seen = reference.pixels.iter().flat_map(|p| p.to_array()).map(|c| f64::from(c.min(2.0)));
+            seen.sum::<f64>() / (3 * reference.pixels.len()) as f64
+        };
+        for (integrator, samples) in [("path", 48), ("bdpt", 24)] {
+            let found = coarse(name, integrator, samples);
+            assert!((found / wanted - 1.0).abs() < 0.15, "{name}, {integrator}: {found} for {wanted}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Eight small scenes, each hard for light transport in another way, and good to look at. One scene a file, composed for
+//! pictures of 4:3; `bilux bench render` measures on them.
+
+pub(super) mod bidirectional;
+pub(super) mod caustics;
+pub(super) mod daylight;
+pub(super) mod door_ajar;
+pub(super) mod indirect;
+pub(super) mod lampshades;
+pub(super) mod many_lights;
+pub(super) mod pool;
+mod tiles;
+
+use super::parts::{between, joined, sharp};
+use crate::builder::{Object, SceneBuilder};
+use crate::cameras::CameraSpec;
+use crate::mesh::Mesh;
+use crate::parameters::{Spec, Value};
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec3};
+use std::sync::Arc;
+
+/// What a scene of the gallery says of itself.
+const fn about(name: &'static str, summary: &'static str) -> Entry {
+    Entry { name, summary, source: "", parameters: &[] }
+}
+
+/// A scene while it is set.
+struct Stage {
+    scene: SceneBuilder,
+}
+
+impl Stage {
+    /// Nothing yet, to be exposed by so many stops.
+    fn new(exposure: f32) -> Stage {
+        let mut scene = SceneBuilder::default();
+        scene.settings.set("size", "960x720");
+        scene.settings.set("tonemap", "aces");
+        scene.settings.set("exposure", exposure);
+        Stage { scene }
+    }
+
+    /// So many bounces, where there is much glass.
+    fn deep(&mut self, bounces: i64) {
+        self.scene.settings.set("max_depth", Value::Integer(bounces));
+    }
+
+    fn material(&mut self, spec: Spec) -> usize {
+        self.scene.add_material(spec)
+    }
+
+    fn matt(&mut self, name: &str, colour: [f32; 3]) -> usize {
+        self.material(Spec::new(name, "diffuse").with("reflectance", Rgb::from_array(colour)))
+    }
+
+    /// Matt under a thin gloss.
+    fn glossy(&mut self, name: &str, colour: [f32; 3], gloss: f32, exponent: f32) -> usize {
+        let spec = Spec::new(name, "phong").with("kd", Rgb::from_array(colour)).with("ks", gloss);
+        self.material(spec.with("exponent", exponent).with("reflectivity", 0.0f32))
+    }
+
+    /// Smooth glass that takes so much of each colour a metre.
+    fn glass(&mut self, name: &str, absorption: [f32; 3]) -> usize {
+        self.material(Spec::new(name, "dielectric").with("absorption", Rgb::from_array(absorption)))
+    }
+
+    fn metal(&mut self, metal: &str, roughness: f32) -> usize {
+        self.material(Spec::new(metal, "conductor").with("metal", metal).with("roughness", roughness))
+    }
+
+    /// What gives light by itself.
+    fn glowing(&mut self, name: &str, radiance: [f32; 3]) -> usize {
+        let spec = Spec::new(name, "diffuse").with("reflectance", 0.0f32);
+        self.material(spec.with("emission", Rgb::from_array(radiance)))
+    }
+
+    fn put(&mut self, name: &str, mesh: Mesh, material: usize) {
+        self.scene.objects.push(Object::new(name, Arc::new(mesh), material));
+    }
+
+    fn light(&mut self, spec: Spec) {
+        self.scene.lights.push(spec);
+    }
+
+    /// A flat lamp around a point.
+    fn panel(&mut self, name: &str, middle: [f32; 3], edges: [[f32; 3]; 2], radiance: [f32; 3]) {
+        self.light(
+            Spec::new(name, "rect")
+                .with("position", Vec3::from(middle))
+                .with("edge_u", Vec3::from(edges[0]))
+                .with("edge_v", Vec3::from(edges[1]))
+                .with("radiance", Rgb::from_array(radiance)),
+        );
+    }
+
+    /// The picture: from where to where, and how many degrees high.
+    fn seen(mut self, from: [f32; 3], to: [f32; 3], degrees: f32) -> SceneBuilder {
+        let eye = Spec::new("front", "perspective")
+            .with("position", Vec3::from(from))
+            .with("look_at", Vec3::from(to))
+            .with("fov", degrees);
+        self.scene.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+        self.scene
+    }
+}
+
+/// One mesh of boxes with sharp edges, each from corner to corner.
+fn boxes(corners: &[[[f32; 3]; 2]]) -> Mesh {
+    joined(corners.iter().map(|&[low, high]| sharp(between(low, high))))
+}
