@@ -66,7 +66,7 @@ fn every_scene_looks_alike_from_both_ends_and_like_its_reference() {
     for (name, bytes) in SCENES {
         let reference = Reference::read(bytes).unwrap();
         assert_eq!(reference.pixels.len(), (SIZE.0 * SIZE.1) as usize);
-        assert!(reference.relmse > 0.0 && reference.relmse < 0.02, "{name}: {}", reference.relmse);
+        assert!(reference.relmse > 0.0 && reference.relmse < 0.05, "{name}: {}", reference.relmse);
         assert!(reference.origin.contains("path") && reference.origin.contains("bdpt"), "{name}");
         assert!(relmse(&reference.pixels, &reference.pixels) == 0.0 && bytes.len() < 100_000, "{name}");
         let wanted = {
