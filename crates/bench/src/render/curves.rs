@@ -81,7 +81,7 @@ impl Axes {
     fn over(scene: &Measured) -> Axes {
         let seconds: Vec<f64> = scene.rows.iter().map(|row| log(row.took)).collect();
         let errors = scene.rows.iter().flat_map(|row| [row.relmse, row.relmse_trimmed]);
-        let errors: Vec<f64> = errors.map(|e| log(e)).filter(|e| e.is_finite()).collect();
+        let errors: Vec<f64> = errors.map(log).filter(|e| e.is_finite()).collect();
         let range = |values: &[f64], margin: f64| {
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
