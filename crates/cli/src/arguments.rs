@@ -68,7 +68,7 @@ pub enum Command {
     /// Join partial films into one picture
     Merge(Merge),
     /// Measure
-    Bench(Bench),
+    Bench(Box<Bench>),
     /// List what there is: integrators, accels, materials, …
     List(List),
     /// Print completions for a shell

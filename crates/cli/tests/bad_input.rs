@@ -147,5 +147,7 @@ fn misspelt_words_are_answered_with_what_they_most_likely_mean() {
     std::fs::write(folder.path().join("plain.obj"), PLAIN).unwrap();
     answered(&["bench", "rays", "teapot3"], "did you mean 'teapots3'?");
     answered(&["bench", "rays", "--accel", "bhv8"], "did you mean 'bvh8'?");
+    answered(&["bench", "render", "--scenes", "caustic"], "did you mean 'caustics'?");
+    answered(&["bench", "render", "--integrators", "bdtp"], "did you mean 'bdpt'?");
     answered(&["render", "plain.obj", "-o", "x.png", "--build", "bets"], "did you mean 'best'?");
 }
