@@ -41,6 +41,10 @@ pub const SCENES: &[(&str, &[u8])] = &[
     ("many-lights", include_bytes!("../../references/many-lights.exr")),
 ];
 
+/// Pictures at most by which a number of samples is found, and the first of their seeds.
+const TRIALS: u64 = 3;
+const TRIAL_SEED: u64 = 1 << 31;
+
 /// What is measured where nothing is asked for, as far as it is there.
 const USUAL: [&str; 5] = ["path", "bdpt", "vcm", "sppm", "auto"];
 
@@ -190,7 +194,7 @@ impl Bench<'_> {
         speed: f64,
         reference: &Reference,
     ) -> Result<Row, Error> {
-        let samples = ((speed * seconds).round() as u32).max(1);
+        let samples = self.fitting(scene, integrator, seconds, speed)?;
         let (mut took, mut peaks, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
         for seed in 1..=u64::from(self.options.seeds.max(1)) {
             let shot = shoot(scene, &settings(integrator, samples, seed, self.options.threads))?;
@@ -213,6 +217,28 @@ impl Bench<'_> {
             peak_mb: (!peaks.is_empty()).then(|| median(peaks)),
             picture: pictures.swap_remove(0),
         })
+    }
+
+    /// So many samples that a picture takes its budget. What has to be paid once, such as a pilot that decides how to go
+    /// on, makes speeds of short renders wrong: a picture on trial tells.
+    fn fitting(
+        &self,
+        scene: &SceneBuilder,
+        integrator: &str,
+        seconds: f64,
+        speed: f64,
+    ) -> Result<u32, Error> {
+        let mut samples = ((speed * seconds).round() as u32).max(1);
+        for seed in 0..TRIALS {
+            let took = shoot(scene, &settings(integrator, samples, TRIAL_SEED + seed, self.options.threads))?
+                .seconds;
+            let better = ((f64::from(samples) * seconds / took.max(1e-3)).round() as u32).max(1);
+            if better == samples || (took / seconds - 1.0).abs() < 0.1 {
+                break;
+            }
+            samples = better;
+        }
+        Ok(samples)
     }
 
     fn time_left(&self) -> String {
