@@ -7,7 +7,7 @@ use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
 use crate::integrators::PixelIntegrator;
 use crate::plan::{Choice, Plan};
-use crate::splats::{Iterations, Splats};
+use crate::splats::{Iterations, Shown, Splats};
 use crate::stop::{Reached, Stop, Watch};
 use crate::window::Window;
 use bilux_accel::Counters;
@@ -91,7 +91,7 @@ impl RenderSettings {
         }
     }
 
-    fn window(&self) -> Window {
+    pub(crate) fn window(&self) -> Window {
         self.crop.unwrap_or(Window::whole(self.width, self.height))
     }
 
@@ -192,14 +192,21 @@ pub fn render(
         let whole = Window::whole(settings.width, settings.height).tiles(TILE);
         for iteration in samples.clone() {
             let mut eye = eye();
+            let shown =
+                merging.shows_photons().then(|| Shown::new(settings, scale_exponent(scene), whole.len()));
+            let shown = shown.transpose()?;
+            let ways = |eta, light_paths| merging.ways(eta, light_paths);
             let (photons, counters) =
-                pool.install(|| Photons::trace(&eye, merging, &whole, iteration, |eta| merging.ways(eta)));
+                pool.install(|| Photons::trace(&eye, merging, &whole, iteration, ways, shown.as_ref()));
             rendered.counters += counters;
             eye.photons = Some(&photons);
             let pass = passes(&(iteration..iteration + 1));
             rendered = all_passes(&pool, eye, tiles.clone(), pass, progress, rendered)?;
             if rendered.cancelled {
                 break;
+            }
+            if let Some(shown) = shown {
+                rendered.film.add_iterations(&shown.into_iterations(), 1)?;
             }
         }
         Ok(rendered)
@@ -360,7 +367,9 @@ impl<'a> Work<'a> {
         let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
         let dropped = self.dropped.into_inner().unwrap_or_else(PoisonError::into_inner);
         if dropped.is_empty() {
-            film.cover(self.eye.settings.window(), self.eye.settings.samples.clone());
+            for samples in &self.passes {
+                film.cover(self.eye.settings.window(), samples.clone());
+            }
             return (film, false);
         }
         let taken = self.next.into_inner();

@@ -54,8 +54,10 @@ pub fn replay(
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
     let mut eye = Eye::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);
-    let trace =
-        |merging: &Merging| Photons::trace(&eye, merging, &[whole], sample, |eta| merging.ways(eta)).0;
+    let trace = |merging: &Merging| {
+        let ways = |eta, light_paths| merging.ways(eta, light_paths);
+        Photons::trace(&eye, merging, &[whole], sample, ways, None).0
+    };
     let photons = integrator.merging().map(trace);
     eye.photons = photons.as_ref();
     let mut tracer = Tracer::new(scene, false);

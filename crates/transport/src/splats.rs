@@ -5,6 +5,7 @@
 //! iteration counts when all of its light paths have arrived, and not before, since half of them would be half of the
 //! light.
 
+use crate::bidirectional::{Found, Tally, Way};
 use crate::error::FilmError;
 use crate::film::{Film, to_steps, zeroed};
 use crate::filters::Filter;
@@ -13,6 +14,7 @@ use crate::trouble::PixelTrouble;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};
+use std::sync::{Mutex, PoisonError};
 
 /// What light paths leave on the film, pixel by pixel.
 pub struct Splats<'a> {
@@ -102,6 +104,45 @@ impl<'a> Splats<'a> {
             deposit.trouble = PixelTrouble::non_finite_at(self.sample);
         }
         self.deposits.push(deposit);
+    }
+}
+
+impl<const N: usize> Tally<N> for Splats<'_> {
+    fn here(&mut self, _way: Way, _found: &Found<N>) {}
+
+    fn there(&mut self, film: Vec2, found: &Found<N>) {
+        self.add(film, found.weighted());
+    }
+}
+
+/// What the camera sees of the light paths of one iteration, where they are followed before its camera paths.
+pub(crate) struct Shown<'a> {
+    settings: &'a RenderSettings,
+    scale_exponent: i32,
+    iterations: Mutex<Iterations>,
+}
+
+impl<'a> Shown<'a> {
+    pub(crate) fn new(
+        settings: &'a RenderSettings,
+        scale_exponent: i32,
+        tiles: usize,
+    ) -> Result<Shown<'a>, FilmError> {
+        let iterations = Mutex::new(Iterations::new(settings.window().pixels(), tiles)?);
+        Ok(Shown { settings, scale_exponent, iterations })
+    }
+
+    pub(crate) fn splats(&self) -> Splats<'a> {
+        Splats::new(self.settings, self.settings.window(), self.scale_exponent)
+    }
+
+    /// Takes over what the light paths of one tile have left.
+    pub(crate) fn take(&self, splats: &mut Splats) {
+        self.iterations.lock().unwrap_or_else(PoisonError::into_inner).take(&mut splats.deposits);
+    }
+
+    pub(crate) fn into_iterations(self) -> Iterations {
+        self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

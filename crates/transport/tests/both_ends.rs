@@ -273,9 +273,14 @@ fn merging_comes_to_the_same() {
         Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
     ));
     let path = blocks(&scene, &*integrator("path"), 0);
-    for (name, seed) in [("vcm", 100), ("sppm", 200)] {
-        let p = agreement(&path, &blocks(&scene, &*with_radius(name, 0.01), seed));
-        assert!(p > UNLIKELY, "path and {name}: p = {p}");
+    let spec = |name: &str| Spec::new("", name).with("radius", 0.01f32);
+    let unjoined = spec("vcm").with("joins", false);
+    // Light paths of a part of the pixels only, seen from the camera for all of them.
+    let few = unjoined.clone().with("light_paths", bilux_scene::Value::Integer(90));
+    for (i, spec) in [spec("vcm"), spec("sppm"), unjoined, few].iter().enumerate() {
+        let found = blocks(&scene, &*integrators::build(spec).unwrap(), 100 * (i as u64 + 1));
+        let p = agreement(&path, &found);
+        assert!(p > UNLIKELY, "path and {spec:?}: p = {p}");
     }
 }
 
@@ -337,18 +342,19 @@ fn a_way_that_is_weighted_wrongly_is_found_out() {
 #[test]
 fn a_crop_and_a_range_of_samples_show_the_same_splats() {
     let scene = built(&mixed());
-    for name in ["light", "bdpt", "auto"] {
+    let unjoined = Spec::new("", "vcm").with("joins", false);
+    for spec in ["light", "bdpt", "vcm", "auto"].map(|name| Spec::new("", name)).iter().chain([&unjoined]) {
+        let (name, integrator) = (&spec.kind, integrators::build(spec).unwrap());
         let whole = RenderSettings { threads: 2, ..RenderSettings::new(20, 18, 6) };
-        let film = shoot(&scene, &*integrator(name), &whole).film;
+        let film = shoot(&scene, &*integrator, &whole).film;
         let window = Window { x: 5, y: 7, width: 9, height: 4 };
         let cropped = RenderSettings { crop: Some(window), threads: 1, ..whole.clone() };
-        let part = shoot(&scene, &*integrator(name), &cropped).film;
+        let part = shoot(&scene, &*integrator, &cropped).film;
         for i in 0..window.pixels() {
             let (x, y) = window.position(i);
             assert_eq!(film.pixel(x, y), part.pixel(x, y), "{name} at {x}, {y}");
         }
-        let range =
-            |samples| shoot(&scene, &*integrator(name), &RenderSettings { samples, ..whole.clone() }).film;
+        let range = |samples| shoot(&scene, &*integrator, &RenderSettings { samples, ..whole.clone() }).film;
         let mut merged = range(0..2);
         merged.merge(&range(2..6)).unwrap();
         assert_eq!(merged.to_rgb(), film.to_rgb(), "{name}");

@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
 use super::walk::Vertex;
-use super::{Found, Lanes, Photons, Ways};
+use super::{Found, Lanes, Photons, Step, Tally, Ways};
 use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
@@ -27,6 +27,22 @@ pub(crate) fn to_camera<const N: usize>(
         y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance), ways);
     let light = y.beta * scattered * passed * seen.density;
     Some((seen.film, Found { light, own: ways.splats, others }))
+}
+
+/// All vertices of a light path seen from the camera.
+pub(crate) fn show_to_camera<const N: usize>(
+    task: &mut Task,
+    light_path: &[Vertex<N>],
+    ways: &Ways<N>,
+    tally: &mut impl Tally<N>,
+) {
+    for y in light_path {
+        task.enter_light_vertex(y.depth);
+        tally.spend(Step::Seen, 1);
+        if let Some((film, found)) = to_camera(task, y, ways) {
+            tally.there(film, &found);
+        }
+    }
 }
 
 /// A point sampled on a light (s = 1), and the light that comes from there along the camera path.

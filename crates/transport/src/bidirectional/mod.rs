@@ -14,7 +14,7 @@ mod photons;
 mod walk;
 mod ways;
 
-pub(crate) use connect::{merged, to_camera, to_light, to_vertex};
+pub(crate) use connect::{merged, show_to_camera, to_camera, to_light, to_vertex};
 pub use photons::{Merging, Photons};
 pub(crate) use walk::{Vertex, Walk};
 pub(crate) use ways::{Found, Lanes, Step, Tally, Way, Ways};

@@ -1,8 +1,9 @@
 //! What the light paths of one iteration leave in the scene, to be found by place: the vertices that camera paths merge
 //! with. [Jensen 1996; Georgiev 2012]
 
-use super::{Lanes, Partial, Ways, light_vertices};
+use super::{Lanes, Partial, Ways, light_vertices, show_to_camera};
 use crate::eye::Eye;
+use crate::splats::Shown;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec3};
@@ -29,9 +30,16 @@ impl Merging {
         std::f32::consts::PI * radius * radius
     }
 
-    /// All ways of an iteration whose photons give this η.
-    pub(crate) fn ways(&self, eta: f32) -> Ways {
-        Ways { eta: Lanes([eta]), ..self.ways }
+    /// All ways of an iteration whose photons give this η, and that has so many light paths for each pixel.
+    pub(crate) fn ways(&self, eta: f32, light_paths: f32) -> Ways {
+        let splats = if self.shows_photons() { self.ways.splats * light_paths } else { self.ways.splats };
+        Ways { eta: Lanes([eta]), splats, ..self.ways }
+    }
+
+    /// True where light paths are seen from the camera but not joined with its paths: those of the photons then do for
+    /// both.
+    pub(crate) fn shows_photons(&self) -> bool {
+        self.radius > 0.0 && self.ways.splats != Lanes::ZERO && self.ways.joins == Lanes::ZERO
     }
 
     /// The radius of an iteration, in metres: it depends on nothing but the iteration's number. [Knaus 2011, eq. 20]
@@ -66,13 +74,15 @@ pub struct Photons<const N: usize = 1> {
 
 impl<const N: usize> Photons<N> {
     /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many. Also how
-    /// many rays that took. `ways` are all ways there are, given η.
+    /// many rays that took. `ways` are all ways there are, given η and the number of light paths for each pixel. What the
+    /// camera sees of them goes to `shown`.
     pub(crate) fn trace(
         eye: &Eye,
         merging: &Merging,
         tiles: &[Window],
         iteration: u32,
-        ways: impl FnOnce(f32) -> Ways<N>,
+        ways: impl FnOnce(f32, f32) -> Ways<N>,
+        shown: Option<&Shown>,
     ) -> (Photons<N>, Counters) {
         let scene = eye.scene;
         let pixels: usize = tiles.iter().map(Window::pixels).sum();
@@ -86,13 +96,18 @@ impl<const N: usize> Photons<N> {
             .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
             .sum::<usize>();
         let radius = merging.radius(scene, iteration);
-        let ways = ways(merging.area(scene, iteration) * followed as f32);
+        let ways = ways(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
         let of_tile = |tile: &Window| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();
+            let mut splats = shown.map(Shown::splats);
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
                 let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
                 let vertices = light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), &ways);
+                if let Some(splats) = &mut splats {
+                    splats.begin(x, y, iteration);
+                    show_to_camera(&mut task, &vertices, &ways, splats);
+                }
                 photons.extend(vertices.iter().map(|vertex| Photon {
                     p: vertex.surface.p,
                     wo: vertex.wo,
@@ -101,6 +116,9 @@ impl<const N: usize> Photons<N> {
                     partial: vertex.partial,
                     depth: vertex.depth,
                 }));
+            }
+            if let (Some(shown), Some(mut splats)) = (shown, splats) {
+                shown.take(&mut splats);
             }
             (photons, tracer.counters)
         };

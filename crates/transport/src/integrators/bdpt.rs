@@ -5,7 +5,7 @@
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
     Found, Lanes, Partial, Photons, Step, Tally, Vertex, Walk, Way, Ways, emitted, from_infinity,
-    light_vertices, merged, to_camera, to_light, to_vertex,
+    light_vertices, merged, show_to_camera, to_light, to_vertex,
 };
 use crate::splats::Splats;
 use crate::task::Task;
@@ -54,23 +54,26 @@ impl PixelIntegrator for Bdpt {
 pub(super) struct BothEnds<'a, const N: usize = 1> {
     ways: &'a Ways<N>,
     photons: Option<&'a Photons<N>>,
+    /// Its own light path is seen from the camera; false where others, those of the photons, are in its place.
+    shows: bool,
     roulette_depth: u32,
 }
 
 impl<'a, const N: usize> BothEnds<'a, N> {
     /// Without merging.
     pub(super) fn new(ways: &'a Ways<N>, roulette_depth: u32) -> BothEnds<'a, N> {
-        BothEnds { ways, photons: None, roulette_depth }
+        BothEnds { ways, photons: None, shows: ways.splats != Lanes::ZERO, roulette_depth }
     }
 
     /// With photons that camera paths are merged with.
-    pub(super) fn merging(photons: &'a Photons<N>, roulette_depth: u32) -> BothEnds<'a, N> {
-        BothEnds { ways: photons.ways(), photons: Some(photons), roulette_depth }
+    pub(super) fn merging(photons: &'a Photons<N>, shows: bool, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { ways: photons.ways(), photons: Some(photons), shows, roulette_depth }
     }
 
     /// Follows both paths; that from the camera where it `is_wanted`.
     pub(super) fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, tally: &mut impl Tally<N>) {
-        let light_path = if self.ways.splats == Lanes::ZERO && self.ways.joins == Lanes::ZERO {
+        let (shows, joins) = (self.shows, self.ways.joins != Lanes::ZERO);
+        let light_path = if !shows && !joins {
             Vec::new()
         } else {
             let rays = task.tracer.counters.rays;
@@ -78,17 +81,11 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             tally.spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
             vertices
         };
-        if self.ways.splats != Lanes::ZERO {
-            for y in &light_path {
-                task.enter_light_vertex(y.depth);
-                tally.spend(Step::Seen, 1);
-                if let Some((film, found)) = to_camera(task, y, self.ways) {
-                    tally.there(film, &found);
-                }
-            }
+        if shows {
+            show_to_camera(task, &light_path, self.ways, tally);
         }
         if is_wanted {
-            let joined = if self.ways.joins == Lanes::ZERO { &[] } else { &light_path[..] };
+            let joined = if joins { &light_path[..] } else { &[] };
             self.camera_path(ray, joined, task, tally);
         }
     }

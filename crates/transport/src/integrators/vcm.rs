@@ -45,11 +45,12 @@ pub(super) struct Vcm {
 
 impl PixelIntegrator for Vcm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        of_camera_path(ray, task, &self.merging.ways(0.0), self.roulette_depth)
+        of_camera_path(ray, task, &self.merging.ways(0.0, 1.0), self.roulette_depth)
     }
 
     fn splats(&self) -> bool {
-        true
+        // Where photons are shown to the camera, that is done before its paths are followed.
+        self.merging.ways != Ways::CAMERA && !self.merging.shows_photons()
     }
 
     fn merging(&self) -> Option<&Merging> {
@@ -62,9 +63,12 @@ impl PixelIntegrator for Vcm {
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let mut sum = Sum { here: Rgb::BLACK, splats };
-        let unmerged = self.merging.ways(0.0);
+        let unmerged = self.merging.ways(0.0, 1.0);
         let both_ends = match task.photons {
-            Some(photons) => BothEnds::merging(photons, self.roulette_depth),
+            Some(photons) => {
+                let shows = !self.merging.shows_photons() && self.splats();
+                BothEnds::merging(photons, shows, self.roulette_depth)
+            }
             None => BothEnds::new(&unmerged, self.roulette_depth),
         };
         both_ends.sample(ray, is_wanted, task, &mut sum);

@@ -43,7 +43,8 @@ impl Steps {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
         let [sees, joins, merges] = [ways.splats, ways.joins, ways.eta].map(|lane| lane.0[0] > 0.0);
         let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
-        if sees || joins {
+        // Photons are seen from the camera as they are; joined they cannot be, and light paths are followed again.
+        if joins || (sees && !merges) {
             sum += of(Step::Light, LIGHT);
         }
         if sees {
@@ -53,7 +54,6 @@ impl Steps {
             sum += of(Step::Joined, JOINED);
         }
         if merges {
-            // The photons are those of light paths of their own.
             sum += of(Step::Light, LIGHT + KEPT) + of(Step::Lookup, LOOKUP);
             sum += self.merged * f64::from(ways.eta.0[0]) * MERGED;
         }

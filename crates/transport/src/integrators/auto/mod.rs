@@ -115,7 +115,7 @@ impl PixelIntegrator for Auto {
             ..Ways::beside_merging(set.sees, set.joins)
         };
         let lanes = |own: f32| {
-            let all = std::iter::once(merging.ways(own)).chain(SETS.iter().map(ways));
+            let all = std::iter::once(merging.ways(own, 1.0)).chain(SETS.iter().map(ways));
             Ways::together(all)
         };
         let seen = pilot::look(&eye, &merging, lanes);

@@ -101,7 +101,7 @@ pub(super) fn look(eye: &Eye, merging: &Merging, ways: impl Fn(f32) -> Ways<LANE
     let mut before: Vec<Vec<Sample>> = Vec::new();
     let samples = tiles.iter().map(Window::pixels).sum::<usize>() as f64 * f64::from(SAMPLES);
     for iteration in 0..SAMPLES {
-        let (photons, counters) = Photons::trace(eye, merging, &tiles, iteration, &ways);
+        let (photons, counters) = Photons::trace(eye, merging, &tiles, iteration, |eta, _| ways(eta), None);
         pilot.counters += counters;
         let of_tile = |tile: &Window| {
             let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
@@ -109,7 +109,7 @@ pub(super) fn look(eye: &Eye, merging: &Merging, ways: impl Fn(f32) -> Ways<LANE
                 let (x, y) = tile.position(i);
                 let mut look = Look::default();
                 let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-                let both_ends = BothEnds::merging(&photons, eye.integrator.roulette_depth());
+                let both_ends = BothEnds::merging(&photons, true, eye.integrator.roulette_depth());
                 both_ends.sample(&ray, true, &mut task, &mut look);
                 look
             };
