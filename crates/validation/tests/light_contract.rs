@@ -155,6 +155,10 @@ impl Light for Spoilt {
         self.light.sample_le(bounds, time, u_point, u).map(self.spoil)
     }
 
+    fn finds_all(&self) -> bool {
+        self.light.finds_all()
+    }
+
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {
         self.light.emission_pdf(bounds, pdf_direct, direction, cos)
     }

@@ -2,6 +2,9 @@
 //!
 //! Directions are drawn by how much light comes from there: first a row of cells, then a cell, then any direction in it.
 //! A cell's chance is that of its light once neighbouring texels are blended, as they are looked up.
+//!
+//! Points that ask for light are only sent where there is more of it than on average: scattering finds the rest as well,
+//! and the two ways together do better than if each tried to find all of it. [Karlík 2019]
 
 use super::distant::{disc_pdf_area, sample_disc};
 use super::{EmissionSample, Light, LightSample};
@@ -26,12 +29,21 @@ pub(super) struct EnvironmentMap {
     rows: usize,
     /// Heights of the rows' edges on the unit sphere, downwards.
     heights: Vec<f64>,
+    /// How light is sent.
+    sent: Chances,
+    /// How it is asked for.
+    asked: Chances,
+    /// Radiance averaged over all directions.
+    mean: Rgb,
+}
+
+/// The chance of each cell; none has one where there are no rows.
+#[derive(Default)]
+struct Chances {
     /// For each row the share of all light in it and the rows above.
     row_cdf: Vec<f64>,
     /// For each cell the share of its row's light in it and the cells to its left.
     cell_cdf: Vec<f64>,
-    /// Radiance averaged over all directions.
-    mean: Rgb,
 }
 
 /// So many cells at most on each side, of pictures however large.
@@ -54,8 +66,8 @@ impl EnvironmentMap {
             columns,
             rows,
             heights: (0..=rows).map(height).collect(),
-            row_cdf: Vec::new(),
-            cell_cdf: Vec::new(),
+            sent: Chances::default(),
+            asked: Chances::default(),
             mean: Rgb::BLACK,
         };
         map.add_up();
@@ -85,29 +97,18 @@ impl EnvironmentMap {
             }
         }
         self.mean = Rgb::from_array(sum.map(|c| (c / total) as f32));
-        self.build_cdfs(&cells);
-    }
-
-    fn build_cdfs(&mut self, cells: &[f64]) {
         let all: f64 = cells.iter().sum();
-        let even = if all > 0.0 { all / (4.0 * std::f64::consts::PI) } else { 1.0 };
-        let floor = |row: usize| FLOOR * even * self.solid_angle(row);
-        let mut rows = Vec::with_capacity(self.rows);
-        let mut row_sum = 0.0;
-        let mut cell_cdf = Vec::with_capacity(cells.len());
-        for (row, cells) in cells.chunks_exact(self.columns).enumerate() {
-            let (floor, begin) = (floor(row), cell_cdf.len());
-            let mut sum = 0.0;
-            for cell in cells {
-                sum += cell + floor;
-                cell_cdf.push(sum);
-            }
-            cell_cdf[begin..].iter_mut().for_each(|c| *c /= sum);
-            row_sum += sum;
-            rows.push(row_sum);
-        }
-        rows.iter_mut().for_each(|r| *r /= row_sum);
-        (self.row_cdf, self.cell_cdf) = (rows, cell_cdf);
+        let even = all / (4.0 * std::f64::consts::PI);
+        let over = |add: f64| {
+            let of_row = |(row, cells): (usize, &[f64])| {
+                let even = add * self.solid_angle(row);
+                cells.iter().map(|cell| (cell + even).max(0.0)).collect::<Vec<_>>()
+            };
+            let rows = cells.chunks_exact(self.columns).enumerate().flat_map(of_row);
+            Chances::new(&rows.collect::<Vec<_>>(), self.columns)
+        };
+        let floor = FLOOR * if all > 0.0 { even } else { 1.0 };
+        (self.sent, self.asked) = (over(floor), over(-even));
     }
 
     /// Solid angle of each cell of a row.
@@ -135,36 +136,63 @@ impl EnvironmentMap {
     }
 
     /// Density over solid angle; zero where there is no picture.
-    fn pdf(&self, direction: Vec3) -> f32 {
-        if self.is_backdrop || self.rows == 0 {
+    fn pdf(&self, chances: &Chances, direction: Vec3) -> f32 {
+        if self.is_backdrop || chances.row_cdf.is_empty() {
             return 0.0;
         }
         let place = self.place(direction);
         let row = ((place.y * self.rows as f32) as usize).min(self.rows - 1);
         let column = ((place.x * self.columns as f32) as usize).min(self.columns - 1);
-        let share = share(&self.row_cdf, row) * share(self.cells_of(row), column);
+        let share = share(&chances.row_cdf, row) * share(chances.cells_of(row), column);
         (share / self.solid_angle(row)) as f32
     }
 
-    fn cells_of(&self, row: usize) -> &[f64] {
-        &self.cell_cdf[row * self.columns..(row + 1) * self.columns]
-    }
-
     /// A direction towards the picture, with its density.
-    fn sample(&self, u: Vec2) -> Option<(Vec3, f32)> {
-        if self.is_backdrop || self.rows == 0 {
+    fn sample(&self, chances: &Chances, u: Vec2) -> Option<(Vec3, f32)> {
+        if self.is_backdrop || chances.row_cdf.is_empty() {
             return None;
         }
-        let (row, down) = choose(&self.row_cdf, u.y);
-        let (column, right) = choose(self.cells_of(row), u.x);
+        let (row, down) = choose(&chances.row_cdf, u.y);
+        let (column, right) = choose(chances.cells_of(row), u.x);
         let (top, bottom) = (self.heights[row], self.heights[row + 1]);
         let y = top + (bottom - top) * down;
         let turned = (column as f64 + right) / self.columns as f64;
         let (sin, cos) = sin_cos((turned as f32 + self.turn - 0.5) * TAU);
         let r = (1.0 - y * y).max(0.0).sqrt() as f32;
         let direction = Vec3::new(r * sin, y as f32, -r * cos).normalize();
-        let pdf = self.pdf(direction);
+        let pdf = self.pdf(chances, direction);
         (pdf > 0.0).then_some((direction, pdf))
+    }
+}
+
+impl Chances {
+    /// In proportion to what is in the cells; none where next to nothing is.
+    fn new(cells: &[f64], columns: usize) -> Chances {
+        let mut chances = Chances::default();
+        let mut row_sum = 0.0;
+        for cells in cells.chunks_exact(columns) {
+            let begin = chances.cell_cdf.len();
+            let mut sum = 0.0;
+            for cell in cells {
+                sum += cell;
+                chances.cell_cdf.push(sum);
+            }
+            if sum > 0.0 {
+                chances.cell_cdf[begin..].iter_mut().for_each(|c| *c /= sum);
+            }
+            row_sum += sum;
+            chances.row_cdf.push(row_sum);
+        }
+        if row_sum <= 0.0 {
+            return Chances::default();
+        }
+        chances.row_cdf.iter_mut().for_each(|r| *r /= row_sum);
+        chances
+    }
+
+    fn cells_of(&self, row: usize) -> &[f64] {
+        let columns = self.cell_cdf.len() / self.row_cdf.len();
+        &self.cell_cdf[row * columns..(row + 1) * columns]
     }
 }
 
@@ -182,17 +210,18 @@ fn choose(cdf: &[f64], u: f32) -> (usize, f64) {
 
 impl Light for EnvironmentMap {
     fn sample_li(&self, _from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
-        let (wi, pdf_solid_angle) = self.sample(u)?;
+        let (wi, pdf_solid_angle) = self.sample(&self.asked, u)?;
         let (li, n_light) = (self.le(wi), Vec3::ZERO);
         Some(LightSample { wi, li, point: None, n_light, pdf_solid_angle, clearance: 0.0 })
     }
 
     fn li_pdf_solid_angle(&self, _from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
-        if hit.is_some() { 0.0 } else { self.pdf(wi) }
+        if hit.is_some() { 0.0 } else { self.pdf(&self.asked, wi) }
     }
 
     fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
-        let (towards, pdf_direct) = self.sample(u_direction)?;
+        let (towards, _) = self.sample(&self.sent, u_direction)?;
+        let pdf_direct = self.pdf(&self.asked, towards);
         let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
         (pdf_emission > 0.0).then(|| EmissionSample {
             p: sample_disc(bounds, -towards, u_point),
@@ -206,8 +235,12 @@ impl Light for EnvironmentMap {
         })
     }
 
-    fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
-        if self.is_backdrop { 0.0 } else { pdf_direct * disc_pdf_area(bounds) }
+    fn emission_pdf(&self, bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+        self.pdf(&self.sent, -direction) * disc_pdf_area(bounds)
+    }
+
+    fn finds_all(&self) -> bool {
+        false
     }
 
     fn is_infinite(&self) -> bool {

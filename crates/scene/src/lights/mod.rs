@@ -105,6 +105,12 @@ pub trait Light: Send + Sync {
     /// the light is infinitely far). Zero for delta lights.
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32;
 
+    /// False when [`Light::sample_li`] leaves out light that scattering has to find: what comes from where its density is
+    /// zero. [`Light::sample_le`] sends it all the same. [Karlík 2019]
+    fn finds_all(&self) -> bool {
+        true
+    }
+
     /// Density over area with which [`Light::sample_li`] finds a point of this light; zero for a point that is not
     /// on it, and for lights without a surface.
     fn pdf_area(&self, _hit: &Surface) -> f32 {
