@@ -30,12 +30,13 @@ impl Steps {
         self.counts[step as usize] += count as f64;
     }
 
-    /// Adds others, times `share`.
-    pub(super) fn add(&mut self, others: &Steps, share: f64) {
+    /// With others, times `share`.
+    pub(super) fn plus(mut self, others: &Steps, share: f64) -> Steps {
         for (count, more) in self.counts.iter_mut().zip(others.counts) {
             *count += share * more;
         }
         self.merged += share * others.merged;
+        self
     }
 
     /// Nanoseconds of a sample with some ways only, each taken or not.

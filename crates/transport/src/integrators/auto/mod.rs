@@ -18,7 +18,7 @@ use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Ray, Scene};
-use pilot::Block;
+use pilot::{Block, Turn};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -102,10 +102,16 @@ impl PixelIntegrator for Auto {
 
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
         let settings = pilot::settings(film);
-        let eye = Eye::new(scene, camera, self, &settings);
+        let sources = settings.each_ref().map(|turn| pilot::photon_settings(film, turn));
+        let eye = |settings| Eye::new(scene, camera, self, settings);
+        let turns: Vec<Turn> = settings
+            .iter()
+            .zip(&sources)
+            .map(|(settings, sources)| Turn { eye: eye(settings), light: eye(sources) })
+            .collect();
         let mut merging = self.merging;
         if merging.radius == 0.0 {
-            merging.radius = PIXELS * pilot::pixel_radius(&eye, film) / scene.bounds().radius();
+            merging.radius = PIXELS * pilot::pixel_radius(&turns[0].eye, film) / scene.bounds().radius();
         }
         let light_paths =
             (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
@@ -118,7 +124,7 @@ impl PixelIntegrator for Auto {
             let all = std::iter::once(merging.ways(own, 1.0)).chain(SETS.iter().map(ways));
             Ways::together(all)
         };
-        let seen = pilot::look(&eye, &merging, lanes);
+        let seen = pilot::look(&turns, &merging, lanes);
         let rivals: Vec<Rival> = SETS
             .iter()
             .enumerate()

@@ -19,23 +19,33 @@ use rayon::prelude::*;
 /// One lane for the ways of the pilot itself, and one for each set that is compared.
 pub(super) const LANES: usize = 1 + super::SETS.len();
 
-/// Samples of each pixel of the pilot: two, so that what changes from one to the other can be told from what does not.
-const SAMPLES: u32 = 2;
+/// The pilot is taken twice, so that what changes from one to the other can be told from what does not.
+const TURNS: u64 = 2;
+
+/// Samples of each pixel in a turn: so many that it shows what is gained by their being spread evenly, which is much for
+/// some ways and little for others.
+const SAMPLES: u32 = 8;
 
 /// Side of a block of pixels that is looked at as a whole.
-const BLOCK: u32 = 8;
+const BLOCK: u32 = 4;
 
 /// Most pixels of a pilot; and least, unless the film has fewer.
-const MOST_PIXELS: u64 = 8192;
-const LEAST_PIXELS: u64 = 256;
-/// What part of the film's pixels it has between the two.
-const PART: u64 = 16;
+const MOST_PIXELS: u64 = 1024;
+const LEAST_PIXELS: u64 = 128;
+/// One pixel for so many of the film's, between the two.
+const PART: u64 = 48;
+
+/// Most photon paths of one of its iterations; and least, unless the film has fewer.
+const MOST_LIGHT_PATHS: u64 = 8192;
+const LEAST_LIGHT_PATHS: u64 = 1024;
+/// One for so many of the film's, between the two.
+const LIGHT_PART: u64 = 8;
 
 /// What the pilot has seen of a block of pixels, as means over its pixels. Luminances only.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) mean: f64,
-    /// Expected variance of one sample, for each lane.
+    /// Expected variance of a pixel, times its samples, for each lane.
     pub(super) variance: [f64; LANES],
     /// What the ways of a lane cannot find at all.
     pub(super) lost: [f64; LANES],
@@ -49,23 +59,64 @@ pub(super) struct Pilot {
     pub(super) counters: Counters,
 }
 
-/// How the pilot of a film is taken: at the same places, with fewer pixels. It depends neither on the number of samples
-/// nor on what is cropped, so that all parts of a picture are made in the same way.
-pub(super) fn settings(film: &RenderSettings) -> RenderSettings {
-    let pixels = u64::from(film.width) * u64::from(film.height);
-    let wanted = (pixels / PART).clamp(LEAST_PIXELS, MOST_PIXELS).min(pixels);
-    let scale = (wanted as f64 / pixels as f64).sqrt();
-    let shrunk = |side: u32| ((f64::from(side) * scale).round() as u32).clamp(1, side);
-    RenderSettings {
-        width: shrunk(film.width),
-        height: shrunk(film.height),
+/// How the turns of a film's pilot are taken. They depend neither on the number of samples nor on what is cropped, so that
+/// all parts of a picture are made in the same way.
+pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; TURNS as usize] {
+    [0, 1].map(|turn| RenderSettings {
         spp: SAMPLES,
         samples: 0..SAMPLES,
         crop: None,
         // No sample of the picture may be one by which it was decided how to make it.
-        seed: hash_words([film.seed, 0x7069_6c6f_7421]),
+        seed: hash_words([film.seed, 0x7069_6c6f_7421 + turn]),
         ..film.clone()
+    })
+}
+
+/// The pixels of the film that a pilot looks at: a regular grid of them, each as small as it is. What differs from one
+/// to the next is no noise, as it would be within larger ones.
+struct Grid {
+    film: [u32; 2],
+    /// Columns and rows.
+    size: [u32; 2],
+}
+
+impl Grid {
+    fn of(film: &RenderSettings) -> Grid {
+        let pixels = u64::from(film.width) * u64::from(film.height);
+        let wanted = (pixels / PART).clamp(LEAST_PIXELS, MOST_PIXELS).min(pixels);
+        let scale = (wanted as f64 / pixels as f64).sqrt();
+        let size =
+            [film.width, film.height].map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, side));
+        Grid { film: [film.width, film.height], size }
     }
+
+    fn tiles(&self) -> Vec<Window> {
+        Window::whole(self.size[0], self.size[1]).tiles(BLOCK)
+    }
+
+    /// The film's pixel at a place of the grid.
+    fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
+        let along = |at: u32, axis: usize| {
+            let middle = (2 * u64::from(at) + 1) * u64::from(self.film[axis]);
+            (middle / (2 * u64::from(self.size[axis]))) as u32
+        };
+        (along(x, 0), along(y, 1))
+    }
+
+    /// The tile at a point of the film (0..=1).
+    fn tile_at(&self, film: Vec2) -> usize {
+        let [width, height] = self.size;
+        let place = (film * Vec2::new(width as f32, height as f32)).as_uvec2();
+        let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
+        (place[1] * width.div_ceil(BLOCK) + place[0]) as usize
+    }
+}
+
+/// Where the pilot's photons come from: the light paths of a film of its own.
+pub(super) fn photon_settings(film: &RenderSettings, turn: &RenderSettings) -> RenderSettings {
+    let pixels = u64::from(film.width) * u64::from(film.height);
+    let wanted = (pixels / LIGHT_PART).clamp(LEAST_LIGHT_PATHS, MOST_LIGHT_PATHS).min(pixels);
+    RenderSettings { width: wanted as u32, height: 1, ..turn.clone() }
 }
 
 /// The radius of a disc as large as what a pixel of the film shows of the first surface there, in metres: the median over
@@ -73,9 +124,10 @@ pub(super) fn settings(film: &RenderSettings) -> RenderSettings {
 pub(super) fn pixel_radius(eye: &Eye, film: &RenderSettings) -> f32 {
     let mut tracer = Tracer::new(eye.scene, false);
     let pixels = film.width as f32 * film.height as f32;
-    let whole = Window::whole(eye.settings.width, eye.settings.height);
+    let grid = Grid::of(film);
+    let whole = Window::whole(grid.size[0], grid.size[1]);
     let mut areas: Vec<f32> = (0..whole.pixels())
-        .map(|i| whole.position(i))
+        .map(|i| grid.pixel(whole.position(i)))
         .filter_map(|(x, y)| {
             let (ray, task) = eye.sample(&mut tracer, x, y, 0);
             let camera = task.camera;
@@ -88,63 +140,87 @@ pub(super) fn pixel_radius(eye: &Eye, film: &RenderSettings) -> f32 {
     areas.get(areas.len() / 2).map_or(0.0, |area| (area / std::f32::consts::PI).sqrt())
 }
 
+/// One turn's camera paths, and whose light paths give it photons.
+pub(super) struct Turn<'a> {
+    pub(super) eye: Eye<'a>,
+    pub(super) light: Eye<'a>,
+}
+
 /// Takes the samples. `ways` tells all lanes, given the η of the pilot's own photons.
-pub(super) fn look(eye: &Eye, merging: &Merging, ways: impl Fn(f32) -> Ways<LANES>) -> Pilot {
-    let size = Vec2::new(eye.settings.width as f32, eye.settings.height as f32);
-    let tiles = Window::whole(eye.settings.width, eye.settings.height).tiles(BLOCK);
-    let across = eye.settings.width.div_ceil(BLOCK);
+pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways<LANES>) -> Pilot {
+    let grid = Grid::of(turns[0].eye.settings);
+    let tiles = grid.tiles();
     let mut pilot = Pilot {
         blocks: vec![Block::default(); tiles.len()],
         steps: Steps::default(),
         counters: Counters::default(),
     };
-    let mut before: Vec<Vec<Sample>> = Vec::new();
-    let samples = tiles.iter().map(Window::pixels).sum::<usize>() as f64 * f64::from(SAMPLES);
-    for iteration in 0..SAMPLES {
-        let (photons, counters) = Photons::trace(eye, merging, &tiles, iteration, |eta, _| ways(eta), None);
-        pilot.counters += counters;
-        let of_tile = |tile: &Window| {
-            let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
-            let look = |i| {
-                let (x, y) = tile.position(i);
-                let mut look = Look::default();
-                let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-                let both_ends = BothEnds::merging(&photons, true, eye.integrator.roulette_depth());
-                both_ends.sample(&ray, true, &mut task, &mut look);
-                look
-            };
-            let looks: Vec<Look> = (0..tile.pixels()).map(look).collect();
-            (looks, tracer.counters)
-        };
-        let looked: Vec<(Vec<Look>, Counters)> = tiles.par_iter().map(of_tile).collect();
-        let mut now = Vec::new();
-        // One after the other, so that sums do not depend on threads.
-        for (index, (looks, counters)) in looked.into_iter().enumerate() {
-            pilot.counters += counters;
-            for look in &looks {
-                pilot.steps.add(&look.steps, 1.0 / samples);
-                pilot.blocks[index].add(&look.sample, share(&tiles[index]));
-                for (film, seen) in &look.seen {
-                    let place = (*film * size).as_uvec2() / BLOCK;
-                    let index = (place.y * across + place.x.min(across - 1)) as usize;
-                    let index = index.min(tiles.len() - 1);
-                    pilot.blocks[index].add(seen, share(&tiles[index]));
-                }
-            }
-            let samples: Vec<Sample> = looks.into_iter().map(|look| look.sample).collect();
-            if let Some(before) = before.get(index) {
-                pilot.blocks[index].compare(before, &samples);
-            }
-            now.push(samples);
+    let pixels = tiles.iter().map(Window::pixels).sum::<usize>();
+    let sums = |turn: &Turn, pilot: &mut Pilot| -> Vec<Vec<[f64; LANES]>> {
+        let mut sums: Vec<_> = tiles.iter().map(|tile| vec![[0.0; LANES]; tile.pixels()]).collect();
+        for iteration in 0..SAMPLES {
+            one_sample(turn, merging, &ways, (&grid, &tiles, iteration), pilot, &mut sums);
         }
-        before = now;
+        sums
+    };
+    let both: Vec<_> = turns.iter().map(|turn| sums(turn, &mut pilot)).collect();
+    for (index, block) in pilot.blocks.iter_mut().enumerate() {
+        block.compare(&both[0][index], &both[1][index]);
     }
+    pilot.steps = Steps::default().plus(&pilot.steps, 1.0 / (pixels as f64 * SAMPLES_IN_ALL));
     pilot
 }
 
+/// One sample of each pixel.
+fn one_sample(
+    turn: &Turn,
+    merging: &Merging,
+    ways: &impl Fn(f32) -> Ways<LANES>,
+    (grid, tiles, iteration): (&Grid, &[Window], u32),
+    pilot: &mut Pilot,
+    sums: &mut [Vec<[f64; LANES]>],
+) {
+    let Turn { eye, light } = turn;
+    let sources = Window::whole(light.settings.width, 1).tiles(256);
+    let (photons, counters) = Photons::trace(light, merging, &sources, iteration, |eta, _| ways(eta), None);
+    pilot.counters += counters;
+    let of_tile = |tile: &Window| {
+        let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
+        let look = |i| {
+            let (x, y) = grid.pixel(tile.position(i));
+            let mut look = Look::default();
+            let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
+            let both_ends = BothEnds::merging(&photons, true, eye.integrator.roulette_depth());
+            both_ends.sample(&ray, true, &mut task, &mut look);
+            look
+        };
+        let looks: Vec<Look> = (0..tile.pixels()).map(look).collect();
+        (looks, tracer.counters)
+    };
+    let looked: Vec<(Vec<Look>, Counters)> = tiles.par_iter().map(of_tile).collect();
+    // One after the other, so that sums do not depend on threads.
+    for (index, (looks, counters)) in looked.into_iter().enumerate() {
+        pilot.counters += counters;
+        for (look, sum) in looks.iter().zip(&mut sums[index]) {
+            pilot.steps = std::mem::take(&mut pilot.steps).plus(&look.steps, 1.0);
+            pilot.blocks[index].add(&look.sample, share(&tiles[index]));
+            for (sum, found) in sum.iter_mut().zip(look.sample.sums) {
+                *sum += found / f64::from(SAMPLES);
+            }
+            for (film, seen) in &look.seen {
+                let index = grid.tile_at(*film);
+                pilot.blocks[index].add(seen, share(&tiles[index]));
+            }
+        }
+    }
+}
+
+/// Of a pixel, over both turns.
+const SAMPLES_IN_ALL: f64 = (TURNS * SAMPLES as u64) as f64;
+
 /// What one sample counts in the mean of a block.
 fn share(tile: &Window) -> f64 {
-    1.0 / (tile.pixels() as f64 * f64::from(SAMPLES))
+    1.0 / (tile.pixels() as f64 * SAMPLES_IN_ALL)
 }
 
 /// One sample of the pilot.
@@ -224,12 +300,13 @@ impl Block {
         }
     }
 
-    /// What is told by two samples of each pixel: half the square of their difference is, on average, the variance of one.
-    fn compare(&mut self, a: &[Sample], b: &[Sample]) {
+    /// What is told by the means of each pixel in both turns: half the square of their difference is, on average, the
+    /// variance of one.
+    fn compare(&mut self, a: &[[f64; LANES]], b: &[[f64; LANES]]) {
         for (one, other) in a.iter().zip(b) {
             for k in 0..LANES {
-                let apart = one.sums[k] - other.sums[k];
-                self.variance[k] += 0.5 * apart * apart / a.len() as f64;
+                let apart = one[k] - other[k];
+                self.variance[k] += 0.5 * apart * apart * f64::from(SAMPLES) / a.len() as f64;
             }
         }
     }
