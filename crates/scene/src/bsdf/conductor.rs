@@ -157,14 +157,7 @@ impl Conductor {
         let wi = reflect(above, m);
         let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(wi.z * wo.z)).normalize();
         let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
-        (pdf_solid_angle > 0.0).then(|| BsdfSample {
-            wi,
-            weight: f / pdf_solid_angle,
-            pdf_solid_angle,
-            is_delta: false,
-            transmits: false,
-            eta: 1.0,
-        })
+        BsdfSample::reflected(wi, f, pdf_solid_angle)
     }
 
     #[inline]

@@ -57,15 +57,7 @@ impl Lambert {
         let mut wi = warp::sample_cosine_hemisphere(u);
         wi.z *= 1f32.copysign(wo.z);
         let pdf_solid_angle = self.pdf_solid_angle(wo, wi);
-        let weight = self.eval(wo, wi, mode) / pdf_solid_angle;
-        (pdf_solid_angle > 0.0).then_some(BsdfSample {
-            wi,
-            weight,
-            pdf_solid_angle,
-            is_delta: false,
-            transmits: false,
-            eta: 1.0,
-        })
+        BsdfSample::reflected(wi, self.eval(wo, wi, mode), pdf_solid_angle)
     }
 
     #[inline]

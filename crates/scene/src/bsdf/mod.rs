@@ -66,6 +66,16 @@ pub struct BsdfSample {
     pub eta: f32,
 }
 
+impl BsdfSample {
+    /// A direction of a lobe with width, on the side that light came from; `None` where it has no density.
+    #[inline]
+    fn reflected(wi: Vec3, scattered: Rgb, pdf_solid_angle: f32) -> Option<BsdfSample> {
+        let weight = scattered / pdf_solid_angle;
+        let sample = BsdfSample { wi, weight, pdf_solid_angle, is_delta: false, transmits: false, eta: 1.0 };
+        (pdf_solid_angle > 0.0).then_some(sample)
+    }
+}
+
 /// One way of scattering, on a local frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {

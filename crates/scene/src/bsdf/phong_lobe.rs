@@ -68,16 +68,8 @@ impl PhongLobe {
         let mirrored = Frame::from_normal(Vec3::new(-wo.x, -wo.y, wo.z));
         let wi = mirrored.to_world(warp::sample_power_cosine(u, self.exponent)).normalize();
         let pdf_solid_angle = self.pdf_solid_angle(wo, wi);
-        let weight = self.eval(wo, wi, mode) / pdf_solid_angle;
         // Directions below the surface carry nothing: their share of the density is lost, as it must be.
-        (pdf_solid_angle > 0.0).then_some(BsdfSample {
-            wi,
-            weight,
-            pdf_solid_angle,
-            is_delta: false,
-            transmits: false,
-            eta: 1.0,
-        })
+        BsdfSample::reflected(wi, self.eval(wo, wi, mode), pdf_solid_angle)
     }
 
     pub(super) fn strength(&self) -> f32 {

@@ -125,14 +125,9 @@ impl RoughDielectric {
         }
         let wi = Vec3::new(wi.x, wi.y, wi.z * 1f32.copysign(wo.z)).normalize();
         let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
-        (pdf_solid_angle > 0.0).then(|| BsdfSample {
-            wi,
-            weight: f / pdf_solid_angle,
-            pdf_solid_angle,
-            is_delta: false,
-            transmits: !reflects,
-            eta: if reflects || self.thin { 1.0 } else { eta },
-        })
+        let eta = if reflects || self.thin { 1.0 } else { eta };
+        let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;
+        Some(BsdfSample { transmits: !reflects, eta, ..sample })
     }
 
     /// The reflected fraction at a facet; of a pane, at both of its faces.
