@@ -1,0 +1,30 @@
+//! What sampling gives.
+
+use bilux_math::{Rgb, Vec3};
+
+/// A sampled direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BsdfSample {
+    /// The direction.
+    pub wi: Vec3,
+    /// f·|cosθi| over the density (over the probability, for a delta lobe).
+    pub weight: Rgb,
+    /// Density in solid angle; for a delta lobe the probability of having chosen it.
+    pub pdf_solid_angle: f32,
+    /// True for a lobe without width: `eval` and `pdf` know nothing of it.
+    pub is_delta: bool,
+    /// True when `wi` is on the other side of the surface.
+    pub transmits: bool,
+    /// Index of the far side over that of the near side where light is refracted, else 1.
+    pub eta: f32,
+}
+
+impl BsdfSample {
+    /// A direction of a lobe with width, on the side that light came from; `None` where it has no density.
+    #[inline]
+    pub(super) fn reflected(wi: Vec3, scattered: Rgb, pdf_solid_angle: f32) -> Option<BsdfSample> {
+        let weight = scattered / pdf_solid_angle;
+        let sample = BsdfSample { wi, weight, pdf_solid_angle, is_delta: false, transmits: false, eta: 1.0 };
+        (pdf_solid_angle > 0.0).then_some(sample)
+    }
+}
