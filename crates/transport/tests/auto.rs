@@ -6,7 +6,9 @@ use bilux_math::Vec3;
 use bilux_scene::{Scene, SceneBuilder, Spec};
 use bilux_transport::{Choice, PixelIntegrator, RenderSettings, integrators};
 use common::statistics::{agreement, blocks};
-use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life};
+use common::{
+    ball, built, diffuse, floor, integrator, look, mixed, put, shoot, sky, still_life, without_mirrors,
+};
 
 fn auto() -> Spec {
     Spec::new("", "auto")
@@ -16,24 +18,10 @@ fn choice(scene: &Scene, spec: &Spec, settings: &RenderSettings) -> Choice {
     shoot(scene, &*integrators::build(spec).unwrap(), settings).choice.unwrap()
 }
 
-/// A matt room's corner under a panel, and something that shines a little.
+/// Under a panel.
 fn corner() -> SceneBuilder {
-    let mut builder = SceneBuilder::default();
-    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.7f32));
-    put(
-        &mut builder,
-        "wall",
-        quad(Vec3::new(-3.0, 0.0, -2.0), Vec3::X * 6.0, Vec3::Y * 3.0),
-        diffuse(0.6f32),
-    );
-    put(&mut builder, "ball", ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true), diffuse(0.8f32));
-    let satin = Spec::new("", "phong").with("kd", 0.3f32).with("ks", 0.5f32).with("exponent", 20.0f32);
-    let satin = satin.with("reflectivity", 0.0f32);
-    put(&mut builder, "satin", ball(Vec3::new(0.9, 0.6, 0.3), 0.6, 6, true), satin);
-    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
-    builder.lights.push(panel);
-    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
-    builder
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0));
+    without_mirrors(panel.with("intensity", 10.0f32))
 }
 
 /// The same ways as the sets that `auto` compares, in their order.

@@ -7,7 +7,9 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
 use common::statistics::{agreement, blocks};
-use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life};
+use common::{
+    built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life, without_mirrors,
+};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -21,28 +23,6 @@ fn check(name: &str, scene: &Scene, others: &[&str]) {
         let p = agreement(&path, &found);
         assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
     }
-}
-
-/// Matt and glossy bodies, smooth and not, so that light paths find all that there is.
-fn without_mirrors(light: Spec) -> SceneBuilder {
-    let mut builder = SceneBuilder::default();
-    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
-    put(
-        &mut builder,
-        "wall",
-        quad(Vec3::new(-3.0, 0.0, -2.0), Vec3::X * 6.0, Vec3::Y * 3.0),
-        diffuse(0.6f32),
-    );
-    put(&mut builder, "ball", ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true), diffuse(0.8f32));
-    let satin = Spec::new("", "phong")
-        .with("kd", 0.3f32)
-        .with("ks", 0.5f32)
-        .with("exponent", 20.0f32)
-        .with("reflectivity", 0.0f32);
-    put(&mut builder, "satin", ball(Vec3::new(0.9, 0.6, 0.3), 0.6, 6, true), satin);
-    builder.lights.push(light);
-    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
-    builder
 }
 
 #[test]

@@ -23,7 +23,8 @@ use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, registry::Entry};
-use kernel::{View, Wide};
+use kernel::{Form, View, Wide};
+use layout::Ref;
 use mapped::Units;
 use outline::Outline;
 
@@ -64,7 +65,7 @@ impl Bvh8 {
 
     #[inline(always)]
     fn view(&self) -> Option<View<'_>> {
-        (!self.units.is_empty()).then_some(View { units: &self.units, outline: &self.outline })
+        View::of(&self.units, &self.outline)
     }
 }
 
@@ -104,17 +105,23 @@ impl Traverse for Bvh8 {
     }
 
     fn shape(&self) -> TreeShape {
-        let mut shape = TreeShape::default();
-        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![(self.outline.root, 1)] };
-        while let Some((reference, depth)) = stack.pop() {
-            if reference.is_node() {
-                shape.nodes += 1;
-                let children = layout::children(&self.units[reference.unit()..]);
-                stack.extend(children.map(|(_, child)| (child, depth + 1)));
-            } else {
-                shape.add_leaf(depth, reference.blocks() * layout::LANES);
-            }
-        }
-        shape
+        shape::<Wide>(self.view())
     }
+}
+
+/// The shape of a tree, whatever its layout.
+fn shape<F: Form>(view: Option<View>) -> TreeShape {
+    let mut shape = TreeShape::default();
+    let Some(View { units, outline }) = view else { return shape };
+    let mut stack = vec![(outline.root, 1)];
+    while let Some((reference, depth)) = stack.pop() {
+        if reference.is_node() {
+            shape.nodes += 1;
+            let children = (0..layout::WIDTH).map(|k| F::child(&units[reference.unit()..], k).1);
+            stack.extend(children.filter(|child| *child != Ref::EMPTY).map(|child| (child, depth + 1)));
+        } else {
+            shape.add_leaf(depth, reference.blocks() * layout::LANES);
+        }
+    }
+    shape
 }

@@ -149,3 +149,25 @@ pub fn mixed() -> SceneBuilder {
     look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
     builder
 }
+
+/// Matt and glossy bodies, smooth and not, so that light paths find all that there is.
+pub fn without_mirrors(light: Spec) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    put(
+        &mut builder,
+        "wall",
+        quad(Vec3::new(-3.0, 0.0, -2.0), Vec3::X * 6.0, Vec3::Y * 3.0),
+        diffuse(0.6f32),
+    );
+    put(&mut builder, "ball", ball(Vec3::new(-0.8, 0.7, 0.0), 0.7, 10, true), diffuse(0.8f32));
+    let satin = Spec::new("", "phong")
+        .with("kd", 0.3f32)
+        .with("ks", 0.5f32)
+        .with("exponent", 20.0f32)
+        .with("reflectivity", 0.0f32);
+    put(&mut builder, "satin", ball(Vec3::new(0.9, 0.6, 0.3), 0.6, 6, true), satin);
+    builder.lights.push(light);
+    look(&mut builder, Vec3::new(0.0, 2.0, 5.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
+    builder
+}

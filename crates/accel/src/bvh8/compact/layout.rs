@@ -122,6 +122,7 @@ pub(in crate::bvh8) fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
 }
 
 /// The children of a node.
+#[cfg(test)]
 pub(super) fn children(node: &[Unit]) -> impl Iterator<Item = (Planes, Ref)> + '_ {
     (0..WIDTH).map(|k| child(node, k)).filter(|(_, reference)| *reference != Ref::EMPTY)
 }

@@ -10,7 +10,7 @@ mod tests;
 
 use super::Bvh8;
 use super::kernel::{self, Compact, View};
-use super::layout::{LANES, Ref, Unit};
+use super::layout::Unit;
 use super::outline::Outline;
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
@@ -60,7 +60,7 @@ impl CompactBvh8 {
 
     #[inline(always)]
     fn view(&self) -> Option<View<'_>> {
-        (!self.units.is_empty()).then_some(View { units: &self.units, outline: &self.outline })
+        View::of(&self.units, &self.outline)
     }
 }
 
@@ -86,17 +86,6 @@ impl Traverse for CompactBvh8 {
     }
 
     fn shape(&self) -> TreeShape {
-        let mut shape = TreeShape::default();
-        let mut stack = if self.units.is_empty() { Vec::new() } else { vec![(self.outline.root, 1)] };
-        while let Some((reference, depth)) = stack.pop() {
-            if reference.is_node() {
-                shape.nodes += 1;
-                let children = layout::children(&self.units[reference.unit()..]);
-                stack.extend(children.map(|(_, child): (_, Ref)| (child, depth + 1)));
-            } else {
-                shape.add_leaf(depth, reference.blocks() * LANES);
-            }
-        }
-        shape
+        super::shape::<Compact>(self.view())
     }
 }

@@ -151,6 +151,14 @@ pub(super) struct View<'a> {
     pub(super) outline: &'a Outline,
 }
 
+impl<'a> View<'a> {
+    /// `None` of a tree without triangles.
+    #[inline(always)]
+    pub(super) fn of(units: &'a [Unit], outline: &'a Outline) -> Option<View<'a>> {
+        (!units.is_empty()).then_some(View { units, outline })
+    }
+}
+
 /// One query by a level: by the kernel for [`Query::PLAIN`], or by that for all others.
 #[cfg(target_arch = "x86_64")]
 macro_rules! ask {
