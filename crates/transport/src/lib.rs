@@ -4,6 +4,7 @@
 //! of every pixel and adds up the [`Film`]. At a fixed number of samples the film is a pure function of scene,
 //! settings and seed: the same bytes for any number of threads, any crop, and any split into ranges of samples.
 
+pub mod aovs;
 mod bidirectional;
 mod classic;
 pub mod error;
@@ -20,6 +21,7 @@ pub mod replay;
 pub mod sampler;
 mod splats;
 pub mod stop;
+pub mod strategies;
 mod task;
 mod trouble;
 pub mod window;
@@ -38,6 +40,7 @@ pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
 pub use splats::Splats;
 pub use stop::{Reached, Stop};
+pub use strategies::{Strategies, Strategy, StrategyPicture, strategies};
 pub use task::{Event, Task};
 pub use trouble::{SamplePlace, Trouble};
 pub use window::{Coverage, Window};

@@ -25,7 +25,7 @@ pub const DEFAULT_MAX_DEPTH: u32 = 16;
 pub const MAX_DEPTH: u32 = 1000;
 
 /// Side of a tile, in pixels.
-const TILE: u32 = 16;
+pub(crate) const TILE: u32 = 16;
 
 /// The most samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
@@ -106,7 +106,7 @@ impl RenderSettings {
         if integrator.splats() { Window::whole(self.width, self.height) } else { self.window() }
     }
 
-    fn check(&self) -> Result<(), RenderError> {
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         let Range { start, end } = self.samples;
         let spp = self.spp;
         if start >= end || end > spp || spp > MAX_SAMPLES {
@@ -171,11 +171,7 @@ pub fn render(
 ) -> Result<Rendered, RenderError> {
     settings.check()?;
     let film = Film::windowed(settings.width, settings.height, settings.window(), scale_exponent(scene))?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(settings.threads)
-        .stack_size(STACK_BYTES)
-        .build()
-        .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })?;
+    let pool = threads(settings)?;
     let (choice, planned, counters) = match pool.install(|| integrator.plan(scene, camera, settings)) {
         Some(Plan { choice, integrator, counters }) => (Some(choice), Some(integrator), counters),
         None => (None, None, Counters::default()),
@@ -226,6 +222,15 @@ pub fn render(
     }
     rendered.reached = watch.reached;
     Ok(rendered)
+}
+
+/// As many as are wanted.
+pub(crate) fn threads(settings: &RenderSettings) -> Result<rayon::ThreadPool, RenderError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(settings.threads)
+        .stack_size(STACK_BYTES)
+        .build()
+        .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })
 }
 
 /// Some passes over all tiles, by all threads.

@@ -17,6 +17,7 @@ use bilux_math::{Rgb, Vec2};
 use std::sync::{Mutex, PoisonError};
 
 /// What light paths leave on the film, pixel by pixel.
+#[derive(Clone)]
 pub struct Splats<'a> {
     filter: &'a Filter,
     anchor: f32,
@@ -110,7 +111,7 @@ impl<'a> Splats<'a> {
 impl<const N: usize> Tally<N> for Splats<'_> {
     fn here(&mut self, _way: Way, _found: &Found<N>) {}
 
-    fn there(&mut self, film: Vec2, found: &Found<N>) {
+    fn there(&mut self, film: Vec2, _way: Way, found: &Found<N>) {
         self.add(film, found.weighted());
     }
 }

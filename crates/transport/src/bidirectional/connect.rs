@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
-use super::walk::Vertex;
-use super::{Found, Lanes, Photons, Step, Tally, Ways};
+use super::walk::{Vertex, count};
+use super::{Found, Lanes, Photons, Step, Tally, Way, Ways};
 use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
@@ -40,7 +40,7 @@ pub(crate) fn show_to_camera<const N: usize>(
         task.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
         if let Some((film, found)) = to_camera(task, y, ways) {
-            tally.there(film, &found);
+            tally.there(film, Way::Joined { s: y.count(), t: 1 }, &found);
         }
     }
 }
@@ -117,7 +117,7 @@ pub(crate) fn merged<const N: usize>(
     task: &Task,
     photons: &Photons<N>,
     z: &Vertex<N>,
-    mut visit: impl FnMut(&Found<N>),
+    mut visit: impl FnMut(Way, &Found<N>),
 ) {
     photons.around(z.surface.p, |y| {
         // On the same surface, not on the other side of a sheet or around a corner.
@@ -132,7 +132,9 @@ pub(crate) fn merged<const N: usize>(
         let cos = z.surface.n_geom.dot(y.wo).abs();
         let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo, TransportMode::Importance));
         let others = y.partial.before(pdf) + from_light;
-        visit(&Found { light: z.beta * scattered * y.beta * (1.0 / cos), own: photons.ways().eta, others });
+        let light = z.beta * scattered * y.beta * (1.0 / cos);
+        let way = Way::Merged { s: count(y.depth), t: z.count() };
+        visit(way, &Found { light, own: photons.ways().eta, others });
     });
 }
 

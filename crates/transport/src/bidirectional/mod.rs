@@ -16,7 +16,7 @@ mod ways;
 
 pub(crate) use connect::{merged, show_to_camera, to_camera, to_light, to_vertex};
 pub use photons::{Merging, Photons};
-pub(crate) use walk::{Vertex, Walk};
+pub(crate) use walk::{Vertex, Walk, count};
 pub(crate) use ways::{Found, Lanes, Step, Tally, Way, Ways};
 
 use crate::task::Task;

@@ -22,10 +22,21 @@ pub(crate) struct Vertex<const N: usize = 1> {
 }
 
 impl<const N: usize> Vertex<N> {
+    /// Vertices of the subpath up to here, with that on the light or at the camera.
+    pub(crate) fn count(&self) -> u32 {
+        count(self.depth)
+    }
+
     /// The media in which light goes on along `direction`.
     pub(crate) fn media_towards(&self, scene: &Scene, direction: Vec3) -> Media {
         self.media.towards(scene, &self.surface, self.wo, direction)
     }
+}
+
+/// Vertices of a subpath up to the surface that comes after `depth` scattering events: that one, those of the events, and
+/// that on the light or at the camera.
+pub(crate) fn count(depth: u32) -> u32 {
+    depth + 2
 }
 
 /// A subpath on its way to the next vertex.

@@ -33,17 +33,14 @@ pub(crate) struct Found<const N: usize = 1> {
     pub(crate) others: Lanes<N>,
 }
 
-/// Which way it was.
+/// Which way it was: subpaths of `s` vertices from the light and of `t` from the camera, both ends' own included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// A light was met by chance (s = 0).
-    Met,
-    /// A point on a light was picked (s = 1).
-    Picked,
-    /// Two subpaths were joined (s, t > 1).
-    Joined,
-    /// Two vertices were merged.
-    Merged,
+    /// Their last vertices are joined. A light is met by chance with s = 0, a point on a light picked with s = 1, and a
+    /// light path seen from the camera with t = 1.
+    Joined { s: u32, t: u32 },
+    /// Their last vertices count as one.
+    Merged { s: u32, t: u32 },
 }
 
 /// A step that takes time.
@@ -72,7 +69,7 @@ pub(crate) trait Tally<const N: usize> {
     /// In the pixel of the camera path.
     fn here(&mut self, way: Way, found: &Found<N>);
     /// At a point of the film (0..=1 on both axes), as an integral over the whole of it.
-    fn there(&mut self, film: Vec2, found: &Found<N>);
+    fn there(&mut self, film: Vec2, way: Way, found: &Found<N>);
 }
 
 impl Ways {

@@ -4,10 +4,11 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
-    Found, Lanes, Partial, Photons, Step, Tally, Vertex, Walk, Way, Ways, emitted, from_infinity,
+    Found, Lanes, Partial, Photons, Step, Tally, Vertex, Walk, Way, Ways, count, emitted, from_infinity,
     light_vertices, merged, show_to_camera, to_light, to_vertex,
 };
 use crate::splats::Splats;
+use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2};
@@ -47,6 +48,14 @@ impl PixelIntegrator for Bdpt {
         let mut sum = Sum { here: Rgb::BLACK, splats };
         BothEnds::new(&Ways::BOTH_ENDS, self.roulette_depth).sample(ray, is_wanted, task, &mut sum);
         sum.here
+    }
+
+    fn has_strategies(&self) -> bool {
+        true
+    }
+
+    fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
+        BothEnds::new(&Ways::BOTH_ENDS, self.roulette_depth).sample(ray, is_wanted, task, layers);
     }
 }
 
@@ -95,7 +104,8 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         loop {
             tally.spend(Step::Camera, 1);
             let Some(mut z) = walk.meet(task) else {
-                from_infinity(task, &walk, |met| tally.here(Way::Met, &met.by(walk.beta, &walk.partial)));
+                let way = Way::Joined { s: 0, t: count(walk.depth) };
+                from_infinity(task, &walk, |met| tally.here(way, &met.by(walk.beta, &walk.partial)));
                 return;
             };
             if z.depth == 0 {
@@ -106,7 +116,8 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             // s = 0: the path has met a light by itself.
             if let Some(met) = emitted(task, &z.surface, z.wo) {
                 let seen = || Found::only(z.beta * met.radiance);
-                tally.here(Way::Met, &if z.depth == 0 { seen() } else { met.by(z.beta, &z.partial) });
+                let way = Way::Joined { s: 0, t: z.count() };
+                tally.here(way, &if z.depth == 0 { seen() } else { met.by(z.beta, &z.partial) });
             }
             if z.depth >= task.max_depth {
                 return;
@@ -117,7 +128,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
                 self.joins(&z, light_path, task, tally);
                 if let Some(photons) = self.photons {
                     tally.spend(Step::Lookup, 1);
-                    merged(task, photons, &z, |found| tally.here(Way::Merged, found));
+                    merged(task, photons, &z, |way, found| tally.here(way, found));
                 }
             }
             if !walk.scatter(&z, self.roulette_depth, task) {
@@ -137,7 +148,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             }
             tally.spend(Step::Picked, 1);
             if let Some(found) = to_light(task, z, index, u, self.ways) {
-                tally.here(Way::Picked, &found);
+                tally.here(Way::Joined { s: 1, t: z.count() }, &found);
             }
         }
     }
@@ -148,7 +159,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         for y in light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth) {
             tally.spend(Step::Joined, 1);
             if let Some(found) = to_vertex(task, z, y, self.ways) {
-                tally.here(Way::Joined, &found);
+                tally.here(Way::Joined { s: y.count(), t: z.count() }, &found);
             }
         }
     }
@@ -162,7 +173,7 @@ pub(super) fn of_camera_path(ray: &Ray, task: &mut Task, ways: &Ways, roulette_d
         fn here(&mut self, _way: Way, found: &Found) {
             self.0 += found.weighted();
         }
-        fn there(&mut self, _film: Vec2, _found: &Found) {}
+        fn there(&mut self, _film: Vec2, _way: Way, _found: &Found) {}
     }
     let mut sum = Here(Rgb::BLACK);
     BothEnds::new(ways, roulette_depth).camera_path(ray, &[], task, &mut sum);
@@ -179,7 +190,7 @@ impl Tally<1> for Sum<'_, '_> {
     fn here(&mut self, _way: Way, found: &Found) {
         self.here += found.weighted();
     }
-    fn there(&mut self, film: Vec2, found: &Found) {
+    fn there(&mut self, film: Vec2, _way: Way, found: &Found) {
         self.splats.add(film, found.weighted());
     }
 }

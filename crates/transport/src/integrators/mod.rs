@@ -16,6 +16,7 @@ use crate::bidirectional::Merging;
 use crate::plan::Plan;
 use crate::render::RenderSettings;
 use crate::splats::Splats;
+use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -54,6 +55,14 @@ pub trait PixelIntegrator: Send + Sync {
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, _splats: &mut Splats) -> Rgb {
         if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK }
     }
+
+    /// True when it finds light in ways whose pictures can be told apart ([`crate::strategies()`]).
+    fn has_strategies(&self) -> bool {
+        false
+    }
+
+    /// The same sample as [`PixelIntegrator::sample`], strategy by strategy.
+    fn sample_strategies(&self, _ray: &Ray, _is_wanted: bool, _task: &mut Task, _layers: &mut Layers) {}
 
     /// How far samples spread over pixel, lens and shutter.
     fn camera_spread(&self) -> CameraSpread {
@@ -134,6 +143,12 @@ pub fn find(name: &str) -> Result<&'static IntegratorEntry, SceneError> {
 pub fn build(spec: &Spec) -> Result<Box<dyn PixelIntegrator>, SceneError> {
     let row = find_at(&spec.kind, &spec.span)?;
     (row.build)(&Reader::new(spec, &row.entry)?)
+}
+
+/// Names of those whose strategies can be told apart.
+pub fn with_strategies() -> impl Iterator<Item = &'static str> {
+    let has_them = |name: &&str| build(&Spec::new("", *name)).is_ok_and(|one| one.has_strategies());
+    INTEGRATORS.iter().map(|row| row.entry.name).filter(has_them)
 }
 
 fn find_at(name: &str, span: &bilux_scene::parameters::Span) -> Result<&'static IntegratorEntry, SceneError> {

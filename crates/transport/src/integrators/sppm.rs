@@ -53,7 +53,9 @@ impl PixelIntegrator for Sppm {
                 && !z.bsdf.is_delta()
             {
                 // There is no other way.
-                merged(task, photons, &z, |found| sum += Found { others: Lanes::ZERO, ..*found }.weighted());
+                merged(task, photons, &z, |_, found| {
+                    sum += Found { others: Lanes::ZERO, ..*found }.weighted()
+                });
             }
             task.sampler.enter(u64::from(z.depth) + 1);
             // What goes on into more than single directions has been counted.

@@ -4,8 +4,9 @@
 
 use super::bdpt::{BothEnds, Sum, of_camera_path};
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{Merging, Ways};
+use crate::bidirectional::{Lanes, Merging, Ways};
 use crate::splats::Splats;
+use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -73,5 +74,21 @@ impl PixelIntegrator for Vcm {
         };
         both_ends.sample(ray, is_wanted, task, &mut sum);
         sum.here
+    }
+
+    fn has_strategies(&self) -> bool {
+        true
+    }
+
+    fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
+        let unmerged = self.merging.ways(0.0, 1.0);
+        let both_ends = match task.photons {
+            Some(photons) => {
+                let shows = photons.ways().splats != Lanes::ZERO;
+                BothEnds::merging(photons, shows, self.roulette_depth)
+            }
+            None => BothEnds::new(&unmerged, self.roulette_depth),
+        };
+        both_ends.sample(ray, is_wanted, task, layers);
     }
 }

@@ -276,13 +276,13 @@ impl Tally<LANES> for Look {
     }
 
     fn here(&mut self, way: Way, found: &Found<LANES>) {
-        if way == Way::Merged {
+        if matches!(way, Way::Merged { .. }) {
             self.steps.merged += 1.0 / f64::from(found.own.0[0]);
         }
         self.sample.take(found);
     }
 
-    fn there(&mut self, film: Vec2, found: &Found<LANES>) {
+    fn there(&mut self, film: Vec2, _way: Way, found: &Found<LANES>) {
         let mut seen = Sample::default();
         seen.take(found);
         // Light paths come one by one: there is nothing else of the pixel that this one would go with.
