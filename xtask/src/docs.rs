@@ -26,6 +26,7 @@ const TABLES: &[(&str, &str)] = &[
     ("picture-formats", "Picture formats"),
     ("tonemaps", "Tone curves"),
     ("filters", "Pixel filters"),
+    ("aovs", "Beside the picture"),
     ("metrics", "Metrics"),
     ("settings", "Settings"),
 ];

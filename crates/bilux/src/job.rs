@@ -10,7 +10,8 @@ use bilux_scene::{
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Choice, Film, Filter, PixelAnchor, Progress, Reached, RenderSettings, Replay, SamplePlace, Window,
+    Choice, Film, Filter, PixelAnchor, Progress, Reached, RenderSettings, Replay, SamplePlace, Stop,
+    Strategies, Window,
 };
 use std::ops::Range;
 use std::path::Path;
@@ -134,6 +135,25 @@ impl Job {
             reached: rendered.reached,
             linear_transfer: self.settings.linear_transfer,
         })
+    }
+
+    /// True when the strategies of its integrator can be told apart.
+    pub fn has_strategies(&self) -> bool {
+        self.integrator.has_strategies()
+    }
+
+    /// The pictures of its integrator's strategies, of the samples that the picture is of; `None` when it was stopped, or
+    /// there are none.
+    ///
+    /// # Errors
+    /// As [`Job::render`].
+    pub fn strategies(&self, of: &Outcome, progress: &dyn Progress) -> Result<Option<Strategies>, Error> {
+        let mut settings = RenderSettings { stop: Stop::default(), ..self.render.clone() };
+        if let Some(reached) = of.reached {
+            (settings.spp, settings.samples) = (reached.spp, 0..reached.spp);
+        }
+        let (scene, camera) = (&self.scene, &*self.camera);
+        Ok(bilux_transport::strategies(scene, camera, &*self.integrator, &settings, progress)?)
     }
 
     /// One sample again, with what happened on its way.

@@ -21,6 +21,7 @@ pub mod job;
 mod oddities;
 pub mod presets;
 pub mod settings;
+pub mod strategies;
 
 pub use bilux_accel as accel;
 pub use bilux_formats as formats;

@@ -178,6 +178,10 @@ pub struct Render {
     /// Any other setting (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// What else to give beside the picture (`bilux list aovs`): with `strategies`, each strategy's picture in a folder
+    /// OUT.strategies
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub aov: Vec<String>,
     /// Write what it took as JSON; counts every node and triangle test, which is slower
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,

@@ -72,6 +72,11 @@ const TABLES: &[Table] = &[
         rows: rows!(bilux::transport::filters::FILTERS),
     },
     Table {
+        name: "aovs",
+        summary: "what a render can give beside its picture",
+        rows: rows!(bilux::transport::aovs::AOVS),
+    },
+    Table {
         name: "metrics",
         summary: "how pictures are compared",
         rows: rows!(bilux::pictures::metrics::METRICS),

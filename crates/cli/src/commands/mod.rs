@@ -1,5 +1,6 @@
 //! One command a file. Each gives the exit status.
 
+mod aov;
 pub mod bench;
 pub mod compare;
 pub mod convert;

@@ -1,6 +1,6 @@
 //! `bilux render`: pictures from scenes.
 
-use super::{DONE, check_folder, read_options, tell_warnings};
+use super::{DONE, aov, check_folder, read_options, tell_warnings};
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
@@ -19,6 +19,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let interrupt = Interrupt::listen()?;
     let user = settings_from::render(arguments).map_err(usage::wrong)?;
     let targets = targets(arguments).map_err(usage::wrong)?;
+    aov::check(arguments).map_err(usage::wrong)?;
     for (scene, output) in &targets {
         let status = render_one(scene, output, &user, arguments, common, &interrupt)
             .map_err(|error| naming(scene, error))?;
@@ -101,6 +102,7 @@ fn render_one(
     let mut job = Job::new(&scene, user)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
+    aov::check_job(arguments, &job)?;
     if let Some((from, to)) = arguments.samples {
         job.samples(from..to);
     }
@@ -154,6 +156,7 @@ fn finish(
     let seconds = report.finish();
     write(job, &outcome, output, arguments)?;
     tell_odd_samples(&outcome);
+    let all_aovs = outcome.cancelled || aov::write(arguments, job, &outcome, output, common, interrupt)?;
     if let Some(path) = &arguments.stats {
         let stats = stats(job, &outcome, scene, build_seconds, seconds);
         let text = serde_json::to_string_pretty(&stats)?;
@@ -183,7 +186,7 @@ fn finish(
             if outcome.cancelled { "; interrupted: this is what there is" } else { "" },
         ));
     }
-    Ok(if outcome.cancelled { interrupt.exit_status() } else { DONE })
+    Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
 }
 
 /// A part of a picture goes into an `.exr` with its exact sums; anything else is the picture.

@@ -147,7 +147,7 @@ pub fn build(spec: &Spec) -> Result<Box<dyn PixelIntegrator>, SceneError> {
 
 /// Names of those whose strategies can be told apart.
 pub fn with_strategies() -> impl Iterator<Item = &'static str> {
-    let has_them = |name: &&str| build(&Spec::new("", *name)).is_ok_and(|one| one.has_strategies());
+    let has_them = |name: &&str| build(&Spec::new("", name)).is_ok_and(|one| one.has_strategies());
     INTEGRATORS.iter().map(|row| row.entry.name).filter(has_them)
 }
 

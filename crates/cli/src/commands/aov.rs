@@ -1,0 +1,101 @@
+//! `--aov`: what a render gives beside its picture.
+
+use crate::arguments::{Common, Render};
+use crate::interrupt::Interrupt;
+use crate::output;
+use crate::progress::Report;
+use crate::settings_from::from_flag;
+use anyhow::{Context, bail};
+use bilux::pictures::WriteOptions;
+use bilux::scene::SceneError;
+use bilux::strategies::{Light, picture, sheet};
+use bilux::transport::{Strategies, aovs, integrators, strategies::LONGEST};
+use bilux::{Job, Outcome};
+use std::path::{Path, PathBuf};
+
+/// Finds out before the work whether what is wanted exists, and has a place.
+pub fn check(arguments: &Render) -> anyhow::Result<()> {
+    for name in &arguments.aov {
+        aovs::find(name, &from_flag("--aov"))?;
+    }
+    if !arguments.aov.is_empty() && arguments.output == Path::new("-") {
+        bail!("--aov writes files beside the picture, which needs a name: -o picture.png");
+    }
+    Ok(())
+}
+
+/// Finds out whether a picture's integrator can give what is wanted.
+pub fn check_job(arguments: &Render, job: &Job) -> anyhow::Result<()> {
+    if !arguments.aov.is_empty() && !job.has_strategies() {
+        let (name, others) = (job.settings().integrator.entry.name, integrators::with_strategies());
+        let message = format!(
+            "the integrator '{name}' has no strategies that could be told apart; choose one of: {}",
+            others.collect::<Vec<_>>().join(", ")
+        );
+        return Err(SceneError::invalid(message, &from_flag("--aov")).into());
+    }
+    Ok(())
+}
+
+/// Renders and writes what is wanted beside the picture; false when it was stopped.
+pub fn write(
+    arguments: &Render,
+    job: &Job,
+    outcome: &Outcome,
+    output: &Path,
+    common: &Common,
+    interrupt: &Interrupt,
+) -> anyhow::Result<bool> {
+    if arguments.aov.is_empty() {
+        return Ok(true);
+    }
+    let folder = output.with_extension("strategies");
+    let report =
+        Report::new(&folder.file_name().unwrap_or_default().to_string_lossy(), common, interrupt.clone());
+    let strategies = job.strategies(outcome, &report)?;
+    let seconds = report.finish();
+    let Some(strategies) = strategies else {
+        output::say(format_args!("{}: interrupted, and not written", folder.display()));
+        return Ok(false);
+    };
+    write_strategies(&strategies, &folder, &job.write_options()?)?;
+    if !common.quiet {
+        output::say(format_args!(
+            "{}: {} strategies of paths of at most {LONGEST} edges, {seconds:.2} s{}",
+            folder.display(),
+            strategies.pictures.len(),
+            longer(&strategies, outcome),
+        ));
+    }
+    Ok(true)
+}
+
+/// `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets on which all of them are.
+fn write_strategies(strategies: &Strategies, folder: &Path, options: &WriteOptions) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    for one in &strategies.pictures {
+        for (light, end) in [(Light::Weighted, ""), (Light::Unweighted, "-unweighted")] {
+            let path: PathBuf = folder.join(format!("{}{end}.exr", one.strategy));
+            bilux::pictures::write(path, &picture(strategies, one, light)?, options)?;
+        }
+    }
+    for light in Light::BOTH {
+        let path = folder.join(format!("{}.png", light.name()));
+        bilux::pictures::write(path, &sheet(strategies, light)?, options)?;
+    }
+    Ok(())
+}
+
+/// What is not on the sheets.
+fn longer(strategies: &Strategies, outcome: &Outcome) -> String {
+    let light = |pixels: &[bilux::math::Rgb]| -> f64 {
+        pixels.iter().filter(|pixel| pixel.is_finite()).map(|pixel| f64::from(pixel.luminance())).sum()
+    };
+    let shown: f64 = strategies.pictures.iter().map(|one| light(&one.weighted)).sum();
+    let missing = 1.0 - shown / light(&outcome.film.to_rgb());
+    if missing > 5e-4 {
+        format!("; {:.1}% of the light has come by longer ones", missing * 100.0)
+    } else {
+        String::new()
+    }
+}
