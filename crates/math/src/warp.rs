@@ -49,16 +49,27 @@ pub fn sphere_pdf_solid_angle() -> f32 {
 
 /// Directions about +z, all equally likely down to a cosine of `cos_max`, -1..=1.
 pub fn sample_cone(u: Vec2, cos_max: f32) -> Vec3 {
-    let below = u.x * (1.0 - cos_max);
+    sample_cap(u, 1.0 - cos_max)
+}
+
+/// Density of [`sample_cone`] within the cone; infinite for one without width.
+pub fn cone_pdf_solid_angle(cos_max: f32) -> f32 {
+    cap_pdf_solid_angle(1.0 - cos_max)
+}
+
+/// Directions about +z, all equally likely, over a cap of the unit sphere of this height, 0..=2: what the cosine of a
+/// cone lacks to 1, which keeps the digits of a narrow one.
+pub fn sample_cap(u: Vec2, height: f32) -> Vec3 {
+    let below = u.x * height;
     // By what the cosine lacks to 1, which a narrow cone would lose.
     let r = (below * (2.0 - below)).max(0.0).sqrt();
     let (s, c) = sin_cos(TAU * u.y);
     Vec3::new(r * c, r * s, 1.0 - below)
 }
 
-/// Density of [`sample_cone`] within the cone; infinite for one without width.
-pub fn cone_pdf_solid_angle(cos_max: f32) -> f32 {
-    1.0 / (TAU * (1.0 - cos_max))
+/// Density of [`sample_cap`] within the cap; infinite for one without height.
+pub fn cap_pdf_solid_angle(height: f32) -> f32 {
+    1.0 / (TAU * height)
 }
 
 /// Directions about +z with density (n+1)/2π · cosⁿα, the lobe of Phong. [Lafortune 1994]

@@ -8,6 +8,7 @@ use crate::materials::{self, Ingredients, Material};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec};
 use crate::scene::{Scene, SceneLight, SceneParts};
+use crate::spheres::PlacedSphere;
 use crate::texture::Texture;
 use bilux_accel::{BuildOptions, Query};
 use bilux_math::motion::Motion;
@@ -112,7 +113,8 @@ impl SceneBuilder {
         for object in &objects {
             check_mesh(object, materials.len())?;
         }
-        let (lights, panels) = self.build_lights(&mut objects, &mut materials)?;
+        let BuiltLights { lights, panels, spheres, lamps } =
+            self.build_lights(&mut objects, &mut materials)?;
         let cameras = self
             .cameras
             .iter()
@@ -126,38 +128,55 @@ impl SceneBuilder {
             gives_light: !materials[object.material].emission().is_black(),
             has_tangents: materials[object.material].needs_tangents(),
         });
-        let geometry = Geometry::build(placed.collect(), accel)?;
-        let parts = SceneParts::new(geometry, materials, lights, &panels, cameras);
+        let geometry = Geometry::build(placed.collect(), spheres, accel)?;
+        let parts = SceneParts::new(geometry, materials, lights, &panels, &lamps, cameras);
         Ok(Scene::new(Arc::new(parts), accel, shutter))
     }
 
-    /// Lights without a surface; those with one become objects. The second result holds, for objects that came
-    /// from lights, their colour in the classic modes.
+    /// Lights without a surface; those with one become objects or spheres.
     fn build_lights(
         &self,
         objects: &mut Vec<Object>,
         materials: &mut Vec<Arc<dyn Material>>,
     ) -> Result<BuiltLights, SceneError> {
-        let (mut lights_found, mut panels) = (Vec::new(), Vec::new());
+        let mut built = BuiltLights::default();
+        let mut glowing = |emission: Rgb| -> Result<usize, SceneError> {
+            let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
+            materials.push(materials::build(&black, &Ingredients::default())?);
+            Ok(materials.len() - 1)
+        };
         for spec in &self.lights {
             match lights::build(spec, &self.textures)? {
-                BuiltLight::Light(light) => lights_found.push(SceneLight::new(&spec.name, light)),
+                BuiltLight::Light(light) => built.lights.push(SceneLight::new(&spec.name, light)),
                 BuiltLight::Surface { mesh, emission, classic } => {
-                    let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
-                    materials.push(materials::build(&black, &Ingredients::default())?);
+                    let material = glowing(emission)?;
                     if let Some(colour) = classic {
-                        panels.push((objects.len(), colour));
+                        built.panels.push((objects.len(), colour));
                     }
-                    objects.push(Object::new(&spec.name, Arc::new(mesh), materials.len() - 1));
+                    objects.push(Object::new(&spec.name, Arc::new(mesh), material));
+                }
+                BuiltLight::Sphere { centre, radius, emission, classic } => {
+                    let material = glowing(emission)? as u32;
+                    built.spheres.push(PlacedSphere { centre, radius, material });
+                    built.lamps.push((spec.name.clone(), classic));
                 }
             }
         }
-        Ok((lights_found, panels))
+        Ok(built)
     }
 }
 
-/// Lights without a surface, and the classic colours of objects that came from lights.
-type BuiltLights = (Vec<SceneLight>, Vec<(usize, Rgb)>);
+/// What the lights of a builder have become.
+#[derive(Default)]
+struct BuiltLights {
+    /// Those without a surface.
+    lights: Vec<SceneLight>,
+    /// For objects that came from lights and are given one, their colour in the classic modes.
+    panels: Vec<(usize, Rgb)>,
+    spheres: Vec<PlacedSphere>,
+    /// For each sphere its name, and its colour in the classic modes where it is given.
+    lamps: Vec<(String, Option<Rgb>)>,
+}
 
 /// Attributes must be as many as positions, and indices must name them.
 fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {

@@ -1,10 +1,11 @@
-//! The triangles of a scene: what stands still in one tree of the whole scene, what moves or repeats in trees
-//! of its own.
+//! The surfaces of a scene: triangles that stand still in one tree of the whole scene, those that move or repeat in
+//! trees of their own, and spheres in a last one.
 
 use crate::builder::{AccelChoice, unit_or};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
 use crate::parameters::Span;
+use crate::spheres::{PlacedSphere, Spheres};
 use crate::surface::{Surface, gamma};
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
 use bilux_accel::{Accelerator, Hit, Primitive, Ray, TriangleMesh};
@@ -40,6 +41,8 @@ pub struct Geometry {
     instances: Vec<Instance>,
     /// Where each object stands that does not move.
     places: Vec<Option<Place>>,
+    /// Numbered after the objects.
+    spheres: Spheres,
 }
 
 /// Where an object stands, as its hits ask.
@@ -57,11 +60,15 @@ impl Place {
 
 impl Geometry {
     /// Builds every tree. What stands still is moved into the world and put into one tree; what moves or is
-    /// instanced keeps its own, one for each mesh.
+    /// instanced keeps its own, one for each mesh; spheres have one together.
     ///
     /// # Errors
     /// When there are too many triangles, or no accelerator has the name.
-    pub fn build(objects: Vec<Placed>, accel: &AccelChoice) -> Result<Geometry, SceneError> {
+    pub fn build(
+        objects: Vec<Placed>,
+        spheres: Vec<PlacedSphere>,
+        accel: &AccelChoice,
+    ) -> Result<Geometry, SceneError> {
         let failed = |e: &dyn std::fmt::Display| SceneError::invalid(e.to_string(), &Span::default());
         let in_own_tree = |o: &Placed| o.instanced || !o.motion.is_still();
         let (mut corners, mut still_objects, mut groups) = (Vec::new(), Vec::new(), Vec::new());
@@ -103,7 +110,9 @@ impl Geometry {
         }
         let resting = |o: &Placed| o.motion.is_still().then(|| Place::new(o.motion.at(0.0)));
         let places = objects.iter().map(resting).collect();
-        Ok(Geometry { objects, still, still_objects, instance_objects, instances, places })
+        let spheres = Spheres::new(spheres, objects.len() as u32, instances.len() as u32);
+        instances.extend(spheres.tree());
+        Ok(Geometry { objects, still, still_objects, instance_objects, instances, places, spheres })
     }
 
     /// The top level for a time: cheap, since every tree is shared.
@@ -115,6 +124,31 @@ impl Geometry {
     /// The objects.
     pub fn objects(&self) -> &[Placed] {
         &self.objects
+    }
+
+    /// The spheres, which come after the objects.
+    pub fn spheres(&self) -> &[PlacedSphere] {
+        self.spheres.all()
+    }
+
+    /// The number of a sphere among the objects; `None` for what is made of triangles.
+    #[inline]
+    pub fn sphere_of(&self, object: u32) -> Option<u32> {
+        object.checked_sub(self.objects.len() as u32)
+    }
+
+    /// A sphere, as rays number it.
+    pub fn sphere_primitive(&self, sphere: u32) -> Primitive {
+        self.spheres.primitive(sphere)
+    }
+
+    /// Index of an object's material.
+    #[inline]
+    pub fn material_of(&self, object: u32) -> u32 {
+        match self.objects.get(object as usize) {
+            Some(placed) => placed.material,
+            None => self.spheres.material(object),
+        }
     }
 
     /// The trees, each with where it stands.
@@ -147,19 +181,30 @@ impl Geometry {
         self.locate(hit).0
     }
 
-    /// The object and the triangle within its mesh.
+    /// The object and the triangle within its mesh, or the sphere.
     fn locate(&self, hit: &Hit) -> (u32, u32) {
         if self.still.is_some() && hit.instance == 0 {
             let after = self.still_objects.partition_point(|(first, _)| *first <= hit.primitive);
             let (first, object) = self.still_objects[after - 1];
             (object, hit.primitive - first)
+        } else if hit.instance == self.spheres.instance() {
+            (self.spheres.object(hit.primitive), hit.primitive)
         } else {
             (self.instance_objects[hit.instance as usize], hit.primitive)
         }
     }
 
     /// All that shading needs to know of a hit.
+    #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        if hit.instance == self.spheres.instance() {
+            self.spheres.surface(ray, hit)
+        } else {
+            self.triangle_surface(ray, hit)
+        }
+    }
+
+    fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let (object, triangle) = self.locate(hit);
         let placed = &self.objects[object as usize];
         let mesh = &*placed.mesh;

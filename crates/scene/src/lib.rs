@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod parameters;
 pub mod presets;
 pub mod scene;
+pub mod spheres;
 pub mod surface;
 pub mod texture;
 

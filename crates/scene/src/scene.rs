@@ -3,7 +3,7 @@
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
 use crate::geometry::Geometry;
-use crate::lights::{Light, MeshLight};
+use crate::lights::{Light, MeshLight, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
 use bilux_accel::instancing::TwoLevel;
@@ -33,7 +33,7 @@ pub(crate) struct SceneParts {
     geometry: Geometry,
     materials: Vec<Arc<dyn Material>>,
     lights: Vec<SceneLight>,
-    /// For each object the light that it is.
+    /// For each object the light that it is, spheres after them.
     object_lights: Vec<Option<u32>>,
     cameras: Vec<(String, Arc<dyn Camera>)>,
     classic_ambient: Rgb,
@@ -46,6 +46,7 @@ impl SceneParts {
         materials: Vec<Arc<dyn Material>>,
         mut lights: Vec<SceneLight>,
         panels: &[(usize, Rgb)],
+        lamps: &[(String, Option<Rgb>)],
         cameras: Vec<(String, Arc<dyn Camera>)>,
     ) -> SceneParts {
         let mut object_lights = vec![None; geometry.objects().len()];
@@ -58,6 +59,13 @@ impl SceneParts {
                 object_lights[i] = Some(lights.len() as u32);
                 lights.push(SceneLight::new(&object.mesh.name, Arc::new(light)));
             }
+        }
+        for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(lamps).enumerate() {
+            let radiance = materials[sphere.material as usize].emission();
+            let primitive = geometry.sphere_primitive(i as u32);
+            let light = SphereLight::new(*sphere, primitive, radiance, *classic);
+            object_lights.push(Some(lights.len() as u32));
+            lights.push(SceneLight::new(name, Arc::new(light)));
         }
         let of_object = |o: &crate::geometry::Placed| o.motion.at(0.0).bounds(&o.mesh.bounds());
         let bounds = geometry
@@ -118,7 +126,7 @@ impl Scene {
         &self.accelerator
     }
 
-    /// All triangles and their trees.
+    /// All surfaces and their trees.
     pub fn geometry(&self) -> &Geometry {
         &self.parts.geometry
     }
@@ -155,8 +163,16 @@ impl Scene {
 
     /// What an object is made of.
     pub fn material_of(&self, object: u32) -> &dyn Material {
-        let object = &self.parts.geometry.objects()[object as usize];
-        &*self.parts.materials[object.material as usize]
+        &*self.parts.materials[self.parts.geometry.material_of(object) as usize]
+    }
+
+    /// Radiance that a surface itself gives out towards `wo`: triangles on both sides, spheres outwards.
+    #[inline]
+    pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
+        let emission = self.material(surface).emission();
+        let is_inside =
+            || self.parts.geometry.sphere_of(surface.object).is_some() && surface.n_geom.dot(wo) <= 0.0;
+        if emission.is_black() || is_inside() { Rgb::BLACK } else { emission }
     }
 
     /// True when some object is of a medium with a priority.

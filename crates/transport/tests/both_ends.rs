@@ -8,7 +8,7 @@ use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
 use common::statistics::{agreement, blocks};
 use common::{
-    built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life, without_mirrors,
+    ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life, without_mirrors,
 };
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -33,10 +33,49 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
         Spec::new("", "directional").with("direction", Vec3::new(0.3, -1.0, -0.4)),
         Spec::new("", "environment").with("radiance", 0.5f32).with("ground", 0.1f32).with("zenith", 1.0f32),
         Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
+        sphere(Vec3::new(-0.5, 2.5, 0.0), 0.3),
     ];
     for light in lights {
         let name = light.kind.clone();
         check(&name, &built(&without_mirrors(light)), &["light", "bdpt"]);
+    }
+}
+
+fn sphere(position: Vec3, radius: f32) -> Spec {
+    Spec::new("", "sphere").with("position", position).with("radius", radius).with("intensity", 10.0f32)
+}
+
+#[test]
+fn spheres_that_touch_what_they_light_give_the_same_from_both_ends() {
+    let places = [
+        ("resting on the floor", Vec3::new(0.2, 0.4, 1.0), 0.4),
+        ("sunk into the floor", Vec3::new(0.2, 0.1, 1.0), 0.4),
+        ("around most of it", Vec3::new(-1.5, 1.0, -1.5), 1.8),
+        ("small, behind the ball and close to the floor", Vec3::new(-1.0, 0.03, -1.2), 0.005),
+    ];
+    for (name, position, radius) in places {
+        check(name, &built(&without_mirrors(sphere(position, radius))), &["light", "bdpt"]);
+    }
+}
+
+#[test]
+fn spheres_in_glass_and_mirrors_look_the_same_from_both_ends() {
+    let mut builder = without_small_lights(mixed());
+    builder.lights.retain(|light| light.kind != "rect");
+    builder.lights.extend([sphere(Vec3::new(-1.5, 2.5, 0.5), 0.6), sphere(Vec3::new(1.4, 0.3, 1.0), 0.3)]);
+    let bulb = Spec::new("", "dielectric").with("absorption", Rgb::new(0.5, 0.2, 0.1));
+    put(&mut builder, "bulb", ball(Vec3::new(1.4, 0.3, 1.0), 0.5, 10, true), bulb);
+    check("glass and mirrors", &built(&builder), &["bdpt"]);
+}
+
+#[test]
+fn spheres_and_photons_come_to_the_same() {
+    let scene = built(&without_mirrors(sphere(Vec3::new(-0.5, 2.0, 0.5), 0.5)));
+    let path = blocks(&scene, &*integrator("path"), 0);
+    for (i, name) in ["vcm", "sppm"].into_iter().enumerate() {
+        let found = blocks(&scene, &*with_radius(name, 0.01), 100 * (i as u64 + 1));
+        let p = agreement(&path, &found);
+        assert!(p > UNLIKELY, "path and {name}: p = {p}");
     }
 }
 

@@ -21,11 +21,12 @@ pub struct LightCase {
 }
 
 /// The checks, by name.
-pub const CHECKS: [(&str, Check); 5] = [
+pub const CHECKS: [(&str, Check); 6] = [
     ("samples are sound", samples_are_sound),
     ("densities are as said", densities_are_as_said),
     ("what is sent is the power", what_is_sent_is_the_power),
     ("direct light finds what was sent", direct_light_finds_what_was_sent),
+    ("what is picked is met with the same density", picked_is_met),
     ("flux through a plane is the same both ways", flux_is_the_same_both_ways),
 ];
 
@@ -168,16 +169,60 @@ fn found_on_surface(
 ) -> Option<Result<(), String>> {
     let ray = sample.spawn(case.time);
     let distance = tracer.closest(&ray).map_or(1.0, |hit| 0.5 * hit.t.min(2.0));
+    if distance < 5e-3 {
+        return None;
+    }
     let receiver = Vec3::from(ray.at(distance));
     let mut back = bilux_scene::Ray::new(receiver.to_array(), (-sample.direction).to_array());
     back.time = case.time;
     let hit = tracer.closest(&back).filter(|hit| hit.primitive == sample.primitive)?;
-    let area = case.light.pdf_area(&hit);
+    let area = case.light.pdf_area(receiver, &hit);
+    let wanted = case.light.direct_pdf(sample, receiver);
     let pdf = case.light.li_pdf_solid_angle(receiver, -sample.direction, Some(&hit));
-    let converted = sample.pdf_direct * hit.p.distance_squared(receiver) / sample.cos();
-    let exact = near(area, sample.pdf_direct, 1e-5) && near(pdf, converted, 1e-3);
+    let converted = wanted * hit.p.distance_squared(receiver) / sample.cos();
+    // Where the density depends on the cosine it is as uncertain as the place of a grazing hit on something small.
+    let rough = 1e-4 / (sample.cos() * sample.cos());
+    let tolerance = if wanted == sample.pdf_direct { 1e-5 } else { rough };
+    let exact = near(area, wanted, tolerance) && near(pdf, converted, tolerance.max(1e-3));
     let there = hit.p.distance(sample.p) < 1e-4 * (1.0 + sample.p.length()) / sample.cos();
-    Some(check(exact && there, || format!("over area {area}, over solid angle {pdf} for {converted}")))
+    Some(check(exact && there, || {
+        format!("over area {area} for {wanted}, over solid angle {pdf} for {converted}")
+    }))
+}
+
+/// A ray along a picked direction meets the light there, with the density that it was picked with.
+pub fn picked_is_met(case: &LightCase) -> Result<(), String> {
+    if case.light.is_delta() {
+        return Ok(());
+    }
+    let mut tracer = Tracer::new(&case.scene, false);
+    let (mut asked, mut missed) = (0, 0);
+    for i in 0..2000 {
+        let ((up, place), u) = (uniforms(12, i), uniforms(13, i).1);
+        let from = Vec3::new(4.0 * place.x - 2.0, 1.2 + 1.2 * up, 4.0 * place.y - 2.0);
+        let Some(sample) = case.light.sample_li(from, case.time, u) else { continue };
+        let mut ray = bilux_scene::Ray::new(from.to_array(), sample.wi.to_array());
+        ray.time = case.time;
+        let hit = tracer.closest(&ray).filter(|hit| case.scene.light_of(hit.object).is_some());
+        // Not where the block is in the way, or the light in its own.
+        let distance = sample.point.map(|point| point.distance(from));
+        let is_there = match (&hit, distance) {
+            (Some(hit), Some(distance)) => {
+                near(hit.t, distance, 1e-3) && hit.n_geom.dot(sample.n_light).abs() > 0.999
+            }
+            (hit, distance) => hit.is_none() && distance.is_none(),
+        };
+        asked += 1;
+        if !is_there {
+            missed += 1;
+            continue;
+        }
+        let pdf = case.light.li_pdf_solid_angle(from, sample.wi, hit.as_ref());
+        check(near(pdf, sample.pdf_solid_angle, 2e-2 / sample.cos().max(1e-2)), || {
+            format!("{pdf} for {sample:?}")
+        })?;
+    }
+    check(missed * 4 <= 3 * asked, || format!("{missed} of {asked} are not met"))
 }
 
 /// A square in the scene receives as much in each of its cells from rays that the light sends and from points that

@@ -84,7 +84,8 @@ fn with_light(name: &str, spec: Spec) -> LightCase {
 fn cases() -> Vec<LightCase> {
     let row = |kind: &'static str| {
         let spec = Spec::new("", kind);
-        with_light(kind, if kind == "rect" { spec.with("radiance", RADIANCE) } else { spec })
+        let has_surface = ["rect", "sphere"].contains(&kind);
+        with_light(kind, if has_surface { spec.with("radiance", RADIANCE) } else { spec })
     };
     let spot = |outer: f32, inner: f32| {
         let at = Vec3::new(1.0, 4.0, -0.5);
@@ -94,6 +95,10 @@ fn cases() -> Vec<LightCase> {
         .with("zenith", Rgb::new(0.2, 0.4, 1.0))
         .with("horizon", Rgb::WHITE)
         .with("ground", Rgb::new(0.2, 0.1, 0.0));
+    let sphere = |position: Vec3, radius: f32| {
+        let spec = Spec::new("", "sphere").with("radiance", RADIANCE);
+        spec.with("position", position).with("radius", radius)
+    };
     let beside = Spec::new("", "rect").with("radiance", RADIANCE).with("position", Vec3::new(1.0, 2.5, 0.5));
     let mut cases: Vec<LightCase> = LIGHTS.iter().map(|light| row(light.entry.name)).collect();
     cases.extend([
@@ -103,6 +108,9 @@ fn cases() -> Vec<LightCase> {
         with_light("spot of half the sphere", spot(90.0, 0.0)),
         with_light("spot of all the sphere", spot(180.0, 120.0)),
         with_light("narrow spot", spot(2.0, 1.0)),
+        with_light("near sphere", sphere(Vec3::new(0.0, 2.1, 0.0), 1.0)),
+        with_light("small sphere", sphere(Vec3::new(0.5, 2.5, -0.4), 1e-2)),
+        with_light("sphere in the block", sphere(Vec3::new(0.3, 1.1, 0.2), 0.7)),
         with_light("panel", beside.with("edge_v", Vec3::new(0.3, 0.3, 0.8))),
     ]);
     let sun = |x: usize, y: usize| if (x, y) == (41, 9) { 900.0 } else { 0.0 };
@@ -132,27 +140,45 @@ fn every_light_keeps_its_contract() {
     }
 }
 
-/// A light with its rays spoilt.
+/// A light that is spoilt.
 struct Spoilt {
     light: Arc<dyn Light>,
-    spoil: fn(EmissionSample) -> EmissionSample,
+    spoil: Spoil,
+}
+
+/// What of it is spoilt.
+#[derive(Clone, Copy)]
+enum Spoil {
+    /// The rays that it sends.
+    Sent(fn(EmissionSample) -> EmissionSample),
+    /// What is picked on it.
+    Picked(fn(LightSample) -> LightSample),
+    /// The density with which a start is picked.
+    Density(fn(f32, &EmissionSample) -> f32),
 }
 
 impl Light for Spoilt {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        self.light.sample_li(from, time, u)
+        let sample = self.light.sample_li(from, time, u);
+        if let Spoil::Picked(spoil) = self.spoil { sample.map(spoil) } else { sample }
     }
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
         self.light.li_pdf_solid_angle(from, wi, hit)
     }
 
-    fn pdf_area(&self, hit: &Surface) -> f32 {
-        self.light.pdf_area(hit)
+    fn pdf_area(&self, from: Vec3, hit: &Surface) -> f32 {
+        self.light.pdf_area(from, hit)
+    }
+
+    fn direct_pdf(&self, sample: &EmissionSample, from: Vec3) -> f32 {
+        let pdf = self.light.direct_pdf(sample, from);
+        if let Spoil::Density(spoil) = self.spoil { spoil(pdf, sample) } else { pdf }
     }
 
     fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u: Vec2) -> Option<EmissionSample> {
-        self.light.sample_le(bounds, time, u_point, u).map(self.spoil)
+        let sample = self.light.sample_le(bounds, time, u_point, u);
+        if let Spoil::Sent(spoil) = self.spoil { sample.map(spoil) } else { sample }
     }
 
     fn finds_all(&self) -> bool {
@@ -188,56 +214,115 @@ impl Light for Spoilt {
     }
 }
 
-type Bug = (&'static str, &'static str, &'static str, fn(EmissionSample) -> EmissionSample);
+type Bug = (&'static str, &'static str, &'static str, Spoil);
 
 /// A bug, the light that has it, the check that has to see it.
 const PLANTED: &[Bug] = &[
-    ("a scene seen from within", "sky", "samples are sound", |s| EmissionSample {
-        p: s.p + s.direction * 3.0,
-        ..s
-    }),
-    ("a normal on the other side", "ball", "samples are sound", |s| EmissionSample {
-        n_light: -s.n_light,
-        ..s
-    }),
-    ("one side's density", "panel", "densities are as said", |s| EmissionSample {
-        pdf_emission: 2.0 * s.pdf_emission,
-        ..s
-    }),
-    ("1% too dense", "moving ball, later", "what is sent is the power", |s| EmissionSample {
-        pdf_emission: 1.01 * s.pdf_emission,
-        ..s
-    }),
-    ("an edge forgotten", "spot", "what is sent is the power", |s| EmissionSample {
-        le: Rgb::WHITE * 100.0,
-        ..s
-    }),
-    ("a cosine counted twice", "panel", "what is sent is the power", |s| EmissionSample {
-        le: s.le * s.cos(),
-        ..s
-    }),
-    ("the wrong instance", "ball of its own tree", "direct light finds what was sent", |s| EmissionSample {
-        primitive: Primitive { instance: 0, ..s.primitive },
-        ..s
-    }),
-    ("a density of its own space", "moving ball, later", "direct light finds what was sent", |s| {
-        EmissionSample { pdf_direct: s.pdf_direct * 0.9, ..s }
-    }),
-    ("the sky upside down", "sky", "direct light finds what was sent", |s| EmissionSample {
-        direction: -s.direction,
-        ..s
-    }),
-    ("a picture's density of another place", "picture", "direct light finds what was sent", |s| {
-        EmissionSample { pdf_direct: s.pdf_direct * 1.01, ..s }
-    }),
-    ("one side only", "panel", "flux through a plane is the same both ways", |s| {
-        let up = s.n_light * if s.n_light.y < 0.0 { 1.0 } else { -1.0 };
-        EmissionSample { direction: s.direction - s.n_light * s.cos() + up * s.cos(), n_light: up, ..s }
-    }),
-    ("a narrow disc", "sky", "flux through a plane is the same both ways", |s| EmissionSample {
-        p: s.p * 0.9,
-        ..s
-    }),
+    (
+        "a scene seen from within",
+        "sky",
+        "samples are sound",
+        Spoil::Sent(|s| EmissionSample { p: s.p + s.direction * 3.0, ..s }),
+    ),
+    (
+        "a normal on the other side",
+        "ball",
+        "samples are sound",
+        Spoil::Sent(|s| EmissionSample { n_light: -s.n_light, ..s }),
+    ),
+    (
+        "one side's density",
+        "panel",
+        "densities are as said",
+        Spoil::Sent(|s| EmissionSample { pdf_emission: 2.0 * s.pdf_emission, ..s }),
+    ),
+    (
+        "1% too dense",
+        "moving ball, later",
+        "what is sent is the power",
+        Spoil::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
+    ),
+    (
+        "an edge forgotten",
+        "spot",
+        "what is sent is the power",
+        Spoil::Sent(|s| EmissionSample { le: Rgb::WHITE * 100.0, ..s }),
+    ),
+    (
+        "a cosine counted twice",
+        "panel",
+        "what is sent is the power",
+        Spoil::Sent(|s| EmissionSample { le: s.le * s.cos(), ..s }),
+    ),
+    (
+        "the wrong instance",
+        "ball of its own tree",
+        "direct light finds what was sent",
+        Spoil::Sent(|s| EmissionSample { primitive: Primitive { instance: 0, ..s.primitive }, ..s }),
+    ),
+    (
+        "a density of its own space",
+        "moving ball, later",
+        "direct light finds what was sent",
+        Spoil::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 0.9, ..s }),
+    ),
+    (
+        "the sky upside down",
+        "sky",
+        "direct light finds what was sent",
+        Spoil::Sent(|s| EmissionSample { direction: -s.direction, ..s }),
+    ),
+    (
+        "a picture's density of another place",
+        "picture",
+        "direct light finds what was sent",
+        Spoil::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 1.01, ..s }),
+    ),
+    (
+        "one side only",
+        "panel",
+        "flux through a plane is the same both ways",
+        Spoil::Sent(|s| {
+            let up = s.n_light * if s.n_light.y < 0.0 { 1.0 } else { -1.0 };
+            EmissionSample { direction: s.direction - s.n_light * s.cos() + up * s.cos(), n_light: up, ..s }
+        }),
+    ),
+    (
+        "a narrow disc",
+        "sky",
+        "flux through a plane is the same both ways",
+        Spoil::Sent(|s| EmissionSample { p: s.p * 0.9, ..s }),
+    ),
+    (
+        "1% too dense",
+        "near sphere",
+        "what is sent is the power",
+        Spoil::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
+    ),
+    (
+        "a density that forgets who asks",
+        "near sphere",
+        "direct light finds what was sent",
+        Spoil::Density(|_, s| s.pdf_direct),
+    ),
+    (
+        "a density of half a cone",
+        "near sphere",
+        "what is picked is met with the same density",
+        Spoil::Picked(|s| LightSample { pdf_solid_angle: 1.05 * s.pdf_solid_angle, ..s }),
+    ),
+    (
+        "a point of the far side",
+        "sphere",
+        "what is picked is met with the same density",
+        Spoil::Picked(|s| LightSample { point: s.point.map(|p| p + s.wi), ..s }),
+    ),
+    (
+        "a cone of the wrong width",
+        "near sphere",
+        "flux through a plane is the same both ways",
+        Spoil::Picked(|s| LightSample { pdf_solid_angle: 1.1 * s.pdf_solid_angle, ..s }),
+    ),
 ];
 
 #[test]

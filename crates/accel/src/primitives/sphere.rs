@@ -21,17 +21,23 @@ impl Sphere {
         outwards(centre - radius, centre + radius)
     }
 
+    /// Where the line of a ray enters and leaves, in lengths of its direction, whatever part of it the ray is; `None`
+    /// where it passes.
+    ///
     /// By the distance of the centre from the line, which keeps its digits however far away the ray starts.
     /// [Haines 2019, section 2]
-    pub(super) fn crossings(&self, ray: &Ray, leaves: bool, visit: &mut dyn FnMut(Crossing)) {
+    pub fn chord(&self, ray: &Ray) -> Option<[f64; 2]> {
         let (direction, radius) = (wide(ray.direction), f64::from(self.radius));
         let from = wide(ray.origin) - wide(self.centre);
         let (a, h) = (direction.length_squared(), from.dot(direction));
         let beside = from - direction * (h / a);
         let c = from.length_squared() - radius * radius;
         let discriminant = a * (radius * radius - beside.length_squared());
-        let found = if radius > 0.0 { roots(a, h, c, discriminant) } else { None };
-        let Some([first, second]) = found else { return };
+        if radius > 0.0 { roots(a, h, c, discriminant) } else { None }
+    }
+
+    pub(super) fn crossings(&self, ray: &Ray, leaves: bool, visit: &mut dyn FnMut(Crossing)) {
+        let Some([first, second]) = self.chord(ray) else { return };
         let [enter, leave] = if leaves { without_origin([first, second]) } else { [first, second] };
         visit(Crossing { t: enter as f32, u: 0.0, v: 0.0, back: false });
         visit(Crossing { t: leave as f32, u: 0.0, v: 0.0, back: true });

@@ -178,11 +178,11 @@ impl Light for MeshLight {
 
     fn li_pdf_solid_angle(&self, from: Vec3, wi: Vec3, hit: Option<&Surface>) -> f32 {
         let Some(hit) = hit else { return 0.0 };
-        let pdf = self.pdf_area(hit) * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
+        let pdf = self.pdf_area(from, hit) * from.distance_squared(hit.p) / hit.n_geom.dot(wi).abs();
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
-    fn pdf_area(&self, hit: &Surface) -> f32 {
+    fn pdf_area(&self, _from: Vec3, hit: &Surface) -> f32 {
         let triangle = hit.primitive.index.wrapping_sub(self.first.index) as usize;
         if hit.primitive.instance != self.first.instance || triangle >= self.triangles.len() {
             return 0.0;

@@ -13,9 +13,11 @@ mod environment_map;
 mod mesh_light;
 mod point;
 mod rect;
+mod sphere;
 mod spot;
 
 pub use mesh_light::MeshLight;
+pub use sphere::SphereLight;
 
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
@@ -66,9 +68,10 @@ pub struct EmissionSample {
     /// is fixed counts 1.
     pub pdf_emission: f32,
     /// The direct density: with which [`Light::sample_li`] finds this start, over area; of a light infinitely far,
-    /// this direction, over solid angle. 1 for delta lights.
+    /// this direction, over solid angle. 1 for delta lights. Where it depends on who asks, the mean over the light's area;
+    /// [`Light::direct_pdf`] knows more.
     pub pdf_direct: f32,
-    /// The triangle that it leaves; [`Primitive::NONE`] where there is none.
+    /// The triangle or sphere that it leaves; [`Primitive::NONE`] where there is none.
     pub primitive: Primitive,
 }
 
@@ -89,7 +92,7 @@ impl EmissionSample {
         cos_at(self.n_light, self.direction)
     }
 
-    /// The ray, at a time in seconds. It cannot meet the triangle that it leaves.
+    /// The ray, at a time in seconds. It cannot meet the triangle, or the place of a sphere, that it leaves.
     pub fn spawn(&self, time: f32) -> Ray {
         let origin = offset_origin(self.p, self.p_error, self.n_light, self.direction);
         leaving(origin, self.direction, self.primitive, time)
@@ -111,9 +114,9 @@ pub trait Light: Send + Sync {
         true
     }
 
-    /// Density over area with which [`Light::sample_li`] finds a point of this light; zero for a point that is not
-    /// on it, and for lights without a surface.
-    fn pdf_area(&self, _hit: &Surface) -> f32 {
+    /// Density over area with which [`Light::sample_li`], asked at `from`, finds a point of this light; zero for a point
+    /// that is not on it, and for lights without a surface.
+    fn pdf_area(&self, _from: Vec3, _hit: &Surface) -> f32 {
         0.0
     }
 
@@ -122,9 +125,15 @@ pub trait Light: Send + Sync {
     fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u_direction: Vec2)
     -> Option<EmissionSample>;
 
+    /// The direct density of the start of a ray that arrives at `from`: [`EmissionSample::pdf_direct`], unless it depends
+    /// on who asks, as that of a sphere does, which is sampled by the solid angle under which it is seen.
+    fn direct_pdf(&self, sample: &EmissionSample, _from: Vec3) -> f32 {
+        sample.pdf_direct
+    }
+
     /// The density ([`EmissionSample::pdf_emission`]) with which [`Light::sample_le`] sends a ray along `direction`,
     /// a unit vector away from the light, from where direct sampling finds the light with density `pdf_direct`
-    /// ([`EmissionSample::pdf_direct`]). `cos` is [`EmissionSample::cos`].
+    /// ([`EmissionSample::pdf_direct`], whose mean does where that depends on who asks). `cos` is [`EmissionSample::cos`].
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
 
     /// True when it is infinitely far, so that its direct density is one of directions.
@@ -172,6 +181,17 @@ pub enum BuiltLight {
         /// Colour under Equations 1 and 2 where the user gave one.
         classic: Option<Rgb>,
     },
+    /// A sphere that gives light; the builder adds it to the scene's spheres and makes its [`SphereLight`].
+    Sphere {
+        /// Its middle, in world space.
+        centre: Vec3,
+        /// Positive.
+        radius: f32,
+        /// Radiance outwards.
+        emission: Rgb,
+        /// Colour under Equations 1 and 2 where the user gave one.
+        classic: Option<Rgb>,
+    },
 }
 
 /// A row of [`LIGHTS`].
@@ -184,8 +204,15 @@ pub struct LightEntry {
 }
 
 /// Every light that there is.
-pub const LIGHTS: &[LightEntry] =
-    &[point::ENTRY, directional::ENTRY, spot::ENTRY, rect::ENTRY, environment::ENTRY, ambient::ENTRY];
+pub const LIGHTS: &[LightEntry] = &[
+    point::ENTRY,
+    directional::ENTRY,
+    spot::ENTRY,
+    rect::ENTRY,
+    sphere::ENTRY,
+    environment::ENTRY,
+    ambient::ENTRY,
+];
 
 /// Makes the light that a spec describes.
 ///

@@ -38,7 +38,7 @@ impl<const N: usize> Partial<N> {
     /// Of a camera path that has met nothing yet.
     pub(crate) const START: Partial<N> = Partial { d_vcm: 0.0, joined: Lanes::ZERO, d_vc: Lanes::ZERO };
 
-    /// Of a light path that leaves its light with the cosine `cos`.
+    /// Of a light path that leaves its light with the cosine `cos`. `pdf_direct` does not know yet who would ask.
     fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
         Partial { d_vcm: pdf_direct / pdf_emission, joined: Lanes::ZERO, d_vc: Lanes::ONE * d_vc }
@@ -137,7 +137,9 @@ fn begin_at_light<'w, const N: usize>(task: &mut Task, time: f32, ways: &'w Ways
     let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
     // The start of a ray from infinity is known by area already.
     let by_area = light.is_infinite();
-    Some(Walk::new(TransportMode::Importance, sample.spawn(time), beta, partial, by_area, ways))
+    let ray = sample.spawn(time);
+    let walk = Walk::new(TransportMode::Importance, ray, beta, partial, by_area, ways);
+    Some(walk.leaving(index, sample))
 }
 
 /// Light that a camera path meets by chance (s = 0): its radiance, and the densities with which the same path would have
@@ -187,7 +189,7 @@ pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut vis
 /// What a surface gives out towards `wo`; `None` where nothing.
 pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Met> {
     let scene = task.scene();
-    let radiance = scene.material(surface).emission();
+    let radiance = scene.emission(surface, wo);
     if radiance.is_black() {
         return None;
     }
@@ -195,7 +197,8 @@ pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Met> {
         return Some(Met::only(radiance));
     };
     let light = &scene.lights()[index].light;
-    let pdf_area = light.pdf_area(surface);
+    // As the vertex before would have picked it.
+    let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_area, wo, cos);
     Some(Met {

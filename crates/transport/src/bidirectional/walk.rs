@@ -4,7 +4,7 @@ use super::{Lanes, Partial, Ways};
 use crate::media::Media;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
+use bilux_scene::{Bsdf, BsdfSample, EmissionSample, Ray, Scene, Surface, TransportMode};
 
 /// A surface that a subpath has met.
 pub(crate) struct Vertex<const N: usize = 1> {
@@ -56,6 +56,8 @@ pub(crate) struct Walk<'w, const N: usize = 1> {
     eta_scale: f32,
     /// The greatest channel at the beginning, for light paths; survival is measured against it.
     full: f32,
+    /// The light that it comes from and how it left, until it has met something.
+    start: Option<(usize, EmissionSample)>,
     /// Where the ray goes; known once it has met something.
     media: Option<Media>,
     /// How its vertices may be found otherwise.
@@ -82,10 +84,16 @@ impl<'w, const N: usize> Walk<'w, N> {
             by_area,
             eta_scale: 1.0,
             full,
+            start: None,
             media: None,
             mode,
             ways,
         }
+    }
+
+    /// The same from a light of the scene.
+    pub(crate) fn leaving(self, index: usize, sample: EmissionSample) -> Walk<'w, N> {
+        Walk { start: Some((index, sample)), ..self }
     }
 
     /// The next surface; `None` where the ray leaves the scene.
@@ -106,6 +114,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         // The first surface of a light path is joined with the light by picking a point there.
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
         let joins = if is_at_light { Lanes::ONE } else { self.ways.joins };
+        let distance2 = distance2 * self.picked_more(task.scene(), surface.p);
         self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins);
         self.by_area = false;
         let bsdf = media.bsdf(task.scene(), &surface);
@@ -123,6 +132,15 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.partial.leave(cos, pdfs, self.ways);
         self.follow(vertex, &sample, task);
         self.survives(u_survival, roulette_depth)
+    }
+
+    /// How much more often than its start has counted on so far, the first surface of a light path would pick that start.
+    fn picked_more(&mut self, scene: &Scene, from: Vec3) -> f32 {
+        self.start.take().map_or(1.0, |(index, sample)| {
+            let light = &scene.lights()[index].light;
+            // What picking leaves out, no surface would pick.
+            if sample.pdf_direct > 0.0 { light.direct_pdf(&sample, from) / sample.pdf_direct } else { 1.0 }
+        })
     }
 
     fn whose(&self) -> &'static str {

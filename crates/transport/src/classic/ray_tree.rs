@@ -82,7 +82,7 @@ impl RayTree {
         let material = task.scene().material(&surface);
         let sigma_a = if outside { node.sigma_a } else { material.sigma_a() };
         let left = transmittance(sigma_a, surface.t);
-        let emission = material.emission();
+        let emission = task.scene().emission(&surface, -direction);
         if !emission.is_black() {
             task.note(node.depth, || format!("reaches a light at {}", surface.p));
             return left * emission.clamp(0.0, 1.0);

@@ -60,7 +60,7 @@ impl PixelIntegrator for Cast {
         };
         task.note(0, || format!("meets object {} at {}", surface.object, surface.p));
         let material = task.scene().material(&surface);
-        let emission = material.emission();
+        let emission = task.scene().emission(&surface, -direction);
         if !emission.is_black() {
             return emission.clamp(0.0, 1.0);
         }

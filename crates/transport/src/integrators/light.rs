@@ -6,8 +6,8 @@ use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{Ways, light_vertices, to_camera};
 use crate::splats::Splats;
 use crate::task::Task;
-use bilux_math::Rgb;
 use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec3};
 use bilux_scene::Ray;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -31,7 +31,7 @@ impl PixelIntegrator for Light {
     /// Only the lights themselves.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         match task.tracer.closest(ray) {
-            Some(surface) => task.scene().material(&surface).emission(),
+            Some(surface) => task.scene().emission(&surface, -Vec3::from(ray.direction)),
             None => task.scene().background(ray.direction.into()),
         }
     }

@@ -6,7 +6,7 @@ use crate::media::Media;
 use crate::task::Task;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, BsdfSample, Material, Ray, Scene, Surface, TransportMode};
+use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -96,9 +96,8 @@ impl PixelIntegrator for Path {
                 return sum + walk.beta * self.background(task, &walk);
             };
             let direction = Vec3::from(walk.ray.direction);
-            let material = task.scene().material(&surface);
             walk.beta *= passed;
-            sum += walk.beta * self.emitted(task, &walk, &surface, material);
+            sum += walk.beta * self.emitted(task, &walk, &surface);
             if walk.depth >= task.max_depth {
                 return sum;
             }
@@ -154,8 +153,8 @@ impl Path {
     }
 
     /// Light that the surface itself gives out, weighted against having sampled it.
-    fn emitted(&self, task: &mut Task, walk: &Walk, surface: &Surface, material: &dyn Material) -> Rgb {
-        let radiance = material.emission();
+    fn emitted(&self, task: &mut Task, walk: &Walk, surface: &Surface) -> Rgb {
+        let radiance = task.scene().emission(surface, -Vec3::from(walk.ray.direction));
         if radiance.is_black() {
             return radiance;
         }
