@@ -1,0 +1,426 @@
+//! Pictures whose light is known by a formula, or by an integral that is written here once more in f64. What each
+//! test accepts it would not accept a few percent off: that is asserted at the same samples.
+
+use bilux_math::transcendental::{acos_f64, cos_f64, exp_f64, sin_f64, tan_f64};
+use bilux_math::{Aabb, Rgb, Vec3};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::generators::shapes::{cuboid, disc, icosphere, quad};
+use bilux_scene::{AccelChoice, Mesh, Object, Scene, SceneBuilder, Spec, Value};
+use bilux_transport::{FILTERS, Filter, RenderSettings, Silent, integrators, render};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::Arc;
+
+/// Pictures of each mean, and its standard error.
+const SEEDS: u64 = 16;
+/// Less likely than this by chance: wrong.
+const UNLIKELY: f64 = 1e-5;
+/// What rounding may explain, of a mean.
+const ROUNDING: f64 = 5e-4;
+
+fn put(builder: &mut SceneBuilder, mesh: Mesh, material: Spec) {
+    let material = builder.add_material(material);
+    builder.objects.push(Object::new("", Arc::new(mesh), material));
+}
+
+fn diffuse(reflectance: impl Into<Value>) -> Spec {
+    Spec::new("", "diffuse").with("reflectance", reflectance)
+}
+
+/// A square film with parallel rays from `from` to `at`, `height` metres high.
+fn plan(builder: &mut SceneBuilder, from: Vec3, at: Vec3, height: f32) {
+    let spec = Spec::new("eye", "orthographic").with("position", from).with("look_at", at);
+    let spec = spec.with("up", Vec3::new(0.0, 0.0, -1.0)).with("height", height);
+    builder.cameras.push(CameraSpec { spec, keyframes: Vec::new() });
+}
+
+fn built(builder: &SceneBuilder) -> Scene {
+    builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap()
+}
+
+/// Pictures of different seeds, each as its pixels.
+fn pictures(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Vec<Vec<Rgb>> {
+    let integrator = integrators::build(integrator).unwrap();
+    let box_filter = FILTERS.iter().find(|row| row.entry.name == "box").unwrap();
+    let of_seed = |seed| {
+        let settings = RenderSettings { seed, filter: Filter::new(box_filter), ..settings.clone() };
+        let camera = &*scene.cameras()[0].1;
+        render(scene, camera, &*integrator, &settings, &Silent).unwrap().film.to_rgb()
+    };
+    (0..SEEDS).map(of_seed).collect()
+}
+
+/// The mean of a channel over each picture.
+fn means(pictures: &[Vec<Rgb>], channel: usize) -> Vec<f64> {
+    let mean = |pixels: &Vec<Rgb>| {
+        pixels.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>() / pixels.len() as f64
+    };
+    pictures.iter().map(mean).collect()
+}
+
+/// The chance that values whose true mean is `exact` have a mean at least as far from it. [Student 1908]
+fn p_value(values: &[f64], exact: f64) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0);
+    let off = ((mean - exact).abs() - ROUNDING * exact.abs()).max(0.0);
+    if off == 0.0 {
+        return 1.0;
+    }
+    2.0 * StudentsT::new(0.0, 1.0, n - 1.0).unwrap().sf(off / (variance / n).sqrt().max(f64::MIN_POSITIVE))
+}
+
+/// That is it, and neither 3% more nor less; of photons, whose merging is noisy, neither 10%.
+fn assert_mean(name: &str, values: &[f64], exact: f64) {
+    let more = if name.contains("sppm") { 0.1 } else { 0.03 };
+    let p = p_value(values, exact);
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    assert!(p > UNLIKELY, "{name}: {mean}, not {exact}: p = {p:.1e}");
+    for wrong in [1.0 - more, 1.0 + more] {
+        let p = p_value(values, exact * wrong);
+        assert!(p < UNLIKELY, "{name}: {mean} would pass for {wrong} times {exact}: p = {p:.1e}");
+    }
+}
+
+fn named(names: &[&'static str]) -> Vec<Spec> {
+    names.iter().map(|&name| Spec::new("", name)).collect()
+}
+
+/// All that are to be right; photons are counted on discs that are large enough to meet some.
+fn all() -> Vec<Spec> {
+    let mut integrators = named(&["path", "light", "bdpt", "vcm", "auto"]);
+    integrators.push(Spec::new("", "sppm").with("radius", 0.05f32));
+    integrators
+}
+
+#[test]
+fn in_a_furnace_light_adds_up_to_the_geometric_series() {
+    let albedo = Rgb::new(0.2, 0.4, 0.6);
+    let mut builder = SceneBuilder::default();
+    let glowing = diffuse(albedo).with("emission", Rgb::WHITE);
+    let shell = icosphere(Vec3::ZERO, 1.0, 2);
+    put(&mut builder, Mesh { normals: Vec::new(), ..shell }, glowing);
+    let eye = Spec::new("eye", "perspective").with("position", Vec3::ZERO).with("look_at", -Vec3::Z);
+    builder.cameras.push(CameraSpec { spec: eye.with("fov", 90.0f32), keyframes: Vec::new() });
+    let scene = built(&builder);
+    for integrator in all() {
+        let more = if ["light", "sppm"].contains(&integrator.kind.as_str()) { 8 } else { 1 };
+        for (depth, spp) in [(2, 16 * more), (20, 16 * more)] {
+            let settings = RenderSettings { max_depth: depth, ..RenderSettings::new(16, 16, spp) };
+            let pictures = pictures(&scene, &integrator, &settings);
+            for channel in 0..3 {
+                let a = f64::from(albedo[channel]);
+                let series: f64 =
+                    (0..=depth).scan(1.0, |power, _| Some(std::mem::replace(power, *power * a))).sum();
+                assert!(depth < 20 || (series - 1.0 / (1.0 - a)).abs() < 1e-3, "{series}");
+                assert_mean(
+                    &format!("{} to depth {depth}", integrator.kind),
+                    &means(&pictures, channel),
+                    series,
+                );
+            }
+        }
+    }
+}
+
+/// The mean of a function over a square of side 1 about `x`, 0 on the floor.
+fn mean_over_square(x: f64, of: impl Fn([f64; 2]) -> f64) -> f64 {
+    let side = 64;
+    let place = |i: usize| (i as f64 + 0.5) / side as f64 - 0.5;
+    let sum: f64 = (0..side * side).map(|i| of([x + place(i % side), place(i / side)])).sum();
+    sum / (side * side) as f64
+}
+
+/// Irradiance of the floor at `[x, z]` by a polygon of radiance 1 that lies above it all. [Lambert 1760]
+fn by_polygon(corners: &[[f64; 3]], [x, z]: [f64; 2]) -> f64 {
+    let unit = |[a, b, c]: [f64; 3]| {
+        let to = [a - x, b, c - z];
+        let length = to.iter().map(|k| k * k).sum::<f64>().sqrt();
+        to.map(|k| k / length)
+    };
+    let edge = |i: usize| {
+        let (a, b) = (unit(corners[i]), unit(corners[(i + 1) % corners.len()]));
+        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let sine = cross.iter().map(|k| k * k).sum::<f64>().sqrt();
+        let cosine: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+        bilux_math::transcendental::atan2_f64(sine, cosine) * cross[1] / sine
+    };
+    (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
+}
+
+/// The floor under a lamp, about `x`, as each integrator sees it, against its irradiance.
+fn check_direct(name: &str, x: f32, irradiance: f64, add: impl Fn(&mut SceneBuilder)) {
+    let mut builder = SceneBuilder::default();
+    let middle = Vec3::new(x, 0.0, 0.0);
+    put(&mut builder, quad(middle, Vec3::X * 1.5, Vec3::Z * 1.5), diffuse(0.5f32));
+    add(&mut builder);
+    // Below the lamp, which the film therefore does not see.
+    plan(&mut builder, middle + Vec3::Y * 0.05, middle, 1.0);
+    let scene = built(&builder);
+    for integrator in all() {
+        let spp = match integrator.kind.as_str() {
+            "light" => 1200,
+            "sppm" => 256,
+            _ => 16,
+        };
+        let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(16, 16, spp) };
+        let found = means(&pictures(&scene, &integrator, &settings), 1);
+        assert_mean(&format!("{name}, {x} m aside, {}", integrator.kind), &found, 0.5 / PI * irradiance);
+    }
+}
+
+#[test]
+fn a_disc_lights_the_floor_as_lambert_says() {
+    const SIDES: u32 = 48;
+    let around = |sides: u32, radius: f64, height: f64| -> Vec<[f64; 3]> {
+        let angle = |i: u32| TAU * f64::from(i) / f64::from(sides);
+        (0..sides).map(|i| [radius * cos_f64(angle(i)), height, radius * sin_f64(angle(i))]).collect()
+    };
+    // Of so many sides it is a disc: E = π r² / (r² + h²).
+    let (r, h) = (0.5, 1.2);
+    let axis = by_polygon(&around(10_000, r, h), [0.0; 2]);
+    assert!((axis / (PI * r * r / (r * r + h * h)) - 1.0).abs() < 1e-6, "{axis}");
+    let corners = around(SIDES, r, h);
+    for x in [0.0, 1.5] {
+        let irradiance = mean_over_square(x, |p| by_polygon(&corners, p));
+        check_direct("disc", x as f32, irradiance, |builder| {
+            let glowing = diffuse(0.0f32).with("emission", Rgb::WHITE);
+            put(builder, disc(Vec3::Y * h as f32, r as f32, SIDES), glowing);
+        });
+    }
+}
+
+#[test]
+fn a_sphere_lights_the_floor_as_if_from_its_middle() {
+    // E = π (R / d)² cosθ, wherever all of it is above the horizon.
+    for (x, height, radius) in [(0.0, 0.9, 0.6), (1.5, 1.0, 0.6), (0.7, 1.5, 0.01)] {
+        let irradiance = mean_over_square(x, |[x, z]| {
+            let distance2 = x * x + height * height + z * z;
+            PI * radius * radius / distance2 * height / distance2.sqrt()
+        });
+        check_direct(&format!("sphere of {radius} m"), x as f32, irradiance, |builder| {
+            let lamp = Spec::new("", "sphere").with("radius", radius as f32).with("radiance", 1.0f32);
+            builder.lights.push(lamp.with("position", Vec3::Y * height as f32));
+        });
+    }
+}
+
+/// Share of light that a slab of glass of this thickness lets through, at an angle of incidence in radians: what
+/// both faces let pass, absorbed in between, and all that goes to and fro within. [Born 1999, 7.6.1]
+fn through_slab(eta: f64, thickness: f64, sigma_a: f64, angle: f64) -> f64 {
+    let (sin_i, cos_i) = (sin_f64(angle), cos_f64(angle));
+    let cos_t = (1.0 - sin_i * sin_i / (eta * eta)).sqrt();
+    let (across, along) =
+        ((cos_i - eta * cos_t) / (cos_i + eta * cos_t), (eta * cos_i - cos_t) / (eta * cos_i + cos_t));
+    let fresnel = (across * across + along * along) / 2.0;
+    let passed = exp_f64(-sigma_a * thickness / cos_t);
+    (1.0 - fresnel) * (1.0 - fresnel) * passed / (1.0 - fresnel * fresnel * passed * passed)
+}
+
+#[test]
+fn a_slab_of_glass_absorbs_by_beer_and_reflects_by_fresnel() {
+    let (eta, thickness, absorption) = (1.5, 0.8, Rgb::new(0.0, 0.5, 1.5));
+    for degrees in [0.0f64, 40.0, 75.0] {
+        let angle = degrees.to_radians();
+        let mut builder = SceneBuilder::default();
+        let half = 60.0;
+        let bounds = Aabb { min: Vec3::new(-half, -thickness, -half), max: Vec3::new(half, 0.0, half) };
+        let glass = Spec::new("", "dielectric").with("eta", eta).with("absorption", absorption);
+        put(&mut builder, cuboid(bounds), glass);
+        // Light below, none above.
+        let (below, side) = (Vec3::NEG_Y * (thickness + 1.0), 8.0 * half);
+        put(
+            &mut builder,
+            quad(below, Vec3::X * side, Vec3::Z * side),
+            diffuse(0.0f32).with("emission", Rgb::WHITE),
+        );
+        let from = Vec3::new(sin_f64(angle) as f32, cos_f64(angle) as f32, 0.0);
+        plan(&mut builder, from, Vec3::ZERO, 0.1);
+        let scene = built(&builder);
+        for integrator in named(&["path", "bdpt", "vcm", "sppm", "auto"]) {
+            let settings = RenderSettings { max_depth: 60, ..RenderSettings::new(16, 16, 64) };
+            let pictures = pictures(&scene, &integrator, &settings);
+            for channel in 0..3 {
+                let sigma_a = f64::from(absorption[channel]);
+                let exact = through_slab(f64::from(eta), f64::from(thickness), sigma_a, angle);
+                let name = format!("{}, {degrees} degrees, channel {channel}", integrator.kind);
+                let values = means(&pictures, channel);
+                assert_mean(&name, &values, exact);
+                // Nor would it do to forget the slant in the glass.
+                let straight = through_slab(f64::from(eta), f64::from(thickness) * 0.85, sigma_a, angle);
+                let p = p_value(&values, straight);
+                assert!(sigma_a == 0.0 || p < UNLIKELY, "{name} passes for {straight}: p = {p:.1e}");
+            }
+        }
+    }
+}
+
+/// Which part of a disc of radius 1 lies to the left of `x`.
+fn left_of(x: f64) -> f64 {
+    if x.abs() >= 1.0 {
+        return f64::from(u8::from(x > 0.0));
+    }
+    0.5 + (x * (1.0 - x * x).sqrt() + FRAC_PI_2 - acos_f64(x)) / PI
+}
+
+#[test]
+fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
+    const COLUMNS: usize = 24;
+    let (aperture, focus, fov) = (0.08f64, 2.0f64, 12.0f64);
+    // A matt half-plane, lit along the line of sight, at several distances.
+    for distance in [1.2, 2.0, 3.5] {
+        let mut builder = SceneBuilder::default();
+        let side = 1.0f32;
+        let middle = Vec3::new(-0.5 * side, 0.0, -distance as f32);
+        put(&mut builder, quad(middle, Vec3::X * side, Vec3::Y * side), diffuse(1.0f32));
+        let light = Spec::new("", "directional").with("direction", -Vec3::Z);
+        builder.lights.push(light.with("irradiance", std::f32::consts::PI));
+        let eye = Spec::new("eye", "perspective").with("position", Vec3::ZERO).with("look_at", -Vec3::Z);
+        let eye = eye.with("fov", fov as f32).with("aperture", aperture as f32).with("focus", focus as f32);
+        builder.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
+        let scene = built(&builder);
+        // What is seen at `x`, -1..=1 across the film, through a lens of radius `aperture`.
+        let seen = |x: f64, aperture: f64| {
+            let at_focus = x * focus * tan_f64(fov.to_radians() / 2.0);
+            // From the point `l` of the lens through that in focus: x = l (1 - d / f) + at_focus d / f < 0.
+            let (edge, blur) = (-at_focus * distance / focus, aperture * (1.0 - distance / focus).abs());
+            if blur == 0.0 { f64::from(u8::from(edge > 0.0)) } else { left_of(edge / blur) }
+        };
+        let column = |i: usize, aperture: f64| {
+            let at = |k: usize| ((i * 64 + k) as f64 + 0.5) / (COLUMNS * 32) as f64 - 1.0;
+            (0..64).map(|k| seen(at(k), aperture)).sum::<f64>() / 64.0
+        };
+        for integrator in named(&["path", "light", "bdpt", "vcm"]) {
+            let spp = if integrator.kind == "light" { 512 } else { 32 };
+            let settings =
+                RenderSettings { max_depth: 1, ..RenderSettings::new(COLUMNS as u32, COLUMNS as u32, spp) };
+            let pictures = pictures(&scene, &integrator, &settings);
+            let least = |aperture: f64| {
+                let of_column = |i: usize| {
+                    let mean = |pixels: &Vec<Rgb>| {
+                        let column = pixels.iter().skip(i).step_by(COLUMNS);
+                        column.map(|pixel| f64::from(pixel.g)).sum::<f64>() / COLUMNS as f64
+                    };
+                    let values: Vec<f64> = pictures.iter().map(mean).collect();
+                    p_value(&values, column(i, aperture))
+                };
+                // Not where hardly a ray passes the edge on either side: such values are not normally distributed.
+                let is_rare = |i: usize| {
+                    let part = column(i, aperture);
+                    (part > 0.0 && part < 0.02) || (part > 0.98 && part < 1.0)
+                };
+                (0..COLUMNS).filter(|i| !is_rare(*i)).map(of_column).fold(1.0, f64::min) * COLUMNS as f64
+            };
+            let (name, p) = (&integrator.kind, least(aperture));
+            assert!(p > UNLIKELY, "{name} at {distance} m: p = {p:.1e}");
+            for wrong in [0.9, 1.1] {
+                let p = least(aperture * wrong);
+                let is_blurred = distance != focus;
+                assert!(
+                    !is_blurred || p < UNLIKELY,
+                    "{name} at {distance} m passes for {wrong}: p = {p:.1e}"
+                );
+            }
+        }
+    }
+}
+
+/// Height of the ring of radius 1, as high as light from `SLANT` over its rim falls short of its middle.
+const SLANT: f64 = 0.6;
+
+/// What reaches the floor in a mirroring ring of radius `ring` on the bins of a strip along the light's way, in units of
+/// the irradiance there without the ring: straight over the rim, and by one reflection. The latter is the sum over all
+/// places of the wall, of which each sends its light along a line on the floor: the envelope of these is the nephroid.
+fn in_ring(ring: f64, bins: usize, half_width: f64) -> Vec<f64> {
+    const BEAMS: i32 = 20_000;
+    const STEPS: i32 = 2_000;
+    let mut sums = vec![0.0; bins];
+    let mut add = |x: f64, z: f64, light: f64| {
+        let bin = ((x + 1.0) / 2.0 * bins as f64).floor();
+        if z.abs() < half_width && (0.0..bins as f64).contains(&bin) {
+            sums[bin as usize] += light;
+        }
+    };
+    for i in 0..BEAMS {
+        // A beam of the light, `b` aside of the middle, that goes along +x and meets the wall under the angle of this
+        // sine: at a height that grows with the way which it still has to go down to the floor.
+        let b = ((f64::from(i) + 0.5) / f64::from(BEAMS) * 2.0 - 1.0) * ring;
+        let sine = b / ring;
+        let cosine = (1.0 - sine * sine).sqrt();
+        let (wall, chord) = ([ring * cosine, b], 2.0 * ring * cosine);
+        let back = [1.0 - 2.0 * cosine * cosine, -2.0 * cosine * sine];
+        let step = 2.0 * ring / f64::from(STEPS);
+        let light = step * 2.0 * ring / f64::from(BEAMS);
+        for k in 0..STEPS {
+            let way = (f64::from(k) + 0.5) * step;
+            // In units of the way that light goes while it falls by the height of the ring, 1: over the rim where it
+            // comes in, under it where it is reflected, and before it meets the wall again.
+            if way + chord > 1.0 && way < chord.min(1.0) {
+                add(wall[0] + back[0] * way, wall[1] + back[1] * way, light);
+            }
+            if way > 1.0 && way < chord {
+                add(way - wall[0], b, light);
+            }
+        }
+    }
+    let area = 2.0 / bins as f64 * 2.0 * half_width;
+    sums.into_iter().map(|sum| sum / area).collect()
+}
+
+#[test]
+fn a_ring_of_metal_draws_the_nephroid() {
+    const BINS: usize = 40;
+    const FACETS: u32 = 2048;
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, quad(Vec3::ZERO, Vec3::X * 2.4, Vec3::Z * 2.4), diffuse(1.0f32));
+    let rim = |i: u32, y: f64| {
+        let angle = TAU * f64::from(i % FACETS) / f64::from(FACETS);
+        Vec3::new(cos_f64(angle) as f32, y as f32, sin_f64(angle) as f32)
+    };
+    let ring = Mesh {
+        positions: (0..FACETS).flat_map(|i| [rim(i, 0.0), rim(i, SLANT)]).collect(),
+        triangles: (0..FACETS)
+            .flat_map(|i| {
+                let (a, b) = (2 * i, 2 * ((i + 1) % FACETS));
+                [[a, b, b + 1], [a, b + 1, a + 1]]
+            })
+            .collect(),
+        ..Mesh::default()
+    };
+    put(&mut builder, ring, Spec::new("", "mirror").with("reflectance", 1.0f32));
+    let direction = Vec3::new(1.0, -SLANT as f32, 0.0);
+    let across = f64::from(direction.length()) / SLANT * PI;
+    let light = Spec::new("", "directional").with("direction", direction);
+    builder.lights.push(light.with("irradiance", across as f32));
+    plan(&mut builder, Vec3::Y * 3.0, Vec3::ZERO, 2.0);
+    let scene = built(&builder);
+    let expected = in_ring(1.0, BINS, 0.05);
+    // The cusp lies half-way from the middle to the wall, and opens towards it.
+    let brightest = |light: &[f64]| light.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+    let is_cusp = |bin: usize| (BINS * 3 / 4..BINS * 3 / 4 + 2).contains(&bin);
+    assert!(is_cusp(brightest(&expected)), "{expected:.3?}");
+    for integrator in named(&["light", "bdpt", "vcm", "sppm"]) {
+        let settings = RenderSettings { max_depth: 2, ..RenderSettings::new(BINS as u32, BINS as u32, 64) };
+        let pictures = pictures(&scene, &integrator, &settings);
+        // The two middle rows.
+        let strip = |i: usize| -> Vec<f64> {
+            let mean = |p: &Vec<Rgb>| {
+                [BINS / 2 - 1, BINS / 2].map(|y| f64::from(p[y * BINS + i].g)).iter().sum::<f64>() / 2.0
+            };
+            pictures.iter().map(mean).collect()
+        };
+        let found: Vec<f64> = (0..BINS).map(|i| strip(i).iter().sum::<f64>() / SEEDS as f64).collect();
+        let least = |expected: &[f64]| {
+            // Not where the wall itself is.
+            let of_bin = |i: usize| p_value(&strip(i), expected[i]);
+            (1..BINS - 1).map(of_bin).fold(1.0, f64::min) * BINS as f64
+        };
+        let (name, p) = (&integrator.kind, least(&expected));
+        assert!(is_cusp(brightest(&found)), "{name}: {found:.3?}");
+        assert!(p > UNLIKELY, "{name}: {found:.3?}, not {expected:.3?}: p = {p:.1e}");
+        for wrong in [0.95, 1.05] {
+            let p = least(&in_ring(wrong, BINS, 0.05));
+            assert!(p < UNLIKELY, "{name} passes for a ring of {wrong} m: p = {p:.1e}");
+        }
+    }
+}
