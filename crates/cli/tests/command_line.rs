@@ -71,6 +71,38 @@ fn pieces_in_any_order_are_the_whole() {
     bilux(path).args(["merge", "other.exr", "d.exr", "-o", "mixed.pfm"]).assert().code(1);
 }
 
+#[test]
+fn each_strategy_has_its_pictures_and_its_place_on_a_sheet() {
+    let folder = folder();
+    let path = folder.path();
+    let settings = ["-i", "bdpt", "--spp", "2", "--max-depth", "2"];
+    let alone = render(path, "pots.png", &settings);
+    let beside = render(path, "pots.png", &[&settings[..], &["--aov", "strategies"]].concat());
+    assert!(alone == beside, "the picture is another with --aov");
+    let made = path.join("pots.strategies");
+    let names = |end: &str| {
+        let all =
+            std::fs::read_dir(&made).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
+        all.filter(|name| name.ends_with(end)).count()
+    };
+    assert!(names("-unweighted.exr") > 3 && names(".exr") == 2 * names("-unweighted.exr"));
+    for sheet in ["weighted.png", "unweighted.png"] {
+        let sheet = bilux::pictures::formats::read(made.join(sheet)).unwrap();
+        assert!(
+            sheet.width() >= 3 * 48 && sheet.height() >= 2 * 32,
+            "{} x {}",
+            sheet.width(),
+            sheet.height()
+        );
+    }
+    let with = |more: &[&str]| failing(path, 2, &[&["render", "pots.asc", "--spp", "1"], more].concat());
+    let said = with(&["-i", "bdpt", "--aov", "strategy", "-o", "a.png"]);
+    assert!(said.contains("'strategies'"), "{said}");
+    let said = with(&["-i", "path", "--aov", "strategies", "-o", "a.png"]);
+    assert!(said.contains("bdpt, vcm") && !path.join("a.png").exists(), "{said}");
+    with(&["-i", "bdpt", "--aov", "strategies", "-o", "-"]);
+}
+
 /// Runs what must fail and gives what it says.
 fn failing(folder: &Path, code: i32, arguments: &[&str]) -> String {
     let assert = bilux(folder).args(arguments).assert().code(code).stdout("");

@@ -6,6 +6,8 @@
 
 pub mod aovs;
 mod bidirectional;
+#[cfg(test)]
+extern crate self as bilux_transport;
 mod classic;
 pub mod error;
 mod eye;
@@ -19,6 +21,9 @@ pub mod plan;
 pub mod render;
 pub mod replay;
 pub mod sampler;
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod shapes;
 mod splats;
 pub mod stop;
 pub mod strategies;

@@ -13,6 +13,8 @@ mod connect;
 mod photons;
 mod walk;
 mod ways;
+#[cfg(test)]
+mod weights;
 
 pub(crate) use connect::{merged, show_to_camera, to_camera, to_light, to_vertex};
 pub use photons::{Merging, Photons};

@@ -129,7 +129,7 @@ impl<const N: usize> Photons<N> {
     }
 
     /// In the order of their cells, and within a cell in the order in which they are given.
-    fn new(photons: Vec<Photon<N>>, radius: f32, ways: Ways<N>) -> Photons<N> {
+    pub(super) fn new(photons: Vec<Photon<N>>, radius: f32, ways: Ways<N>) -> Photons<N> {
         let buckets = photons.len().next_power_of_two();
         let hash = |p: Vec3| bucket(cell(p, radius), buckets);
         let mut keys: Vec<(u32, u32)> =

@@ -1,0 +1,178 @@
+//! The recursive weights against those of the definition: the density of every strategy, multiplied out from the densities
+//! of lights, camera and BSDFs over area, in double precision. [Veach 1997, eq. 10.3 to 10.9]
+//!
+//! An event without width counts 1 over solid angle in both directions. Its true density has the same infinite factor in
+//! all strategies that can find the path, and a ratio of cosines and squared indices where it refracts, which the weights
+//! leave out on both sides alike.
+//!
+//! If the weight of every strategy is its share of the sum over all strategies, wherever it finds a path, then those of one
+//! path add up to 1.
+
+mod path;
+mod samples;
+
+use self::path::{Flaw, Path};
+use crate::bidirectional::{Found, Lanes, Task, Ways};
+use crate::eye::Eye;
+use crate::integrators;
+use crate::render::RenderSettings;
+use crate::shapes;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{Scene, SceneBuilder, Spec, Texture, Tracer, Value};
+use std::f32::consts::FRAC_PI_4;
+use std::sync::Arc;
+
+/// Of the panel of these tests.
+const PANEL_AREA: f32 = 1.5;
+
+const PANEL_NORMAL: Vec3 = Vec3::Y;
+
+/// Compares, and counts.
+struct Verdict {
+    ways: Ways,
+    flaw: Flaw,
+    compared: usize,
+    wrong: usize,
+    worst: f64,
+    /// How many were neither almost certain nor almost impossible, by kind: met, picked, seen, joined, merged.
+    telling: [usize; 5],
+}
+
+impl Verdict {
+    fn look(&mut self, task: &Task, found: &Found, key: (bool, usize), path: &Path) {
+        let all = path.densities(task, &self.ways, self.flaw);
+        let sum: f64 = all.iter().map(|(_, density)| density).sum();
+        let own = all.iter().find(|(k, _)| *k == key).map_or(0.0, |(_, density)| *density);
+        let wanted = own / sum;
+        let weight = f64::from(found.own.0[0]) / (f64::from(found.own.0[0]) + f64::from(found.others.0[0]));
+        let error = (weight - wanted).abs();
+        self.compared += 1;
+        // What is not a number is wrong.
+        self.wrong += usize::from(error.is_nan() || error > path.tolerance());
+        self.worst = self.worst.max(error);
+        let kind = match key {
+            (true, _) => 4,
+            (_, s) if s < 2 => s,
+            (_, s) if s == path.nodes.len() + 1 => 2,
+            _ => 3,
+        };
+        self.telling[kind] += usize::from((0.01..0.99).contains(&wanted));
+    }
+}
+
+/// Of each pixel.
+const SAMPLES: u32 = 16;
+
+/// Every path of some samples, by every strategy.
+fn verdict(scene: &Scene, ways: &Ways, flaw: Flaw) -> Verdict {
+    let integrator = integrators::build(&Spec::new("", "bdpt")).unwrap();
+    let settings = RenderSettings::new(24, 24, SAMPLES);
+    let eye = Eye::new(scene, &*scene.cameras()[0].1, &*integrator, &settings);
+    let mut tracer = Tracer::new(scene, false);
+    let mut verdict = Verdict { ways: *ways, flaw, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
+    for i in 0..24 * 24 * SAMPLES {
+        let (ray, mut task) = eye.sample(&mut tracer, i % 24, i / 24 % 24, i / 576);
+        samples::one_sample(&ray, &mut task, &mut verdict);
+    }
+    verdict
+}
+
+/// Matt, rough, polished and transparent bodies, with normals of a picture or interpolated, under three lights, one of each
+/// kind that `lights` names.
+fn scene(lights: &[&str], camera: Spec) -> Scene {
+    let mut builder = SceneBuilder::default();
+    let waves = (0..64).map(|i| {
+        let lean = |k: i32| 0.5 + 0.3 * bilux_math::transcendental::sin_cos(k as f32 * FRAC_PI_4).0;
+        Rgb::new(lean(i % 8), lean(i / 8), 0.75)
+    });
+    let waves = Texture { name: String::new(), width: 8, height: 8, texels: waves.collect(), is_data: true };
+    builder.textures.push(Arc::new(waves));
+    let bent = shapes::diffuse(0.7f32).with("normal", Value::Texture(0));
+    shapes::put(&mut builder, "floor", shapes::floor(0.0, 2.5), bent);
+    let wall = shapes::quad(Vec3::new(-2.5, 0.0, -2.0), Vec3::X * 5.0, Vec3::Y * 3.0);
+    shapes::put(&mut builder, "wall", wall, shapes::diffuse(0.6f32));
+    let silver = Spec::new("", "conductor").with("metal", "silver");
+    let frosted = Spec::new("", "dielectric").with("roughness", 0.6f32);
+    let balls = [
+        (-1.4, silver.clone().with("roughness", 0.5f32)),
+        (-0.5, Spec::new("", "dielectric")),
+        (0.5, silver),
+        (1.4, frosted),
+    ];
+    for (x, material) in balls {
+        let ball = shapes::ball(Vec3::new(x, 0.45, 0.1 * x), 0.4, 12, true);
+        shapes::put(&mut builder, "ball", ball, material);
+    }
+    for kind in lights {
+        let light = Spec::new("", kind);
+        builder.lights.push(match *kind {
+            "rect" => {
+                let panel = light.with("position", Vec3::new(-0.7, 2.6, -0.4)).with("intensity", 8.0f32);
+                panel.with("edge_u", Vec3::X * 1.5).with("edge_v", Vec3::Z)
+            }
+            "point" => light.with("position", Vec3::new(0.3, 2.0, 1.5)).with("intensity", 3.0f32),
+            "directional" => light.with("direction", Vec3::new(0.3, -1.0, -0.4)),
+            _ => light.with("radiance", 0.5f32),
+        });
+    }
+    let camera = camera.with("position", Vec3::new(0.0, 1.6, 4.0)).with("look_at", Vec3::new(0.0, 0.6, 0.0));
+    builder.cameras = vec![CameraSpec { spec: camera, keyframes: Vec::new() }];
+    shapes::built(&builder)
+}
+
+fn cameras() -> [Spec; 3] {
+    let pinhole = Spec::new("", "perspective").with("fov", 45.0f32);
+    let lens = pinhole.clone().with("aperture", 0.2f32).with("focus", 4.0f32);
+    [pinhole, lens, Spec::new("", "orthographic").with("height", 3.0f32)]
+}
+
+/// Without merging, with it, and with it but without joins or without light paths seen from the camera.
+fn sets() -> [Ways; 4] {
+    let eta = Lanes([300.0]);
+    [
+        Ways::BOTH_ENDS,
+        Ways { eta, ..Ways::BOTH_ENDS },
+        Ways { eta, ..Ways::beside_merging(true, false) },
+        Ways { eta, ..Ways::beside_merging(false, true) },
+    ]
+}
+
+#[test]
+fn every_weight_is_the_share_of_its_strategy() {
+    for (i, lights) in
+        [&["rect"][..], &["point", "rect"], &["environment", "rect"], &["directional", "point"]]
+            .into_iter()
+            .enumerate()
+    {
+        for (k, camera) in cameras().into_iter().enumerate() {
+            let scene = scene(lights, camera);
+            let ways = sets()[(i + k) % 4];
+            let verdict = verdict(&scene, &ways, Flaw::None);
+            let Verdict { compared, wrong, worst, telling, .. } = verdict;
+            assert!(
+                wrong == 0,
+                "{lights:?}, camera {k}: {wrong} of {compared} weights are wrong, by up to {worst}"
+            );
+            assert!(compared > 3000 && telling.iter().sum::<usize>() > 500, "{telling:?}");
+        }
+    }
+}
+
+#[test]
+fn densities_with_a_factor_left_out_give_other_weights() {
+    let scene = scene(&["rect", "environment"], cameras()[1].clone());
+    let flaws = [
+        Flaw::Cosine,
+        Flaw::Distance,
+        Flaw::LightChoice,
+        Flaw::PickedTwice,
+        Flaw::MergedTwice,
+        Flaw::Reverse,
+    ];
+    for flaw in flaws {
+        let verdict = verdict(&scene, &sets()[1], flaw);
+        let Verdict { compared, wrong, .. } = verdict;
+        assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
+    }
+}

@@ -1,0 +1,173 @@
+//! A whole path, and how often each strategy finds it by the definition.
+
+use super::PANEL_AREA;
+use crate::bidirectional::{Task, TransportMode, Ways};
+use bilux_math::Vec3;
+use bilux_scene::Bsdf;
+
+/// A vertex between the light and the camera, each way as the code has seen it.
+#[derive(Clone)]
+pub(super) struct Node {
+    /// Where it is and its normal, as the path from the light has come there and as that from the camera has: not quite
+    /// the same where they merge.
+    pub(super) from_light: (Vec3, Vec3),
+    pub(super) from_camera: (Vec3, Vec3),
+    pub(super) bsdf: Bsdf,
+    pub(super) to_light: Vec3,
+    pub(super) to_camera: Vec3,
+    /// Its event was without width.
+    pub(super) is_delta: bool,
+}
+
+/// The end at the light.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    pub(super) index: usize,
+    /// `None` where it is infinitely far.
+    pub(super) p: Option<Vec3>,
+    pub(super) cos: f32,
+}
+
+/// From the light to the camera.
+pub(super) struct Path {
+    pub(super) start: Start,
+    pub(super) nodes: Vec<Node>,
+    /// Of camera rays at the last node, across them.
+    pub(super) camera_density: f32,
+}
+
+/// What is left out of, or done wrong in, the densities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Flaw {
+    None,
+    Cosine,
+    Distance,
+    LightChoice,
+    PickedTwice,
+    MergedTwice,
+    Reverse,
+}
+
+impl Path {
+    /// How often each strategy finds this path; by (merges, s).
+    pub(super) fn densities(&self, task: &Task, ways: &Ways, flaw: Flaw) -> Vec<((bool, usize), f64)> {
+        let count = self.nodes.len();
+        let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
+        let [splats, joins, eta] = [ways.splats, ways.joins, ways.eta].map(|lanes| f64::from(lanes.0[0]));
+        // Nodes have numbers from 1; the light is 0 and the camera count + 1.
+        let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
+        let mut all = Vec::new();
+        for (s, t) in (0..=count + 1).map(|s| (s, count + 2 - s)) {
+            let copies = match (s, t) {
+                (0, _) => 1.0,
+                // Nothing joins a light with the camera.
+                (1, 1) | (_, 0) => continue,
+                (1, _) if flaw == Flaw::PickedTwice => 2.0,
+                (1, _) => 1.0,
+                (_, 1) => splats,
+                _ => joins,
+            };
+            if s == 0 || (is_open(s - 1) && is_open(s)) {
+                all.push(((false, s), copies * light[s] * camera[t]));
+            }
+        }
+        for i in (1..=count).filter(|&i| is_open(i)) {
+            let copies = if flaw == Flaw::MergedTwice { 2.0 * eta } else { eta };
+            all.push(((true, i + 1), copies * light[i + 1] * camera[count + 2 - i]));
+        }
+        all
+    }
+
+    /// What rounding may do to a weight. Each density that goes into it is a product whose factors for a vertex have some
+    /// roundings of 2⁻²⁴ each, and two that are amplified: a cosine has that error whatever its size, and a distance that
+    /// of positions in a scene a few metres wide. A weight is off by no more than the products are. [Higham 2002, 3.1]
+    pub(super) fn tolerance(&self) -> f64 {
+        let inverse_cosine = |node: &Node, to: Vec3| 1.0 / cosine(node.from_light.1, to, Flaw::None);
+        let cosines = self
+            .nodes
+            .iter()
+            .map(|node| inverse_cosine(node, node.to_light) + inverse_cosine(node, node.to_camera));
+        let lengths = self.nodes.windows(2).map(|pair| 4.0 / edge(&pair[0], &pair[1], Flaw::None).sqrt());
+        let roundings = 8.0 * self.nodes.len() as f64 + cosines.chain(lengths).sum::<f64>();
+        roundings / f64::from(1 << 24)
+    }
+
+    /// Of subpaths of 0, 1, 2 … vertices from the light.
+    fn light_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
+        let (scene, first) = (task.scene(), &self.nodes[0]);
+        let light = &scene.lights()[self.start.index].light;
+        let direct = match (light.is_delta(), light.is_infinite()) {
+            (true, _) => 1.0,
+            (false, true) => light.li_pdf_solid_angle(first.from_light.0, first.to_light, None),
+            (false, false) => 1.0 / PANEL_AREA,
+        };
+        let emission = light.emission_pdf(&scene.bounds(), direct, -first.to_light, self.start.cos);
+        let choice =
+            if flaw == Flaw::LightChoice { 1.0 } else { task.lights.emission_probability(self.start.index) };
+        let picked = f64::from(direct) * f64::from(task.lights.probability(self.start.index));
+        let mut product =
+            f64::from(emission) * f64::from(choice) * cosine(first.from_light.1, first.to_light, flaw);
+        if let Some(p) = self.start.p {
+            product /= distance2(p, first.from_light.0, flaw);
+        }
+        let mut all = vec![1.0, picked, product];
+        for pair in self.nodes.windows(2) {
+            let [a, b] = [&pair[0], &pair[1]];
+            product *= a.density(a.to_light, a.to_camera, TransportMode::Importance)
+                * cosine(b.from_light.1, b.to_light, flaw)
+                / edge(a, b, flaw);
+            all.push(product);
+        }
+        all
+    }
+
+    /// Of subpaths of 0, 1, 2 … vertices from the camera.
+    fn camera_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
+        let last = self.nodes.last().unwrap();
+        let mut product =
+            f64::from(self.camera_density) * cosine(last.from_camera.1, last.to_camera, Flaw::None);
+        let mut all = vec![1.0, 1.0, product];
+        let mode = if flaw == Flaw::Reverse { TransportMode::Importance } else { TransportMode::Radiance };
+        let density = |node: &Node| {
+            let [a, b] = if flaw == Flaw::Reverse {
+                [node.to_light, node.to_camera]
+            } else {
+                [node.to_camera, node.to_light]
+            };
+            node.density(a, b, mode)
+        };
+        for pair in self.nodes.windows(2).rev() {
+            let [b, a] = [&pair[0], &pair[1]];
+            product *= density(a) * cosine(b.from_camera.1, b.to_camera, flaw) / edge(b, a, flaw);
+            all.push(product);
+        }
+        let light = &task.scene().lights()[self.start.index].light;
+        let first = &self.nodes[0];
+        product *= match self.start.p {
+            _ if light.is_delta() => 0.0,
+            None => density(first),
+            Some(p) => density(first) * f64::from(self.start.cos) / distance2(p, first.from_light.0, flaw),
+        };
+        all.push(product);
+        all
+    }
+}
+
+impl Node {
+    fn density(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f64 {
+        if self.is_delta { 1.0 } else { f64::from(self.bsdf.pdf_solid_angle(wo, wi, mode)) }
+    }
+}
+
+fn cosine(n: Vec3, direction: Vec3, flaw: Flaw) -> f64 {
+    if flaw == Flaw::Cosine { 1.0 } else { n.as_dvec3().dot(direction.as_dvec3()).abs() }
+}
+
+/// From a node to the next one towards the camera, squared.
+fn edge(a: &Node, b: &Node, flaw: Flaw) -> f64 {
+    distance2(a.from_camera.0, b.from_light.0, flaw)
+}
+
+fn distance2(a: Vec3, b: Vec3, flaw: Flaw) -> f64 {
+    if flaw == Flaw::Distance { 1.0 } else { a.as_dvec3().distance_squared(b.as_dvec3()) }
+}

@@ -1,0 +1,181 @@
+//! All that is found with a path from each end, with the whole path by which it was.
+
+use super::path::{Node, Path, Start};
+use super::{PANEL_NORMAL, Verdict};
+use crate::bidirectional::photons::Photon;
+use crate::bidirectional::*;
+use bilux_math::{Vec2, warp};
+use bilux_scene::Ray;
+
+pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
+    let ways = &{ verdict.ways };
+    task.sampler.enter(LIGHT_STREAM);
+    let u_light = task.sampler.next_1d();
+    let index = task.lights.sample_emission(u_light).unwrap().0;
+    let Some(walk) = begin_at_light(task, ray.time, ways) else { return };
+    let light = &task.scene().lights()[index].light;
+    let n = if light.is_infinite() || light.is_delta() { None } else { Some(PANEL_NORMAL) };
+    let direction = Vec3::from(walk.ray.direction);
+    let start = Start {
+        index,
+        p: (!light.is_infinite()).then(|| walk.ray.origin.into()),
+        cos: n.map_or(1.0, |n| n.dot(direction).abs()),
+    };
+    let y = followed(walk, task, ways, false);
+    let walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, ways);
+    let z = followed(walk, task, ways, true);
+    seen(task, verdict, start, &y);
+    met(task, verdict, &z);
+    picked(task, verdict, &z);
+    joined(task, verdict, start, (&y, &z));
+}
+
+fn seen(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
+    let ways = &{ verdict.ways };
+    for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
+        task.enter_light_vertex(vertex.depth);
+        let Some((_, found)) = to_camera(task, vertex, ways) else { continue };
+        task.enter_light_vertex(vertex.depth);
+        let u = task.sampler.next_2d();
+        let lens = if task.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
+        let seen = task.camera.connect(vertex.surface.p, lens, vertex.surface.time).unwrap();
+        let nodes = y.nodes(i, true, seen.wi, false);
+        let path = Path { start, nodes, camera_density: seen.density };
+        verdict.look(task, &found, (false, i + 2), &path);
+    }
+}
+
+fn met(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
+    for (i, vertex) in z.vertices.iter().enumerate().skip(1) {
+        let Some(found) = emitted(task, &vertex.surface, vertex.wo) else { continue };
+        let found = found.by(vertex.beta, &vertex.partial);
+        let index = task.scene().light_index_of(vertex.surface.object).unwrap();
+        let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
+        let start = Start { index, p: Some(vertex.surface.p), cos };
+        let nodes = z.nodes(i - 1, false, -vertex.wo, z.is_delta[i - 1]);
+        let path = Path { start, nodes, camera_density: z.camera_density };
+        verdict.look(task, &found, (false, 0), &path);
+    }
+    let (Some(walk), Some(last)) = (&z.left, z.vertices.len().checked_sub(1)) else { return };
+    let lights = task.scene().lights();
+    let Some(index) = lights.iter().position(|l| l.light.is_infinite() && !l.light.is_delta()) else {
+        return;
+    };
+    let mut founds = Vec::new();
+    from_infinity(task, walk, |met| founds.push(met.by(walk.beta, &walk.partial)));
+    for found in founds {
+        let nodes = z.nodes(last, false, walk.ray.direction.into(), z.is_delta[last]);
+        let path =
+            Path { start: Start { index, p: None, cos: 1.0 }, nodes, camera_density: z.camera_density };
+        verdict.look(task, &found, (false, 0), &path);
+    }
+}
+
+fn picked(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
+    let ways = &{ verdict.ways };
+    for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
+        for index in 0..task.scene().lights().len() {
+            let u = task.sampler.next_2d();
+            let Some(found) = to_light(task, vertex, index, u, ways) else { continue };
+            let light = &task.scene().lights()[index].light;
+            let sample = light.sample_li(vertex.surface.p, vertex.surface.time, u).unwrap();
+            let start = Start { index, p: sample.point, cos: sample.cos() };
+            let nodes = z.nodes(i, false, sample.wi, false);
+            let path = Path { start, nodes, camera_density: z.camera_density };
+            verdict.look(task, &found, (false, 1), &path);
+        }
+    }
+}
+
+/// Ends that are joined; and, as if each light vertex lay where each camera vertex does, ends that are merged.
+fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpath, &Subpath)) {
+    let ways = &{ verdict.ways };
+    let open = |subpath: &Subpath| {
+        (0..subpath.vertices.len()).filter(|&i| !subpath.vertices[i].bsdf.is_delta()).collect::<Vec<_>>()
+    };
+    for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
+        let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
+        let Some(found) = to_vertex(task, camera_end, light_end, ways) else { continue };
+        let direction = (light_end.surface.p - camera_end.surface.p).normalize();
+        let mut nodes = y.nodes(b, true, -direction, false);
+        nodes.extend(z.nodes(a, false, direction, false));
+        let path = Path { start, nodes, camera_density: z.camera_density };
+        verdict.look(task, &found, (false, b + 2), &path);
+    }
+    if ways.eta == Lanes::ZERO {
+        return;
+    }
+    for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
+        let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
+        let photon = Photon {
+            p: camera_end.surface.p,
+            wo: light_end.wo,
+            n_geom: camera_end.surface.n_geom,
+            beta: light_end.beta,
+            partial: light_end.partial,
+            depth: light_end.depth,
+        };
+        let photons = Photons::new(vec![photon], 1.0, *ways);
+        // One vertex in the place of both: it scatters as at the camera's end.
+        let mut nodes = y.nodes(b, true, camera_end.wo, false);
+        let shared = nodes.pop().unwrap();
+        let behind = nodes.len();
+        nodes.extend(z.nodes(a, false, light_end.wo, false));
+        nodes[behind].from_light = shared.from_light;
+        let path = Path { start, nodes, camera_density: z.camera_density };
+        merged(task, &photons, camera_end, |_, found| {
+            verdict.look(task, found, (true, b + 2), &path);
+        });
+    }
+}
+
+/// A subpath with all that it meets.
+struct Subpath<'w> {
+    vertices: Vec<Vertex>,
+    /// Which events were without width.
+    is_delta: Vec<bool>,
+    /// Where it left the scene.
+    left: Option<Walk<'w>>,
+    camera_density: f32,
+}
+
+impl Subpath<'_> {
+    /// The vertices before the last one `upto`, and that one.
+    fn nodes(&self, upto: usize, from_light: bool, onwards: Vec3, is_delta: bool) -> Vec<Node> {
+        let node = |i: usize| {
+            let vertex = &self.vertices[i];
+            let next = if i < upto { -self.vertices[i + 1].wo } else { onwards };
+            let (to_light, to_camera) = if from_light { (vertex.wo, next) } else { (next, vertex.wo) };
+            let is_delta = if i < upto { self.is_delta[i] } else { is_delta };
+            let at = (vertex.surface.p, vertex.surface.n_geom);
+            Node { from_light: at, from_camera: at, bsdf: vertex.bsdf, to_light, to_camera, is_delta }
+        };
+        let nodes = (0..=upto).map(node);
+        if from_light { nodes.collect() } else { nodes.rev().collect() }
+    }
+}
+
+fn followed<'w>(mut walk: Walk<'w>, task: &mut Task, ways: &Ways, is_camera: bool) -> Subpath<'w> {
+    let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
+    loop {
+        let Some(mut vertex) = walk.meet(task) else {
+            left = Some(walk);
+            break;
+        };
+        if is_camera && vertex.depth == 0 {
+            camera_density = task.camera.density(&walk.ray, vertex.surface.t);
+            let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
+            vertex.partial = Partial::of_camera(camera_density * cos, ways);
+            walk.partial = vertex.partial;
+        }
+        let stream = if is_camera { 1 } else { LIGHT_STREAM + 1 };
+        task.sampler.enter(stream + u64::from(vertex.depth));
+        let goes_on = vertex.depth < 4 && walk.scatter(&vertex, 1000, task);
+        vertices.push(vertex);
+        is_delta.push(walk.partial.d_vcm == 0.0);
+        if !goes_on {
+            break;
+        }
+    }
+    Subpath { vertices, is_delta, left, camera_density }
+}
