@@ -58,7 +58,7 @@ pub fn picture(strategies: &Strategies, one: &StrategyPicture, light: Light) -> 
 
 /// A sheet in linear light: a row for each length of path, the shortest on top, in it all strategies from s = 0 on, those
 /// that merge after those that join. Rows of long paths are brighter by powers of two, as written on their left end, so
-/// that all rows are as bright as the second.
+/// that all rows are as bright as that of direct light.
 ///
 /// # Errors
 /// When there is nothing to show, or memory is short.
@@ -66,7 +66,9 @@ pub fn sheet(strategies: &Strategies, light: Light) -> Result<Picture, Error> {
     let rows: Vec<&[StrategyPicture]> =
         strategies.pictures.chunk_by(|a, b| a.strategy.edges == b.strategy.edges).collect();
     let brightness: Vec<f64> = rows.iter().map(|row| row_brightness(row, light)).collect();
-    let standard = brightness.get(1).copied().unwrap_or(0.0);
+    // Direct light. Lights that are seen themselves are too bright, and need not be there.
+    let first = rows.iter().position(|row| row[0].strategy.edges > 1);
+    let standard = first.map_or(0.0, |first| brightness[first]);
     let mut lines = Vec::new();
     for (row, brightness) in rows.iter().zip(brightness) {
         let stops = if row[0].strategy.edges > 2 { stops(standard / brightness) } else { 0 };
