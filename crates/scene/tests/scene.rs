@@ -65,3 +65,58 @@ fn misspelt_names_are_told_with_the_nearest() {
         Err(SceneError::BadValue { .. })
     ));
 }
+
+/// A sphere light, and the scene with nothing else in it.
+fn lone_sphere(position: Vec3, radius: f32) -> bilux_scene::Scene {
+    let lamp =
+        Spec::new("", "sphere").with("position", position).with("radius", radius).with("radiance", 1.0f32);
+    let builder = SceneBuilder { lights: vec![lamp], ..SceneBuilder::default() };
+    builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap()
+}
+
+#[test]
+fn a_sphere_is_met_where_it_is_however_far_away_the_ray_begins() {
+    for (centre, radius) in
+        [(Vec3::ZERO, 1.0), (Vec3::new(700.0, -300.0, 800.0), 0.01), (Vec3::splat(5.0), 1e-3)]
+    {
+        let scene = lone_sphere(centre, radius);
+        let mut tracer = Tracer::new(&scene, false);
+        for (i, distance) in [0.0f32, 0.5, 1.5, 10.0, 1e3, 1e6].into_iter().enumerate() {
+            let away = Vec3::new(1.0, 2.0, 0.5 * i as f32).normalize();
+            let origin = centre + away * (distance * radius);
+            let towards = centre + away.any_orthonormal_vector() * (0.3 * radius) - origin;
+            let Some(hit) = tracer.closest(&bilux_scene::Ray::new(origin.to_array(), towards.to_array()))
+            else {
+                // So small a thing may be missed where the ray's own numbers do not tell it from its neighbourhood.
+                assert!(
+                    radius * 0.1 < origin.abs().max_element() * f32::EPSILON,
+                    "{centre}, {radius}: {distance}"
+                );
+                continue;
+            };
+            let out = hit.p.as_dvec3() - centre.as_dvec3();
+            let off = (out.length() - f64::from(radius)).abs();
+            assert!(off <= f64::from(hit.p_error.length()), "{off} and {:?}", hit.p_error);
+            assert!(hit.n_geom.dot(out.as_vec3().normalize()) > 0.999);
+            let is_inside = distance < 1.0;
+            assert_eq!(hit.n_geom.dot(towards) > 0.0, is_inside, "{distance}");
+            // Light outwards alone.
+            assert_eq!(scene.emission(&hit, -towards) == Rgb::BLACK, is_inside);
+            assert!(tracer.closest(&hit.spawn(hit.n_geom)).is_none());
+            let across = tracer.closest(&hit.spawn(-hit.n_geom)).expect("the far side");
+            assert!((across.t / (2.0 * radius) - 1.0).abs() < 1e-2 + across.p_error.length() / radius);
+        }
+    }
+}
+
+#[test]
+fn a_sphere_light_needs_a_size_and_a_strength() {
+    let built = |spec: Spec| {
+        let builder = SceneBuilder { lights: vec![spec], ..SceneBuilder::default() };
+        builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).map(|_| ()).unwrap_err().to_string()
+    };
+    let sphere = || Spec::new("", "sphere");
+    assert!(built(sphere().with("radius", 0.0f32).with("radiance", 1.0f32)).contains("above 0"));
+    assert!(built(sphere().with("radius", 1e-30f32).with("radiance", 1.0f32)).contains("above 0"));
+    assert!(built(sphere()).contains("'radiance' or 'intensity'"));
+}

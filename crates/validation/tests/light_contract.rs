@@ -7,6 +7,7 @@ use bilux_scene::{
     AccelChoice, ClassicLight, EmissionSample, LIGHTS, Light, LightSample, Mesh, Object, Primitive,
     SceneBuilder, Spec, Surface, Texture, Value,
 };
+use bilux_validation::chi_square::uniforms;
 use bilux_validation::light_contract::{CHECKS, LightCase};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -361,19 +362,48 @@ fn what_has_no_size_cannot_be_aimed_at_from_afar() {
 }
 
 #[test]
-fn rays_of_a_panel_far_from_the_origin_do_not_meet_it() {
-    let spec = Spec::new("", "rect")
-        .with("radiance", RADIANCE)
-        .with("position", Vec3::new(900.0, -700.0, 800.0))
+fn rays_of_a_lamp_far_from_the_origin_do_not_meet_it() {
+    let at = Vec3::new(900.0, -700.0, 800.0);
+    let panel = Spec::new("", "rect")
         .with("edge_u", Vec3::new(1.0, 0.3, 0.1))
         .with("edge_v", Vec3::new(-0.2, 0.4, 0.9));
-    let far = with_light("far", spec);
-    let mut tracer = bilux_scene::Tracer::new(&far.scene, false);
-    for i in 0..20_000u32 {
-        let u = Vec2::new((i % 141) as f32 / 141.0, (i / 141) as f32 / 142.0);
-        let u_direction = Vec2::new(u.y, u.x);
-        let Some(sample) = far.light.sample_le(&far.scene.bounds(), 0.0, u, u_direction) else { continue };
-        let hit = tracer.closest(&sample.spawn(0.0));
-        assert!(hit.is_none_or(|hit| far.scene.light_of(hit.object).is_none()), "{sample:?}");
+    let sphere = |radius: f32| Spec::new("", "sphere").with("radius", radius);
+    for spec in [panel, sphere(0.7), sphere(0.003), sphere(1e4)] {
+        let far = with_light("far", spec.with("radiance", RADIANCE).with("position", at));
+        let mut tracer = bilux_scene::Tracer::new(&far.scene, false);
+        for i in 0..20_000u32 {
+            let u = Vec2::new((i % 141) as f32 / 141.0, (i / 141) as f32 / 142.0);
+            let u_direction = Vec2::new(u.y, u.x);
+            let Some(sample) = far.light.sample_le(&far.scene.bounds(), 0.0, u, u_direction) else {
+                continue;
+            };
+            let hit = tracer.closest(&sample.spawn(0.0));
+            assert!(hit.is_none_or(|hit| far.scene.light_of(hit.object).is_none()), "{sample:?}");
+        }
+    }
+}
+
+/// Of a lamp alone nothing is ever in the way of what is picked on it.
+#[test]
+fn a_sphere_is_not_in_its_own_light() {
+    for (at, radius) in [(Vec3::Y * 3.0, 0.5), (Vec3::new(900.0, -700.0, 800.0), 0.5), (Vec3::X * 40.0, 1e-4)]
+    {
+        let spec = Spec::new("", "sphere").with("radius", radius).with("radiance", RADIANCE);
+        let alone = with_light("alone", spec.with("position", at));
+        let mut tracer = bilux_scene::Tracer::new(&alone.scene, false);
+        for i in 0..20_000 {
+            let ((up, place), u) = (uniforms(0, i), uniforms(1, i).1);
+            let away =
+                Vec3::new(place.x - 0.5, up, place.y - 0.5).normalize() * (radius * (1.01 + 9.0 * up * up));
+            let Some(sample) = alone.light.sample_li(at + away, 0.0, u) else { continue };
+            let (p, point) = (at + away, sample.point.unwrap());
+            let t_max = 1.0 - sample.clearance;
+            let ray =
+                bilux_scene::Ray { t_max, ..bilux_scene::Ray::new(p.to_array(), (point - p).to_array()) };
+            assert!(!tracer.occluded(&ray), "{sample:?} from {p}");
+            // And yet the ray ends close to it, where an f32 tells its sides apart.
+            let is_coarse = radius < 1e-3 || up < 0.2 || sample.cos() < 0.1;
+            assert!(is_coarse || sample.clearance < 0.02, "{sample:?}");
+        }
     }
 }
