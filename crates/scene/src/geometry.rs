@@ -8,7 +8,7 @@ use crate::parameters::Span;
 use crate::spheres::{PlacedSphere, Spheres};
 use crate::surface::{Surface, gamma};
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
-use bilux_accel::{Accelerator, Hit, Primitive, Ray, TriangleMesh};
+use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::sync::Arc;
@@ -121,6 +121,31 @@ impl Geometry {
         TwoLevel::new(self.instances.clone(), shutter, top)
     }
 
+    /// What a ray meets first of the only tree of triangles, which stands in the world as it is, and of the spheres: what
+    /// the level above would answer, sooner.
+    #[inline]
+    pub(crate) fn closest_hit(&self, triangles: &dyn Accelerator, ray: &Ray, query: &Query) -> Option<Hit> {
+        if self.spheres.all().is_empty() {
+            return triangles.closest_hit(ray, query);
+        }
+        let hit = triangles.closest_hit(&Spheres::aside(ray), query);
+        let t_max = hit.map_or(ray.t_max, |hit| hit.t);
+        // Of equals the triangle is first.
+        self.spheres
+            .closest_hit(ray, t_max, query)
+            .filter(|sphere| hit.is_none_or(|hit| sphere.t < hit.t))
+            .or(hit)
+    }
+
+    /// Whether it meets any.
+    #[inline]
+    pub(crate) fn any_hit(&self, triangles: &dyn Accelerator, ray: &Ray, query: &Query) -> bool {
+        if self.spheres.all().is_empty() {
+            return triangles.any_hit(ray, query);
+        }
+        triangles.any_hit(&Spheres::aside(ray), query) || self.spheres.any_hit(ray, query)
+    }
+
     /// The objects.
     pub fn objects(&self) -> &[Placed] {
         &self.objects
@@ -149,6 +174,11 @@ impl Geometry {
             Some(placed) => placed.material,
             None => self.spheres.material(object),
         }
+    }
+
+    /// The trees of triangles, each with where it stands.
+    pub(crate) fn triangle_instances(&self) -> &[Instance] {
+        &self.instances[..self.instance_objects.len()]
     }
 
     /// The trees, each with where it stands.

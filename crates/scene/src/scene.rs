@@ -88,7 +88,8 @@ impl SceneParts {
 pub struct Scene {
     parts: Arc<SceneParts>,
     accelerator: TwoLevel,
-    /// The only tree, where there is one alone and it stands in the world as it is: asked without the level above.
+    /// The only tree of triangles, where there is one alone and it stands in the world as it is: asked without the level
+    /// above, and then the spheres.
     alone: Option<Arc<dyn Accelerator>>,
     query: Query<'static>,
     shutter: [f32; 2],
@@ -97,7 +98,7 @@ pub struct Scene {
 impl Scene {
     pub(crate) fn new(parts: Arc<SceneParts>, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
         let accelerator = parts.geometry.top_level(accel, shutter);
-        let alone = match parts.geometry.instances() {
+        let alone = match parts.geometry.triangle_instances() {
             [only] if only.mask == u32::MAX && only.motion.is_still() => {
                 only.motion.at(0.0).is_identity().then(|| only.accelerator.clone())
             }
@@ -231,7 +232,7 @@ impl<'s> Tracer<'s> {
         } else {
             self.counters.rays += 1;
             match &self.scene.alone {
-                Some(tree) if ray.mask != 0 => tree.closest_hit(ray, query),
+                Some(tree) if ray.mask != 0 => self.scene.parts.geometry.closest_hit(&**tree, ray, query),
                 _ => accelerator.closest_hit(ray, query),
             }
         }?;
@@ -251,7 +252,7 @@ impl<'s> Tracer<'s> {
         } else {
             self.counters.rays += 1;
             match &self.scene.alone {
-                Some(tree) if ray.mask != 0 => tree.any_hit(ray, query),
+                Some(tree) if ray.mask != 0 => self.scene.parts.geometry.any_hit(&**tree, ray, query),
                 _ => accelerator.any_hit(ray, query),
             }
         }

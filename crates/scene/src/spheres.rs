@@ -4,7 +4,7 @@
 use crate::surface::{Surface, gamma};
 use bilux_accel::instancing::Instance;
 use bilux_accel::primitives::{PrimitiveTree, Shape, Sphere};
-use bilux_accel::{Hit, Primitive, Ray};
+use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
 use bilux_math::glam::DVec3;
 use bilux_math::motion::Motion;
 use bilux_math::transcendental::{acos, atan2};
@@ -38,6 +38,7 @@ impl PlacedSphere {
 /// All of a scene.
 pub(crate) struct Spheres {
     all: Vec<PlacedSphere>,
+    tree: Arc<PrimitiveTree<Vec<Shape>>>,
     /// The object that the first of them is.
     first_object: u32,
     /// The instance that they are; `u32::MAX` where there are none.
@@ -50,14 +51,44 @@ const WIDE: f32 = 1.0 / (1u32 << 26) as f32;
 impl Spheres {
     pub(crate) fn new(all: Vec<PlacedSphere>, first_object: u32, instance: u32) -> Spheres {
         let instance = if all.is_empty() { u32::MAX } else { instance };
-        Spheres { all, first_object, instance }
+        let shapes = all.iter().map(|sphere| Shape::Sphere(sphere.shape())).collect();
+        Spheres { all, tree: Arc::new(PrimitiveTree::new(shapes)), first_object, instance }
     }
 
     /// The tree of all of them, in the world.
     pub(crate) fn tree(&self) -> Option<Instance> {
-        let shapes: Vec<Shape> = self.all.iter().map(|sphere| Shape::Sphere(sphere.shape())).collect();
         let still = Motion::still(Transform::IDENTITY);
-        (!shapes.is_empty()).then(|| Instance::new(Arc::new(PrimitiveTree::new(shapes)), still))
+        (!self.all.is_empty()).then(|| Instance::new(self.tree.clone(), still))
+    }
+
+    /// A ray as the only tree of triangles is to be asked beside spheres: one that leaves a sphere leaves none of them.
+    pub(crate) fn aside(ray: &Ray) -> Ray {
+        Ray { exclude: if ray.exclude.instance == 0 { ray.exclude } else { Primitive::NONE }, ..*ray }
+    }
+
+    /// The same for the spheres.
+    fn own(&self, ray: &Ray) -> Ray {
+        let exclude = match ray.exclude {
+            Primitive { instance, index } if instance == self.instance => Primitive { instance: 0, index },
+            _ => Primitive::NONE,
+        };
+        Ray { exclude, ..*ray }
+    }
+
+    /// Which of them a ray meets first, up to `t_max`.
+    pub(crate) fn closest_hit(&self, ray: &Ray, t_max: f32, query: &Query) -> Option<Hit> {
+        let keeps =
+            |hit: &Hit| query.filter.is_none_or(|filter| filter(&Hit { instance: self.instance, ..*hit }));
+        let query = Query { filter: query.filter.and(Some(&keeps)), ..*query };
+        let hit = self.tree.closest_hit(&Ray { t_max, ..self.own(ray) }, &query)?;
+        Some(Hit { instance: self.instance, ..hit })
+    }
+
+    /// Whether it meets any.
+    pub(crate) fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
+        let keeps =
+            |hit: &Hit| query.filter.is_none_or(|filter| filter(&Hit { instance: self.instance, ..*hit }));
+        self.tree.any_hit(&self.own(ray), &Query { filter: query.filter.and(Some(&keeps)), ..*query })
     }
 
     pub(crate) fn all(&self) -> &[PlacedSphere] {

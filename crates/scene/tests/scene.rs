@@ -120,3 +120,34 @@ fn a_sphere_light_needs_a_size_and_a_strength() {
     assert!(built(sphere().with("radius", 1e-30f32).with("radiance", 1.0f32)).contains("above 0"));
     assert!(built(sphere()).contains("'radiance' or 'intensity'"));
 }
+
+#[test]
+fn spheres_beside_one_tree_answer_as_the_level_above_does() {
+    let mut builder = builder();
+    for (position, radius) in [(Vec3::new(0.3, 0.2, 0.0), 0.4), (Vec3::new(-0.5, 0.6, 0.4), 0.3)] {
+        let lamp = Spec::new("", "sphere").with("position", position).with("radius", radius);
+        builder.lights.push(lamp.with("radiance", 1.0f32));
+    }
+    let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
+    // To count, the level above is asked.
+    let (mut plain, mut counting) = (Tracer::new(&scene, false), Tracer::new(&scene, true));
+    let random = |i: u64| {
+        let words = [0, 1, 2].map(|k| bilux_math::hash::hash_words([i, k]));
+        Vec3::from(words.map(|w| (w >> 40) as f32 / (1u64 << 24) as f32 * 2.0 - 1.0))
+    };
+    let mut met = [0; 2];
+    for i in 0..10_000 {
+        let mut ray = bilux_scene::Ray::new((random(3 * i) * 1.5).to_array(), random(3 * i + 1).to_array());
+        for _ in 0..3 {
+            let hits = [&mut plain, &mut counting].map(|tracer| tracer.closest(&ray));
+            assert_eq!(plain.occluded(&ray), counting.occluded(&ray), "{ray:?}");
+            let [a, b] = hits.map(|hit| hit.map(|hit| (hit.t.to_bits(), hit.primitive, hit.p)));
+            assert_eq!(a, b, "{ray:?}");
+            let Some(hit) = plain.closest(&ray) else { break };
+            met[usize::from(hit.primitive.instance == 1)] += 1;
+            ray = hit.spawn(random(3 * i + 2));
+            ray.t_max = 0.8;
+        }
+    }
+    assert!(met[0] > 500 && met[1] > 500, "{met:?}");
+}
