@@ -1,6 +1,6 @@
 //! Warps of the unit square: each `sample_x` with its density, and its inverse where the tests use one.
 
-use crate::transcendental::{cos, powf, sin, sin_cos};
+use crate::transcendental::{atan2, cos, powf, sin, sin_cos};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
@@ -45,6 +45,29 @@ pub fn sample_sphere(u: Vec2) -> Vec3 {
 /// Density of [`sample_sphere`].
 pub fn sphere_pdf_solid_angle() -> f32 {
     1.0 / (4.0 * PI)
+}
+
+/// The unit square to the sphere, equal areas to equal areas and neighbours to neighbours: its middle to +z, its corners
+/// to -z. [Clarberg 2008]
+pub fn square_to_sphere(u: Vec2) -> Vec3 {
+    let p = u * 2.0 - Vec2::ONE;
+    let (x, y) = (p.x.abs(), p.y.abs());
+    // How far inside of the diamond that is the upper half; negative in the lower one.
+    let inside = 1.0 - (x + y);
+    let r = 1.0 - inside.abs();
+    let angle = if r == 0.0 { 0.0 } else { ((y - x) / r + 1.0) * FRAC_PI_4 };
+    let z = (1.0 - r * r).copysign(inside);
+    let across = r * (2.0 - r * r).max(0.0).sqrt();
+    let (sin, cos) = sin_cos(angle);
+    Vec3::new((cos * across).copysign(p.x), (sin * across).copysign(p.y), z)
+}
+
+/// Where [`square_to_sphere`] leads to a unit vector from.
+pub fn sphere_to_square(d: Vec3) -> Vec2 {
+    let r = (1.0 - d.z.abs()).max(0.0).sqrt();
+    let y = atan2(d.y.abs(), d.x.abs()) * (2.0 * FRAC_1_PI) * r;
+    let (x, y) = if d.z < 0.0 { (1.0 - y, 1.0 - (r - y)) } else { (r - y, y) };
+    (Vec2::new(x.copysign(d.x), y.copysign(d.y)) * 0.5 + Vec2::splat(0.5)).clamp(Vec2::ZERO, Vec2::ONE)
 }
 
 /// Directions about +z, all equally likely down to a cosine of `cos_max`, -1..=1.
@@ -108,6 +131,27 @@ mod tests {
                 let u = Vec2::new(i as f32 / 20.0, j as f32 / 20.0);
                 assert!(invert_triangle(sample_triangle(u)).abs_diff_eq(u, 1e-5));
             }
+        }
+    }
+
+    #[test]
+    fn the_square_covers_the_sphere_evenly_and_back() {
+        const SIDE: u32 = 64;
+        let mut octants = [0u32; 8];
+        let mut sum = Vec3::ZERO;
+        for i in 0..SIDE * SIDE {
+            let u = (Vec2::new((i % SIDE) as f32, (i / SIDE) as f32) + Vec2::splat(0.5)) / SIDE as f32;
+            let d = square_to_sphere(u);
+            assert!((d.length() - 1.0).abs() < 1e-6, "{u}: {d}");
+            assert!(sphere_to_square(d).distance(u) < 1e-5, "{u}: {d}, {}", sphere_to_square(d));
+            octants[(0..3).map(|k| usize::from(d[k] > 0.0) << k).sum::<usize>()] += 1;
+            sum += d * d / (SIDE * SIDE) as f32;
+        }
+        // The diamond's edge passes through the middles of cells, which are on either side of it.
+        assert!(octants.iter().all(|n| n.abs_diff(SIDE * SIDE / 8) <= SIDE / 2), "{octants:?}");
+        assert!((sum - Vec3::splat(1.0 / 3.0)).abs().max_element() < 1e-3, "{sum}");
+        for d in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z] {
+            assert!(square_to_sphere(sphere_to_square(d)).distance(d) < 1e-6, "{d}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! From the number of a sample to its camera ray, and to what its integrator works with.
 
 use crate::bidirectional::Photons;
+use crate::emission::{Emission, Guide};
 use crate::integrators::PixelIntegrator;
 use crate::light_choice::LightChoice;
 use crate::render::{PixelAnchor, RenderSettings};
@@ -8,6 +9,7 @@ use crate::sampler::{PixelSampler, regular_pattern};
 use crate::task::Task;
 use bilux_math::{Vec2, warp};
 use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer};
+use std::sync::Arc;
 
 /// Turns a sample's number into a camera ray and the tools for it.
 pub(crate) struct Eye<'a> {
@@ -16,6 +18,7 @@ pub(crate) struct Eye<'a> {
     pub(crate) integrator: &'a dyn PixelIntegrator,
     pub(crate) settings: &'a RenderSettings,
     lights: LightChoice,
+    pub(crate) emission: Emission,
     has_lens: bool,
     pub(crate) photons: Option<&'a Photons>,
 }
@@ -28,7 +31,13 @@ impl<'a> Eye<'a> {
         settings: &'a RenderSettings,
     ) -> Eye<'a> {
         let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
-        Eye { scene, camera, integrator, settings, lights, has_lens, photons: None }
+        let emission = Emission::new(scene, integrator.guide());
+        Eye { scene, camera, integrator, settings, lights, emission, has_lens, photons: None }
+    }
+
+    /// With light paths that are aimed as a guide says.
+    pub(crate) fn guided(self, guide: Option<Arc<Guide>>) -> Eye<'a> {
+        Eye { emission: Emission::new(self.scene, guide), ..self }
     }
 
     /// The camera ray of a sample, and what its integrator works with.
@@ -48,6 +57,7 @@ impl<'a> Eye<'a> {
             max_depth: self.settings.max_depth,
             camera: self.camera,
             lights: &self.lights,
+            emission: &self.emission,
             photons: self.photons,
             events: None,
         };

@@ -9,7 +9,8 @@ mod bidirectional;
 #[cfg(test)]
 extern crate self as bilux_transport;
 mod classic;
-pub mod error;
+pub mod emission;
+mod error;
 mod eye;
 pub mod film;
 pub mod filters;
@@ -32,6 +33,7 @@ mod trouble;
 pub mod window;
 
 pub use bidirectional::{Merging, Photons};
+pub use emission::{Emission, Guide};
 pub use error::{FilmError, RenderError};
 pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};

@@ -12,9 +12,6 @@ pub struct LightChoice {
     /// `cdf[i]` is the sum of the probabilities `0..=i`.
     cdf: Vec<f32>,
     few: bool,
-    /// The same for the one light that a light path begins at: by power alone, however few there are.
-    emission: Vec<f32>,
-    emission_cdf: Vec<f32>,
 }
 
 /// So many lights are all sampled.
@@ -30,20 +27,12 @@ impl LightChoice {
     }
 
     fn from_powers(powers: impl Iterator<Item = f32>) -> LightChoice {
-        let sound = |p: f32| if p.is_finite() && p > 0.0 { f64::from(p) } else { 0.0 };
-        let powers: Vec<f64> = powers.map(sound).collect();
-        let total: f64 = powers.iter().sum();
-        let shining = powers.iter().filter(|p| **p > 0.0).count().max(1) as f64;
-        let few = shining <= FEW as f64;
-        let by_power = |p: &f64| match *p {
-            p if p > 0.0 => (p / total * (1.0 - SHARED_ALIKE) + SHARED_ALIKE / shining) as f32,
-            _ => 0.0,
-        };
-        let emission: Vec<f32> = powers.iter().map(by_power).collect();
-        let certain = |p: &f32| if few && *p > 0.0 { 1.0 } else { *p };
-        let probabilities: Vec<f32> = emission.iter().map(certain).collect();
-        let (cdf, emission_cdf) = (sums(&probabilities), sums(&emission));
-        LightChoice { probabilities, cdf, few, emission, emission_cdf }
+        let mut probabilities = weights(powers);
+        let few = probabilities.iter().filter(|p| **p > 0.0).count() <= FEW;
+        if few {
+            probabilities.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p = 1.0);
+        }
+        LightChoice { cdf: sums(&probabilities), probabilities, few }
     }
 
     /// True when all lights are always sampled, whatever number is given.
@@ -63,21 +52,6 @@ impl LightChoice {
         index..index + 1
     }
 
-    /// The light that a light path begins at, and its probability; `None` where nothing shines.
-    #[inline]
-    pub fn sample_emission(&self, u: f32) -> Option<(usize, f32)> {
-        let wanted = u * self.emission_cdf.last()?;
-        let index = self.emission_cdf.partition_point(|&sum| sum <= wanted).min(self.emission_cdf.len() - 1);
-        let probability = self.emission[index];
-        (probability > 0.0).then_some((index, probability))
-    }
-
-    /// The probability with which a light path begins at a light.
-    #[inline]
-    pub fn emission_probability(&self, light: usize) -> f32 {
-        self.emission[light]
-    }
-
     /// The probability of a light.
     #[inline]
     pub fn probability(&self, light: usize) -> f32 {
@@ -85,8 +59,21 @@ impl LightChoice {
     }
 }
 
+/// Probabilities for lights of these powers.
+pub(crate) fn weights(powers: impl Iterator<Item = f32>) -> Vec<f32> {
+    let sound = |p: f32| if p.is_finite() && p > 0.0 { f64::from(p) } else { 0.0 };
+    let powers: Vec<f64> = powers.map(sound).collect();
+    let total: f64 = powers.iter().sum();
+    let shining = powers.iter().filter(|p| **p > 0.0).count().max(1) as f64;
+    let by_power = |p: &f64| match *p {
+        p if p > 0.0 => (p / total * (1.0 - SHARED_ALIKE) + SHARED_ALIKE / shining) as f32,
+        _ => 0.0,
+    };
+    powers.iter().map(by_power).collect()
+}
+
 /// Of all up to each.
-fn sums(probabilities: &[f32]) -> Vec<f32> {
+pub(crate) fn sums(probabilities: &[f32]) -> Vec<f32> {
     let mut sum = 0.0;
     let add = |p: &f32| {
         sum += p;

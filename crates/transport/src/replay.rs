@@ -6,7 +6,7 @@ use crate::eye::Eye;
 use crate::film::{MAX_SIDE, scale_exponent};
 use crate::integrators::PixelIntegrator;
 use crate::render::RenderSettings;
-use crate::splats::Splats;
+use crate::splats::{Shown, Splats};
 use crate::task::Event;
 use crate::trouble::SamplePlace;
 use crate::window::Window;
@@ -56,7 +56,7 @@ pub fn replay(
     let whole = Window::whole(width, height);
     let trace = |merging: &Merging| {
         let ways = |eta, light_paths| merging.ways(eta, light_paths);
-        Photons::trace(&eye, merging, &[whole], sample, ways, None).0
+        Photons::trace(&eye, merging, &[whole], sample, ways, None::<&Shown>).0
     };
     let photons = integrator.merging().map(trace);
     eye.photons = photons.as_ref();

@@ -5,7 +5,7 @@
 //! iteration counts when all of its light paths have arrived, and not before, since half of them would be half of the
 //! light.
 
-use crate::bidirectional::{Found, Tally, Way};
+use crate::bidirectional::{Found, Onlooker, Tally, Way};
 use crate::error::FilmError;
 use crate::film::{Film, to_steps, zeroed};
 use crate::filters::Filter;
@@ -133,17 +133,24 @@ impl<'a> Shown<'a> {
         Ok(Shown { settings, scale_exponent, iterations })
     }
 
-    pub(crate) fn splats(&self) -> Splats<'a> {
+    pub(crate) fn into_iterations(self) -> Iterations {
+        self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl<'a, const N: usize> Onlooker<N> for Shown<'a> {
+    type Tally = Splats<'a>;
+
+    fn tally(&self) -> Splats<'a> {
         Splats::new(self.settings, self.settings.window(), self.scale_exponent)
     }
 
-    /// Takes over what the light paths of one tile have left.
-    pub(crate) fn take(&self, splats: &mut Splats) {
-        self.iterations.lock().unwrap_or_else(PoisonError::into_inner).take(&mut splats.deposits);
+    fn begin(splats: &mut Splats<'a>, x: u32, y: u32, sample: u32) {
+        splats.begin(x, y, sample);
     }
 
-    pub(crate) fn into_iterations(self) -> Iterations {
-        self.iterations.into_inner().unwrap_or_else(PoisonError::into_inner)
+    fn take(&self, _tile: usize, mut splats: Splats<'a>) {
+        self.iterations.lock().unwrap_or_else(PoisonError::into_inner).take(&mut splats.deposits);
     }
 }
 

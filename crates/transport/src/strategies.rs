@@ -7,7 +7,7 @@ use crate::eye::Eye;
 use crate::film::{Film, scale_exponent, zeroed};
 use crate::integrators::PixelIntegrator;
 use crate::render::{Progress, RenderSettings, TILE, threads};
-use crate::splats::{Iterations, Splats};
+use crate::splats::{Iterations, Shown, Splats};
 use crate::window::Window;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Camera, Counters, Scene, Tracer};
@@ -103,7 +103,8 @@ pub fn strategies(
         for iteration in settings.samples.clone() {
             let mut eye = eye();
             let ways = |eta, light_paths| merging.ways(eta, light_paths);
-            let (photons, _) = pool.install(|| Photons::trace(&eye, merging, &tiles, iteration, ways, None));
+            let (photons, _) =
+                pool.install(|| Photons::trace(&eye, merging, &tiles, iteration, ways, None::<&Shown>));
             eye.photons = Some(&photons);
             pass(&eye, iteration..iteration + 1)?;
         }

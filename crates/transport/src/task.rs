@@ -1,6 +1,7 @@
 //! What an integrator works with while it looks at one sample.
 
 use crate::bidirectional::Photons;
+use crate::emission::Emission;
 use crate::light_choice::LightChoice;
 use crate::sampler::PixelSampler;
 use bilux_scene::{Camera, Scene, Tracer};
@@ -17,6 +18,8 @@ pub struct Task<'a, 's> {
     pub camera: &'a dyn Camera,
     /// Picks lights by what they give.
     pub lights: &'a LightChoice,
+    /// Where light paths begin.
+    pub emission: &'a Emission,
     /// What the light paths of this iteration have left, where paths are merged.
     pub photons: Option<&'a Photons>,
     /// What happened on the way, if anybody wants to know.

@@ -296,7 +296,12 @@ fn merging_comes_to_the_same() {
     let unjoined = spec("vcm").with("joins", false);
     // Light paths of a part of the pixels only, seen from the camera for all of them.
     let few = unjoined.clone().with("light_paths", bilux_scene::Value::Integer(90));
-    for (i, spec) in [spec("vcm"), spec("sppm"), unjoined, few].iter().enumerate() {
+    let unshown = spec("vcm").with("splats", false);
+    let alone = unjoined.clone().with("splats", false);
+    let switched = [unjoined, unshown, alone];
+    let indirect = switched.clone().map(|spec| spec.with("direct", false));
+    let all = [spec("vcm"), spec("vcm").with("direct", false), spec("sppm"), few];
+    for (i, spec) in all.iter().chain(&switched).chain(&indirect).enumerate() {
         let found = blocks(&scene, &*integrators::build(spec).unwrap(), 100 * (i as u64 + 1));
         let p = agreement(&path, &found);
         assert!(p > UNLIKELY, "path and {spec:?}: p = {p}");

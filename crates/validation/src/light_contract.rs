@@ -21,10 +21,12 @@ pub struct LightCase {
 }
 
 /// The checks, by name.
-pub const CHECKS: [(&str, Check); 6] = [
+pub const CHECKS: [(&str, Check); 8] = [
     ("samples are sound", samples_are_sound),
     ("densities are as said", densities_are_as_said),
     ("what is sent is the power", what_is_sent_is_the_power),
+    ("aimed rays go where they should", aimed_rays_go_where_they_should),
+    ("what is aimed everywhere is the power", what_is_aimed_everywhere_is_the_power),
     ("direct light finds what was sent", direct_light_finds_what_was_sent),
     ("what is picked is met with the same density", picked_is_met),
     ("flux through a plane is the same both ways", flux_is_the_same_both_ways),
@@ -102,6 +104,48 @@ pub fn what_is_sent_is_the_power(case: &LightCase) -> Result<(), String> {
     let p = sent.p_value_of(power);
     if p < SIGNIFICANCE {
         return Err(format!("sends {}, power {power}, p = {p:.2e}", sent.mean()));
+    }
+    Ok(())
+}
+
+impl LightCase {
+    /// Aims, each with its ray.
+    fn aimed(&self, stream: u64, count: u64) -> impl Iterator<Item = (Vec2, Option<EmissionSample>)> {
+        let bounds = self.scene.bounds();
+        (0..count).map(move |i| {
+            let (aim, u) = (uniforms(stream, i).1, uniforms(stream + 1, i).1);
+            (aim, self.light.sample_le_aimed(&bounds, self.time, u, aim))
+        })
+    }
+}
+
+/// A ray passes what it was aimed at, with the density besides that `unaimed_pdf` says of it.
+pub fn aimed_rays_go_where_they_should(case: &LightCase) -> Result<(), String> {
+    let bounds = case.scene.bounds();
+    for (aim, sample) in case.aimed(16, 2000) {
+        let Some(sample) = sample else { continue };
+        let passed = case.light.aim(&bounds, sample.p + sample.direction, sample.direction);
+        let said = case.light.unaimed_pdf(&bounds, sample.pdf_direct, sample.direction, sample.cos());
+        if passed.distance(aim) > 1e-4 || !near(said, sample.pdf_emission, 1e-5) {
+            return Err(format!("aimed at {aim}, passes {passed}; unaimed_pdf {said} of {sample:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// Rays that are aimed at everything alike carry the power; of a light infinitely far those that pass the scene's sphere.
+pub fn what_is_aimed_everywhere_is_the_power(case: &LightCase) -> Result<(), String> {
+    let bounds = case.scene.bounds();
+    let aim_pdf = f64::from(case.light.aim_pdf(&bounds));
+    let passes = |aim: Vec2| !case.light.is_infinite() || (aim * 2.0 - Vec2::ONE).length() < 1.0;
+    let mut sent = Tally::default();
+    for (aim, sample) in case.aimed(18, SAMPLES) {
+        sent.add(sample.filter(|_| passes(aim)).map_or(0.0, |sample| power_of(&sample) / aim_pdf));
+    }
+    let power = case.power.unwrap_or_else(|| f64::from(case.light.power(&bounds)));
+    let p = sent.p_value_of(power);
+    if p < SIGNIFICANCE {
+        return Err(format!("aims {}, power {power}, p = {p:.2e}", sent.mean()));
     }
     Ok(())
 }

@@ -152,6 +152,8 @@ struct Spoilt {
 enum Spoil {
     /// The rays that it sends.
     Sent(fn(EmissionSample) -> EmissionSample),
+    /// The rays that are aimed.
+    Aimed(fn(EmissionSample) -> EmissionSample),
     /// What is picked on it.
     Picked(fn(LightSample) -> LightSample),
     /// The density with which a start is picked.
@@ -180,6 +182,15 @@ impl Light for Spoilt {
     fn sample_le(&self, bounds: &Aabb, time: f32, u_point: Vec2, u: Vec2) -> Option<EmissionSample> {
         let sample = self.light.sample_le(bounds, time, u_point, u);
         if let Spoil::Sent(spoil) = self.spoil { sample.map(spoil) } else { sample }
+    }
+
+    fn sample_le_aimed(&self, bounds: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let sample = self.light.sample_le_aimed(bounds, time, u, aim);
+        if let Spoil::Aimed(spoil) = self.spoil { sample.map(spoil) } else { sample }
+    }
+
+    fn unaimed_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {
+        self.light.unaimed_pdf(bounds, pdf_direct, direction, cos)
     }
 
     fn finds_all(&self) -> bool {
@@ -254,6 +265,33 @@ const PLANTED: &[Bug] = &[
         "panel",
         "what is sent is the power",
         Spoil::Sent(|s| EmissionSample { le: s.le * s.cos(), ..s }),
+    ),
+    (
+        "an aim turned about",
+        "panel",
+        "aimed rays go where they should",
+        Spoil::Aimed(|s| EmissionSample {
+            direction: Vec3::new(s.direction.z, s.direction.y, -s.direction.x),
+            ..s
+        }),
+    ),
+    (
+        "an aim past the scene",
+        "sky",
+        "aimed rays go where they should",
+        Spoil::Aimed(|s| EmissionSample { p: s.p + Vec3::X * 0.1, ..s }),
+    ),
+    (
+        "2% too dense",
+        "near sphere",
+        "what is aimed everywhere is the power",
+        Spoil::Aimed(|s| EmissionSample { pdf_emission: 1.02 * s.pdf_emission, ..s }),
+    ),
+    (
+        "a cosine that the aim has no part in",
+        "panel",
+        "what is aimed everywhere is the power",
+        Spoil::Aimed(|s| EmissionSample { pdf_emission: s.pdf_emission * s.cos(), ..s }),
     ),
     (
         "the wrong instance",

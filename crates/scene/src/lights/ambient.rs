@@ -35,6 +35,14 @@ impl Light for Ambient {
         None
     }
 
+    fn sample_le_aimed(&self, _: &Aabb, _time: f32, _u: Vec2, _aim: Vec2) -> Option<EmissionSample> {
+        None
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        0.0
+    }
+
     fn emission_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
         0.0
     }

@@ -1,13 +1,12 @@
 //! `directional`: parallel light from infinitely far, as from the sun.
 
-use super::distant::{disc_pdf_area, sample_disc};
+use super::distant::{Across, disc_pdf_area, ray};
 use super::{
     BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
-use bilux_accel::Primitive;
 use bilux_math::registry::Entry;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -56,18 +55,16 @@ impl Light for Directional {
     }
 
     fn sample_le(&self, bounds: &Aabb, _time: f32, u_point: Vec2, _u: Vec2) -> Option<EmissionSample> {
-        let direction = -self.towards;
-        let pdf_emission = self.emission_pdf(bounds, 1.0, direction, 1.0);
-        (pdf_emission > 0.0).then(|| EmissionSample {
-            p: sample_disc(bounds, direction, u_point),
-            p_error: Vec3::ZERO,
-            n_light: Vec3::ZERO,
-            direction,
-            le: self.irradiance,
-            pdf_emission,
-            pdf_direct: 1.0,
-            primitive: Primitive::NONE,
-        })
+        let pdf_emission = self.emission_pdf(bounds, 1.0, -self.towards, 1.0);
+        ray(bounds, Across::Anywhere(u_point), -self.towards, self.irradiance, (pdf_emission, 1.0))
+    }
+
+    fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, _u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        ray(bounds, Across::At(aim), -self.towards, self.irradiance, (1.0, 1.0))
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        1.0
     }
 
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

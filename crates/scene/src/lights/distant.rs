@@ -1,8 +1,10 @@
 //! What lights infinitely far have in common: their rays enter the scene through a disc across them, as wide as
 //! the sphere around the scene and just outside of it. [Georgiev 2012]
 
+use super::EmissionSample;
 use crate::surface::gamma;
-use bilux_math::{Aabb, Frame, Vec2, Vec3, warp};
+use bilux_accel::Primitive;
+use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 
 /// Density over area of the points of [`sample_disc`]; zero where the scene has no size, or none that can be squared.
 pub(super) fn disc_pdf_area(bounds: &Aabb) -> f32 {
@@ -11,12 +13,52 @@ pub(super) fn disc_pdf_area(bounds: &Aabb) -> f32 {
     if pdf.is_finite() { pdf } else { 0.0 }
 }
 
-/// A point from which light along `direction` may reach anything within `bounds`, which must not be empty.
-pub(super) fn sample_disc(bounds: &Aabb, direction: Vec3, u: Vec2) -> Vec3 {
+/// How light along a direction is led into a scene, which must not be empty.
+#[derive(Clone, Copy)]
+pub(super) enum Across {
+    /// Through any point of the disc alike.
+    Anywhere(Vec2),
+    /// At a place of the square around it. See [`place_across`].
+    At(Vec2),
+}
+
+/// A ray of light along `direction`, which is found with density `pdf_direct`, and sent with density `pdf_emission` if that
+/// is not zero.
+pub(super) fn ray(
+    bounds: &Aabb,
+    place: Across,
+    direction: Vec3,
+    le: Rgb,
+    (pdf_emission, pdf_direct): (f32, f32),
+) -> Option<EmissionSample> {
     let (centre, radius) = (bounds.centre(), bounds.radius());
     let across = Frame::from_normal(direction);
-    let d = warp::sample_disc(u) * radius;
+    let d = match place {
+        Across::Anywhere(u) => warp::sample_disc(u),
+        Across::At(at) => at * 2.0 - Vec2::ONE,
+    } * radius;
     // Beyond what rounding can do to the sphere and to the point.
     let away = radius + gamma(16) * (radius + centre.abs().max_element());
-    centre + across.s * d.x + across.t * d.y - direction * away
+    (pdf_emission > 0.0).then(|| EmissionSample {
+        p: centre + across.s * d.x + across.t * d.y - direction * away,
+        p_error: Vec3::ZERO,
+        n_light: Vec3::ZERO,
+        direction,
+        le,
+        pdf_emission,
+        pdf_direct,
+        primitive: Primitive::NONE,
+    })
+}
+
+/// Where the line through `p` along `direction` passes the square around the disc: 0..=1 on both axes within it.
+pub(super) fn place_across(bounds: &Aabb, p: Vec3, direction: Vec3) -> Vec2 {
+    let across = Frame::from_normal(direction);
+    let d = (p - bounds.centre()) / bounds.radius();
+    Vec2::new(across.s.dot(d), across.t.dot(d)) * 0.5 + Vec2::splat(0.5)
+}
+
+/// Density over area of places that are uniform over that square; zero where it has no size.
+pub(super) fn square_pdf_area(bounds: &Aabb) -> f32 {
+    disc_pdf_area(bounds) * (0.25 / warp::disc_pdf_area())
 }

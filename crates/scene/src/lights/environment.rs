@@ -1,12 +1,11 @@
 //! `environment`: light from all around, infinitely far: one colour, a sky that changes with height, or a picture.
 
-use super::distant::{disc_pdf_area, sample_disc};
+use super::distant::{Across, disc_pdf_area, ray};
 use super::environment_map::EnvironmentMap;
 use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample};
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
-use bilux_accel::Primitive;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::PI;
@@ -108,19 +107,21 @@ impl Light for Environment {
     }
 
     fn sample_le(&self, bounds: &Aabb, _: f32, u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
-        let direction = -warp::sample_sphere(u_direction);
+        let towards = warp::sample_sphere(u_direction);
         let pdf_direct = warp::sphere_pdf_solid_angle();
-        let pdf_emission = self.emission_pdf(bounds, pdf_direct, direction, 1.0);
-        (pdf_emission > 0.0).then(|| EmissionSample {
-            p: sample_disc(bounds, direction, u_point),
-            p_error: Vec3::ZERO,
-            n_light: Vec3::ZERO,
-            direction,
-            le: self.le(-direction),
-            pdf_emission,
-            pdf_direct,
-            primitive: Primitive::NONE,
-        })
+        let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
+        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), (pdf_emission, pdf_direct))
+    }
+
+    fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let towards = warp::sample_sphere(u);
+        let pdf_direct = warp::sphere_pdf_solid_angle();
+        let pdf = self.unaimed_pdf(bounds, pdf_direct, -towards, 1.0);
+        ray(bounds, Across::At(aim), -towards, self.le(towards), (pdf, pdf_direct))
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        if self.backdrop { 0.0 } else { pdf_direct }
     }
 
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

@@ -6,12 +6,11 @@
 //! Points that ask for light are only sent where there is more of it than on average: scattering finds the rest as well,
 //! and the two ways together do better than if each tried to find all of it. [Karlík 2019]
 
-use super::distant::{disc_pdf_area, sample_disc};
+use super::distant::{Across, disc_pdf_area, ray};
 use super::{EmissionSample, Light, LightSample};
 use crate::classic::ClassicLight;
 use crate::surface::Surface;
 use crate::texture::Texture;
-use bilux_accel::Primitive;
 use bilux_math::transcendental::{acos, atan2, sin_cos, sin_cos_f64};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -223,16 +222,16 @@ impl Light for EnvironmentMap {
         let (towards, _) = self.sample(&self.sent, u_direction)?;
         let pdf_direct = self.pdf(&self.asked, towards);
         let pdf_emission = self.emission_pdf(bounds, pdf_direct, -towards, 1.0);
-        (pdf_emission > 0.0).then(|| EmissionSample {
-            p: sample_disc(bounds, -towards, u_point),
-            p_error: Vec3::ZERO,
-            n_light: Vec3::ZERO,
-            direction: -towards,
-            le: self.le(towards),
-            pdf_emission,
-            pdf_direct,
-            primitive: Primitive::NONE,
-        })
+        ray(bounds, Across::Anywhere(u_point), -towards, self.le(towards), (pdf_emission, pdf_direct))
+    }
+
+    fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let (towards, pdf) = self.sample(&self.sent, u)?;
+        ray(bounds, Across::At(aim), -towards, self.le(towards), (pdf, self.pdf(&self.asked, towards)))
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {
+        self.pdf(&self.sent, -direction)
     }
 
     fn emission_pdf(&self, bounds: &Aabb, _pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {

@@ -128,6 +128,28 @@ impl MeshLight {
         if to_world.is_identity() { (p, error) } else { transform_with_error(&to_world, p, error) }
     }
 
+    /// A ray from a point of a triangle, sent with density `pdf_emission` if that is not zero.
+    fn ray(
+        &self,
+        (triangle, weights): (usize, [f32; 3]),
+        time: f32,
+        direction: Vec3,
+        pdf_emission: f32,
+    ) -> Option<EmissionSample> {
+        let Facet { normal, pdf_area, .. } = self.facet(triangle, time);
+        let (p, p_error) = self.point_with_error(triangle, weights, time);
+        (pdf_emission.is_finite() && pdf_emission > 0.0).then(|| EmissionSample {
+            p,
+            p_error,
+            n_light: if normal.dot(direction) < 0.0 { -normal } else { normal },
+            direction,
+            le: self.radiance,
+            pdf_emission,
+            pdf_direct: pdf_area,
+            primitive: Primitive { index: self.first.index + triangle as u32, ..self.first },
+        })
+    }
+
     fn middle(&self, time: f32) -> Vec3 {
         self.motion.at(time).point(self.middle)
     }
@@ -200,23 +222,23 @@ impl Light for MeshLight {
     ) -> Option<EmissionSample> {
         let (triangle, weights) = self.sample_weights(u_point);
         let Facet { normal, pdf_area, .. } = self.facet(triangle, time);
-        let (p, p_error) = self.point_with_error(triangle, weights, time);
         // Both sides give light: each takes half of the numbers.
         let is_front = u_direction.x < 0.5;
         let u = Vec2::new(2.0 * u_direction.x - if is_front { 0.0 } else { 1.0 }, u_direction.y);
         let n_light = if is_front { normal } else { -normal };
         let direction = Frame::from_normal(n_light).to_world(warp::sample_cosine_hemisphere(u)).normalize();
         let pdf_emission = self.emission_pdf(bounds, pdf_area, direction, n_light.dot(direction).abs());
-        (pdf_emission.is_finite() && pdf_emission > 0.0).then(|| EmissionSample {
-            p,
-            p_error,
-            n_light,
-            direction,
-            le: self.radiance,
-            pdf_emission,
-            pdf_direct: pdf_area,
-            primitive: Primitive { index: self.first.index + triangle as u32, ..self.first },
-        })
+        self.ray((triangle, weights), time, direction, pdf_emission)
+    }
+
+    fn sample_le_aimed(&self, _: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let (triangle, weights) = self.sample_weights(u);
+        let pdf_area = self.facet(triangle, time).pdf_area;
+        self.ray((triangle, weights), time, warp::square_to_sphere(aim).normalize(), pdf_area)
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_direct
     }
 
     fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {

@@ -28,7 +28,7 @@ use crate::surface::{leaving, offset_origin};
 use crate::texture::Texture;
 use bilux_accel::{Primitive, Ray};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::{Aabb, Rgb, Vec2, Vec3};
+use bilux_math::{Aabb, Rgb, Vec2, Vec3, warp};
 use std::sync::Arc;
 
 /// Light that arrives at a point.
@@ -135,6 +135,29 @@ pub trait Light: Send + Sync {
     /// a unit vector away from the light, from where direct sampling finds the light with density `pdf_direct`
     /// ([`EmissionSample::pdf_direct`], whose mean does where that depends on who asks). `cos` is [`EmissionSample::cos`].
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+
+    /// As [`Light::sample_le`], but aimed ([`Light::aim`]): `u` picks what is left, the point on a light nearby and the
+    /// direction of one infinitely far. The sample's `pdf_emission` is the density of that alone.
+    fn sample_le_aimed(&self, bounds: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample>;
+
+    /// The density of what [`Light::sample_le_aimed`] picks besides; all else as in [`Light::emission_pdf`].
+    fn unaimed_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32;
+
+    /// What a ray of light through `p` along `direction` is aimed at, as a place on the unit square: of a light nearby the
+    /// direction, by [`warp::sphere_to_square`]; of one infinitely far the point where it passes a square across it,
+    /// around the scene, and without that square what is not within 0..=1.
+    fn aim(&self, bounds: &Aabb, p: Vec3, direction: Vec3) -> Vec2 {
+        if self.is_infinite() {
+            distant::place_across(bounds, p, direction)
+        } else {
+            warp::sphere_to_square(direction)
+        }
+    }
+
+    /// The density of an aim that is uniform over the square: over solid angle, or over area for a light infinitely far.
+    fn aim_pdf(&self, bounds: &Aabb) -> f32 {
+        if self.is_infinite() { distant::square_pdf_area(bounds) } else { warp::sphere_pdf_solid_angle() }
+    }
 
     /// True when it is infinitely far, so that its direct density is one of directions.
     fn is_infinite(&self) -> bool;

@@ -31,6 +31,20 @@ pub(super) const ENTRY: LightEntry = LightEntry {
     },
 };
 
+/// A ray of light from a point, sent with density `pdf_emission` if that is not zero.
+pub(super) fn ray(position: Vec3, direction: Vec3, le: Rgb, pdf_emission: f32) -> Option<EmissionSample> {
+    (pdf_emission > 0.0).then_some(EmissionSample {
+        p: position,
+        p_error: Vec3::ZERO,
+        n_light: Vec3::ZERO,
+        direction,
+        le,
+        pdf_emission,
+        pdf_direct: 1.0,
+        primitive: Primitive::NONE,
+    })
+}
+
 struct Point {
     position: Vec3,
     intensity: Rgb,
@@ -57,16 +71,15 @@ impl Light for Point {
 
     fn sample_le(&self, bounds: &Aabb, _: f32, _u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
         let direction = warp::sample_sphere(u_direction);
-        Some(EmissionSample {
-            p: self.position,
-            p_error: Vec3::ZERO,
-            n_light: Vec3::ZERO,
-            direction,
-            le: self.intensity,
-            pdf_emission: self.emission_pdf(bounds, 1.0, direction, 1.0),
-            pdf_direct: 1.0,
-            primitive: Primitive::NONE,
-        })
+        ray(self.position, direction, self.intensity, self.emission_pdf(bounds, 1.0, direction, 1.0))
+    }
+
+    fn sample_le_aimed(&self, _: &Aabb, _time: f32, _u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        ray(self.position, warp::square_to_sphere(aim).normalize(), self.intensity, 1.0)
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_direct
     }
 
     fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {

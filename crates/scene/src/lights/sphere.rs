@@ -95,6 +95,23 @@ impl SphereLight {
         1.0 / (4.0 * PI * self.sphere.radius * self.sphere.radius)
     }
 
+    /// A ray from where the normal is `n_light`, sent with the density `pdf` of its cosine.
+    fn ray(&self, n_light: Vec3, direction: Vec3, pdf: impl Fn(f32) -> f32) -> Option<EmissionSample> {
+        let (p, p_error) = self.sphere.point(n_light.as_dvec3());
+        let cos = n_light.dot(direction);
+        let pdf_emission = pdf(cos);
+        (cos > 0.0 && pdf_emission.is_finite() && pdf_emission > 0.0).then_some(EmissionSample {
+            p,
+            p_error,
+            n_light,
+            direction,
+            le: self.radiance,
+            pdf_emission,
+            pdf_direct: self.uniform_pdf_area(),
+            primitive: self.primitive,
+        })
+    }
+
     /// `None` from within, and from where nothing of it is left in an f32.
     fn cone(&self, from: Vec3) -> Option<Cone> {
         // In f64: close to the surface all depends on how much further than the radius it is to the middle.
@@ -170,21 +187,21 @@ impl Light for SphereLight {
         u_direction: Vec2,
     ) -> Option<EmissionSample> {
         let n_light = warp::sample_sphere(u_point).normalize();
-        let (p, p_error) = self.sphere.point(n_light.as_dvec3());
         let local = warp::sample_cosine_hemisphere(u_direction);
         let direction = Frame::from_normal(n_light).to_world(local).normalize();
-        let (pdf_direct, cos) = (self.uniform_pdf_area(), n_light.dot(direction));
-        let pdf_emission = self.emission_pdf(bounds, pdf_direct, direction, cos.abs());
-        (cos > 0.0 && pdf_emission.is_finite() && pdf_emission > 0.0).then_some(EmissionSample {
-            p,
-            p_error,
-            n_light,
-            direction,
-            le: self.radiance,
-            pdf_emission,
-            pdf_direct,
-            primitive: self.primitive,
-        })
+        let pdf = |cos| self.emission_pdf(bounds, self.uniform_pdf_area(), direction, cos);
+        self.ray(n_light, direction, pdf)
+    }
+
+    /// From a point of the disc that is seen from where the ray goes.
+    fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let direction = warp::square_to_sphere(aim).normalize();
+        let n_light = Frame::from_normal(direction).to_world(warp::sample_cosine_hemisphere(u)).normalize();
+        self.ray(n_light, direction, |cos| self.unaimed_pdf(bounds, 0.0, direction, cos))
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
+        warp::cosine_hemisphere_pdf_solid_angle(cos) / (self.sphere.radius * self.sphere.radius)
     }
 
     /// Rays start evenly all over the surface, whoever asks.

@@ -6,7 +6,6 @@ use super::{
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
-use bilux_accel::Primitive;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::cos;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
@@ -93,17 +92,19 @@ impl Light for Spot {
     fn sample_le(&self, bounds: &Aabb, _: f32, _u_point: Vec2, u_direction: Vec2) -> Option<EmissionSample> {
         let local = warp::sample_cone(u_direction, self.cos_outer);
         let direction = Frame::from_normal(self.axis).to_world(local).normalize();
-        let pdf_emission = self.emission_pdf(bounds, 1.0, direction, 1.0);
-        (pdf_emission > 0.0).then(|| EmissionSample {
-            p: self.position,
-            p_error: Vec3::ZERO,
-            n_light: Vec3::ZERO,
-            direction,
-            le: self.intensity * self.falloff(-direction),
-            pdf_emission,
-            pdf_direct: 1.0,
-            primitive: Primitive::NONE,
-        })
+        let le = self.intensity * self.falloff(-direction);
+        super::point::ray(self.position, direction, le, self.emission_pdf(bounds, 1.0, direction, 1.0))
+    }
+
+    fn sample_le_aimed(&self, _: &Aabb, _time: f32, _u: Vec2, aim: Vec2) -> Option<EmissionSample> {
+        let direction = warp::square_to_sphere(aim).normalize();
+        let falloff = self.falloff(-direction);
+        let shines = if falloff > 0.0 { 1.0 } else { 0.0 };
+        super::point::ray(self.position, direction, self.intensity * falloff, shines)
+    }
+
+    fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
+        pdf_direct
     }
 
     fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, direction: Vec3, _cos: f32) -> f32 {

@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
 use super::walk::{Vertex, count};
-use super::{Found, Lanes, Photons, Step, Tally, Way, Ways};
+use super::{Found, Lanes, Photons, Step, Tally, Way, Ways, favour};
 use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
@@ -23,10 +23,9 @@ pub(crate) fn to_camera<const N: usize>(
     let media = y.media_towards(task.scene(), seen.wi);
     let passed = media.visible(task.tracer, &y.surface.spawn_to(seen.p), seen.p.distance(y.surface.p))?;
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
-    let others =
-        y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance), ways);
+    let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
     let light = y.beta * scattered * passed * seen.density;
-    Some((seen.film, Found { light, own: ways.splats, others }))
+    Some((seen.film, Found { own: ways.splats, others, origin: y.origin, ..Found::only(light) }))
 }
 
 /// All vertices of a light path seen from the camera.
@@ -36,7 +35,7 @@ pub(crate) fn show_to_camera<const N: usize>(
     ways: &Ways<N>,
     tally: &mut impl Tally<N>,
 ) {
-    for y in light_path {
+    for y in light_path.iter().filter(|y| y.depth > 0 || ways.direct) {
         task.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
         if let Some((film, found)) = to_camera(task, y, ways) {
@@ -71,15 +70,15 @@ pub(crate) fn to_light<const N: usize>(
     // Of a light without extent the point is certain: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
-    let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_direct / area_to_angle, -sample.wi, cos_light)
-        * task.lights.emission_probability(index);
+    let pdf_emission =
+        task.emission.pdf(scene, index, z.surface.p, pdf_direct / area_to_angle, -sample.wi, cos_light);
     let met = if light.is_delta() { 0.0 } else { pdf / (pdf_direct * probability) };
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
-    let from_light =
-        z.partial.others(arriving, z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance), ways);
+    let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
+    let from_light = z.partial.others_of_direct(arriving, back, ways.direct);
     let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
-    Some(Found { light, own: Lanes::ONE, others: Lanes::ONE * met + from_light })
+    Some(Found { others: Lanes::ONE * met + from_light, favour: favour(met), ..Found::only(light) })
 }
 
 /// A camera vertex and a light vertex (s, t > 1), and the light between them.
@@ -105,11 +104,12 @@ pub(crate) fn to_vertex<const N: usize>(
     let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
     let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
     let from_camera =
-        y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y), ways);
+        y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y));
     let from_light =
-        z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z), ways);
+        z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
     let light = z.beta * f_z * f_y * y.beta * passed / distance2;
-    Some(Found { light, own: ways.joins, others: from_camera + from_light })
+    let others = from_camera + from_light;
+    Some(Found { own: ways.joins, others, origin: y.origin, ..Found::only(light) })
 }
 
 /// A camera vertex and all photons around it, with the light that each brings.
@@ -121,7 +121,7 @@ pub(crate) fn merged<const N: usize>(
 ) {
     photons.around(z.surface.p, |y| {
         // On the same surface, not on the other side of a sheet or around a corner.
-        if z.depth + y.depth + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+        if z.depth + u32::from(y.depth) + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let (scattered, pdf) = z.bsdf.eval_and_pdf(z.wo, y.wo, TransportMode::Radiance);
@@ -131,10 +131,11 @@ pub(crate) fn merged<const N: usize>(
         // Photons come per area of the surface itself; `eval` has the cosine to the shading normal in it.
         let cos = z.surface.n_geom.dot(y.wo).abs();
         let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo, TransportMode::Importance));
-        let others = y.partial.before(pdf) + from_light;
+        let others = y.joined + y.d_vc * pdf + from_light;
         let light = z.beta * scattered * y.beta * (1.0 / cos);
-        let way = Way::Merged { s: count(y.depth), t: z.count() };
-        visit(way, &Found { light, own: photons.ways().eta, others });
+        let way = Way::Merged { s: count(y.depth.into()), t: z.count() };
+        let own = photons.ways().eta;
+        visit(way, &Found { own, others, origin: y.origin, ..Found::only(light) });
     });
 }
 

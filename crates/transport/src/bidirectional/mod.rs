@@ -17,10 +17,12 @@ mod ways;
 mod weights;
 
 pub(crate) use connect::{merged, show_to_camera, to_camera, to_light, to_vertex};
+pub(crate) use photons::Onlooker;
 pub use photons::{Merging, Photons};
 pub(crate) use walk::{Vertex, Walk, count};
-pub(crate) use ways::{Found, Lanes, Step, Tally, Way, Ways};
+pub(crate) use ways::{Found, Lanes, Step, Tally, Way, Ways, favour};
 
+use crate::emission::Start;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Surface, TransportMode};
@@ -32,43 +34,68 @@ pub(crate) struct Partial<const N: usize = 1> {
     pub(crate) d_vcm: f32,
     /// How much of it counts, since there are so many ways that join there.
     pub(crate) joined: Lanes<N>,
-    /// dVC: the same, summed over the steps before.
+    /// The same, where joining there is being seen from the camera.
+    pub(crate) shown: Lanes<N>,
+    /// Light paths that merging here counts, over area.
+    pub(crate) merged: Lanes<N>,
+    /// dVC: what joining and merging count together, summed over the steps before.
     pub(crate) d_vc: Lanes<N>,
+    /// What of it does not count if a light is met next, since light paths leave direct light to others.
+    pub(crate) beyond: Lanes<N>,
 }
 
 impl<const N: usize> Partial<N> {
     /// Of a camera path that has met nothing yet.
-    pub(crate) const START: Partial<N> = Partial { d_vcm: 0.0, joined: Lanes::ZERO, d_vc: Lanes::ZERO };
+    pub(crate) const START: Partial<N> = Partial {
+        d_vcm: 0.0,
+        joined: Lanes::ZERO,
+        shown: Lanes::ZERO,
+        merged: Lanes::ZERO,
+        d_vc: Lanes::ZERO,
+        beyond: Lanes::ZERO,
+    };
 
     /// Of a light path that leaves its light with the cosine `cos`. `pdf_direct` does not know yet who would ask.
     fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
-        Partial { d_vcm: pdf_direct / pdf_emission, joined: Lanes::ZERO, d_vc: Lanes::ONE * d_vc }
+        Partial { d_vcm: pdf_direct / pdf_emission, d_vc: Lanes::ONE * d_vc, ..Partial::START }
     }
 
     /// Of a camera path that has met its first surface, given the density of doing so over area.
     pub(crate) fn of_camera(pdf_area: f32, ways: &Ways<N>) -> Partial<N> {
         let d_vcm = 1.0 / pdf_area;
-        Partial { d_vcm, joined: ways.splats * d_vcm, d_vc: Lanes::ZERO }
+        Partial { d_vcm, shown: ways.splats * d_vcm, merged: ways.eta, ..Partial::START }
     }
 
     /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`, where `joins` ways join
-    /// the last vertex with this one.
-    fn arrive(&mut self, distance2: f32, cos: f32, joins: Lanes<N>) {
+    /// the last vertex with this one, and merging counts `merged`.
+    fn arrive(&mut self, distance2: f32, cos: f32, joins: Lanes<N>, merged: Lanes<N>) {
         self.d_vcm *= distance2 / cos;
         self.joined = joins * self.d_vcm;
+        self.shown = Lanes::ZERO;
+        self.merged = merged;
         self.d_vc = self.d_vc * (1.0 / cos);
+        self.beyond = self.beyond * (1.0 / cos);
     }
 
-    /// On leaving under the cosine `cos`, with densities there and back; `None` where there is only one direction.
-    fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, ways: &Ways<N>) {
+    /// On leaving under the cosine `cos`, with densities there and back; `None` where there is only one direction. `counts`
+    /// is false where light paths do not look for what would be direct light here.
+    fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, counts: bool) {
         match pdfs {
             None => {
                 self.d_vcm = 0.0;
-                self.d_vc = self.d_vc * cos;
+                self.d_vc = (self.d_vc + self.beyond) * cos;
+                self.beyond = Lanes::ZERO;
             }
             Some((pdf, pdf_back)) => {
-                self.d_vc = (self.d_vc * pdf_back + self.joined + ways.eta) * (cos / pdf);
+                let here = (self.merged + self.shown) * (cos / pdf);
+                self.d_vc = ((self.d_vc + self.beyond) * pdf_back + self.joined) * (cos / pdf);
+                self.beyond = Lanes::ZERO;
+                if counts {
+                    self.d_vc = self.d_vc + here;
+                } else {
+                    self.beyond = here;
+                }
                 self.d_vcm = 1.0 / pdf;
             }
         }
@@ -76,13 +103,21 @@ impl<const N: usize> Partial<N> {
 
     /// How often all ways together find what the vertex before this subpath's end would be found by with `pdf_area`, and
     /// the one before that with `pdf_back`.
-    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32, ways: &Ways<N>) -> Lanes<N> {
-        (ways.eta + self.before(pdf_back)) * pdf_area
+    pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> Lanes<N> {
+        (self.merged + self.before(pdf_back)) * pdf_area
+    }
+
+    /// The same where that vertex is on a light.
+    pub(crate) fn others_of_direct(&self, pdf_area: f32, pdf_back: f32, counts: bool) -> Lanes<N> {
+        if counts {
+            return self.others(pdf_area, pdf_back);
+        }
+        (self.joined + (self.d_vc + self.beyond) * pdf_back) * pdf_area
     }
 
     /// The same over the density of coming to this vertex, without merging there.
     fn before(&self, pdf_back: f32) -> Lanes<N> {
-        self.joined + self.d_vc * pdf_back
+        self.joined + self.shown + (self.d_vc + self.beyond) * pdf_back
     }
 }
 
@@ -128,20 +163,19 @@ fn begin_at_light<'w, const N: usize>(task: &mut Task, time: f32, ways: &'w Ways
     if task.max_depth == 0 {
         return None;
     }
-    let (index, probability) = task.lights.sample_emission(u_light)?;
     let scene = task.scene();
+    let start = task.emission.sample(scene, time, u_light, (u_point, u_direction))?;
+    let Start { light: index, ray, .. } = start;
     let light = &scene.lights()[index].light;
-    let sample = light.sample_le(&scene.bounds(), time, u_point, u_direction)?;
-    let cos = sample.cos();
-    let pdf_emission = sample.pdf_emission * probability;
-    let pdf_direct = sample.pdf_direct * task.lights.probability(index);
-    let beta = sample.le * (cos / pdf_emission);
+    let (cos, pdf_emission) = (ray.cos(), ray.pdf_emission);
+    let pdf_direct = ray.pdf_direct * task.lights.probability(index);
+    let beta = ray.le * (cos / pdf_emission);
     let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
     // The start of a ray from infinity is known by area already.
     let by_area = light.is_infinite();
-    let ray = sample.spawn(time);
-    let walk = Walk::new(TransportMode::Importance, ray, beta, partial, by_area, ways);
-    Some(walk.leaving(index, sample))
+    let spawned = ray.spawn(time);
+    let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, ways);
+    Some(walk.leaving(start))
 }
 
 /// Light that a camera path meets by chance (s = 0): its radiance, and the densities with which the same path would have
@@ -161,9 +195,9 @@ impl Met {
 
     /// The same for a camera path that carries `beta`.
     pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Found<N> {
-        let picked = Lanes::ONE * (partial.d_vcm * self.pdf_direct);
-        let others = picked + partial.d_vc * self.pdf_emission;
-        Found { light: beta * self.radiance, own: Lanes::ONE, others }
+        let picked = partial.d_vcm * self.pdf_direct;
+        let others = Lanes::ONE * picked + partial.d_vc * self.pdf_emission;
+        Found { favour: favour(picked), others, ..Found::only(beta * self.radiance) }
     }
 }
 
@@ -182,8 +216,7 @@ pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut vis
             continue;
         }
         let pdf = light.li_pdf_solid_angle(origin, direction, None);
-        let pdf_emission = light.emission_pdf(&scene.bounds(), pdf, -direction, 1.0)
-            * task.lights.emission_probability(index);
+        let pdf_emission = task.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
         visit(Met { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
     }
 }
@@ -202,10 +235,6 @@ pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Met> {
     // As the vertex before would have picked it.
     let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
-    let pdf_emission = light.emission_pdf(&scene.bounds(), pdf_area, wo, cos);
-    Some(Met {
-        radiance,
-        pdf_direct: pdf_area * task.lights.probability(index),
-        pdf_emission: pdf_emission * task.lights.emission_probability(index),
-    })
+    let pdf_emission = task.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
+    Some(Met { radiance, pdf_direct: pdf_area * task.lights.probability(index), pdf_emission })
 }

@@ -1,9 +1,8 @@
 //! What the light paths of one iteration leave in the scene, to be found by place: the vertices that camera paths merge
 //! with. [Jensen 1996; Georgiev 2012]
 
-use super::{Lanes, Partial, Ways, light_vertices, show_to_camera};
+use super::{Lanes, Tally, Vertex, Ways, light_vertices, show_to_camera};
 use crate::eye::Eye;
-use crate::splats::Shown;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec3};
@@ -19,6 +18,8 @@ pub struct Merging {
     pub alpha: f32,
     /// The most light paths of an iteration whose vertices are kept.
     pub max_light_paths: u32,
+    /// Of the light paths that there would be, one for each pixel, those that are followed: 0..=1.
+    pub part: f32,
     /// Which ways of finding a path there are beside merging.
     pub(crate) ways: Ways,
 }
@@ -57,9 +58,13 @@ pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) wo: Vec3,
     pub(crate) n_geom: Vec3,
     pub(crate) beta: Rgb,
-    pub(crate) partial: Partial<N>,
+    /// [`Partial::joined`] and [`Partial::d_vc`] of the vertex.
+    pub(crate) joined: Lanes<N>,
+    pub(crate) d_vc: Lanes<N>,
     /// Scattering events before it.
-    pub(crate) depth: u32,
+    pub(crate) depth: u16,
+    /// As in [`super::Vertex`].
+    pub(crate) origin: u16,
 }
 
 /// All of an iteration, in a grid whose cells are as wide as the discs that merge.
@@ -72,21 +77,33 @@ pub struct Photons<const N: usize = 1> {
     starts: Vec<u32>,
 }
 
+/// Who takes what the camera sees of light paths while they are followed, tile by tile on all threads.
+pub(crate) trait Onlooker<const N: usize>: Sync {
+    type Tally: Tally<N>;
+    /// For one tile.
+    fn tally(&self) -> Self::Tally;
+    /// The next light path is that of this pixel's sample.
+    fn begin(_tally: &mut Self::Tally, _x: u32, _y: u32, _sample: u32) {}
+    /// What was seen of a tile's light paths.
+    fn take(&self, tile: usize, tally: Self::Tally);
+}
+
 impl<const N: usize> Photons<N> {
     /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many. Also how
     /// many rays that took. `ways` are all ways there are, given η and the number of light paths for each pixel. What the
-    /// camera sees of them goes to `shown`.
-    pub(crate) fn trace(
+    /// camera sees of them goes to the `onlooker`.
+    pub(crate) fn trace<O: Onlooker<N>>(
         eye: &Eye,
         merging: &Merging,
         tiles: &[Window],
         iteration: u32,
         ways: impl FnOnce(f32, f32) -> Ways<N>,
-        shown: Option<&Shown>,
+        onlooker: Option<&O>,
     ) -> (Photons<N>, Counters) {
         let scene = eye.scene;
         let pixels: usize = tiles.iter().map(Window::pixels).sum();
-        let step = pixels.div_ceil(merging.max_light_paths.max(1) as usize).max(1) as u32;
+        let most = ((pixels as f64 * f64::from(merging.part)) as usize).min(merging.max_light_paths as usize);
+        let step = pixels.div_ceil(most.max(1)) as u32;
         let width = tiles.iter().map(|tile| tile.x + tile.width).max().unwrap_or(1);
         let is_followed = |(x, y): (u32, u32)| {
             (u64::from(y) * u64::from(width) + u64::from(x)).is_multiple_of(u64::from(step))
@@ -97,32 +114,36 @@ impl<const N: usize> Photons<N> {
             .sum::<usize>();
         let radius = merging.radius(scene, iteration);
         let ways = ways(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
-        let of_tile = |tile: &Window| {
+        let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();
-            let mut splats = shown.map(Shown::splats);
+            let mut tally = onlooker.map(O::tally);
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
                 let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
                 let vertices = light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), &ways);
-                if let Some(splats) = &mut splats {
-                    splats.begin(x, y, iteration);
-                    show_to_camera(&mut task, &vertices, &ways, splats);
+                if let Some(tally) = &mut tally {
+                    O::begin(tally, x, y, iteration);
+                    show_to_camera(&mut task, &vertices, &ways, tally);
                 }
-                photons.extend(vertices.iter().map(|vertex| Photon {
+                let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || ways.direct;
+                photons.extend(vertices.iter().filter(is_kept).map(|vertex| Photon {
                     p: vertex.surface.p,
                     wo: vertex.wo,
                     n_geom: vertex.surface.n_geom,
                     beta: vertex.beta,
-                    partial: vertex.partial,
-                    depth: vertex.depth,
+                    joined: vertex.partial.joined,
+                    d_vc: vertex.partial.d_vc,
+                    depth: vertex.depth as u16,
+                    origin: vertex.origin,
                 }));
             }
-            if let (Some(shown), Some(mut splats)) = (shown, splats) {
-                shown.take(&mut splats);
+            if let (Some(onlooker), Some(tally)) = (onlooker, tally) {
+                onlooker.take(index, tally);
             }
             (photons, tracer.counters)
         };
-        let (parts, counters): (Vec<Vec<Photon<N>>>, Vec<Counters>) = tiles.par_iter().map(of_tile).unzip();
+        let (parts, counters): (Vec<Vec<Photon<N>>>, Vec<Counters>) =
+            tiles.par_iter().enumerate().map(of_tile).unzip();
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
         (Photons::new(parts.concat(), radius, ways), counted)

@@ -1,10 +1,11 @@
 //! A subpath while it grows, from whichever end.
 
 use super::{Lanes, Partial, Ways};
+use crate::emission::Start;
 use crate::media::Media;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, BsdfSample, EmissionSample, Ray, Scene, Surface, TransportMode};
+use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
 /// A surface that a subpath has met.
 pub(crate) struct Vertex<const N: usize = 1> {
@@ -17,6 +18,8 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
+    /// Where its light path began: [`crate::emission::Start::cell`].
+    pub(crate) origin: u16,
     /// On the side of `wo`.
     media: Media,
 }
@@ -57,9 +60,10 @@ pub(crate) struct Walk<'w, const N: usize = 1> {
     /// The greatest channel at the beginning, for light paths; survival is measured against it.
     full: f32,
     /// The light that it comes from and how it left, until it has met something.
-    start: Option<(usize, EmissionSample)>,
+    start: Option<Start>,
     /// Where the ray goes; known once it has met something.
     media: Option<Media>,
+    origin: u16,
     /// How its vertices may be found otherwise.
     ways: &'w Ways<N>,
 }
@@ -87,13 +91,20 @@ impl<'w, const N: usize> Walk<'w, N> {
             start: None,
             media: None,
             mode,
+            origin: 0,
             ways,
         }
     }
 
     /// The same from a light of the scene.
-    pub(crate) fn leaving(self, index: usize, sample: EmissionSample) -> Walk<'w, N> {
-        Walk { start: Some((index, sample)), ..self }
+    pub(crate) fn leaving(self, start: Start) -> Walk<'w, N> {
+        Walk { origin: start.cell, start: Some(start), ..self }
+    }
+
+    /// The light that it comes from.
+    #[cfg(test)]
+    pub(super) fn light(&self) -> Option<usize> {
+        self.start.map(|start| start.light)
     }
 
     /// The next surface; `None` where the ray leaves the scene.
@@ -114,11 +125,13 @@ impl<'w, const N: usize> Walk<'w, N> {
         // The first surface of a light path is joined with the light by picking a point there.
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
         let joins = if is_at_light { Lanes::ONE } else { self.ways.joins };
+        let merged = if is_at_light && !self.ways.direct { Lanes::ZERO } else { self.ways.eta };
         let distance2 = distance2 * self.picked_more(task.scene(), surface.p);
-        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins);
+        self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins, merged);
         self.by_area = false;
         let bsdf = media.bsdf(task.scene(), &surface);
-        Some(Vertex { surface, bsdf, wo, beta: self.beta, partial: self.partial, depth: self.depth, media })
+        let (beta, partial, depth, origin) = (self.beta, self.partial, self.depth, self.origin);
+        Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, media })
     }
 
     /// Goes on from a vertex; false when the subpath ends there.
@@ -129,17 +142,18 @@ impl<'w, const N: usize> Walk<'w, N> {
         let cos = vertex.surface.n_geom.dot(sample.wi).abs();
         let back = || vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
-        self.partial.leave(cos, pdfs, self.ways);
+        let counts = self.ways.direct || self.mode == TransportMode::Importance;
+        self.partial.leave(cos, pdfs, counts);
         self.follow(vertex, &sample, task);
         self.survives(u_survival, roulette_depth)
     }
 
     /// How much more often than its start has counted on so far, the first surface of a light path would pick that start.
     fn picked_more(&mut self, scene: &Scene, from: Vec3) -> f32 {
-        self.start.take().map_or(1.0, |(index, sample)| {
-            let light = &scene.lights()[index].light;
+        self.start.take().map_or(1.0, |Start { light, ray, .. }| {
+            let light = &scene.lights()[light].light;
             // What picking leaves out, no surface would pick.
-            if sample.pdf_direct > 0.0 { light.direct_pdf(&sample, from) / sample.pdf_direct } else { 1.0 }
+            if ray.pdf_direct > 0.0 { light.direct_pdf(&ray, from) / ray.pdf_direct } else { 1.0 }
         })
     }
 

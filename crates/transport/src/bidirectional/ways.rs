@@ -20,6 +20,9 @@ pub(crate) struct Ways<const N: usize = 1> {
     pub(crate) joins: Lanes<N>,
     /// η: light paths that a merged vertex counts, over area.
     pub(crate) eta: Lanes<N>,
+    /// Light paths are also seen, and merged with, where they have come straight from a light. Few lights need no such help:
+    /// a point on each is picked, with next to no noise, beside which the balance heuristic gives photons too much weight.
+    pub(crate) direct: bool,
 }
 
 /// What one way has found of one path.
@@ -31,6 +34,10 @@ pub(crate) struct Found<const N: usize = 1> {
     pub(crate) own: Lanes<N>,
     /// How often in all others.
     pub(crate) others: Lanes<N>,
+    /// What its weight is multiplied by, for the sake of the other way that a camera path has of finding a light: [`favour`].
+    pub(crate) favour: f32,
+    /// Where the light path began by which it was found: [`crate::emission::Start::cell`]; 0 where there was none.
+    pub(crate) origin: u16,
 }
 
 /// Which way it was: subpaths of `s` vertices from the light and of `t` from the camera, both ends' own included.
@@ -74,10 +81,16 @@ pub(crate) trait Tally<const N: usize> {
 
 impl Ways {
     /// Paths from the camera alone.
-    pub(crate) const CAMERA: Ways = Ways { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]) };
+    pub(crate) const CAMERA: Ways =
+        Ways { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]), direct: true };
     /// With light paths that are seen from the camera or not, and joined or not.
     pub(crate) fn beside_merging(splats: bool, joins: bool) -> Ways {
         Ways { splats: Lanes([f32::from(splats)]), joins: Lanes([f32::from(joins)]), ..Ways::CAMERA }
+    }
+
+    /// True where each camera path has a light path of its own.
+    pub(crate) fn begins_at_lights(&self) -> bool {
+        self.splats != Lanes::ZERO || self.joins != Lanes::ZERO
     }
 
     /// All that need no merging.
@@ -85,12 +98,13 @@ impl Ways {
 }
 
 impl<const N: usize> Ways<N> {
-    /// Single sets as lanes.
+    /// Single sets as lanes, alike in how they find direct light.
     pub(crate) fn together(mut sets: impl Iterator<Item = Ways>) -> Ways<N> {
-        let mut all = Ways { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO };
+        let mut all = Ways { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO, direct: true };
         for k in 0..N {
             let Some(set) = sets.next() else { break };
             (all.splats.0[k], all.joins.0[k], all.eta.0[k]) = (set.splats.0[0], set.joins.0[0], set.eta.0[0]);
+            all.direct = set.direct;
         }
         all
     }
@@ -99,12 +113,26 @@ impl<const N: usize> Ways<N> {
 impl<const N: usize> Found<N> {
     /// What is found in no other way.
     pub(crate) fn only(light: Rgb) -> Found<N> {
-        Found { light, own: Lanes::ONE, others: Lanes::ZERO }
+        Found { light, own: Lanes::ONE, others: Lanes::ZERO, favour: 1.0, origin: 0 }
     }
 
-    /// The balance heuristic. [Veach 1997, eq. 9.8]
+    /// The balance heuristic [Veach 1997, eq. 9.8], but for [`favour`].
     pub(crate) fn weighted(&self) -> Rgb {
-        self.light * (1.0 / (self.own.0[0] + self.others.0[0]))
+        self.light * (self.favour / (self.own.0[0] + self.others.0[0]))
+    }
+}
+
+/// A camera path finds a light in two ways by itself: it picks a point there, or meets it by chance. Beside all others they
+/// count together as the balance heuristic has it; what falls to both is shared by the power heuristic [Veach 1997, eq. 9.17],
+/// since the one of them is often so good that any part of the other is noise. This is by how much more or less that one
+/// counts of which the other finds `other` times as much.
+pub(crate) fn favour(other: f32) -> f32 {
+    // By the inverse where squares of large numbers would overflow.
+    if other <= 1.0 {
+        (1.0 + other) / (1.0 + other * other)
+    } else {
+        let own = 1.0 / other;
+        own * (1.0 + own) / (1.0 + own * own)
     }
 }
 

@@ -34,6 +34,10 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
 pub(super) const JOINS: Parameter = switch("joins", "join the vertices of both ends");
 pub(super) const SPLATS: Parameter = switch("splats", "show light paths to the camera");
 
+/// Whether light paths look for what has come straight from a light as well.
+pub(super) const DIRECT: Parameter =
+    switch("direct", "see and merge light paths also where they have come straight from a light");
+
 const fn switch(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }
 }
@@ -43,6 +47,7 @@ pub(super) fn read(reader: &Reader, ways: Ways) -> Merging {
         radius: reader.number("radius"),
         alpha: reader.number("alpha"),
         max_light_paths: reader.integer("light_paths") as u32,
+        part: 1.0,
         ways,
     }
 }

@@ -13,6 +13,7 @@ mod vcm;
 mod whitted;
 
 use crate::bidirectional::Merging;
+use crate::emission::Guide;
 use crate::plan::Plan;
 use crate::render::RenderSettings;
 use crate::splats::Splats;
@@ -21,6 +22,7 @@ use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Ray, Reader, Scene, SceneError, Spec};
+use std::sync::Arc;
 
 /// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render()`].
 pub trait PixelIntegrator: Send + Sync {
@@ -36,6 +38,11 @@ pub trait PixelIntegrator: Send + Sync {
     /// How it merges camera paths with light paths; then each sample of all pixels is an iteration, which begins with the
     /// light paths of all of them ([`Task::photons`]).
     fn merging(&self) -> Option<&Merging> {
+        None
+    }
+
+    /// What its light paths are aimed at, where that is known.
+    fn guide(&self) -> Option<Arc<Guide>> {
         None
     }
 

@@ -5,12 +5,14 @@
 use super::bdpt::{BothEnds, Sum, of_camera_path};
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{Lanes, Merging, Ways};
+use crate::emission::Guide;
 use crate::splats::Splats;
 use crate::strategies::Layers;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use bilux_scene::Ray;
+use std::sync::Arc;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -24,16 +26,21 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             super::merging::LIGHT_PATHS,
             super::merging::JOINS,
             super::merging::SPLATS,
+            super::merging::DIRECT,
         ],
     },
     covers: "L(D|G|S)*E",
     classic: false,
     default_spp: 64,
     build: |reader| {
-        let ways = Ways::beside_merging(reader.bool("splats"), reader.bool("joins"));
+        let ways = Ways {
+            direct: reader.bool("direct"),
+            ..Ways::beside_merging(reader.bool("splats"), reader.bool("joins"))
+        };
         Ok(Box::new(Vcm {
             roulette_depth: reader.integer("roulette_depth") as u32,
             merging: super::merging::read(reader, ways),
+            guide: None,
         }))
     },
 };
@@ -42,6 +49,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
 pub(super) struct Vcm {
     pub(super) roulette_depth: u32,
     pub(super) merging: Merging,
+    /// What light paths are aimed at.
+    pub(super) guide: Option<Arc<Guide>>,
 }
 
 impl PixelIntegrator for Vcm {
@@ -51,11 +60,15 @@ impl PixelIntegrator for Vcm {
 
     fn splats(&self) -> bool {
         // Where photons are shown to the camera, that is done before its paths are followed.
-        self.merging.ways != Ways::CAMERA && !self.merging.shows_photons()
+        self.merging.ways.begins_at_lights() && !self.merging.shows_photons()
     }
 
     fn merging(&self) -> Option<&Merging> {
         (self.merging.radius > 0.0).then_some(&self.merging)
+    }
+
+    fn guide(&self) -> Option<Arc<Guide>> {
+        self.guide.clone()
     }
 
     fn roulette_depth(&self) -> u32 {
@@ -67,7 +80,7 @@ impl PixelIntegrator for Vcm {
         let unmerged = self.merging.ways(0.0, 1.0);
         let both_ends = match task.photons {
             Some(photons) => {
-                let shows = !self.merging.shows_photons() && self.splats();
+                let shows = !self.merging.shows_photons() && self.merging.ways.splats != Lanes::ZERO;
                 BothEnds::merging(photons, shows, self.roulette_depth)
             }
             None => BothEnds::new(&unmerged, self.roulette_depth),

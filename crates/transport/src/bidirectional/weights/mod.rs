@@ -147,14 +147,16 @@ fn every_weight_is_the_share_of_its_strategy() {
     {
         for (k, camera) in cameras().into_iter().enumerate() {
             let scene = scene(lights, camera);
-            let ways = sets()[(i + k) % 4];
-            let verdict = verdict(&scene, &ways, Flaw::None);
-            let Verdict { compared, wrong, worst, telling, .. } = verdict;
-            assert!(
-                wrong == 0,
-                "{lights:?}, camera {k}: {wrong} of {compared} weights are wrong, by up to {worst}"
-            );
-            assert!(compared > 3000 && telling.iter().sum::<usize>() > 500, "{telling:?}");
+            for direct in [true, false] {
+                let ways = Ways { direct, ..sets()[(i + k) % 4] };
+                let verdict = verdict(&scene, &ways, Flaw::None);
+                let Verdict { compared, wrong, worst, telling, .. } = verdict;
+                assert!(
+                    wrong == 0,
+                    "{lights:?}, camera {k}: {wrong} of {compared} weights are wrong, by up to {worst}"
+                );
+                assert!(compared > 3000 && telling.iter().sum::<usize>() > 500, "{telling:?}");
+            }
         }
     }
 }
@@ -168,10 +170,11 @@ fn densities_with_a_factor_left_out_give_other_weights() {
         Flaw::LightChoice,
         Flaw::PickedTwice,
         Flaw::MergedTwice,
+        Flaw::Direct,
         Flaw::Reverse,
     ];
     for flaw in flaws {
-        let verdict = verdict(&scene, &sets()[1], flaw);
+        let verdict = verdict(&scene, &Ways { direct: flaw != Flaw::Direct, ..sets()[1] }, flaw);
         let Verdict { compared, wrong, .. } = verdict;
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }

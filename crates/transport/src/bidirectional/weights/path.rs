@@ -45,6 +45,7 @@ pub(super) enum Flaw {
     LightChoice,
     PickedTwice,
     MergedTwice,
+    Direct,
     Reverse,
 }
 
@@ -54,6 +55,8 @@ impl Path {
         let count = self.nodes.len();
         let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
         let [splats, joins, eta] = [ways.splats, ways.joins, ways.eta].map(|lanes| f64::from(lanes.0[0]));
+        // What comes straight from a light, light paths may leave to the camera's.
+        let leaves_direct = !ways.direct && flaw != Flaw::Direct;
         // Nodes have numbers from 1; the light is 0 and the camera count + 1.
         let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
         let mut all = Vec::new();
@@ -64,6 +67,7 @@ impl Path {
                 (1, 1) | (_, 0) => continue,
                 (1, _) if flaw == Flaw::PickedTwice => 2.0,
                 (1, _) => 1.0,
+                (2, 1) if leaves_direct => 0.0,
                 (_, 1) => splats,
                 _ => joins,
             };
@@ -72,7 +76,11 @@ impl Path {
             }
         }
         for i in (1..=count).filter(|&i| is_open(i)) {
-            let copies = if flaw == Flaw::MergedTwice { 2.0 * eta } else { eta };
+            let copies = match i {
+                1 if leaves_direct => 0.0,
+                _ if flaw == Flaw::MergedTwice => 2.0 * eta,
+                _ => eta,
+            };
             all.push(((true, i + 1), copies * light[i + 1] * camera[count + 2 - i]));
         }
         all
@@ -103,7 +111,7 @@ impl Path {
         };
         let emission = light.emission_pdf(&scene.bounds(), direct, -first.to_light, self.start.cos);
         let choice =
-            if flaw == Flaw::LightChoice { 1.0 } else { task.lights.emission_probability(self.start.index) };
+            if flaw == Flaw::LightChoice { 1.0 } else { task.emission.probability(self.start.index) };
         let picked = f64::from(direct) * f64::from(task.lights.probability(self.start.index));
         let mut product =
             f64::from(emission) * f64::from(choice) * cosine(first.from_light.1, first.to_light, flaw);

@@ -10,9 +10,8 @@ use bilux_scene::Ray;
 pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
     let ways = &{ verdict.ways };
     task.sampler.enter(LIGHT_STREAM);
-    let u_light = task.sampler.next_1d();
-    let index = task.lights.sample_emission(u_light).unwrap().0;
     let Some(walk) = begin_at_light(task, ray.time, ways) else { return };
+    let index = walk.light().unwrap();
     let light = &task.scene().lights()[index].light;
     let n = if light.is_infinite() || light.is_delta() { None } else { Some(PANEL_NORMAL) };
     let direction = Vec3::from(walk.ray.direction);
@@ -32,7 +31,8 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
 
 fn seen(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
     let ways = &{ verdict.ways };
-    for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
+    let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || ways.direct);
+    for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.enter_light_vertex(vertex.depth);
         let Some((_, found)) = to_camera(task, vertex, ways) else { continue };
         task.enter_light_vertex(vertex.depth);
@@ -107,13 +107,18 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
     }
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
+        if light_end.depth == 0 && !ways.direct {
+            continue;
+        }
         let photon = Photon {
             p: camera_end.surface.p,
             wo: light_end.wo,
             n_geom: camera_end.surface.n_geom,
             beta: light_end.beta,
-            partial: light_end.partial,
-            depth: light_end.depth,
+            joined: light_end.partial.joined,
+            d_vc: light_end.partial.d_vc,
+            depth: light_end.depth as u16,
+            origin: 0,
         };
         let photons = Photons::new(vec![photon], 1.0, *ways);
         // One vertex in the place of both: it scatters as at the camera's end.

@@ -1,7 +1,8 @@
 //! What a sample costs: steps that were counted, times what a step takes. Times are never measured, since pictures must
 //! not depend on the machine.
 
-use crate::bidirectional::{Step, Ways};
+use super::Set;
+use crate::bidirectional::Step;
 
 /// Steps of a sample.
 #[derive(Clone, Debug, Default)]
@@ -39,24 +40,25 @@ impl Steps {
         self
     }
 
-    /// Nanoseconds of a sample with some ways only, each taken or not.
-    pub(super) fn nanoseconds(&self, ways: &Ways) -> f64 {
+    /// Nanoseconds of a sample with the ways of a set, which merges with η.
+    pub(super) fn nanoseconds(&self, set: &Set, eta: f32) -> f64 {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
-        let [sees, joins, merges] = [ways.splats, ways.joins, ways.eta].map(|lane| lane.0[0] > 0.0);
+        let Set { sees, joins, photons, .. } = *set;
+        let (merges, photons) = (set.merges(), f64::from(photons));
         let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
         // Photons are seen from the camera as they are; joined they cannot be, and light paths are followed again.
         if joins || (sees && !merges) {
             sum += of(Step::Light, LIGHT);
         }
         if sees {
-            sum += of(Step::Seen, SEEN);
+            sum += of(Step::Seen, SEEN) * if joins || !merges { 1.0 } else { photons };
         }
         if joins {
             sum += of(Step::Joined, JOINED);
         }
         if merges {
-            sum += of(Step::Light, LIGHT + KEPT) + of(Step::Lookup, LOOKUP);
-            sum += self.merged * f64::from(ways.eta.0[0]) * MERGED;
+            sum += of(Step::Light, LIGHT + KEPT) * photons + of(Step::Lookup, LOOKUP);
+            sum += self.merged * f64::from(eta) * MERGED;
         }
         sum
     }

@@ -4,21 +4,25 @@
 //! The look depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop, range of samples,
 //! or time. None of its samples is in the picture.
 
+mod aim;
 mod cost;
 mod pilot;
 
 use super::path::Path;
 use super::vcm::Vcm;
 use super::{IntegratorEntry, PixelIntegrator, merging};
-use crate::bidirectional::{Lanes, Merging, Ways};
+use crate::bidirectional::{Merging, Ways};
+use crate::emission::Guide;
 use crate::eye::Eye;
+use crate::light_choice::LightChoice;
 use crate::plan::{Choice, Plan, Rival};
 use crate::render::RenderSettings;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{Camera, Ray, Scene};
+use bilux_scene::{Camera, Counters, Ray, Scene};
 use pilot::{Block, Turn};
+use std::sync::Arc;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
@@ -33,6 +37,13 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
                 kind: ParameterKind::Choice(&["auto", "never"]),
                 default: "auto",
             },
+            Parameter {
+                name: "ways",
+                summary: "take these ways of finding light, whatever the first look says",
+                unit: "",
+                kind: ParameterKind::Choice(&WAYS),
+                default: "auto",
+            },
             super::ROULETTE_DEPTH,
             Parameter {
                 name: "radius",
@@ -43,6 +54,13 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             },
             merging::ALPHA,
             merging::LIGHT_PATHS,
+            Parameter {
+                name: "aim",
+                summary: "send most light paths where a first look found them to be of use",
+                unit: "",
+                kind: ParameterKind::Bool,
+                default: "true",
+            },
         ],
     },
     covers: "L(D|G|S)*E",
@@ -50,7 +68,9 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     default_spp: 64,
     build: |reader| {
         Ok(Box::new(Auto {
+            aims: reader.bool("aim"),
             may_merge: reader.text("merge") == "auto",
+            given: WAYS[1..].iter().position(|way| *way == reader.text("ways")),
             roulette_depth: reader.integer("roulette_depth") as u32,
             merging: merging::read(reader, Ways::BOTH_ENDS),
         }))
@@ -58,7 +78,10 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
 };
 
 struct Auto {
+    aims: bool,
     may_merge: bool,
+    /// The set that is to be taken, if that is said.
+    given: Option<usize>,
     roulette_depth: u32,
     merging: Merging,
 }
@@ -68,17 +91,52 @@ struct Set {
     name: &'static str,
     sees: bool,
     joins: bool,
-    merges: bool,
+    /// Light paths whose photons are merged with, for each pixel; 0 where nothing is merged.
+    photons: f32,
 }
 
 /// What there is to choose from, the simplest first.
-const SETS: [Set; 6] = [
-    Set { name: "path", sees: false, joins: false, merges: false },
-    Set { name: "path and light", sees: true, joins: false, merges: false },
-    Set { name: "bdpt", sees: true, joins: true, merges: false },
-    Set { name: "path and photons", sees: false, joins: false, merges: true },
-    Set { name: "path, light and photons", sees: true, joins: false, merges: true },
-    Set { name: "vcm", sees: true, joins: true, merges: true },
+const SETS: [Set; 8] = [
+    Set { name: "path", sees: false, joins: false, photons: 0.0 },
+    Set { name: "path and light", sees: true, joins: false, photons: 0.0 },
+    Set { name: "bdpt", sees: true, joins: true, photons: 0.0 },
+    Set { name: "path and few photons", sees: false, joins: false, photons: FEW },
+    Set { name: "path and photons", sees: false, joins: false, photons: 1.0 },
+    Set { name: "path, light and few photons", sees: true, joins: false, photons: FEW },
+    Set { name: "path, light and photons", sees: true, joins: false, photons: 1.0 },
+    Set { name: "vcm", sees: true, joins: true, photons: 1.0 },
+];
+
+/// Enough where they go where they are of use.
+const FEW: f32 = 0.25;
+
+impl Set {
+    fn merges(&self) -> bool {
+        self.photons > 0.0
+    }
+
+    /// As one that merges with all light paths, but as this set does.
+    fn merging(&self, merging: Merging) -> Merging {
+        Merging {
+            radius: if self.merges() { merging.radius } else { 0.0 },
+            part: merging.part * self.photons,
+            ways: Ways { direct: merging.ways.direct, ..Ways::beside_merging(self.sees, self.joins) },
+            ..merging
+        }
+    }
+}
+
+/// What the sets are called where one is asked for, after "auto".
+const WAYS: [&str; 1 + SETS.len()] = [
+    "auto",
+    "path",
+    "path-light",
+    "bdpt",
+    "path-few",
+    "path-photons",
+    "path-light-few",
+    "path-light-photons",
+    "vcm",
 ];
 
 /// A set has to be so much better than one that stands before it, or that does not blur.
@@ -86,6 +144,9 @@ const WORTH_MORE: f64 = 1.1;
 
 /// Photons are merged over so many pixels to begin with, where nothing else is said.
 const PIXELS: f32 = 3.0;
+
+/// About so many photons of directly lit surfaces are merged then, if each pixel has its light path.
+const NEAR: f64 = std::f64::consts::PI * (PIXELS * PIXELS) as f64;
 
 /// The iteration whose radius stands for all.
 const TYPICAL_ITERATION: u32 = 16;
@@ -102,29 +163,34 @@ impl PixelIntegrator for Auto {
 
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
         let settings = pilot::settings(film);
-        let sources = settings.each_ref().map(|turn| pilot::photon_settings(film, turn));
+        let least = |turn| if turn == 0 { aim::LEAST_LIGHT_PATHS } else { pilot::LEAST_LIGHT_PATHS };
+        let sources = [0, 1, 2].map(|turn| pilot::photon_settings(film, &settings[turn], least(turn)));
         let eye = |settings| Eye::new(scene, camera, self, settings);
-        let turns: Vec<Turn> = settings
-            .iter()
-            .zip(&sources)
-            .map(|(settings, sources)| Turn { eye: eye(settings), light: eye(sources) })
-            .collect();
+        let turn = |i: usize| Turn { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
+        // A point on each of few lights is always picked; of many, photons find the nearest by themselves.
+        merging.ways.direct = !LightChoice::new(scene).takes_all();
         if merging.radius == 0.0 {
-            merging.radius = PIXELS * pilot::pixel_radius(&turns[0].eye, film) / scene.bounds().radius();
+            merging.radius = PIXELS * pilot::pixel_radius(&turn(0).eye, film) / scene.bounds().radius();
         }
         let light_paths =
             (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
         let eta = merging.area(scene, TYPICAL_ITERATION) * light_paths;
-        let ways = |set: &Set| Ways {
-            eta: Lanes([if set.merges { eta } else { 0.0 }]),
-            ..Ways::beside_merging(set.sees, set.joins)
-        };
+        let ways = |set: &Set| set.merging(merging).ways(eta * set.photons, set.photons);
+        let mut counters = Counters::default();
+        let mut guide = None;
+        if self.aims {
+            let (learned, rays) = aim::learn(turn(0), &merging, (eta, NEAR));
+            counters += rays;
+            guide = learned.map(Arc::new);
+        }
         let lanes = |own: f32| {
             let all = std::iter::once(merging.ways(own, 1.0)).chain(SETS.iter().map(ways));
             Ways::together(all)
         };
+        let turns: Vec<Turn> = (1..settings.len()).map(|i| turn(i).guided(&guide)).collect();
         let seen = pilot::look(&turns, &merging, lanes);
+        counters += seen.counters;
         let rivals: Vec<Rival> = SETS
             .iter()
             .enumerate()
@@ -132,15 +198,11 @@ impl PixelIntegrator for Auto {
                 name: set.name,
                 error: error(&seen.blocks, i + 1),
                 lost: lost(&seen.blocks, i + 1),
-                nanoseconds: seen.steps.nanoseconds(&ways(set)),
+                nanoseconds: seen.steps.nanoseconds(set, ways(set).eta.0[0]),
             })
             .collect();
-        let choice = Choice { chosen: self.choose(&rivals), rivals };
-        Some(Plan {
-            integrator: self.made_of(&SETS[choice.chosen], merging),
-            choice,
-            counters: seen.counters,
-        })
+        let choice = Choice { chosen: self.given.unwrap_or_else(|| self.choose(&rivals)), rivals };
+        Some(Plan { integrator: self.made_of(&SETS[choice.chosen], merging, guide), choice, counters })
     }
 }
 
@@ -152,20 +214,18 @@ impl Auto {
             let is_better = rival.time_to_error() * WORTH_MORE < held.time_to_error();
             let finds_more = held.misses_more_than(rival);
             let finds_all = !rival.misses_more_than(held);
-            if (self.may_merge || !set.merges) && (finds_more || (is_better && finds_all)) {
+            if (self.may_merge || !set.merges()) && (finds_more || (is_better && finds_all)) {
                 best = i;
             }
         }
         best
     }
 
-    fn made_of(&self, set: &Set, merging: Merging) -> Box<dyn PixelIntegrator> {
-        if !set.sees && !set.joins && !set.merges {
+    fn made_of(&self, set: &Set, merging: Merging, guide: Option<Arc<Guide>>) -> Box<dyn PixelIntegrator> {
+        if !set.sees && !set.joins && !set.merges() {
             return Box::new(Path::new(self.roulette_depth));
         }
-        let radius = if set.merges { merging.radius } else { 0.0 };
-        let merging = Merging { radius, ways: Ways::beside_merging(set.sees, set.joins), ..merging };
-        Box::new(Vcm { roulette_depth: self.roulette_depth, merging })
+        Box::new(Vcm { roulette_depth: self.roulette_depth, merging: set.merging(merging), guide })
     }
 }
 

@@ -6,25 +6,29 @@
 //! number of first samples of the one would have told. [Grittmann 2022, eq. 10 to 13]
 
 use super::cost::Steps;
-use crate::bidirectional::{Found, Merging, Photons, Step, Tally, Way, Ways};
+use crate::bidirectional::{Found, Merging, Onlooker, Photons, Step, Tally, Way, Ways};
+use crate::emission::Guide;
 use crate::eye::Eye;
 use crate::integrators::bdpt::BothEnds;
 use crate::render::RenderSettings;
+use crate::splats::Shown;
 use crate::window::Window;
 use bilux_math::Vec2;
 use bilux_math::hash::hash_words;
 use bilux_scene::{Counters, Tracer};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// One lane for the ways of the pilot itself, and one for each set that is compared.
 pub(super) const LANES: usize = 1 + super::SETS.len();
 
-/// The pilot is taken twice, so that what changes from one to the other can be told from what does not.
-const TURNS: u64 = 2;
+/// The pilot is taken twice, so that what changes from one to the other can be told from what does not; and once before, to
+/// learn what light paths should be aimed at.
+pub(super) const TURNS: u64 = 2;
 
 /// Samples of each pixel in a turn: so many that it shows what is gained by their being spread evenly, which is much for
 /// some ways and little for others.
-const SAMPLES: u32 = 8;
+pub(super) const SAMPLES: u32 = 8;
 
 /// Side of a block of pixels that is looked at as a whole.
 const BLOCK: u32 = 4;
@@ -35,9 +39,9 @@ const LEAST_PIXELS: u64 = 128;
 /// One pixel for so many of the film's, between the two.
 const PART: u64 = 48;
 
-/// Most photon paths of one of its iterations; and least, unless the film has fewer.
+/// Most photon paths of one of its iterations, and least.
 const MOST_LIGHT_PATHS: u64 = 8192;
-const LEAST_LIGHT_PATHS: u64 = 1024;
+pub(super) const LEAST_LIGHT_PATHS: u64 = 1024;
 /// One for so many of the film's, between the two.
 const LIGHT_PART: u64 = 8;
 
@@ -61,8 +65,8 @@ pub(super) struct Pilot {
 
 /// How the turns of a film's pilot are taken. They depend neither on the number of samples nor on what is cropped, so that
 /// all parts of a picture are made in the same way.
-pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; TURNS as usize] {
-    [0, 1].map(|turn| RenderSettings {
+pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + TURNS as usize] {
+    [0, 1, 2].map(|turn| RenderSettings {
         spp: SAMPLES,
         samples: 0..SAMPLES,
         crop: None,
@@ -74,14 +78,14 @@ pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; TURNS as usize
 
 /// The pixels of the film that a pilot looks at: a regular grid of them, each as small as it is. What differs from one
 /// to the next is no noise, as it would be within larger ones.
-struct Grid {
+pub(super) struct Grid {
     film: [u32; 2],
     /// Columns and rows.
     size: [u32; 2],
 }
 
 impl Grid {
-    fn of(film: &RenderSettings) -> Grid {
+    pub(super) fn of(film: &RenderSettings) -> Grid {
         let pixels = u64::from(film.width) * u64::from(film.height);
         let wanted = (pixels / PART).clamp(LEAST_PIXELS, MOST_PIXELS).min(pixels);
         let scale = (wanted as f64 / pixels as f64).sqrt();
@@ -90,7 +94,7 @@ impl Grid {
         Grid { film: [film.width, film.height], size }
     }
 
-    fn tiles(&self) -> Vec<Window> {
+    pub(super) fn tiles(&self) -> Vec<Window> {
         Window::whole(self.size[0], self.size[1]).tiles(BLOCK)
     }
 
@@ -104,7 +108,7 @@ impl Grid {
     }
 
     /// The tile at a point of the film (0..=1).
-    fn tile_at(&self, film: Vec2) -> usize {
+    pub(super) fn tile_at(&self, film: Vec2) -> usize {
         let [width, height] = self.size;
         let place = (film * Vec2::new(width as f32, height as f32)).as_uvec2();
         let place = [place.x.min(width - 1), place.y.min(height - 1)].map(|at| at / BLOCK);
@@ -112,10 +116,10 @@ impl Grid {
     }
 }
 
-/// Where the pilot's photons come from: the light paths of a film of its own.
-pub(super) fn photon_settings(film: &RenderSettings, turn: &RenderSettings) -> RenderSettings {
+/// Where the pilot's photons come from: the light paths of a film of its own, `least` or more.
+pub(super) fn photon_settings(film: &RenderSettings, turn: &RenderSettings, least: u64) -> RenderSettings {
     let pixels = u64::from(film.width) * u64::from(film.height);
-    let wanted = (pixels / LIGHT_PART).clamp(LEAST_LIGHT_PATHS, MOST_LIGHT_PATHS).min(pixels);
+    let wanted = (pixels / LIGHT_PART).clamp(least, MOST_LIGHT_PATHS.max(least));
     RenderSettings { width: wanted as u32, height: 1, ..turn.clone() }
 }
 
@@ -146,8 +150,15 @@ pub(super) struct Turn<'a> {
     pub(super) light: Eye<'a>,
 }
 
+impl Turn<'_> {
+    /// With light paths that are aimed as a guide says.
+    pub(super) fn guided(self, guide: &Option<Arc<Guide>>) -> Self {
+        Turn { eye: self.eye.guided(guide.clone()), light: self.light.guided(guide.clone()) }
+    }
+}
+
 /// Takes the samples. `ways` tells all lanes, given the η of the pilot's own photons.
-pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways<LANES>) -> Pilot {
+pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways<LANES> + Sync) -> Pilot {
     let grid = Grid::of(turns[0].eye.settings);
     let tiles = grid.tiles();
     let mut pilot = Pilot {
@@ -175,32 +186,16 @@ pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways
 fn one_sample(
     turn: &Turn,
     merging: &Merging,
-    ways: &impl Fn(f32) -> Ways<LANES>,
+    ways: &(impl Fn(f32) -> Ways<LANES> + Sync),
     (grid, tiles, iteration): (&Grid, &[Window], u32),
     pilot: &mut Pilot,
     sums: &mut [Vec<[f64; LANES]>],
 ) {
-    let Turn { eye, light } = turn;
-    let sources = Window::whole(light.settings.width, 1).tiles(256);
-    let (photons, counters) = Photons::trace(light, merging, &sources, iteration, |eta, _| ways(eta), None);
+    let (looked, counters) =
+        sample_all::<LANES, Look, Shown>(turn, merging, ways, (grid, tiles, iteration), None);
     pilot.counters += counters;
-    let of_tile = |tile: &Window| {
-        let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
-        let look = |i| {
-            let (x, y) = grid.pixel(tile.position(i));
-            let mut look = Look::default();
-            let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-            let both_ends = BothEnds::merging(&photons, true, eye.integrator.roulette_depth());
-            both_ends.sample(&ray, true, &mut task, &mut look);
-            look
-        };
-        let looks: Vec<Look> = (0..tile.pixels()).map(look).collect();
-        (looks, tracer.counters)
-    };
-    let looked: Vec<(Vec<Look>, Counters)> = tiles.par_iter().map(of_tile).collect();
     // One after the other, so that sums do not depend on threads.
-    for (index, (looks, counters)) in looked.into_iter().enumerate() {
-        pilot.counters += counters;
+    for (index, looks) in looked.into_iter().enumerate() {
         for (look, sum) in looks.iter().zip(&mut sums[index]) {
             pilot.steps = std::mem::take(&mut pilot.steps).plus(&look.steps, 1.0);
             pilot.blocks[index].add(&look.sample, share(&tiles[index]));
@@ -213,6 +208,40 @@ fn one_sample(
             }
         }
     }
+}
+
+/// What camera paths find, a sample of each of the grid's pixels, tile by tile; each with a light path of its own that is seen
+/// from the camera, or without where an `onlooker` sees the photons.
+pub(super) fn sample_all<const N: usize, T, O>(
+    Turn { eye, light }: &Turn,
+    merging: &Merging,
+    ways: &(impl Fn(f32) -> Ways<N> + Sync),
+    (grid, tiles, iteration): (&Grid, &[Window], u32),
+    onlooker: Option<&O>,
+) -> (Vec<Vec<T>>, Counters)
+where
+    T: Tally<N> + Default + Send,
+    O: Onlooker<N>,
+{
+    let sources = Window::whole(light.settings.width, 1).tiles(256);
+    let (photons, mut counted) =
+        Photons::trace(light, merging, &sources, iteration, |eta, _| ways(eta), onlooker);
+    let of_tile = |tile: &Window| {
+        let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
+        let look = |i| {
+            let (x, y) = grid.pixel(tile.position(i));
+            let mut tally = T::default();
+            let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
+            let both_ends = BothEnds::merging(&photons, onlooker.is_none(), eye.integrator.roulette_depth());
+            both_ends.sample(&ray, true, &mut task, &mut tally);
+            tally
+        };
+        let tallies: Vec<T> = (0..tile.pixels()).map(look).collect();
+        (tallies, tracer.counters)
+    };
+    let (found, counters): (Vec<_>, Vec<Counters>) = tiles.par_iter().map(of_tile).unzip();
+    counters.into_iter().for_each(|counters| counted += counters);
+    (found, counted)
 }
 
 /// Of a pixel, over both turns.
@@ -247,24 +276,26 @@ struct Sample {
 
 impl Sample {
     fn take(&mut self, found: &Found<LANES>) {
-        let Found { light, own, others } = *found;
+        let Found { light, own, others, favour, .. } = *found;
         let all = own + others;
         let weighted = f64::from(light.luminance()) / f64::from(all.0[0]);
+        let favour = f64::from(favour);
         if !weighted.is_finite() {
             return;
         }
-        self.light += weighted;
+        self.light += weighted * favour;
         for k in 0..LANES {
             // How often this path is found in the lane, for once here.
             let ratio = f64::from(all.0[k]) / f64::from(all.0[0]);
             if ratio <= 0.0 {
-                self.lost[k] += weighted;
+                self.lost[k] += weighted * favour;
                 continue;
             }
             let found = weighted / ratio;
             self.foreseen[k] += weighted * found;
             let found = found * f64::from(own.0[k]) / f64::from(own.0[0]);
-            self.sums[k] += found;
+            self.sums[k] += found * favour;
+            // What is foreseen takes the place of these; neither knows of favour.
             self.squares[k] += found * found;
         }
     }

@@ -1,0 +1,191 @@
+//! Where light paths begin: at a light, by its power, and as the light itself sends rays. Most of these may go where no
+//! camera sees anything of them. If somebody has found out which of them matter, most begin like those, and the rest as
+//! before, so that none is left out and none counts for too much.
+
+use crate::light_choice::{sums, weights};
+use bilux_math::{Vec2, Vec3};
+use bilux_scene::{EmissionSample, Scene};
+use std::sync::Arc;
+
+/// How light paths begin, and with which density.
+pub struct Emission {
+    /// Of each light, by power.
+    probabilities: Vec<f32>,
+    /// Of all lights up to each.
+    cdf: Vec<f32>,
+    guide: Option<Arc<Guide>>,
+}
+
+/// How often light paths are aimed at each place: for each light, the unit square of [`bilux_scene::Light::aim`] in cells.
+#[derive(Clone, Debug)]
+pub struct Guide {
+    /// Cells of a light on each side of its square.
+    side: usize,
+    /// The probability of each cell, row by row and light by light.
+    shares: Vec<f32>,
+    cdf: Vec<f32>,
+    /// Of all light paths, those that are not aimed.
+    unaimed: f32,
+}
+
+/// Where a light path begins.
+#[derive(Clone, Copy)]
+pub(crate) struct Start {
+    pub(crate) light: usize,
+    /// The ray; its `pdf_emission` is that of the whole choice.
+    pub(crate) ray: EmissionSample,
+    /// The cell of the guide that it belongs to; 0 without one.
+    pub(crate) cell: u16,
+}
+
+impl Emission {
+    /// By power, aimed if there is a guide.
+    pub(crate) fn new(scene: &Scene, guide: Option<Arc<Guide>>) -> Emission {
+        let bounds = scene.bounds();
+        let probabilities = weights(scene.lights().iter().map(|l| l.light.power(&bounds)));
+        Emission { cdf: sums(&probabilities), probabilities, guide }
+    }
+
+    /// A light, and a ray from it.
+    pub(crate) fn sample(
+        &self,
+        scene: &Scene,
+        time: f32,
+        u_light: f32,
+        (u_point, u_direction): (Vec2, Vec2),
+    ) -> Option<Start> {
+        let bounds = scene.bounds();
+        let unaimed = self.guide.as_ref().map_or(1.0, |guide| guide.unaimed);
+        let (light, ray) = match &self.guide {
+            Some(guide) if u_light >= unaimed => {
+                let cell = pick(&guide.cdf, (u_light - unaimed) / (1.0 - unaimed))?;
+                let (light, corner) = guide.place(cell);
+                let source = &scene.lights()[light].light;
+                let (u_aim, u) =
+                    if source.is_infinite() { (u_point, u_direction) } else { (u_direction, u_point) };
+                (light, source.sample_le_aimed(&bounds, time, u, (corner + u_aim) / guide.side as f32)?)
+            }
+            _ => {
+                let light = pick(&self.cdf, u_light / unaimed)?;
+                if self.probabilities[light] == 0.0 {
+                    return None;
+                }
+                (light, scene.lights()[light].light.sample_le(&bounds, time, u_point, u_direction)?)
+            }
+        };
+        let cell = self.guide.as_ref().and_then(|guide| guide.cell(scene, light, ray.p, ray.direction));
+        let pdf_emission = self.pdf(scene, light, ray.p, ray.pdf_direct, ray.direction, ray.cos());
+        let ray = EmissionSample { pdf_emission, ..ray };
+        (pdf_emission > 0.0).then_some(Start { light, ray, cell: cell.unwrap_or(0) as u16 })
+    }
+
+    /// The probability with which a light path that is not aimed begins at a light.
+    #[cfg(test)]
+    pub(crate) fn probability(&self, light: usize) -> f32 {
+        self.probabilities[light]
+    }
+
+    /// The density with which a light path begins at a light, along a line through `p`; the rest as in
+    /// [`bilux_scene::Light::emission_pdf`].
+    pub(crate) fn pdf(
+        &self,
+        scene: &Scene,
+        light: usize,
+        p: Vec3,
+        pdf_direct: f32,
+        direction: Vec3,
+        cos: f32,
+    ) -> f32 {
+        let (bounds, source) = (scene.bounds(), &scene.lights()[light].light);
+        let unaimed = source.emission_pdf(&bounds, pdf_direct, direction, cos) * self.probabilities[light];
+        let Some(guide) = &self.guide else { return unaimed };
+        let share = guide.cell(scene, light, p, direction).map_or(0.0, |cell| guide.shares[cell]);
+        if share == 0.0 {
+            return unaimed * guide.unaimed;
+        }
+        let in_cell = source.aim_pdf(&bounds) * (guide.side * guide.side) as f32;
+        let aimed = share * in_cell * source.unaimed_pdf(&bounds, pdf_direct, direction, cos);
+        unaimed * guide.unaimed + aimed * (1.0 - guide.unaimed)
+    }
+}
+
+/// All cells together; where there are so many lights that each would have none, there is no guide.
+const MOST_CELLS: usize = 1 << 14;
+const MOST_SIDE: usize = 32;
+
+/// Of all light paths, those that begin as if there were no guide: what it knows was learned from few.
+const UNAIMED: f32 = 0.25;
+
+impl Guide {
+    /// Tells cells apart, and aims at none of them.
+    pub(crate) fn untaught(scene: &Scene) -> Option<Guide> {
+        let lights = scene.lights().len();
+        let side = ((MOST_CELLS / lights.max(1)) as f64).sqrt() as usize;
+        let side = side.min(MOST_SIDE);
+        (side > 0 && lights > 0).then(|| Guide {
+            side,
+            shares: vec![0.0; lights * side * side],
+            cdf: Vec::new(),
+            unaimed: 1.0,
+        })
+    }
+
+    /// How often a light path begins in a cell, given how often one does that is not aimed.
+    pub(crate) fn probability(&self, cell: usize, unaimed: f64) -> f64 {
+        f64::from(self.unaimed) * unaimed + f64::from(1.0 - self.unaimed) * f64::from(self.shares[cell])
+    }
+
+    /// How many cells there are.
+    pub(crate) fn cells(&self) -> usize {
+        self.shares.len()
+    }
+
+    /// With cells that are aimed at in proportion to what each is worth, and around them a little; `None` where nothing is
+    /// worth anything.
+    pub(crate) fn taught(self, worth: &[f64]) -> Option<Guide> {
+        let worth = self.blurred(worth);
+        let all: f64 = worth.iter().sum();
+        let shares: Vec<f32> = worth.iter().map(|cell| (cell / all) as f32).collect();
+        (all > 0.0 && all.is_finite()).then(|| Guide { cdf: sums(&shares), shares, unaimed: UNAIMED, ..self })
+    }
+
+    /// Each cell with half of its neighbours' on either axis.
+    fn blurred(&self, worth: &[f64]) -> Vec<f64> {
+        let side = self.side as i64;
+        let blur = |light: &[f64], x: i64, y: i64| -> f64 {
+            let weight = |d: i64| if d == 0 { 0.5 } else { 0.25 };
+            let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
+            let within =
+                |(dx, dy): &(i64, i64)| (0..side).contains(&(x + dx)) && (0..side).contains(&(y + dy));
+            around
+                .filter(within)
+                .map(|(dx, dy)| weight(dx) * weight(dy) * light[((y + dy) * side + x + dx) as usize])
+                .sum()
+        };
+        worth
+            .chunks_exact(self.side * self.side)
+            .flat_map(|light| (0..side * side).map(move |i| blur(light, i % side, i / side)))
+            .collect()
+    }
+
+    /// The light of a cell, and the cell's lower corner in cells.
+    fn place(&self, cell: usize) -> (usize, Vec2) {
+        let (light, cell) = (cell / (self.side * self.side), cell % (self.side * self.side));
+        (light, Vec2::new((cell % self.side) as f32, (cell / self.side) as f32))
+    }
+
+    /// The cell of a ray of light; `None` where it passes none.
+    fn cell(&self, scene: &Scene, light: usize, p: Vec3, direction: Vec3) -> Option<usize> {
+        let aim = scene.lights()[light].light.aim(&scene.bounds(), p, direction);
+        let is_within = |x: f32| (0.0..=1.0).contains(&x);
+        let of = |x: f32| ((x * self.side as f32) as usize).min(self.side - 1);
+        (is_within(aim.x) && is_within(aim.y))
+            .then(|| (light * self.side + of(aim.y)) * self.side + of(aim.x))
+    }
+}
+
+/// What a number picks.
+fn pick(cdf: &[f32], u: f32) -> Option<usize> {
+    let wanted = u * cdf.last()?;
+    Some(cdf.partition_point(|&sum| sum <= wanted).min(cdf.len() - 1))
+}
