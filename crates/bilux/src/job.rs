@@ -10,8 +10,8 @@ use bilux_scene::{
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Choice, Film, Filter, PixelAnchor, Progress, Reached, RenderSettings, Replay, SamplePlace, Stop,
-    Strategies, Window,
+    Choice, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError, RenderSettings, Replay,
+    SamplePlace, Stop, Strategies, Window,
 };
 use std::ops::Range;
 use std::path::Path;
@@ -41,6 +41,8 @@ pub struct Outcome {
     pub choice: Option<Choice>,
     /// How far it came, where noise or time could end it.
     pub reached: Option<Reached>,
+    /// Between which bounds pixels lie, where it was asked for ([`Job::with_interval`]).
+    pub interval: Option<Interval>,
     linear_transfer: bool,
 }
 
@@ -108,6 +110,21 @@ impl Job {
         self.render.count_work = true;
     }
 
+    /// Takes samples that tell how far a pixel may be off ([`Outcome::interval`]). These are other samples, so that parts of
+    /// such a picture do not join with those of a plain one.
+    ///
+    /// # Errors
+    /// When the integrator leaves nothing to chance.
+    pub fn with_interval(&mut self) -> Result<(), Error> {
+        if !self.integrator.is_random() {
+            return Err(RenderError::IntervalOfPattern.into());
+        }
+        if !std::mem::replace(&mut self.render.interval, true) {
+            self.fingerprint += "-replicates";
+        }
+        Ok(())
+    }
+
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
@@ -133,6 +150,7 @@ impl Job {
             cancelled: rendered.cancelled,
             choice: rendered.choice,
             reached: rendered.reached,
+            interval: rendered.interval,
             linear_transfer: self.settings.linear_transfer,
         })
     }
@@ -209,11 +227,22 @@ impl Outcome {
     /// When memory is short.
     pub fn picture(&self) -> Result<Picture, Error> {
         let mut picture = self.film.window_to_picture()?;
+        self.note_how_far(&mut picture);
         if self.linear_transfer {
             // Said to be encoded already, its samples become bytes as they are.
             picture.colour_space = bilux_pictures::ColourSpace::Srgb;
         }
         Ok(picture)
+    }
+
+    /// Says in the picture what a rule that ended it has done to it.
+    fn note_how_far(&self, picture: &mut Picture) {
+        let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
+        let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
+        note("", noise.to_string());
+        note(".samples", spp.to_string());
+        note(".samples_that_told_it", "in the mean".to_owned());
+        note(".bias_at_most", format!("{bias} standard errors of a pixel, root mean square"));
     }
 }
 
@@ -235,6 +264,7 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         filter: Filter::named(&settings.filter)?,
         count_work: false,
         stop: settings.stop,
+        interval: false,
     })
 }
 

@@ -121,7 +121,8 @@ pub struct Render {
     /// Samples per pixel
     #[arg(long, value_name = "N")]
     pub spp: Option<u32>,
-    /// Stop when the noise is at most this part of the light, on average: 0.02 is smooth
+    /// Stop when the noise is at most this part of the light, on average: 0.02 is smooth. See pixel by pixel what is left
+    /// with --aov interval
     #[arg(long, value_name = "REL")]
     pub noise: Option<f32>,
     /// Stop after this time
@@ -179,7 +180,7 @@ pub struct Render {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// What else to give beside the picture (`bilux list aovs`): with `strategies`, each strategy's picture in a folder
-    /// OUT.strategies
+    /// OUT.strategies; with `interval`, OUT.interval.exr: half of each pixel's 95% interval
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub aov: Vec<String>,
     /// Write what it took as JSON; counts every node and triangle test, which is slower

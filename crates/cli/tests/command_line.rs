@@ -103,6 +103,25 @@ fn each_strategy_has_its_pictures_and_its_place_on_a_sheet() {
     with(&["-i", "bdpt", "--aov", "strategies", "-o", "-"]);
 }
 
+#[test]
+fn an_interval_lies_beside_the_picture() {
+    let folder = folder();
+    let path = folder.path();
+    render(path, "pots.exr", &["--noise", "0.5", "--aov", "interval", "--stats", "took.json"]);
+    let interval = bilux::pictures::formats::read(path.join("pots.interval.exr")).unwrap();
+    assert_eq!((interval.width(), interval.height()), (48, 32));
+    let half_widths = interval.channel("luminance").unwrap();
+    assert!(half_widths.iter().all(|x| x.is_finite()) && half_widths.iter().any(|&x| x > 0.0));
+    assert_eq!(interval.metadata["bilux.interval.confidence"], "0.95");
+    let picture = bilux::pictures::formats::read(path.join("pots.exr")).unwrap();
+    assert_eq!(picture.metadata["bilux.noise.samples_that_told_it"], "in the mean");
+    let stats = std::fs::read_to_string(path.join("took.json")).unwrap();
+    let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
+    assert!(stats["reached"]["bias_at_most"].as_f64().unwrap() <= 0.125);
+    let said = failing(path, 2, &["render", "pots.asc", "-i", "cast", "--aov", "interval", "-o", "a.png"]);
+    assert!(said.contains("chance") && !path.join("a.png").exists(), "{said}");
+}
+
 /// Runs what must fail and gives what it says.
 fn failing(folder: &Path, code: i32, arguments: &[&str]) -> String {
     let assert = bilux(folder).args(arguments).assert().code(code).stdout("");

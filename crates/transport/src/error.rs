@@ -86,6 +86,9 @@ pub enum RenderError {
     /// A part of a picture cannot know when the whole is good enough.
     #[error("a target of noise or time is for whole pictures: leave out the crop and the range of samples")]
     StopOfPart,
+    /// Without chance there is no interval.
+    #[error("there is no interval without chance: this integrator samples pixels in a fixed pattern")]
+    IntervalOfPattern,
     /// The film cannot be made.
     #[error(transparent)]
     Film(#[from] FilmError),

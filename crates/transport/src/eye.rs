@@ -3,6 +3,7 @@
 use crate::bidirectional::Photons;
 use crate::emission::{Emission, Guide};
 use crate::integrators::PixelIntegrator;
+use crate::interval::replicate;
 use crate::light_choice::LightChoice;
 use crate::render::{PixelAnchor, RenderSettings};
 use crate::sampler::{PixelSampler, regular_pattern};
@@ -49,7 +50,11 @@ impl<'a> Eye<'a> {
         y: u32,
         index: u32,
     ) -> (Ray, Task<'t, 'a>) {
-        let mut sampler = PixelSampler::new(self.settings.seed, x, y, index);
+        let (seed, number) = match self.settings.interval {
+            true => replicate(self.settings.seed, index),
+            false => (self.settings.seed, index),
+        };
+        let mut sampler = PixelSampler::new(seed, x, y, number);
         let camera_sample = self.camera_sample(&mut sampler, x, y, index);
         let task = Task {
             tracer,

@@ -1,22 +1,20 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
 use crate::bidirectional::Photons;
-use crate::error::{FilmError, RenderError};
+use crate::error::RenderError;
 use crate::eye::Eye;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
 use crate::integrators::PixelIntegrator;
+use crate::interval::Interval;
+use crate::passes::{all_passes, passes};
 use crate::plan::{Choice, Plan};
-use crate::splats::{Iterations, Shown, Splats};
+use crate::splats::Shown;
 use crate::stop::{Reached, Stop, Watch};
 use crate::window::Window;
 use bilux_accel::Counters;
-use bilux_scene::{Camera, Scene, Tracer};
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use bilux_scene::{Camera, Scene};
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// Scattering events after the camera where nothing else is said.
 pub const DEFAULT_MAX_DEPTH: u32 = 16;
@@ -26,9 +24,6 @@ pub const MAX_DEPTH: u32 = 1000;
 
 /// Side of a tile, in pixels.
 pub(crate) const TILE: u32 = 16;
-
-/// The most samples of each pixel in one pass over the film.
-const PASS: u32 = 32;
 
 /// Enough for trees of rays as deep as [`MAX_DEPTH`].
 const STACK_BYTES: usize = 16 << 20;
@@ -60,6 +55,9 @@ pub struct RenderSettings {
     pub count_work: bool,
     /// What may end it before all samples are taken.
     pub stop: Stop,
+    /// Take samples in independent replicates, which tell how far their mean may be off ([`Rendered::interval`]). These are
+    /// other samples, a little less evenly spread.
+    pub interval: bool,
 }
 
 /// Which point stands for a pixel.
@@ -88,6 +86,7 @@ impl RenderSettings {
             filter: Filter::default(),
             count_work: false,
             stop: Stop::default(),
+            interval: false,
         }
     }
 
@@ -104,6 +103,11 @@ impl RenderSettings {
     /// The pixels whose samples are taken.
     fn walked(&self, integrator: &dyn PixelIntegrator) -> Window {
         if integrator.splats() { Window::whole(self.width, self.height) } else { self.window() }
+    }
+
+    /// As integrators that choose see them: the choice is the same with an interval and without.
+    pub(crate) fn as_planned(&self) -> RenderSettings {
+        RenderSettings { interval: false, ..self.clone() }
     }
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {
@@ -156,6 +160,9 @@ pub struct Rendered {
     pub choice: Option<Choice>,
     /// How far it came, where it could end early ([`RenderSettings::stop`]).
     pub reached: Option<Reached>,
+    /// Between which bounds pixels lie, where it was asked for ([`RenderSettings::interval`]): of whole iterations, also
+    /// where it was stopped.
+    pub interval: Option<Interval>,
 }
 
 /// Renders the samples asked for.
@@ -170,26 +177,71 @@ pub fn render(
     progress: &dyn Progress,
 ) -> Result<Rendered, RenderError> {
     settings.check()?;
-    let film = Film::windowed(settings.width, settings.height, settings.window(), scale_exponent(scene))?;
+    let scale = scale_exponent(scene);
+    let film = Film::windowed(settings.width, settings.height, settings.window(), scale)?;
     let pool = threads(settings)?;
-    let (choice, planned, counters) = match pool.install(|| integrator.plan(scene, camera, settings)) {
+    let plan = pool.install(|| integrator.plan(scene, camera, &settings.as_planned()));
+    let (choice, planned, counters) = match plan {
         Some(Plan { choice, integrator, counters }) => (Some(choice), Some(integrator), counters),
         None => (None, None, Counters::default()),
     };
     let integrator = planned.as_deref().unwrap_or(integrator);
+    if settings.interval && !integrator.is_random() {
+        return Err(RenderError::IntervalOfPattern);
+    }
     progress.begin(settings.sample_count(integrator));
-    let tiles = settings.walked(integrator).tiles(TILE);
-    let mut rendered = Rendered { film, counters, cancelled: false, choice, reached: None };
-    let eye = || Eye::new(scene, camera, integrator, settings);
-    let take = |samples: &Range<u32>, mut rendered: Rendered| {
-        let Some(merging) = integrator.merging() else {
-            return all_passes(&pool, eye(), tiles.clone(), passes(samples), progress, rendered);
+    let run = Run { scene, camera, integrator, settings, progress, pool, scale };
+    let mut interval = settings.interval.then(|| Interval::new(settings.window())).transpose()?;
+    let mut take = |samples: &Range<u32>, rendered| match &mut interval {
+        Some(interval) => run.take_each(samples, interval, rendered),
+        None => run.take(samples, rendered),
+    };
+    let mut rendered = Rendered { film, counters, cancelled: false, choice, reached: None, interval: None };
+    if settings.stop.is_any() {
+        let mut watch = Watch::new(settings);
+        while !rendered.cancelled
+            && let Some(samples) = watch.next()
+        {
+            rendered = take(&samples, rendered)?;
+            if !rendered.cancelled {
+                watch.look(&rendered.film, &samples);
+                progress.begin(settings.walked(integrator).pixels() as u64 * u64::from(watch.expected()));
+            }
+        }
+        rendered.reached = watch.reached;
+    } else {
+        rendered = take(&settings.samples, rendered)?;
+    }
+    Ok(Rendered { interval, ..rendered })
+}
+
+/// All that stays the same while a picture is rendered.
+struct Run<'a> {
+    scene: &'a Scene,
+    camera: &'a dyn Camera,
+    integrator: &'a dyn PixelIntegrator,
+    settings: &'a RenderSettings,
+    progress: &'a dyn Progress,
+    pool: rayon::ThreadPool,
+    scale: i32,
+}
+
+impl<'a> Run<'a> {
+    fn eye(&self) -> Eye<'a> {
+        Eye::new(self.scene, self.camera, self.integrator, self.settings)
+    }
+
+    /// Adds some samples of every pixel.
+    fn take(&self, samples: &Range<u32>, mut rendered: Rendered) -> Result<Rendered, RenderError> {
+        let (pool, settings) = (&self.pool, self.settings);
+        let tiles = settings.walked(self.integrator).tiles(TILE);
+        let Some(merging) = self.integrator.merging() else {
+            return all_passes(pool, self.eye(), tiles, passes(samples), self.progress, rendered);
         };
         let whole = Window::whole(settings.width, settings.height).tiles(TILE);
         for iteration in samples.clone() {
-            let mut eye = eye();
-            let shown =
-                merging.shows_photons().then(|| Shown::new(settings, scale_exponent(scene), whole.len()));
+            let mut eye = self.eye();
+            let shown = merging.shows_photons().then(|| Shown::new(settings, self.scale, whole.len()));
             let shown = shown.transpose()?;
             let ways = |eta, light_paths| merging.ways(eta, light_paths);
             let (photons, counters) =
@@ -197,7 +249,7 @@ pub fn render(
             rendered.counters += counters;
             eye.photons = Some(&photons);
             let pass = passes(&(iteration..iteration + 1));
-            rendered = all_passes(&pool, eye, tiles.clone(), pass, progress, rendered)?;
+            rendered = all_passes(pool, eye, tiles.clone(), pass, self.progress, rendered)?;
             if rendered.cancelled {
                 break;
             }
@@ -206,22 +258,29 @@ pub fn render(
             }
         }
         Ok(rendered)
-    };
-    if !settings.stop.is_any() {
-        return take(&settings.samples, rendered);
     }
-    let mut watch = Watch::new(settings);
-    while !rendered.cancelled
-        && let Some(samples) = watch.next()
-    {
-        rendered = take(&samples, rendered)?;
-        if !rendered.cancelled {
-            watch.look(&rendered.film, &samples);
-            progress.begin(settings.walked(integrator).pixels() as u64 * u64::from(watch.expected()));
+
+    /// The same, one sample after the other, so that each gets into its replicate.
+    fn take_each(
+        &self,
+        samples: &Range<u32>,
+        interval: &mut Interval,
+        mut rendered: Rendered,
+    ) -> Result<Rendered, RenderError> {
+        for sample in samples.clone() {
+            let (settings, window) = (self.settings, self.settings.window());
+            let empty = Film::windowed(settings.width, settings.height, window, self.scale)?;
+            let before = std::mem::replace(&mut rendered.film, empty);
+            rendered = self.take(&(sample..sample + 1), rendered)?;
+            let one = std::mem::replace(&mut rendered.film, before);
+            rendered.film.merge(&one)?;
+            if rendered.cancelled {
+                break;
+            }
+            interval.add(sample, &one);
         }
+        Ok(rendered)
     }
-    rendered.reached = watch.reached;
-    Ok(rendered)
 }
 
 /// As many as are wanted.
@@ -231,166 +290,4 @@ pub(crate) fn threads(settings: &RenderSettings) -> Result<rayon::ThreadPool, Re
         .stack_size(STACK_BYTES)
         .build()
         .map_err(|e| RenderError::Threads { threads: settings.threads, reason: e.to_string() })
-}
-
-/// Some passes over all tiles, by all threads.
-fn all_passes(
-    pool: &rayon::ThreadPool,
-    eye: Eye,
-    tiles: Vec<Window>,
-    passes: Vec<Range<u32>>,
-    progress: &dyn Progress,
-    before: Rendered,
-) -> Result<Rendered, RenderError> {
-    let Rendered { film, mut counters, choice, reached, .. } = before;
-    let work = Work {
-        eye,
-        progress,
-        tiles,
-        passes,
-        next: AtomicU64::new(0),
-        dropped: Mutex::new(Vec::new()),
-        film: Mutex::new(film),
-        iterations: Mutex::new(BTreeMap::new()),
-        failed: Mutex::new(None),
-    };
-    pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
-    if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        return Err(error.into());
-    }
-    let (film, cancelled) = work.finish();
-    Ok(Rendered { film, counters, cancelled, choice, reached })
-}
-
-/// Ranges of samples that double in length, so that the first picture is there soon.
-fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
-    let (mut start, mut passes) = (samples.start, Vec::new());
-    while start < samples.end {
-        let length = (start - samples.start).clamp(1, PASS).min(samples.end - start);
-        passes.push(start..start + length);
-        start += length;
-    }
-    passes
-}
-
-/// One rendering, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
-struct Work<'a> {
-    eye: Eye<'a>,
-    progress: &'a dyn Progress,
-    tiles: Vec<Window>,
-    passes: Vec<Range<u32>>,
-    next: AtomicU64,
-    /// Jobs that were taken but not finished.
-    dropped: Mutex<Vec<u64>>,
-    film: Mutex<Film>,
-    /// What light paths have left in passes that are not finished.
-    iterations: Mutex<BTreeMap<usize, Iterations>>,
-    /// Why there is no film.
-    failed: Mutex<Option<FilmError>>,
-}
-
-impl<'a> Work<'a> {
-    /// One thread's share.
-    fn run(&self) -> Counters {
-        let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
-        let scale = scale_exponent(self.eye.scene);
-        let mut part = Film::part(scale);
-        let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
-        let jobs = (self.tiles.len() * self.passes.len()) as u64;
-        loop {
-            let job = self.next.fetch_add(1, Ordering::Relaxed);
-            if job >= jobs {
-                return tracer.counters;
-            }
-            let tile = self.tiles[job as usize % self.tiles.len()];
-            let pass = job as usize / self.tiles.len();
-            let samples = self.passes[pass].clone();
-            part.restart(tile.intersection(&self.eye.settings.window()));
-            let rays_before = tracer.counters.rays;
-            if !self.render_tile(tile, samples.clone(), &mut tracer, (&mut part, &mut splats)) {
-                self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
-                return tracer.counters;
-            }
-            self.film.lock().unwrap_or_else(PoisonError::into_inner).absorb(&part);
-            if self.eye.integrator.splats()
-                && let Err(error) = self.take_splats(pass, &mut splats)
-            {
-                *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-                return tracer.counters;
-            }
-            let taken = tile.pixels() as u64 * samples.len() as u64;
-            self.progress.advance(taken, tracer.counters.rays - rays_before);
-        }
-    }
-
-    /// False when it was stopped on the way.
-    fn render_tile(
-        &self,
-        tile: Window,
-        samples: Range<u32>,
-        tracer: &mut Tracer<'a>,
-        (part, splats): (&mut Film, &mut Splats),
-    ) -> bool {
-        for y in tile.y..tile.y + tile.height {
-            if self.progress.is_cancelled() {
-                return false;
-            }
-            for x in tile.x..tile.x + tile.width {
-                for sample in samples.clone() {
-                    let (ray, mut task) = self.eye.sample(tracer, x, y, sample);
-                    let is_wanted = part.window().index(x, y).is_some();
-                    splats.begin(x, y, sample);
-                    let light = self.eye.integrator.sample(&ray, is_wanted, &mut task, splats);
-                    part.add(x, y, sample, light);
-                }
-            }
-        }
-        true
-    }
-
-    /// Keeps what the light paths of a tile have left, and gives it to the film when it is the last of its pass.
-    fn take_splats(&self, pass: usize, splats: &mut Splats) -> Result<(), FilmError> {
-        let mut all = self.iterations.lock().unwrap_or_else(PoisonError::into_inner);
-        let iterations = match all.entry(pass) {
-            Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => {
-                entry.insert(Iterations::new(self.eye.settings.window().pixels(), self.tiles.len())?)
-            }
-        };
-        iterations.take(&mut splats.deposits);
-        if iterations.tiles_left > 0 {
-            return Ok(());
-        }
-        let Some(iterations) = all.remove(&pass) else { return Ok(()) };
-        drop(all);
-        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
-        film.add_iterations(&iterations, self.passes[pass].len() as u32)
-    }
-
-    /// The film with its coverage, and whether anything is missing.
-    fn finish(self) -> (Film, bool) {
-        let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let dropped = self.dropped.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if dropped.is_empty() {
-            for samples in &self.passes {
-                film.cover(self.eye.settings.window(), samples.clone());
-            }
-            return (film, false);
-        }
-        let taken = self.next.into_inner();
-        let tiles = self.tiles.len() as u64;
-        for (pass, samples) in self.passes.iter().enumerate() {
-            let first = pass as u64 * tiles;
-            let is_done = |job: &u64| *job < taken && !dropped.contains(job);
-            if (first..first + tiles).all(|job| is_done(&job)) {
-                film.cover(self.eye.settings.window(), samples.clone());
-            } else {
-                for job in (first..first + tiles).filter(is_done) {
-                    let tile = self.tiles[(job - first) as usize];
-                    film.cover(tile.intersection(&self.eye.settings.window()), samples.clone());
-                }
-            }
-        }
-        (film, true)
-    }
 }

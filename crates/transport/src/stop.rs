@@ -22,6 +22,16 @@ pub struct Reached {
     /// What is left of the noise, where it was asked for: the standard error of a pixel as a part of the light around
     /// it, as a mean over blocks of 8 × 8 pixels. What is darker than [`DARK`] of the mean counts as that bright.
     pub noise: Option<f32>,
+    /// How far it may have shifted the mean that the samples by which noise was told are in it: at most so much, in standard
+    /// errors of a pixel, as a root mean square over pixels.
+    ///
+    /// Let eₙ be a pixel's error after n samples, σₙ its standard deviation, T the number of samples at which the picture
+    /// ends. The shift is Σₙ E[eₙ·1(T = n)], and 1(T = n) is the same for all pixels. Errors of different pixels have nothing in
+    /// common, so by Bessel's inequality the squares of their correlations with 1(T = n) add up to at most 1 over all N
+    /// pixels, and the shift in units of σ is at most Σₙ √(P(T = n)(1 - P(T = n)) / N), which is 2/√N for five n that are
+    /// all as likely, and less for fewer. It asks nothing of a pixel's samples among themselves. Where pixels see the
+    /// same light paths, N is as many as see different ones.
+    pub bias: Option<f32>,
 }
 
 /// So dark, as a part of the picture's mean, that nobody sees the noise of what is darker.
@@ -88,7 +98,9 @@ impl Watch {
                 self.snapshots[1] = Some((self.done, light));
             }
         }
-        self.reached = Some(Reached { spp: self.done, noise });
+        let pixels = film.window().pixels() as f64;
+        let bias = noise.map(|_| (2.0 / pixels.sqrt()) as f32);
+        self.reached = Some(Reached { spp: self.done, noise, bias });
     }
 
     fn noise(&self) -> Option<f32> {

@@ -28,6 +28,11 @@ impl Window {
         Window { x: 0, y: 0, width, height }
     }
 
+    /// One pixel, at a column and row.
+    pub const fn pixel((x, y): (u32, u32)) -> Window {
+        Window { x, y, width: 1, height: 1 }
+    }
+
     /// How many pixels it has.
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize

@@ -2,14 +2,15 @@
 
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
-use crate::output;
 use crate::progress::Report;
 use crate::settings_from::from_flag;
+use crate::{output, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::WriteOptions;
 use bilux::scene::SceneError;
 use bilux::strategies::{Light, picture, sheet};
-use bilux::transport::{Strategies, aovs, integrators, strategies::LONGEST};
+use bilux::transport::aovs::{self, AOVS, Aov};
+use bilux::transport::{Interval, Strategies, integrators, strategies::LONGEST};
 use bilux::{Job, Outcome};
 use std::path::{Path, PathBuf};
 
@@ -24,15 +25,23 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Finds out whether a picture's integrator can give what is wanted.
-pub fn check_job(arguments: &Render, job: &Job) -> anyhow::Result<()> {
-    if !arguments.aov.is_empty() && !job.has_strategies() {
+/// True when this one is wanted.
+fn wants(arguments: &Render, aov: Aov) -> bool {
+    arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
+}
+
+/// Finds out whether a picture's integrator can give what is wanted, and has it do so.
+pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
+    if wants(arguments, Aov::Strategies) && !job.has_strategies() {
         let (name, others) = (job.settings().integrator.entry.name, integrators::with_strategies());
         let message = format!(
             "the integrator '{name}' has no strategies that could be told apart; choose one of: {}",
             others.collect::<Vec<_>>().join(", ")
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
+    }
+    if wants(arguments, Aov::Interval) {
+        job.with_interval().map_err(usage::wrong)?;
     }
     Ok(())
 }
@@ -46,8 +55,11 @@ pub fn write(
     common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<bool> {
-    if arguments.aov.is_empty() {
-        return Ok(true);
+    if let Some(interval) = &outcome.interval {
+        write_interval(interval, output, common)?;
+    }
+    if !wants(arguments, Aov::Strategies) || outcome.cancelled {
+        return Ok(!outcome.cancelled);
     }
     let folder = output.with_extension("strategies");
     let report =
@@ -68,6 +80,28 @@ pub fn write(
         ));
     }
     Ok(true)
+}
+
+/// `OUT.interval.exr`.
+fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow::Result<()> {
+    let path = output.with_extension("interval.exr");
+    if interval.degrees_of_freedom() == 0 {
+        output::warning(format_args!(
+            "{}: not written, since it takes at least 2 samples of each pixel to know of an interval",
+            path.display()
+        ));
+        return Ok(());
+    }
+    bilux::pictures::write(&path, &interval.to_picture()?, &WriteOptions::default())?;
+    if !common.quiet {
+        output::say(format_args!(
+            "{}: 95% intervals of {} samples in {} replicates",
+            path.display(),
+            interval.samples(),
+            interval.degrees_of_freedom() + 1,
+        ));
+    }
+    Ok(())
 }
 
 /// `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets on which all of them are.

@@ -102,7 +102,7 @@ fn render_one(
     let mut job = Job::new(&scene, user)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
-    aov::check_job(arguments, &job)?;
+    aov::prepare(arguments, &mut job)?;
     if let Some((from, to)) = arguments.samples {
         job.samples(from..to);
     }
@@ -156,7 +156,7 @@ fn finish(
     let seconds = report.finish();
     write(job, &outcome, output, arguments)?;
     tell_odd_samples(&outcome);
-    let all_aovs = outcome.cancelled || aov::write(arguments, job, &outcome, output, common, interrupt)?;
+    let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     if let Some(path) = &arguments.stats {
         let stats = stats(job, &outcome, scene, build_seconds, seconds);
         let text = serde_json::to_string_pretty(&stats)?;
@@ -225,7 +225,11 @@ fn tell_odd_samples(outcome: &Outcome) {
 /// Where a picture ended that could end early.
 fn how_far(reached: &Reached) -> String {
     let noise = reached.noise.map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
-    format!("{} samples a pixel{noise}", reached.spp)
+    // The samples by which noise is told are in the mean: said where it may matter.
+    let bias = reached.bias.filter(|bias| *bias >= 0.05);
+    let bias =
+        bias.map(|bias| format!(", shifted by the rule by at most {bias:.2} of it")).unwrap_or_default();
+    format!("{} samples a pixel{noise}{bias}", reached.spp)
 }
 
 /// Which ways of finding light were chosen, and what was expected of each.
@@ -262,7 +266,9 @@ fn stats(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
         "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
         "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
-        "tree": trees.first(), "reached": outcome.reached.map(|r| json!({ "spp": r.spp, "noise": r.noise })),
+        "tree": trees.first(), "reached": outcome.reached.map(|r| json!({
+            "spp": r.spp, "noise": r.noise, "samples_that_told_it_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
+        })),
         "choice": outcome.choice.as_ref().map(choice),
     })
 }

@@ -71,6 +71,11 @@ pub trait PixelIntegrator: Send + Sync {
     /// The same sample as [`PixelIntegrator::sample`], strategy by strategy.
     fn sample_strategies(&self, _ray: &Ray, _is_wanted: bool, _task: &mut Task, _layers: &mut Layers) {}
 
+    /// True when its samples can be taken in independent replicates ([`RenderSettings::interval`]).
+    fn is_random(&self) -> bool {
+        self.camera_spread().pixel > 0.0
+    }
+
     /// How far samples spread over pixel, lens and shutter.
     fn camera_spread(&self) -> CameraSpread {
         CameraSpread::FULL

@@ -1,0 +1,195 @@
+//! Between which bounds a pixel's light lies: 95% intervals of Student's t. [Student 1908]
+//!
+//! Samples of one sequence are spread evenly, each where the others are not, so their variance says little about the error
+//! of their mean. Where an interval is wanted, samples are taken in turn from [`REPLICATES`] sequences that are scrambled
+//! independently: the sequences' means *are* independent, and their spread tells the error of the mean of all, with
+//! whatever even spreading gains within each. [Owen 1997] Light that was followed from its source belongs to the replicate of its
+//! iteration, as camera paths do, so that a pixel's interval is of all of its light; what pixels have in common is in
+//! the interval of a block.
+
+use crate::error::FilmError;
+use crate::film::{Film, zeroed};
+use crate::window::Window;
+use bilux_math::Rgb;
+use bilux_math::hash::hash_words;
+use bilux_pictures::Picture;
+
+/// Sequences of samples that are scrambled independently. Sample `i` is number `i / REPLICATES` of sequence
+/// `i % REPLICATES`, so that any range of samples is what it is by itself.
+pub const REPLICATES: u32 = 8;
+
+const COUNT: usize = REPLICATES as usize;
+
+/// Half the width of a 95% interval in standard errors, by degrees of freedom from 1 on. [Student 1908]
+const QUANTILES: [f64; COUNT - 1] =
+    [12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624];
+
+/// The seed of a sample's sequence, and its number there.
+#[inline]
+pub(crate) fn replicate(seed: u64, sample: u32) -> (u64, u32) {
+    const KEY: u64 = 0x7265_706c_6963_6174;
+    (hash_words([seed ^ KEY, u64::from(sample % REPLICATES)]), sample / REPLICATES)
+}
+
+/// The light of each replicate, and the intervals that it gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interval {
+    window: Window,
+    /// Samples of a pixel in each replicate.
+    counts: [u32; COUNT],
+    /// The mean light of each replicate, pixel by pixel. Means that are corrected by each sample stay exact where sums would
+    /// lose what is much smaller than they are.
+    means: Vec<[[f32; 3]; COUNT]>,
+}
+
+/// A mean, and how far to both sides of it the interval reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// Half the width of the 95% interval.
+    pub half_width: f64,
+}
+
+impl Interval {
+    pub(crate) fn new(window: Window) -> Result<Interval, FilmError> {
+        Ok(Interval { window, counts: [0; COUNT], means: zeroed(window.pixels())? })
+    }
+
+    /// Bytes that the intervals of so many pixels take while they are rendered.
+    pub const fn memory_bytes(pixels: u64) -> u64 {
+        pixels.saturating_mul(size_of::<[[f32; 3]; COUNT]>() as u64)
+    }
+
+    /// Adds one sample of every pixel, which is all that is on the film. What is not finite counts as black: the interval
+    /// becomes the wider.
+    pub(crate) fn add(&mut self, sample: u32, film: &Film) {
+        let replicate = (sample % REPLICATES) as usize;
+        self.counts[replicate] += 1;
+        let share = 1.0 / self.counts[replicate] as f32;
+        for (i, means) in self.means.iter_mut().enumerate() {
+            let (x, y) = self.window.position(i);
+            let light = Some(film.pixel(x, y)).filter(|light| light.is_finite()).unwrap_or(Rgb::BLACK);
+            for (mean, light) in means[replicate].iter_mut().zip(light.to_array()) {
+                *mean += (light - *mean) * share;
+            }
+        }
+    }
+
+    /// The pixels that have one.
+    pub fn window(&self) -> Window {
+        self.window
+    }
+
+    /// Samples of each pixel.
+    pub fn samples(&self) -> u32 {
+        self.counts.iter().sum()
+    }
+
+    /// One less than there are replicates with samples.
+    pub fn degrees_of_freedom(&self) -> u32 {
+        (self.counts.iter().filter(|&&count| count > 0).count() as u32).saturating_sub(1)
+    }
+
+    /// Half the width of an interval in standard errors; infinite where one sample is all.
+    pub fn quantile(&self) -> f64 {
+        let below = self.degrees_of_freedom().checked_sub(1);
+        below.map_or(f64::INFINITY, |i| QUANTILES[i as usize])
+    }
+
+    /// The mean luminance of a block of pixels and its interval: what pixels have in common (a light path that several of
+    /// them see) does not average out, and is in. Of one pixel, or of many.
+    pub fn luminance(&self, block: &Window) -> Estimate {
+        self.estimate(block, |light| f64::from(Rgb::from_array(light).luminance()))
+    }
+
+    /// The same for red, green or blue: `channel` 0, 1 or 2.
+    pub fn channel(&self, block: &Window, channel: usize) -> Estimate {
+        self.estimate(block, |light| f64::from(light[channel]))
+    }
+
+    /// Where replicates have different numbers of samples n, the variance of a mean is taken to be σ²/n.
+    fn estimate(&self, block: &Window, value: impl Fn([f32; 3]) -> f64) -> Estimate {
+        let block = block.intersection(&self.window);
+        let mut means = [0.0; COUNT];
+        for (x, y) in (0..block.pixels()).map(|i| block.position(i)) {
+            let Some(index) = self.window.index(x, y) else { continue };
+            for (mean, light) in means.iter_mut().zip(self.means[index]) {
+                *mean += value(light) / block.pixels() as f64;
+            }
+        }
+        let (samples, freedom) = (f64::from(self.samples().max(1)), self.degrees_of_freedom());
+        let replicates = || means.iter().zip(self.counts).map(|(mean, count)| (mean, f64::from(count)));
+        let mean = replicates().map(|(mean, count)| mean * count).sum::<f64>() / samples;
+        if freedom == 0 {
+            return Estimate { mean, half_width: f64::INFINITY };
+        }
+        let squares = replicates().map(|(own, count)| count * (own - mean) * (own - mean)).sum::<f64>();
+        let error = (squares / (f64::from(freedom) * samples)).sqrt();
+        Estimate { mean, half_width: self.quantile() * error }
+    }
+
+    /// Half the widths of the pixels' intervals as a linear picture of the window: red, green, blue, and as a further channel
+    /// that of luminance.
+    ///
+    /// # Errors
+    /// When there is no room for it.
+    pub fn to_picture(&self) -> Result<Picture, FilmError> {
+        let pixels = || (0..self.window.pixels()).map(|i| self.window.position(i)).map(Window::pixel);
+        let half = |estimate: Estimate| estimate.half_width as f32;
+        let colour = pixels().map(|at| Rgb::from_array([0, 1, 2].map(|c| half(self.channel(&at, c)))));
+        let (width, height) = (self.window.width as usize, self.window.height as usize);
+        let mut picture = Picture::from_rgb(width, height, colour.collect())?;
+        picture.push_channel("luminance", pixels().map(|at| half(self.luminance(&at))).collect())?;
+        let mut note =
+            |key: &str, value: String| picture.metadata.insert(format!("bilux.interval.{key}"), value);
+        note("confidence", "0.95".to_owned());
+        note("half_width_in_standard_errors", self.quantile().to_string());
+        note("degrees_of_freedom", self.degrees_of_freedom().to_string());
+        note("samples", self.samples().to_string());
+        Ok(picture)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statrs::distribution::{ContinuousCDF, StudentsT};
+
+    #[test]
+    fn quantiles_are_those_of_students_t() {
+        for (i, quantile) in QUANTILES.into_iter().enumerate() {
+            let inside = 1.0 - 2.0 * StudentsT::new(0.0, 1.0, i as f64 + 1.0).unwrap().sf(quantile);
+            assert!((inside - 0.95).abs() < 1e-6, "{quantile}: {inside}");
+        }
+    }
+
+    fn film(values: [f32; 2]) -> Film {
+        let mut film = Film::new(2, 1, 30).unwrap();
+        (0..2).for_each(|x| film.add(x, 0, 0, Rgb::grey(values[x as usize])));
+        film
+    }
+
+    #[test]
+    fn of_two_samples_the_standard_error_is_half_of_their_distance() {
+        let mut interval = Interval::new(Window::whole(2, 1)).unwrap();
+        interval.add(0, &film([1.0, 3.0]));
+        assert_eq!(interval.channel(&Window::whole(2, 1), 1).half_width, f64::INFINITY);
+        interval.add(1, &film([2.0, 2.0]));
+        let left = interval.channel(&Window::pixel((0, 0)), 0);
+        assert_eq!((left.mean, left.half_width), (1.5, 0.5 * QUANTILES[0]));
+        // What one pixel has more the other has less: together they are known.
+        let both = interval.channel(&Window::whole(2, 1), 2);
+        assert_eq!((both.mean, both.half_width), (2.0, 0.0));
+    }
+
+    #[test]
+    fn a_sample_that_is_no_number_makes_the_interval_wider() {
+        let mut interval = Interval::new(Window::whole(2, 1)).unwrap();
+        for sample in 0..REPLICATES {
+            interval.add(sample, &film([1.0, if sample == 3 { f32::NAN } else { 1.0 }]));
+        }
+        let [sound, bad] = [0, 1].map(|x| interval.channel(&Window::pixel((x, 0)), 0).half_width);
+        assert!(sound == 0.0 && bad > 0.1, "{sound} {bad}");
+    }
+}

@@ -1,0 +1,180 @@
+//! Passes over the film: all its tiles, some samples of each pixel, by all threads.
+
+use crate::error::{FilmError, RenderError};
+use crate::eye::Eye;
+use crate::film::{Film, scale_exponent};
+use crate::render::{Progress, Rendered};
+use crate::splats::{Iterations, Splats};
+use crate::window::Window;
+use bilux_accel::Counters;
+use bilux_scene::Tracer;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// The most samples of each pixel in one pass over the film.
+const PASS: u32 = 32;
+
+/// Some passes over all tiles, by all threads.
+pub(crate) fn all_passes(
+    pool: &rayon::ThreadPool,
+    eye: Eye,
+    tiles: Vec<Window>,
+    passes: Vec<Range<u32>>,
+    progress: &dyn Progress,
+    before: Rendered,
+) -> Result<Rendered, RenderError> {
+    let Rendered { film, mut counters, choice, reached, interval, .. } = before;
+    let work = Work {
+        eye,
+        progress,
+        tiles,
+        passes,
+        next: AtomicU64::new(0),
+        dropped: Mutex::new(Vec::new()),
+        film: Mutex::new(film),
+        iterations: Mutex::new(BTreeMap::new()),
+        failed: Mutex::new(None),
+    };
+    pool.broadcast(|_| work.run()).into_iter().for_each(|c| counters += c);
+    if let Some(error) = work.failed.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(error.into());
+    }
+    let (film, cancelled) = work.finish();
+    Ok(Rendered { film, counters, cancelled, choice, reached, interval })
+}
+
+/// Ranges of samples that double in length, so that the first picture is there soon.
+pub(crate) fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
+    let (mut start, mut passes) = (samples.start, Vec::new());
+    while start < samples.end {
+        let length = (start - samples.start).clamp(1, PASS).min(samples.end - start);
+        passes.push(start..start + length);
+        start += length;
+    }
+    passes
+}
+
+/// One rendering, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
+struct Work<'a> {
+    eye: Eye<'a>,
+    progress: &'a dyn Progress,
+    tiles: Vec<Window>,
+    passes: Vec<Range<u32>>,
+    next: AtomicU64,
+    /// Jobs that were taken but not finished.
+    dropped: Mutex<Vec<u64>>,
+    film: Mutex<Film>,
+    /// What light paths have left in passes that are not finished.
+    iterations: Mutex<BTreeMap<usize, Iterations>>,
+    /// Why there is no film.
+    failed: Mutex<Option<FilmError>>,
+}
+
+impl<'a> Work<'a> {
+    /// One thread's share.
+    fn run(&self) -> Counters {
+        let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
+        let scale = scale_exponent(self.eye.scene);
+        let mut part = Film::part(scale);
+        let mut splats = Splats::new(self.eye.settings, self.eye.settings.window(), scale);
+        let jobs = (self.tiles.len() * self.passes.len()) as u64;
+        loop {
+            let job = self.next.fetch_add(1, Ordering::Relaxed);
+            if job >= jobs {
+                return tracer.counters;
+            }
+            let tile = self.tiles[job as usize % self.tiles.len()];
+            let pass = job as usize / self.tiles.len();
+            let samples = self.passes[pass].clone();
+            part.restart(tile.intersection(&self.eye.settings.window()));
+            let rays_before = tracer.counters.rays;
+            if !self.render_tile(tile, samples.clone(), &mut tracer, (&mut part, &mut splats)) {
+                self.dropped.lock().unwrap_or_else(PoisonError::into_inner).push(job);
+                return tracer.counters;
+            }
+            self.film.lock().unwrap_or_else(PoisonError::into_inner).absorb(&part);
+            if self.eye.integrator.splats()
+                && let Err(error) = self.take_splats(pass, &mut splats)
+            {
+                *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                return tracer.counters;
+            }
+            let taken = tile.pixels() as u64 * samples.len() as u64;
+            self.progress.advance(taken, tracer.counters.rays - rays_before);
+        }
+    }
+
+    /// False when it was stopped on the way.
+    fn render_tile(
+        &self,
+        tile: Window,
+        samples: Range<u32>,
+        tracer: &mut Tracer<'a>,
+        (part, splats): (&mut Film, &mut Splats),
+    ) -> bool {
+        for y in tile.y..tile.y + tile.height {
+            if self.progress.is_cancelled() {
+                return false;
+            }
+            for x in tile.x..tile.x + tile.width {
+                for sample in samples.clone() {
+                    let (ray, mut task) = self.eye.sample(tracer, x, y, sample);
+                    let is_wanted = part.window().index(x, y).is_some();
+                    splats.begin(x, y, sample);
+                    let light = self.eye.integrator.sample(&ray, is_wanted, &mut task, splats);
+                    part.add(x, y, sample, light);
+                }
+            }
+        }
+        true
+    }
+
+    /// Keeps what the light paths of a tile have left, and gives it to the film when it is the last of its pass.
+    fn take_splats(&self, pass: usize, splats: &mut Splats) -> Result<(), FilmError> {
+        let mut all = self.iterations.lock().unwrap_or_else(PoisonError::into_inner);
+        let iterations = match all.entry(pass) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => {
+                entry.insert(Iterations::new(self.eye.settings.window().pixels(), self.tiles.len())?)
+            }
+        };
+        iterations.take(&mut splats.deposits);
+        if iterations.tiles_left > 0 {
+            return Ok(());
+        }
+        let Some(iterations) = all.remove(&pass) else { return Ok(()) };
+        drop(all);
+        let mut film = self.film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.add_iterations(&iterations, self.passes[pass].len() as u32)
+    }
+
+    /// The film with its coverage, and whether anything is missing.
+    fn finish(self) -> (Film, bool) {
+        let mut film = self.film.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let dropped = self.dropped.into_inner().unwrap_or_else(PoisonError::into_inner);
+        if dropped.is_empty() {
+            for samples in &self.passes {
+                film.cover(self.eye.settings.window(), samples.clone());
+            }
+            return (film, false);
+        }
+        let taken = self.next.into_inner();
+        let tiles = self.tiles.len() as u64;
+        for (pass, samples) in self.passes.iter().enumerate() {
+            let first = pass as u64 * tiles;
+            let is_done = |job: &u64| *job < taken && !dropped.contains(job);
+            if (first..first + tiles).all(|job| is_done(&job)) {
+                film.cover(self.eye.settings.window(), samples.clone());
+            } else {
+                for job in (first..first + tiles).filter(is_done) {
+                    let tile = self.tiles[(job - first) as usize];
+                    film.cover(tile.intersection(&self.eye.settings.window()), samples.clone());
+                }
+            }
+        }
+        (film, true)
+    }
+}
