@@ -16,7 +16,7 @@ use bilux_scene::Counters;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Least light paths of an iteration.
-pub(super) const LEAST_LIGHT_PATHS: u64 = 4096;
+pub(super) const LEAST_LIGHT_PATHS: u64 = 2048;
 
 /// So many light paths are begun, and not followed, to see how often each cell is one's.
 const STARTS: u32 = 1 << 16;

@@ -310,7 +310,11 @@ impl Tally<LANES> for Look {
         if matches!(way, Way::Merged { .. }) {
             self.steps.merged += 1.0 / f64::from(found.own.0[0]);
         }
-        self.sample.take(found);
+        match way {
+            // Lights and sky as the camera sees them: smoothed edges, which all sets have alike, and soon.
+            Way::Joined { s: 0, t: 2 } => self.sample.light += f64::from(found.weighted().luminance()),
+            _ => self.sample.take(found),
+        }
     }
 
     fn there(&mut self, film: Vec2, _way: Way, found: &Found<LANES>) {
