@@ -1,0 +1,367 @@
+//! Do all unbiased integrators find the same light? Shipped scenes as small pictures, compared block by block.
+//!
+//! Each way renders [`PICTURES`] pictures that differ in their seeds only. For every block of [`BLOCK`]² pixels and every
+//! channel, Welch's test says how likely two ways with one mean would differ as much as these do. [Jung 2020]
+//!
+//! Only light that both find is compared:
+//! - `light` sees nothing through a mirror or through glass: it is compared in blocks whose surfaces all scatter into more
+//!   than single directions.
+//! - `path` (and `auto`, which may be it) finds no light that lamps without extent send through a mirror or through glass.
+//!   In scenes with such lamps it is compared under lamps that have some.
+//!
+//! A mean of few and unequal parts is not normally distributed, and Welch's test of such means is wrong: cells that are not
+//! known to 3% of their light yet, or whose pictures are skewed, are left undecided. The whole picture is a cell too.
+
+use crate::chi_square::uniforms;
+use crate::statistics::{estimate, is_skewed, sidak, welch};
+use bilux::Error;
+use bilux::formats::ReadOptions;
+use bilux_math::transcendental::{acos, atan2, sin_cos};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::generators::GENERATORS;
+use bilux_scene::{
+    AccelChoice, CameraSample, Reader, Scene, SceneBuilder, Spec, Texture, Tracer, TransportMode, Value,
+};
+use bilux_transport::{DEFAULT_MAX_DEPTH, PixelIntegrator, RenderSettings, Silent, integrators, render};
+use std::f32::consts::{PI, TAU};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Pictures of each way.
+pub const PICTURES: usize = 32;
+
+/// Side of a block, in pixels.
+pub const BLOCK: usize = 8;
+
+/// Where one standard error is more than this part of the light, too little has been found to tell anything.
+const COARSE: f64 = 0.03;
+
+/// A way of finding light.
+#[derive(Clone, Debug)]
+pub struct Way {
+    /// What it is called.
+    pub name: &'static str,
+    /// The integrator and its parameters.
+    pub spec: Spec,
+    /// It finds what lamps without extent send through mirrors and glass.
+    pub finds_points: bool,
+    /// It finds what is seen in mirrors or through glass.
+    pub finds_mirrored: bool,
+}
+
+/// All unbiased ways.
+pub fn ways() -> Vec<Way> {
+    let way = |name, spec, finds_points, finds_mirrored| Way { name, spec, finds_points, finds_mirrored };
+    vec![
+        way("path", Spec::new("", "path"), false, true),
+        way("light", Spec::new("", "light"), true, false),
+        way("bdpt", Spec::new("", "bdpt"), true, true),
+        way("vcm", Spec::new("", "vcm").with("radius", 0.0f32), true, true),
+        way("auto", Spec::new("", "auto").with("merge", "never"), false, true),
+    ]
+}
+
+/// A scene to be rendered small.
+pub struct Stage {
+    /// What it is called.
+    pub name: String,
+    /// Scene and camera.
+    pub scene: Scene,
+    /// Size and depth; samples and seed are set for each picture.
+    pub settings: RenderSettings,
+    /// Some of its lamps have no extent.
+    pub has_points: bool,
+    /// Blocks in which no mirror and no glass is seen.
+    plain: Vec<bool>,
+    /// Of each cell, the light of lamps and sky themselves, which all ways find alike.
+    seen: Vec<f64>,
+}
+
+/// Every scene that we ship: those in the folder, and those that have a generator and no file there, by name.
+///
+/// # Errors
+/// When one cannot be read or made.
+pub fn shipped(folder: &Path) -> Result<Vec<(String, SceneBuilder)>, Error> {
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    files.sort();
+    let mut all = Vec::new();
+    for path in files {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        all.push((name, bilux::load(&path, &ReadOptions::default())?));
+    }
+    // Shown by `cornell.toml`, `teapots.toml` and `teapots-trio.toml`.
+    let in_files = ["cornell-spheres", "teapots", "trio"];
+    for row in GENERATORS.iter().filter(|row| !in_files.contains(&row.entry.name)) {
+        all.push((row.entry.name.to_owned(), bilux::generate(&Spec::new("", row.entry.name))?));
+    }
+    Ok(all)
+}
+
+/// The scene as it is, and where lamps of it have no extent, also as if they had.
+///
+/// # Errors
+/// When something in it is wrong.
+pub fn stages(name: &str, scene: &SceneBuilder, size: [u32; 2]) -> Result<Vec<Stage>, Error> {
+    let scene = bilux::presets::completed(scene);
+    let mut stages = vec![Stage::new(name, &scene, size)?];
+    if scene.lights.iter().any(is_point) {
+        stages[0].has_points = true;
+        stages.push(Stage::new(&format!("{name}, wide lamps"), &with_wide_lamps(&scene)?, size)?);
+    }
+    Ok(stages)
+}
+
+fn is_point(light: &Spec) -> bool {
+    ["point", "spot", "directional"].contains(&light.kind.as_str())
+}
+
+/// Suns become discs in the sky, a few degrees wide; points and spots are left out.
+fn with_wide_lamps(scene: &SceneBuilder) -> Result<SceneBuilder, Error> {
+    const ROWS: usize = 32;
+    let mut wide = scene.clone();
+    wide.lights.retain(|light| !is_point(light));
+    let row = bilux_scene::LIGHTS.iter().find(|row| row.entry.name == "directional");
+    for sun in scene.lights.iter().filter(|light| light.kind == "directional") {
+        let Some(row) = row else { continue };
+        let reader = Reader::new(sun, &row.entry)?;
+        let towards = -reader.vector("direction").normalize();
+        let u = 0.5 + atan2(towards.x, -towards.z) / TAU;
+        let v = acos(towards.y.clamp(-1.0, 1.0)) / PI;
+        let at = |part: f32, count: usize| ((part * count as f32) as usize).min(count - 1);
+        let solid_angle = (PI / ROWS as f32) * (PI / ROWS as f32) * sin_cos(PI * v).0.max(0.05);
+        let mut texels = vec![Rgb::BLACK; 2 * ROWS * ROWS];
+        texels[at(v, ROWS) * 2 * ROWS + at(u, 2 * ROWS)] = reader.colour("irradiance") / solid_angle;
+        let picture = Texture { name: String::new(), width: 2 * ROWS, height: ROWS, texels, is_data: false };
+        wide.textures.push(Arc::new(picture));
+        let radiance = Value::Texture(wide.textures.len() - 1);
+        wide.lights.push(Spec::new("sun", "environment").with("radiance", radiance));
+    }
+    Ok(wide)
+}
+
+impl Stage {
+    fn new(name: &str, scene: &SceneBuilder, [width, height]: [u32; 2]) -> Result<Stage, Error> {
+        let built = scene.build(&AccelChoice::default(), [0.0, 0.0], width as f32 / height as f32)?;
+        let max_depth = match scene.settings.find("max_depth") {
+            Some((Value::Integer(depth), _)) => *depth as u32,
+            _ => DEFAULT_MAX_DEPTH,
+        };
+        let settings = RenderSettings { max_depth, ..RenderSettings::new(width, height, 1) };
+        let (name, plain, seen) = (name.to_owned(), Vec::new(), Vec::new());
+        let mut stage = Stage { name, scene: built, settings, has_points: false, plain, seen };
+        stage.plain = (0..stage.blocks()).map(|block| stage.is_plain(block)).collect();
+        let lamps = RenderSettings { max_depth: 0, ..stage.settings.clone() };
+        let path = integrators::build(&Spec::new("", "path"))?;
+        let lamps = stage.evidence(&*path, &RenderSettings { spp: 256, samples: 0..256, ..lamps }, 0, 1)?;
+        stage.seen = lamps.cells.into_iter().map(|cell| cell[0]).collect();
+        Ok(stage)
+    }
+
+    fn across(&self) -> usize {
+        self.settings.width as usize / BLOCK
+    }
+
+    fn blocks(&self) -> usize {
+        self.across() * (self.settings.height as usize / BLOCK)
+    }
+
+    /// Whether everything that is seen in a block scatters into more than single directions, as far as many rays tell.
+    fn is_plain(&self, block: usize) -> bool {
+        const RAYS: u64 = 4096;
+        let corner = Vec2::new((block % self.across()) as f32, (block / self.across()) as f32);
+        let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
+        let mut tracer = Tracer::new(&self.scene, false);
+        (0..RAYS).all(|i| {
+            let film = (corner + uniforms(block as u64, i).1) * BLOCK as f32 / size;
+            let sample = CameraSample { film, lens: uniforms(u64::MAX, i).1, time: 0.0 };
+            let ray = self.scene.cameras()[0].1.ray(&sample);
+            let Some(surface) = tracer.closest(&ray) else { return true };
+            let bsdf = self.scene.material(&surface).bsdf(&surface);
+            let wo = -Vec3::from(ray.direction);
+            let scattered = |k: u8| {
+                let u_choice = (f32::from(k) + 0.5) / 16.0;
+                bsdf.sample(wo, u_choice, Vec2::splat(0.37), TransportMode::Radiance)
+            };
+            (0..16).filter_map(scattered).all(|sample| !sample.is_delta)
+        })
+    }
+
+    /// Whether two ways can be compared here.
+    pub fn compares(&self, a: &Way, b: &Way) -> bool {
+        !self.has_points || (a.finds_points && b.finds_points)
+    }
+
+    /// Sums of all blocks and channels over pictures of so many samples.
+    ///
+    /// # Errors
+    /// When memory is short.
+    pub fn render(
+        &self,
+        integrator: &dyn PixelIntegrator,
+        spp: u32,
+        first_seed: u64,
+        pictures: usize,
+    ) -> Result<Evidence, Error> {
+        let settings = RenderSettings { spp, samples: 0..spp, ..self.settings.clone() };
+        self.evidence(integrator, &settings, first_seed, pictures)
+    }
+
+    fn evidence(
+        &self,
+        integrator: &dyn PixelIntegrator,
+        settings: &RenderSettings,
+        first_seed: u64,
+        pictures: usize,
+    ) -> Result<Evidence, Error> {
+        let mut cells = vec![Vec::new(); self.blocks() * 3];
+        for seed in (first_seed..).take(pictures) {
+            let settings = RenderSettings { seed, ..settings.clone() };
+            let camera = &*self.scene.cameras()[0].1;
+            let pixels = render(&self.scene, camera, integrator, &settings, &Silent)?.film.to_rgb();
+            let mut sums = vec![0.0; cells.len()];
+            for (i, pixel) in pixels.into_iter().enumerate() {
+                let (x, y) = (i % settings.width as usize, i / settings.width as usize);
+                let block = y / BLOCK * self.across() + x / BLOCK;
+                (0..3).for_each(|c| sums[block * 3 + c] += f64::from(pixel[c]));
+            }
+            cells.iter_mut().zip(sums).for_each(|(cell, sum)| cell.push(sum));
+        }
+        Ok(Evidence { cells, spp: settings.spp })
+    }
+
+    /// The pictures of a way, with as many samples as can be taken in about so many seconds by the clock.
+    ///
+    /// # Errors
+    /// As [`Stage::render`].
+    pub fn render_for(&self, way: &Way, seconds: f64, first_seed: u64) -> Result<Evidence, Error> {
+        let integrator = integrators::build(&way.spec)?;
+        let mut spp = 1;
+        loop {
+            let begun = Instant::now();
+            self.render(&*integrator, spp, u64::MAX / 2, 2)?;
+            let took = begun.elapsed().as_secs_f64() / 2.0;
+            let goal = seconds / PICTURES as f64;
+            if took > 0.3 * goal || spp > 1 << 12 {
+                let spp = ((f64::from(spp) * goal / took).round() as u32).max(1);
+                return self.render(&*integrator, spp, first_seed, PICTURES);
+            }
+            spp *= 2;
+        }
+    }
+
+    /// Two ways against each other, on what both find.
+    pub fn compare(&self, (a, of_a): (&Way, &Evidence), (b, of_b): (&Way, &Evidence)) -> Comparison {
+        let everywhere = a.finds_mirrored && b.finds_mirrored;
+        self.comparison(&of_a.cells, &of_b.cells, |cell| everywhere || self.plain[cell / 3])
+    }
+
+    /// The first half of a way's pictures against the second: what differs there is chance.
+    pub fn against_itself(&self, of: &Evidence) -> Comparison {
+        let half = |first: bool| -> Vec<Vec<f64>> {
+            let of_cell = |cell: &Vec<f64>| {
+                let (a, b) = cell.split_at(cell.len() / 2);
+                if first { a.to_vec() } else { b.to_vec() }
+            };
+            of.cells.iter().map(of_cell).collect()
+        };
+        self.comparison(&half(true), &half(false), |_| true)
+    }
+
+    fn comparison(&self, a: &[Vec<f64>], b: &[Vec<f64>], is_common: impl Fn(usize) -> bool) -> Comparison {
+        let mut found = Comparison::default();
+        let common: Vec<usize> = (0..a.len()).filter(|&cell| is_common(cell)).collect();
+        let mut resolutions = Vec::new();
+        for &cell in &common {
+            match judge([&a[cell], &b[cell]], self.seen[cell], false) {
+                Judged::Empty => {}
+                Judged::Undecided => found.undecided += 1,
+                Judged::Decided { p, error } => {
+                    found.p_values.push(p);
+                    found.green.extend((cell % 3 == 1).then_some(p));
+                    resolutions.push(error);
+                }
+            }
+        }
+        resolutions.sort_by(f64::total_cmp);
+        found.error = resolutions.get(resolutions.len() / 2).copied();
+        for channel in 0..3 {
+            let cells = || common.iter().copied().filter(|cell| cell % 3 == channel);
+            let whole = |of: &[Vec<f64>]| -> Vec<f64> {
+                let pictures = of.first().map_or(0, Vec::len);
+                (0..pictures).map(|k| cells().map(|cell| of[cell][k]).sum()).collect()
+            };
+            match judge([&whole(a), &whole(b)], cells().map(|cell| self.seen[cell]).sum(), true) {
+                Judged::Empty => {}
+                Judged::Undecided => found.undecided += 1,
+                Judged::Decided { p, .. } => found.p_values.push(p),
+            }
+        }
+        found
+    }
+}
+
+/// What can be said of a cell.
+enum Judged {
+    /// There is no light beside that of the lamps themselves.
+    Empty,
+    /// Too little has been found.
+    Undecided,
+    /// The chance that equal means differ so much, and one standard error of their difference as a part of the light.
+    Decided { p: f64, error: f64 },
+}
+
+/// Of two sets of pictures of a cell, of which `seen` is the light of lamps themselves. That one way finds nothing at all
+/// is told only where it is `sure` to find something: it may just not have happened yet.
+fn judge(pair: [&[f64]; 2], seen: f64, sure: bool) -> Judged {
+    let estimates = pair.map(estimate);
+    let light = estimates.map(|(mean, _)| mean).into_iter().fold(0.0, f64::max) - seen;
+    // The lamps' edges are not the same in all pictures.
+    if light < 1e-2 * seen || light <= 0.0 {
+        return Judged::Empty;
+    }
+    let is_unknown = |(values, (mean, variance)): (&[f64], (f64, f64))| {
+        let finds_nothing = mean - seen < 1e-2 * light;
+        variance.sqrt() > COARSE * light || is_skewed(values) || (finds_nothing && !sure)
+    };
+    let Some(p) = welch(pair[0], pair[1]) else { return Judged::Empty };
+    if pair.into_iter().zip(estimates).any(is_unknown) {
+        return Judged::Undecided;
+    }
+    Judged::Decided { p, error: (estimates[0].1 + estimates[1].1).sqrt() / light }
+}
+
+/// What the pictures of one way say.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// `[block * 3 + channel][picture]`: sums over the block.
+    pub cells: Vec<Vec<f64>>,
+    /// Samples of each pixel in each picture.
+    pub spp: u32,
+}
+
+/// What two sets of pictures say of each other.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// Of every cell that says something, the whole picture included.
+    pub p_values: Vec<f64>,
+    /// Those of single blocks' green channel, which are nearly independent of each other.
+    pub green: Vec<f64>,
+    /// Cells of which nothing can be said yet.
+    pub undecided: usize,
+    /// The median of one standard error of a block's difference, as a part of its light.
+    pub error: Option<f64>,
+}
+
+impl Comparison {
+    /// The least p-value, corrected for the number of cells; 1 where none could be decided.
+    pub fn least(&self) -> f64 {
+        sidak(self.p_values.iter().copied().fold(1.0, f64::min), self.p_values.len().max(1))
+    }
+}

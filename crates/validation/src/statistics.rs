@@ -1,0 +1,141 @@
+//! Whether two ways of making a picture have the same mean, told from pictures of different seeds. [Jung 2020]
+
+use bilux_math::transcendental::{exp_f64, powf_f64};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Mean and variance of the mean.
+pub fn estimate(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (mean, values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0) / n)
+}
+
+/// Probability that two sets of values with one mean differ by as much as these; of at least two values each. `None` where
+/// nothing varies and nothing differs, which says nothing. [Welch 1947]
+pub fn welch(a: &[f64], b: &[f64]) -> Option<f64> {
+    let ((mean_a, va), (mean_b, vb)) = (estimate(a), estimate(b));
+    if va + vb == 0.0 {
+        return (mean_a != mean_b).then_some(0.0);
+    }
+    let freedom =
+        (va + vb) * (va + vb) / (va * va / (a.len() as f64 - 1.0) + vb * vb / (b.len() as f64 - 1.0));
+    let t = (mean_a - mean_b).abs() / (va + vb).sqrt();
+    StudentsT::new(0.0, 1.0, freedom).ok().map(|student| 2.0 * student.sf(t))
+}
+
+/// The least of so many p-values as one, corrected for their number. [Šidák 1967]
+pub fn sidak(least: f64, count: usize) -> f64 {
+    let n = count as f64;
+    // Where the power would round to 1.
+    if least * n < 1e-9 { least * n } else { 1.0 - powf_f64(1.0 - least, n) }
+}
+
+/// True where the mean is not normally distributed, because what varies is a few values that are rare and large: skewness
+/// over the root of their number, which is 1 where one value alone differs from the rest.
+pub fn is_skewed(values: &[f64]) -> bool {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let moment = |of: fn(f64) -> f64| values.iter().map(|v| of(v - mean)).sum::<f64>() / n;
+    let variance = moment(|d| d * d);
+    variance > 0.0 && moment(|d| d * d * d).abs() > 0.25 * variance * variance.sqrt() * n.sqrt()
+}
+
+/// How many values, 0..=1, lie in each tenth.
+pub fn histogram(p_values: &[f64]) -> [usize; 10] {
+    let mut bins = [0; 10];
+    p_values.iter().for_each(|p| bins[((p * 10.0) as usize).min(9)] += 1);
+    bins
+}
+
+/// The same as a line of bars, the highest bin as high as a character.
+pub fn bars(bins: &[usize]) -> String {
+    const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let most = bins.iter().copied().max().unwrap_or(0).max(1);
+    bins.iter().map(|&count| BARS[(count * 8).div_ceil(most)]).collect()
+}
+
+/// The chance that evenly distributed values, 0..=1 and independent, look less even than these do. [Kolmogorov 1933]
+pub fn evenness(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len() as f64;
+    let gap = |(i, v): (usize, &f64)| (v - i as f64 / n).max((i as f64 + 1.0) / n - v);
+    let farthest = sorted.iter().enumerate().map(gap).fold(0.0, f64::max);
+    // The limit for many values, with the usual correction for few.
+    let x = farthest * (n.sqrt() + 0.12 + 0.11 / n.sqrt().max(1.0));
+    if x < 0.3 {
+        return 1.0;
+    }
+    let term = |k: i32| f64::from(1 - 2 * ((k + 1) % 2)) * exp_f64(-2.0 * f64::from(k * k) * x * x);
+    (2.0 * (1..=20).map(term).sum::<f64>()).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chi_square::uniforms;
+    use bilux_math::transcendental::ln_f64;
+
+    /// Sums of so many numbers of a distribution, each from a number 0..1.
+    fn sums(stream: u64, groups: usize, of: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
+        let one = |i: usize| value(f64::from(uniforms(stream, i as u64).0));
+        (0..groups).map(|g| (0..of).map(|i| one(g * of + i)).sum()).collect()
+    }
+
+    #[test]
+    fn p_values_of_equal_means_are_even_and_of_others_are_not() {
+        let skewed = |u: f64| -ln_f64(1.0 - u);
+        let p_values = |factor: f64| -> Vec<f64> {
+            let test = |k: u64| {
+                let (a, b) = (sums(2 * k, 16, 64, skewed), sums(2 * k + 1, 16, 64, |u| skewed(u) * factor));
+                welch(&a, &b).unwrap()
+            };
+            (0..400).map(test).collect()
+        };
+        let (same, off) = (p_values(1.0), p_values(1.05));
+        assert!(evenness(&same) > 1e-3, "{:?}", histogram(&same));
+        assert!(evenness(&off) < 1e-6, "{:?}", histogram(&off));
+        assert!(off.iter().copied().fold(1.0, f64::min) < 1e-3);
+        // A wrong number of degrees of freedom, as if the variances of single values were those of means.
+        let timid: Vec<f64> = same.iter().map(|p| powf_f64(*p, 0.25)).collect();
+        assert!(evenness(&timid) < 1e-6);
+    }
+
+    #[test]
+    fn evenness_is_that_of_its_table() {
+        // The usual critical values: 1.358 / √n for 0.05, 1.628 / √n for 0.01.
+        for (x, wanted) in [(1.358, 0.05), (1.628, 0.01)] {
+            let n = 10_000;
+            let shift = x / f64::from(n).sqrt() - 0.5 / f64::from(n);
+            let values: Vec<f64> =
+                (0..n).map(|i| ((f64::from(i) + 0.5) / f64::from(n) - shift).max(0.0)).collect();
+            assert!((evenness(&values) / wanted - 1.0).abs() < 0.05, "{}", evenness(&values));
+        }
+    }
+
+    #[test]
+    fn the_least_of_many_is_corrected() {
+        assert!((sidak(0.01, 100) - 0.633_967_658_7).abs() < 1e-9);
+        assert!((sidak(1e-12, 100) / 1e-10 - 1.0).abs() < 1e-6);
+        assert_eq!(sidak(1.0, 5), 1.0);
+    }
+
+    #[test]
+    fn what_says_nothing_is_no_agreement() {
+        assert_eq!(welch(&[0.0; 4], &[0.0; 4]), None);
+        assert_eq!(welch(&[0.0; 4], &[1.0; 4]), Some(0.0));
+    }
+
+    #[test]
+    fn one_bright_dot_is_a_skew() {
+        let mut values = sums(9, 32, 16, |u| u);
+        assert!(!is_skewed(&values));
+        values[5] += 40.0;
+        assert!(is_skewed(&values));
+    }
+
+    #[test]
+    fn bars_are_as_high_as_their_bins() {
+        assert_eq!(bars(&histogram(&[0.05, 0.05, 0.15, 1.0])), "█▄       ▄");
+    }
+}

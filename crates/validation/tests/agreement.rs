@@ -1,0 +1,104 @@
+//! All unbiased integrators find the same light, block by block: the short form of the example `agreement`, which runs over
+//! every scene that we ship. What is compared is found wrong when it is.
+
+use bilux_math::Rgb;
+use bilux_scene::{Ray, SceneBuilder, Spec, Value};
+use bilux_transport::{PixelIntegrator, Splats, Task, integrators};
+use bilux_validation::agreement::{Evidence, Stage, Way, stages, ways};
+use bilux_validation::statistics::{evenness, histogram};
+
+/// Less likely than this by chance: a bug.
+const UNLIKELY: f64 = 1e-4;
+
+const PICTURES: usize = 24;
+
+fn pictures(stage: &Stage, integrator: &dyn PixelIntegrator, spp: u32, seed: u64) -> Evidence {
+    stage.render(integrator, spp, seed, PICTURES).unwrap()
+}
+
+fn of_way(stage: &Stage, way: &Way, seed: u64) -> Evidence {
+    let spp = if way.name == "light" { 64 } else { 16 };
+    pictures(stage, &*integrators::build(&way.spec).unwrap(), spp, seed)
+}
+
+/// Scenes whose light is soon found: matt, mirrors and glass, lamps, a sun and a sky.
+fn scenes() -> Vec<(&'static str, SceneBuilder)> {
+    let spheres = Spec::new("", "cornell-spheres").with("level", Value::Integer(2));
+    let teapot = bilux::generate(&Spec::new("", "teapot")).unwrap();
+    vec![
+        ("cornell", bilux::generate(&Spec::new("", "cornell")).unwrap()),
+        ("spheres", bilux::generate(&spheres).unwrap()),
+        ("teapot", teapot),
+    ]
+}
+
+#[test]
+fn all_unbiased_integrators_agree_block_by_block() {
+    let (ways, mut by_chance, mut decided) = (ways(), Vec::new(), 0);
+    for (name, scene) in scenes() {
+        for stage in stages(name, &scene, [32, 24]).unwrap() {
+            let compared = |way: &Way| ways.iter().any(|b| b.name != way.name && stage.compares(way, b));
+            let found: Vec<Option<Evidence>> = (ways.iter().enumerate())
+                .map(|(i, way)| compared(way).then(|| of_way(&stage, way, 1000 * i as u64)))
+                .collect();
+            for (i, a) in ways.iter().enumerate() {
+                let Some(of_a) = &found[i] else { continue };
+                by_chance.extend(stage.against_itself(of_a).green);
+                for (b, of_b) in ways.iter().zip(&found).skip(i + 1) {
+                    let Some(of_b) = of_b else { continue };
+                    if stage.compares(a, b) {
+                        let comparison = stage.compare((a, of_a), (b, of_b));
+                        decided += comparison.p_values.len();
+                        let p = comparison.least();
+                        assert!(p > UNLIKELY, "{}: {} and {}: p = {p:.1e}", stage.name, a.name, b.name);
+                    }
+                }
+            }
+        }
+    }
+    assert!(decided > 300, "only {decided} cells are decided");
+    // The test itself: where nothing differs but the seeds, p-values are even.
+    let even = evenness(&by_chance);
+    assert!(even > 1e-3, "{:?}", histogram(&by_chance));
+}
+
+/// An integrator with a bug.
+struct Buggy {
+    integrator: Box<dyn PixelIntegrator>,
+    camera_paths: f32,
+    forgets_splats: bool,
+}
+
+impl PixelIntegrator for Buggy {
+    fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
+        self.integrator.radiance(ray, task) * self.camera_paths
+    }
+    fn splats(&self) -> bool {
+        !self.forgets_splats && self.integrator.splats()
+    }
+    fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
+        self.integrator.sample(ray, is_wanted, task, splats) * self.camera_paths
+    }
+}
+
+#[test]
+fn a_biased_integrator_is_told_apart() {
+    let ways = ways();
+    let cornell = bilux::generate(&Spec::new("", "cornell")).unwrap();
+    let stage = &stages("cornell", &cornell, [32, 24]).unwrap()[0];
+    let (path, bdpt) = (&ways[0], &ways[2]);
+    let of_path = of_way(stage, path, 0);
+    let least = |camera_paths, forgets_splats| {
+        let integrator = integrators::build(&bdpt.spec).unwrap();
+        let buggy = Buggy { integrator, camera_paths, forgets_splats };
+        stage.compare((path, &of_path), (bdpt, &pictures(stage, &buggy, 16, 5000))).least()
+    };
+    let p = least(1.0, false);
+    assert!(p > UNLIKELY, "p = {p:.1e}");
+    for (what, camera_paths, forgets_splats) in
+        [("3% too bright", 1.03, false), ("the light image is forgotten", 1.0, true)]
+    {
+        let p = least(camera_paths, forgets_splats);
+        assert!(p < UNLIKELY, "{what}: passes with p = {p:.1e}");
+    }
+}
