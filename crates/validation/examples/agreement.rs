@@ -68,8 +68,8 @@ fn line(pair: &str, found: &Comparison, more: &str) {
     );
 }
 
-/// All pairs of ways on one stage; true when all agree.
-fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<bool, Box<dyn Error>> {
+/// All pairs of ways on one stage: whether all agree, and of how many cells that can be said.
+fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<(bool, usize), Box<dyn Error>> {
     let ways: Vec<Way> = ways();
     let mut rendered = Vec::new();
     for (i, way) in ways.iter().enumerate() {
@@ -82,7 +82,7 @@ fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<bool, Bo
     };
     let samples: Vec<String> = ways.iter().zip(&rendered).filter_map(samples).collect();
     println!("{} (samples a pixel: {})", stage.name, samples.join(", "));
-    let mut agrees = true;
+    let (mut agrees, mut decided) = (true, 0);
     for (i, a) in ways.iter().enumerate() {
         let Some(of_a) = &rendered[i] else { continue };
         let itself = stage.against_itself(of_a);
@@ -93,6 +93,7 @@ fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<bool, Bo
             let Some(of_b) = &rendered[k] else { continue };
             let name = format!("{} {}", a.name, b.name);
             let found = stage.compare((a, of_a), (b, of_b));
+            decided += found.p_values.len();
             if found.least() >= UNLIKELY {
                 line(&name, &found, "");
             } else {
@@ -109,7 +110,7 @@ fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<bool, Bo
             all.entry(name).or_default().extend(found.green);
         }
     }
-    Ok(agrees)
+    Ok((agrees, decided))
 }
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -119,14 +120,16 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         "  {:<14} {:>5} {:>9} {:>10} {:>10}  p from 0 to 1",
         "pair", "cells", "undecided", "error", "least p"
     );
-    let (mut all, mut agree, mut count) = (All::new(), true, 0);
+    let (mut all, mut agree, mut undecided, mut count) = (All::new(), true, Vec::new(), 0);
     for (name, scene) in shipped(&folder)? {
         let is_wanted = |wanted: &String| *wanted == name || name.strip_suffix(".toml") == Some(wanted);
         if !arguments.scenes.is_empty() && !arguments.scenes.iter().any(is_wanted) {
             continue;
         }
         for stage in stages(&name, &scene, arguments.size)? {
-            agree &= check(&stage, &arguments, &mut all)?;
+            let (agrees, decided) = check(&stage, &arguments, &mut all)?;
+            agree &= agrees;
+            undecided.extend((decided == 0).then_some(stage.name));
             count += 1;
         }
     }
@@ -138,6 +141,9 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         let bins = histogram(p_values);
         let even = evenness(p_values);
         println!("  {pair:<14} {:>5} evenness p {even:.3}  [{}] {bins:?}", p_values.len(), bars(&bins));
+    }
+    if !undecided.is_empty() {
+        println!("more seconds are needed to say anything of {}", undecided.join(", "));
     }
     println!("{}", if agree { "all agree" } else { "some disagree" });
     Ok(if agree { ExitCode::SUCCESS } else { ExitCode::FAILURE })
