@@ -10,7 +10,7 @@ use bilux_validation::statistics::{evenness, histogram};
 /// Less likely than this by chance: a bug.
 const UNLIKELY: f64 = 1e-4;
 
-const PICTURES: usize = 24;
+const PICTURES: usize = 16;
 
 fn pictures(stage: &Stage, integrator: &dyn PixelIntegrator, spp: u32, seed: u64) -> Evidence {
     stage.render(integrator, spp, seed, PICTURES).unwrap()
