@@ -177,6 +177,20 @@ fn light_that_path_cannot_find_is_not_lost() {
 }
 
 #[test]
+fn a_camera_that_sees_nothing_gets_a_black_picture() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
+    builder.lights.push(Spec::new("", "point").with("position", Vec3::Y));
+    look(&mut builder, Vec3::new(0.0, 5.0, 0.0), Vec3::new(0.0, 9.0, 0.1), 40.0);
+    let scene = built(&builder);
+    for ways in ["auto", "path-photons", "vcm"] {
+        let auto = integrators::build(&auto().with("ways", ways)).unwrap();
+        let film = shoot(&scene, &*auto, &RenderSettings::new(16, 8, 2)).film;
+        assert!(film.to_rgb().iter().all(|pixel| pixel.is_black()), "{ways}");
+    }
+}
+
+#[test]
 fn the_choice_is_that_of_the_whole_film() {
     let scene = built(&still_life());
     let whole = RenderSettings { threads: 1, ..RenderSettings::new(40, 30, 8) };

@@ -180,8 +180,9 @@ impl<const N: usize> Photons<N> {
         let within = p / (2.0 * self.radius) - p_floor(p, self.radius);
         let beside = [within.x, within.y, within.z].map(|x| if x < 0.5 { -1 } else { 1 });
         for corner in 0..8 {
-            let near: [i64; 3] =
-                std::array::from_fn(|k| middle[k] + if corner >> k & 1 == 1 { beside[k] } else { 0 });
+            let near: [i64; 3] = std::array::from_fn(|k| {
+                middle[k].saturating_add(if corner >> k & 1 == 1 { beside[k] } else { 0 })
+            });
             let bucket = bucket(near, buckets) as usize;
             for photon in &self.photons[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
                 // Of other cells with the same hash some may be near too: each is visited from its own.

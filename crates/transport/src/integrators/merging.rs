@@ -4,6 +4,9 @@ use crate::bidirectional::{Merging, Ways};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::Reader;
 
+/// That of [`radius`] as it comes.
+pub(super) const RADIUS: f32 = 0.003;
+
 pub(super) const fn radius(min: f64) -> Parameter {
     Parameter {
         name: "radius",

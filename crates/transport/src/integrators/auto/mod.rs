@@ -145,6 +145,9 @@ const WORTH_MORE: f64 = 1.1;
 /// Photons are merged over so many pixels to begin with, where nothing else is said.
 const PIXELS: f32 = 3.0;
 
+/// And at most over such a part of the scene's radius, however near the camera's far pixels come.
+const WIDEST: f32 = 0.1;
+
 /// About so many photons of directly lit surfaces are merged then, if each pixel has its light path.
 const NEAR: f64 = std::f64::consts::PI * (PIXELS * PIXELS) as f64;
 
@@ -171,7 +174,8 @@ impl PixelIntegrator for Auto {
         // A point on each of few lights is always picked; of many, photons find the nearest by themselves.
         merging.ways.direct = !LightChoice::new(scene).takes_all();
         if merging.radius == 0.0 {
-            merging.radius = PIXELS * pilot::pixel_radius(&turn(0).eye, film) / scene.bounds().radius();
+            let pixel = pilot::pixel_radius(&turn(0).eye, film) / scene.bounds().radius();
+            merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };
         }
         let light_paths =
             (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
