@@ -177,6 +177,14 @@ fn light_that_path_cannot_find_is_not_lost() {
 }
 
 #[test]
+fn what_may_not_merge_is_not_told_to() {
+    let spec = auto().with("merge", "never");
+    let error = integrators::build(&spec.clone().with("ways", "path-few")).err().unwrap().to_string();
+    assert!(error.contains("'path-few' merges"), "{error}");
+    assert!(integrators::build(&spec.with("ways", "bdpt")).is_ok());
+}
+
+#[test]
 fn a_camera_that_sees_nothing_gets_a_black_picture() {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));

@@ -77,6 +77,13 @@ fn longer(mut blocks: Blocks) -> Blocks {
     blocks
 }
 
+/// The same with one strategy that many times as bright.
+fn spoilt(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
+    let mut wrong = all.clone();
+    wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= factor);
+    wrong
+}
+
 #[test]
 fn all_strategies_find_the_same_light() {
     let (scene, bdpt) = (built(&matt()), Spec::new("", "bdpt").with("roulette_depth", Value::Integer(1)));
@@ -89,15 +96,11 @@ fn all_strategies_find_the_same_light() {
 
     // Each of them on its own is known from one that is a little too bright, or is counted twice.
     for strategy in all.keys() {
-        let mut wrong = all.clone();
-        wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= 2.0);
-        let (p, which) = least(&wrong, &picked);
+        let (p, which) = least(&spoilt(&all, strategy, 2.0), &picked);
         assert!(p < UNLIKELY && which == Some(*strategy), "{strategy} counted twice passes: p = {p}");
     }
     for strategy in all.keys().filter(|strategy| strategy.s > 0 && strategy.edges < 4) {
-        let mut wrong = all.clone();
-        wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= 1.1);
-        let (p, _) = least(&wrong, &picked);
+        let (p, _) = least(&spoilt(&all, strategy, 1.1), &picked);
         assert!(p < UNLIKELY, "{strategy} passes with a tenth too much: p = {p}");
     }
 }
@@ -114,9 +117,7 @@ fn merging_finds_the_same_light_with_a_small_radius() {
     let (p, which) = least(&all, &picked);
     assert!(p > UNLIKELY, "p = {p}, {which:?}");
     for strategy in all.keys() {
-        let mut wrong = all.clone();
-        wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= 2.0);
-        let (p, _) = least(&wrong, &picked);
+        let (p, _) = least(&spoilt(&all, strategy, 2.0), &picked);
         assert!(p < UNLIKELY, "{strategy} counted twice passes: p = {p}");
     }
 }

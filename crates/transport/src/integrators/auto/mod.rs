@@ -20,7 +20,7 @@ use crate::render::RenderSettings;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{Camera, Counters, Ray, Scene};
+use bilux_scene::{Camera, Counters, Ray, Scene, SceneError};
 use pilot::{Block, Turn};
 use std::sync::Arc;
 
@@ -67,10 +67,16 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     classic: false,
     default_spp: 64,
     build: |reader| {
+        let (may_merge, ways) = (reader.text("merge") == "auto", reader.text("ways"));
+        let given = SETS.iter().position(|set| set.ways == ways);
+        if !may_merge && given.is_some_and(|set| SETS[set].merges()) {
+            let message = format!("'{ways}' merges, and 'merge' is never");
+            return Err(SceneError::invalid(message, reader.span("ways")));
+        }
         Ok(Box::new(Auto {
             aims: reader.bool("aim"),
-            may_merge: reader.text("merge") == "auto",
-            given: WAYS[1..].iter().position(|way| *way == reader.text("ways")),
+            may_merge,
+            given,
             roulette_depth: reader.integer("roulette_depth") as u32,
             merging: merging::read(reader, Ways::BOTH_ENDS),
         }))
@@ -89,6 +95,8 @@ struct Auto {
 /// A set of ways, beside those that a camera path has by itself.
 struct Set {
     name: &'static str,
+    /// What it is called where it is asked for.
+    ways: &'static str,
     sees: bool,
     joins: bool,
     /// Light paths whose photons are merged with, for each pixel; 0 where nothing is merged.
@@ -97,14 +105,26 @@ struct Set {
 
 /// What there is to choose from, the simplest first.
 const SETS: [Set; 8] = [
-    Set { name: "path", sees: false, joins: false, photons: 0.0 },
-    Set { name: "path and light", sees: true, joins: false, photons: 0.0 },
-    Set { name: "bdpt", sees: true, joins: true, photons: 0.0 },
-    Set { name: "path and few photons", sees: false, joins: false, photons: FEW },
-    Set { name: "path and photons", sees: false, joins: false, photons: 1.0 },
-    Set { name: "path, light and few photons", sees: true, joins: false, photons: FEW },
-    Set { name: "path, light and photons", sees: true, joins: false, photons: 1.0 },
-    Set { name: "vcm", sees: true, joins: true, photons: 1.0 },
+    Set { name: "path", ways: "path", sees: false, joins: false, photons: 0.0 },
+    Set { name: "path and light", ways: "path-light", sees: true, joins: false, photons: 0.0 },
+    Set { name: "bdpt", ways: "bdpt", sees: true, joins: true, photons: 0.0 },
+    Set { name: "path and few photons", ways: "path-few", sees: false, joins: false, photons: FEW },
+    Set { name: "path and photons", ways: "path-photons", sees: false, joins: false, photons: 1.0 },
+    Set {
+        name: "path, light and few photons",
+        ways: "path-light-few",
+        sees: true,
+        joins: false,
+        photons: FEW,
+    },
+    Set {
+        name: "path, light and photons",
+        ways: "path-light-photons",
+        sees: true,
+        joins: false,
+        photons: 1.0,
+    },
+    Set { name: "vcm", ways: "vcm", sees: true, joins: true, photons: 1.0 },
 ];
 
 /// Enough where they go where they are of use.
@@ -126,18 +146,16 @@ impl Set {
     }
 }
 
-/// What the sets are called where one is asked for, after "auto".
-const WAYS: [&str; 1 + SETS.len()] = [
-    "auto",
-    "path",
-    "path-light",
-    "bdpt",
-    "path-few",
-    "path-photons",
-    "path-light-few",
-    "path-light-photons",
-    "vcm",
-];
+/// What can be asked for.
+const WAYS: [&str; 1 + SETS.len()] = {
+    let mut ways = ["auto"; 1 + SETS.len()];
+    let mut i = 0;
+    while i < SETS.len() {
+        ways[1 + i] = SETS[i].ways;
+        i += 1;
+    }
+    ways
+};
 
 /// A set has to be so much better than one that stands before it, or that does not blur.
 const WORTH_MORE: f64 = 1.1;
