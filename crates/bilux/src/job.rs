@@ -56,7 +56,9 @@ impl Job {
         for (key, value, span) in &user.0 {
             all.set_at(key, value.clone(), span.clone());
         }
-        Job::with_settings(scene, Settings::resolve(&all)?)
+        let mut job = Job::with_settings(scene, Settings::resolve(&all)?)?;
+        job.warnings.extend(job.settings.without_use(user));
+        Ok(job)
     }
 
     /// Builds the scene for settings that are checked already.

@@ -5,7 +5,7 @@ use crate::Error;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec, Warning};
 use bilux_transport::Stop;
 use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
@@ -196,6 +196,29 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// Warnings about what a user has asked for of another integrator than the one that renders. Scene files may speak to
+    /// several.
+    pub(crate) fn without_use(&self, user: &Parameters) -> Vec<Warning> {
+        let has = |entry: &Entry, key: &str| entry.parameters.iter().any(|p| p.name == key);
+        let chosen = &self.integrator.entry;
+        let is_idle = |key: &str| !has(&RENDER, key) && !has(chosen, key);
+        let others = |key: &str| {
+            let others = INTEGRATORS.iter().map(|row| &row.entry).filter(|entry| has(entry, key));
+            others.map(|entry| format!("'{}'", entry.name)).collect::<Vec<_>>().join(", ")
+        };
+        let warn = |key: &str, at: &Span| {
+            let message = format!(
+                "'{key}' does nothing here: it is a setting of {}, and '{}' renders",
+                others(key),
+                chosen.name
+            );
+            Warning { message, at: at.clone() }
+        };
+        user.0.iter().filter(|(key, ..)| is_idle(key)).map(|(key, _, at)| warn(key, at)).collect()
+    }
+}
+
 /// Samples of a pixel at which a picture ends in any case, where a stop but no number of samples is given.
 const MOST_SPP: u32 = 1 << 16;
 
@@ -303,5 +326,17 @@ mod tests {
         assert_eq!(quality(&[("build", "balanced")], 10), Quality::Balanced);
         assert_eq!(quality(&[("build", "best")], 1001), Quality::Best);
         assert_eq!(quality(&[("accel", "bsp-sah")], 10), Quality::Balanced);
+    }
+
+    #[test]
+    fn settings_of_other_integrators_are_told() {
+        let mut user = Parameters::default();
+        user.set("integrator", Value::Text("path".to_owned()));
+        user.set("roulette_depth", Value::Integer(3));
+        assert!(Settings::resolve(&user).unwrap().without_use(&user).is_empty());
+        user.set("ways", Value::Text("vcm".to_owned()));
+        let told = Settings::resolve(&user).unwrap().without_use(&user);
+        assert_eq!(told.len(), 1);
+        assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
     }
 }

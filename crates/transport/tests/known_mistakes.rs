@@ -50,6 +50,27 @@ fn vertices_that_lie_close_together_give_no_spike() {
     assert!(unweighted > 100.0, "{unweighted}");
 }
 
+/// Photons that fall on one face of a coarse mesh and are merged with on the next, which they graze, count by the face that
+/// they fell on.
+#[test]
+fn photons_from_around_a_bend_give_no_spike() {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 6, true), diffuse(0.8f32));
+    let lamp = Spec::new("", "point").with("position", Vec3::new(2.0, 0.0, 0.5)).with("intensity", 10.0f32);
+    builder.lights.push(lamp);
+    look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 40.0);
+    let scene = built(&builder);
+    let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(32, 32, 64) };
+    let picked = shoot(&scene, &*integrator("path"), &settings).film.to_rgb();
+    let sppm = integrators::build(&Spec::new("", "sppm").with("radius", 0.05f32)).unwrap();
+    let merged = shoot(&scene, &*sppm, &settings).film.to_rgb();
+    let square = |(a, b): (&Rgb, &Rgb)| f64::from(a.g - b.g) * f64::from(a.g - b.g) / 1024.0;
+    let error: f64 = merged.iter().zip(&picked).map(square).sum();
+    let mean = picked.iter().map(|pixel| f64::from(pixel.g)).sum::<f64>() / 1024.0;
+    // Counted by the face that is merged with, they give 6.4.
+    assert!(error < 3.0 * mean * mean, "{error} where there is {mean}");
+}
+
 /// Mitsuba 0.6 #132: a bright dot where a point light stands in the picture. It has no extent, so it is not seen.
 #[test]
 fn lamps_without_extent_leave_no_dot_where_they_stand() {

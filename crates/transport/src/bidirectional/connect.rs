@@ -128,8 +128,9 @@ pub(crate) fn merged<const N: usize>(
         if scattered.is_black() {
             return;
         }
-        // Photons come per area of the surface itself; `eval` has the cosine to the shading normal in it.
-        let cos = z.surface.n_geom.dot(y.wo).abs();
+        // Photons come per area of the surface that they fell on, and grazing ones seldom; `eval` has the cosine to the
+        // shading normal in it. By the normal at `z` a grazing photon from around a bend would be of any brightness.
+        let cos = y.n_geom.dot(y.wo).abs();
         let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo, TransportMode::Importance));
         let others = y.joined + y.d_vc * pdf + from_light;
         let light = z.beta * scattered * y.beta * (1.0 / cos);
