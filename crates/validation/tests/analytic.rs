@@ -1,11 +1,11 @@
 //! Pictures whose light is known by a formula, or by an integral that is written here once more in f64. What each
 //! test accepts it would not accept a few percent off: that is asserted at the same samples.
 
-use bilux_math::transcendental::{acos_f64, cos_f64, exp_f64, sin_f64, tan_f64};
-use bilux_math::{Aabb, Rgb, Vec3};
+use bilux_math::transcendental::{acos_f64, asin_f64, cos_f64, exp_f64, sin_f64, tan_f64};
+use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::{cuboid, disc, icosphere, quad};
-use bilux_scene::{AccelChoice, Mesh, Object, Scene, SceneBuilder, Spec, Value};
+use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{FILTERS, Filter, RenderSettings, Silent, integrators, render};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -421,6 +421,103 @@ fn a_ring_of_metal_draws_the_nephroid() {
         for wrong in [0.95, 1.05] {
             let p = least(&in_ring(wrong, BINS, 0.05));
             assert!(p < UNLIKELY, "{name} passes for a ring of {wrong} m: p = {p:.1e}");
+        }
+    }
+}
+
+/// Light from straight above on the floor, under a ball of clear glass whose middle hangs at `height`, by the distance from
+/// its axis in steps of `step`, in units of the irradiance without the ball: each ring of light is bent where it enters the
+/// ball and where it leaves, and lands on a ring of the floor. [Born 1999, 4.2 and 1.5.2]
+fn under_ball(eta: f64, height: f64, step: f64, count: usize) -> Vec<f64> {
+    const RINGS: i32 = 1_000_000;
+    let mut sums = vec![0.0; count];
+    for i in 0..RINGS {
+        let from_axis = BALL * (f64::from(i) + 0.5) / f64::from(RINGS);
+        let (incident, bent) = (asin_f64(from_axis / BALL), asin_f64(from_axis / BALL / eta));
+        // Where it leaves, as an angle from the top, and by how much it is turned then.
+        let (leaves, turned) = (incident + PI - 2.0 * bent, 2.0 * (incident - bent));
+        let lands = BALL * sin_f64(leaves) - tan_f64(turned) * (height + BALL * cos_f64(leaves));
+        let along = (cos_f64(incident) - eta * cos_f64(bent)) / (cos_f64(incident) + eta * cos_f64(bent));
+        let across = (eta * cos_f64(incident) - cos_f64(bent)) / (eta * cos_f64(incident) + cos_f64(bent));
+        let passes = 1.0 - (along * along + across * across) / 2.0;
+        let bin = (lands.abs() / step) as usize;
+        if bin < count {
+            sums[bin] += passes * passes * 2.0 * from_axis * BALL / f64::from(RINGS);
+        }
+    }
+    let square = |i: usize| (i as f64 * step) * (i as f64 * step);
+    sums.iter().enumerate().map(|(i, sum)| sum / (square(i + 1) - square(i))).collect()
+}
+
+/// Radius of the ball of glass, in metres; behind its middle it has its focus at η R / (2 η - 2).
+const BALL: f64 = 0.3;
+
+#[test]
+fn a_ball_of_glass_gathers_light_at_its_focus_and_spreads_it_behind() {
+    const SIDE: usize = 32;
+    const GROUPS: usize = 6;
+    const STEP: f64 = 0.0005;
+    for height in [0.45, 0.8] {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, quad(Vec3::ZERO, Vec3::X, Vec3::Z), diffuse(1.0f32));
+        let ball = icosphere(Vec3::Y * height as f32, BALL as f32, 6);
+        put(&mut builder, ball, Spec::new("", "dielectric").with("eta", 1.5f32));
+        let light = Spec::new("", "directional").with("direction", -Vec3::Y);
+        builder.lights.push(light.with("irradiance", std::f32::consts::PI));
+        // From so low that the ball is not in the way.
+        plan(&mut builder, Vec3::new(3f32.sqrt(), 1.0, 0.0), Vec3::ZERO, 0.16);
+        let scene = built(&builder);
+        let from_axis = |x: f64, y: f64| {
+            let film = Vec2::new((x / SIDE as f64) as f32, (y / SIDE as f64) as f32);
+            let ray = scene.cameras()[0].1.ray(&CameraSample { film, lens: Vec2::ZERO, time: 0.0 });
+            let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+            f64::from((origin - direction * (origin.y / direction.y)).length())
+        };
+        // Pixels are told apart by how far from the axis their middles lie.
+        let farthest = from_axis(0.0, 0.0) * 1.0001;
+        let group = |i: usize| {
+            let middle = from_axis((i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5);
+            (middle / farthest * GROUPS as f64) as usize
+        };
+        let sizes = (0..SIDE * SIDE).fold([0.0; GROUPS], |mut sizes, i| {
+            sizes[group(i)] += 1.0;
+            sizes
+        });
+        let expected = |eta: f64| {
+            let light = under_ball(eta, height, STEP, (farthest / STEP) as usize + 2);
+            let mut sums = [0.0; GROUPS];
+            for (i, k) in (0..SIDE * SIDE).flat_map(|i| (0..256).map(move |k| (i, k))) {
+                let within = [k % 16, k / 16].map(|k| (f64::from(k) + 0.5) / 16.0);
+                let at = from_axis((i % SIDE) as f64 + within[0], (i / SIDE) as f64 + within[1]);
+                sums[group(i)] += light[(at / STEP) as usize] / 256.0 / sizes[group(i)];
+            }
+            sums
+        };
+        for integrator in named(&["light", "bdpt", "vcm"]) {
+            let settings =
+                RenderSettings { max_depth: 3, ..RenderSettings::new(SIDE as u32, SIDE as u32, 64) };
+            let pictures = pictures(&scene, &integrator, &settings);
+            let mean_of = |g: usize, pixels: &Vec<Rgb>| {
+                let sum = pixels.iter().enumerate().filter(|(i, _)| group(*i) == g);
+                sum.map(|(_, pixel)| f64::from(pixel.g)).sum::<f64>() / sizes[g]
+            };
+            let of_group = |g: usize| pictures.iter().map(|p| mean_of(g, p)).collect::<Vec<f64>>();
+            let least = |eta: f64| {
+                let expected = expected(eta);
+                (0..GROUPS).map(|g| p_value(&of_group(g), expected[g])).fold(1.0, f64::min) * GROUPS as f64
+            };
+            let (name, p) = (&integrator.kind, least(1.5));
+            let found: Vec<f64> =
+                (0..GROUPS).map(|g| of_group(g).iter().sum::<f64>() / SEEDS as f64).collect();
+            assert!(
+                p > UNLIKELY,
+                "{name} at {height} m: {found:.3?}, not {:.3?}: p = {p:.1e}",
+                expected(1.5)
+            );
+            for wrong in [1.47, 1.53] {
+                let p = least(wrong);
+                assert!(p < UNLIKELY, "{name} at {height} m passes for glass of {wrong}: p = {p:.1e}");
+            }
         }
     }
 }
