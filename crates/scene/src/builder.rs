@@ -3,7 +3,7 @@
 use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
 use crate::geometry::{Geometry, Placed};
-use crate::lights::{self, BuiltLight};
+use crate::lights::{self, BuiltLight, Sides};
 use crate::materials::{self, Ingredients, Material};
 use crate::mesh::Mesh;
 use crate::parameters::{Parameters, Span, Spec};
@@ -140,23 +140,24 @@ impl SceneBuilder {
         materials: &mut Vec<Arc<dyn Material>>,
     ) -> Result<BuiltLights, SceneError> {
         let mut built = BuiltLights::default();
-        let mut glowing = |emission: Rgb| -> Result<usize, SceneError> {
+        let mut glowing = |emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
             let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
+            let black = black.with("emission_sides", sides.name());
             materials.push(materials::build(&black, &Ingredients::default())?);
             Ok(materials.len() - 1)
         };
         for spec in &self.lights {
             match lights::build(spec, &self.textures)? {
                 BuiltLight::Light(light) => built.lights.push(SceneLight::new(&spec.name, light)),
-                BuiltLight::Surface { mesh, emission, classic } => {
-                    let material = glowing(emission)?;
+                BuiltLight::Surface { mesh, emission, sides, classic } => {
+                    let material = glowing(emission, sides)?;
                     if let Some(colour) = classic {
                         built.panels.push((objects.len(), colour));
                     }
                     objects.push(Object::new(&spec.name, Arc::new(mesh), material));
                 }
                 BuiltLight::Sphere { centre, radius, emission, classic } => {
-                    let material = glowing(emission)? as u32;
+                    let material = glowing(emission, Sides::Both)? as u32;
                     built.spheres.push(PlacedSphere { centre, radius, material });
                     built.lamps.push((spec.name.clone(), classic));
                 }

@@ -52,10 +52,12 @@ impl SceneParts {
         let mut object_lights = vec![None; geometry.objects().len()];
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
             let (triangles, motion) = geometry.object_triangles(i as u32);
-            let radiance = materials[object.material as usize].emission();
+            let material = &materials[object.material as usize];
+            let given = (material.emission(), material.emission_sides());
+            let mirrored = object.motion.at(0.0).mirrors();
             let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
             let first = geometry.first_primitive(i as u32);
-            if let Some(light) = MeshLight::new(triangles, first, motion, radiance, classic) {
+            if let Some(light) = MeshLight::new(triangles, mirrored, first, motion, given, classic) {
                 object_lights[i] = Some(lights.len() as u32);
                 lights.push(SceneLight::new(&object.mesh.name, Arc::new(light)));
             }
@@ -167,13 +169,16 @@ impl Scene {
         &*self.parts.materials[self.parts.geometry.material_of(object) as usize]
     }
 
-    /// Radiance that a surface itself gives out towards `wo`: triangles on both sides, spheres outwards.
+    /// Radiance that a surface itself gives out towards `wo`: triangles on those sides that their material says, spheres
+    /// outwards.
     #[inline]
     pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
         let emission = self.material(surface).emission();
-        let is_inside =
-            || self.parts.geometry.sphere_of(surface.object).is_some() && surface.n_geom.dot(wo) <= 0.0;
-        if emission.is_black() || is_inside() { Rgb::BLACK } else { emission }
+        let shines = || match self.light_index_of(surface.object) {
+            Some(light) => self.lights()[light].light.shines(surface, wo),
+            None => true,
+        };
+        if emission.is_black() || !shines() { Rgb::BLACK } else { emission }
     }
 
     /// True when some object is of a medium with a priority.

@@ -41,6 +41,29 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
     }
 }
 
+#[test]
+fn lamps_of_one_side_light_what_is_in_front_of_them() {
+    let panel = |edge_u: Vec3, sides: &str| {
+        let spec = Spec::new("", "rect").with("position", Vec3::new(0.5, 3.2, 0.5)).with("radiance", 8.0f32);
+        built(&without_mirrors(spec.with("edge_u", edge_u).with("sides", sides)))
+    };
+    // Its front is below, as that of a lamp in a ceiling.
+    check("lamp in front", &panel(Vec3::X, "front"), &["light", "bdpt", "vcm"]);
+    let settings = RenderSettings::new(16, 16, 16);
+    let lit = |scene: &Scene, name: &str| shoot(scene, &*integrator(name), &settings).film.to_rgb();
+    let [front, both] = ["front", "both"].map(|sides| lit(&panel(Vec3::X, sides), "path"));
+    assert!(front == both, "what is in front of it is lit otherwise than by both sides");
+    // Turned up it shines at nothing.
+    for name in ["path", "light", "bdpt", "vcm", "sppm", "auto"] {
+        let brightest = |sides: &str| {
+            let pixels = lit(&panel(-Vec3::X, sides), name);
+            pixels.iter().map(|pixel| pixel.max_channel()).fold(0.0, f32::max)
+        };
+        assert_eq!(brightest("front"), 0.0, "{name}");
+        assert!(brightest("both") > 0.0, "{name}");
+    }
+}
+
 fn sphere(position: Vec3, radius: f32) -> Spec {
     Spec::new("", "sphere").with("position", position).with("radius", radius).with("intensity", 10.0f32)
 }

@@ -26,8 +26,17 @@ fn case(name: &str, time: f32, add: impl FnOnce(&mut SceneBuilder)) -> LightCase
 
 const RADIANCE: Rgb = Rgb { r: 3.0, g: 2.0, b: 1.0 };
 
-/// A mesh that gives light, moved.
+/// A mesh that gives light on both sides, moved.
 fn luminous(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
+    luminous_on(2.0, name, mesh, motion, instanced, time)
+}
+
+/// The same that gives light in front.
+fn in_front(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
+    luminous_on(1.0, name, mesh, motion, instanced, time)
+}
+
+fn luminous_on(sides: f64, name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
     let to_world = motion.at(time);
     let area: f64 = mesh
         .triangles
@@ -37,6 +46,7 @@ fn luminous(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32)
         .sum();
     let placed = case(name, time, |builder| {
         let glowing = Spec::new("glowing", "diffuse").with("reflectance", 0.0).with("emission", RADIANCE);
+        let glowing = glowing.with("emission_sides", if sides == 1.0 { "front" } else { "both" });
         let material = builder.add_material(glowing);
         let object = Object::new("lamp", Arc::new(mesh), material);
         builder.objects.push(Object { motion: motion.clone(), instanced, ..object.clone() });
@@ -44,7 +54,7 @@ fn luminous(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32)
         let aside = Motion::still(shifted(DVec3::new(9.0, 3.0, 0.0)));
         builder.objects.insert(0, Object { motion: aside, material: 0, instanced, ..object });
     });
-    LightCase { power: Some(f64::from(RADIANCE.luminance()) * area * 0.5 * TAU * 2.0), ..placed }
+    LightCase { power: Some(f64::from(RADIANCE.luminance()) * area * 0.5 * TAU * sides), ..placed }
 }
 
 fn shifted(by: DVec3) -> Transform {
@@ -75,6 +85,10 @@ fn luminous_meshes() -> Vec<LightCase> {
         luminous("moving ball, at first", ball(), &moving, false, 0.0),
         luminous("moving ball, later", ball(), &moving, false, 0.6),
         luminous("moving panel, later", panel(), &moving, true, 0.9),
+        in_front("panel in front", panel(), &rest, false, 0.0),
+        in_front("front mirrored and flattened", ball(), &askew, false, 0.0),
+        in_front("front mirrored and flattened, of its own tree", ball(), &askew, true, 0.0),
+        in_front("front of a moving ball, later", ball(), &moving, false, 0.6),
     ]
 }
 
@@ -112,7 +126,9 @@ fn cases() -> Vec<LightCase> {
         with_light("near sphere", sphere(Vec3::new(0.0, 2.1, 0.0), 1.0)),
         with_light("small sphere", sphere(Vec3::new(0.5, 2.5, -0.4), 1e-2)),
         with_light("sphere in the block", sphere(Vec3::new(0.3, 1.1, 0.2), 0.7)),
-        with_light("panel", beside.with("edge_v", Vec3::new(0.3, 0.3, 0.8))),
+        with_light("panel", beside.clone().with("edge_v", Vec3::new(0.3, 0.3, 0.8))),
+        with_light("panel that shines away", beside.clone().with("sides", "front").with("edge_u", -Vec3::X)),
+        with_light("panel that shines on the block", beside.with("sides", "front")),
     ]);
     let sun = |x: usize, y: usize| if (x, y) == (41, 9) { 900.0 } else { 0.0 };
     let sky = |x: usize, y: usize| Rgb::new(0.2, 0.4, 0.7) * (1.0 - y as f32 / 32.0) + Rgb::WHITE * sun(x, y);
@@ -195,6 +211,10 @@ impl Light for Spoilt {
 
     fn finds_all(&self) -> bool {
         self.light.finds_all()
+    }
+
+    fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
+        self.light.shines(hit, wo)
     }
 
     fn emission_pdf(&self, bounds: &Aabb, pdf_direct: f32, direction: Vec3, cos: f32) -> f32 {

@@ -1,6 +1,6 @@
 //! Triangles that give light. Not in the table: objects whose material gives light become one.
 
-use super::{EmissionSample, Light, LightSample};
+use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
 use crate::geometry::transform_with_error;
 use crate::surface::{Surface, gamma};
@@ -22,6 +22,9 @@ pub struct MeshLight {
     /// The triangles where they are; none when they move.
     resting: Vec<Facet>,
     radiance: Rgb,
+    sides: Sides,
+    /// By which a triangle's corners, as they are in the world, turn round its front: -1 behind a mirror, else 1.
+    turn: f32,
     classic: Option<Rgb>,
 }
 
@@ -29,7 +32,7 @@ pub struct MeshLight {
 #[derive(Clone, Copy)]
 struct Facet {
     corners: [Vec3; 3],
-    /// Unit, or zero where it has no area.
+    /// Unit, towards the front; zero where it has no area.
     normal: Vec3,
     /// Density of its points over area.
     pdf_area: f32,
@@ -40,12 +43,13 @@ const FEW: usize = 8;
 
 impl MeshLight {
     /// A light from an object's triangles in its own space; `first` is how rays number the first of
-    /// them. `None` when they have no area.
+    /// them. `mirrored` says that on the way into the world they were turned inside out. `None` when they have no area.
     pub fn new(
         triangles: Vec<[Vec3; 3]>,
+        mirrored: bool,
         first: Primitive,
         motion: Motion,
-        radiance: Rgb,
+        (radiance, sides): (Rgb, Sides),
         classic: Option<Rgb>,
     ) -> Option<MeshLight> {
         let areas: Vec<f64> = triangles.iter().map(|t| f64::from(area(t))).map(finite_or_zero).collect();
@@ -67,7 +71,9 @@ impl MeshLight {
         let weighted = |(t, a): (&[Vec3; 3], &f64)| (t[0] + t[1] + t[2]) * (a / (3.0 * total)) as f32;
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
         let resting = Vec::new();
-        let mut light = MeshLight { triangles, cdf, first, middle, motion, resting, radiance, classic };
+        let turn = if mirrored { -1.0 } else { 1.0 };
+        let mut light =
+            MeshLight { triangles, cdf, first, middle, motion, resting, radiance, sides, turn, classic };
         if light.motion.is_still() {
             light.resting = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
@@ -90,7 +96,7 @@ impl MeshLight {
         let corners @ [a, b, c] = self.corners(triangle, time);
         let normal = (b - a).cross(c - a);
         let pdf_area = self.share(triangle) / (0.5 * normal.length());
-        Facet { corners, normal: normal.normalize_or_zero(), pdf_area }
+        Facet { corners, normal: normal.normalize_or_zero() * self.turn, pdf_area }
     }
 
     /// The triangle that a number picks by area.
@@ -187,6 +193,9 @@ impl Light for MeshLight {
         let distance2 = to_light.length_squared();
         let wi = to_light.try_normalize()?;
         let cos = normal.dot(wi);
+        if self.sides == Sides::Front && cos >= 0.0 {
+            return None;
+        }
         let pdf_solid_angle = pdf_area * distance2 / cos.abs();
         (pdf_solid_angle.is_finite() && pdf_solid_angle > 0.0).then(|| LightSample {
             wi,
@@ -222,10 +231,12 @@ impl Light for MeshLight {
     ) -> Option<EmissionSample> {
         let (triangle, weights) = self.sample_weights(u_point);
         let Facet { normal, pdf_area, .. } = self.facet(triangle, time);
-        // Both sides give light: each takes half of the numbers.
-        let is_front = u_direction.x < 0.5;
-        let u = Vec2::new(2.0 * u_direction.x - if is_front { 0.0 } else { 1.0 }, u_direction.y);
-        let n_light = if is_front { normal } else { -normal };
+        let (n_light, u) = match self.sides {
+            Sides::Front => (normal, u_direction),
+            // Each takes half of the numbers.
+            Sides::Both if u_direction.x < 0.5 => (normal, Vec2::new(2.0 * u_direction.x, u_direction.y)),
+            Sides::Both => (-normal, Vec2::new(2.0 * u_direction.x - 1.0, u_direction.y)),
+        };
         let direction = Frame::from_normal(n_light).to_world(warp::sample_cosine_hemisphere(u)).normalize();
         let pdf_emission = self.emission_pdf(bounds, pdf_area, direction, n_light.dot(direction).abs());
         self.ray((triangle, weights), time, direction, pdf_emission)
@@ -233,8 +244,10 @@ impl Light for MeshLight {
 
     fn sample_le_aimed(&self, _: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let (triangle, weights) = self.sample_weights(u);
-        let pdf_area = self.facet(triangle, time).pdf_area;
-        self.ray((triangle, weights), time, warp::square_to_sphere(aim).normalize(), pdf_area)
+        let (Facet { normal, pdf_area, .. }, direction) =
+            (self.facet(triangle, time), warp::square_to_sphere(aim).normalize());
+        let leaves = self.sides == Sides::Both || normal.dot(direction) > 0.0;
+        leaves.then(|| self.ray((triangle, weights), time, direction, pdf_area)).flatten()
     }
 
     fn unaimed_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, _cos: f32) -> f32 {
@@ -242,7 +255,12 @@ impl Light for MeshLight {
     }
 
     fn emission_pdf(&self, _bounds: &Aabb, pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
-        pdf_direct * (0.5 * warp::cosine_hemisphere_pdf_solid_angle(cos))
+        pdf_direct * (warp::cosine_hemisphere_pdf_solid_angle(cos) / self.sides.count())
+    }
+
+    fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
+        let triangle = || hit.primitive.index.wrapping_sub(self.first.index) as usize;
+        self.sides == Sides::Both || self.facet(triangle(), hit.time).normal.dot(wo) > 0.0
     }
 
     fn is_infinite(&self) -> bool {
@@ -254,8 +272,7 @@ impl Light for MeshLight {
     }
 
     fn power(&self, _bounds: &Aabb) -> f32 {
-        // Both sides give light.
-        self.radiance.luminance() * self.world_area(0.0) * PI * 2.0
+        self.radiance.luminance() * self.world_area(0.0) * PI * self.sides.count()
     }
 
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
@@ -263,7 +280,11 @@ impl Light for MeshLight {
         let (point, Facet { corners, normal, .. }) = self.sample_point(time, u);
         let position = middle + (point - middle) * extent;
         let wi = (position - from).try_normalize()?;
-        let clearance = clearance(from, position, &corners, normal.dot(wi).abs());
+        let cos = normal.dot(wi);
+        if self.sides == Sides::Front && cos >= 0.0 {
+            return None;
+        }
+        let clearance = clearance(from, position, &corners, cos.abs());
         Some(ClassicLight { wi, position: Some(position), strength: 1.0, clearance })
     }
 

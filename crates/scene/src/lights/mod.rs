@@ -99,6 +99,39 @@ impl EmissionSample {
     }
 }
 
+/// From which sides of its triangles a surface gives light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sides {
+    /// Both.
+    #[default]
+    Both,
+    /// That from which their corners are seen counter-clockwise.
+    Front,
+}
+
+impl Sides {
+    /// What scene files call them.
+    pub(crate) const NAMES: &'static [&'static str] = &["both", "front"];
+
+    /// One of [`Sides::NAMES`].
+    pub(crate) fn name(self) -> &'static str {
+        Sides::NAMES[self as usize]
+    }
+
+    /// By one of [`Sides::NAMES`].
+    pub(crate) fn named(name: &str) -> Sides {
+        if name == "front" { Sides::Front } else { Sides::Both }
+    }
+
+    /// How many there are.
+    pub(crate) fn count(self) -> f32 {
+        match self {
+            Sides::Both => 2.0,
+            Sides::Front => 1.0,
+        }
+    }
+}
+
 /// Something that gives light.
 pub trait Light: Send + Sync {
     /// A direction from which light arrives at `from`; `None` where none does.
@@ -162,6 +195,11 @@ pub trait Light: Send + Sync {
     /// True when it is infinitely far, so that its direct density is one of directions.
     fn is_infinite(&self) -> bool;
 
+    /// False where a point of its surface gives no light towards `wo`, since it does so on one side only.
+    fn shines(&self, _hit: &Surface, _wo: Vec3) -> bool {
+        true
+    }
+
     /// Radiance from infinity in a direction away from the scene.
     fn le(&self, _direction: Vec3) -> Rgb {
         Rgb::BLACK
@@ -199,8 +237,10 @@ pub enum BuiltLight {
     Surface {
         /// The surface, in world space.
         mesh: Mesh,
-        /// Radiance on both sides.
+        /// Radiance.
         emission: Rgb,
+        /// On which sides.
+        sides: Sides,
         /// Colour under Equations 1 and 2 where the user gave one.
         classic: Option<Rgb>,
     },

@@ -1,15 +1,15 @@
-//! `rect`: a flat panel that gives light on both sides; seen, and casting soft shadows.
+//! `rect`: a flat panel that gives light; seen, and casting soft shadows.
 
-use super::{BuiltLight, CLASSIC, LightEntry, colour, given_classic, vector};
+use super::{BuiltLight, CLASSIC, LightEntry, Sides, colour, given_classic, vector};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
 
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "rect",
-        summary: "a flat panel that gives light on both sides; seen, and casting soft shadows",
+        summary: "a flat panel that gives light; seen, and casting soft shadows",
         source: "",
         parameters: &[
             vector("position", "its middle", "0 5 0"),
@@ -17,6 +17,13 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             vector("edge_v", "from one end to the other", "0 0 1"),
             colour("radiance", "what it gives out; or give intensity", "W/(m² sr)", "0"),
             colour("intensity", "radiance times area: kept while the panel shrinks", "W/sr", "0"),
+            Parameter {
+                name: "sides",
+                summary: "where it gives light: on both, or in front, which is where edge_u × edge_v points",
+                unit: "",
+                kind: ParameterKind::Choice(Sides::NAMES),
+                default: "both",
+            },
             CLASSIC,
         ],
     },
@@ -44,6 +51,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         };
-        Ok(BuiltLight::Surface { mesh, emission, classic: given_classic(reader) })
+        let sides = Sides::named(&reader.text("sides"));
+        Ok(BuiltLight::Surface { mesh, emission, sides, classic: given_classic(reader) })
     },
 };

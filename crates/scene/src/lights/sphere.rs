@@ -209,6 +209,10 @@ impl Light for SphereLight {
         self.uniform_pdf_area() * warp::cosine_hemisphere_pdf_solid_angle(cos)
     }
 
+    fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
+        hit.n_geom.dot(wo) > 0.0
+    }
+
     fn is_infinite(&self) -> bool {
         false
     }

@@ -1,8 +1,11 @@
 //! `diffuse`: matt, equally bright from everywhere.
 
-use super::{EMISSION, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance};
+use super::{
+    EMISSION, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance,
+};
 use crate::bsdf::{Bsdf, Lambert, Lobe};
 use crate::classic::ClassicMaterial;
+use crate::lights::Sides;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
@@ -17,6 +20,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         parameters: &[
             reflectance("reflectance", "reflected fraction of the light", "0.7"),
             EMISSION,
+            EMISSION_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],
@@ -25,6 +29,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         Ok(Arc::new(Diffuse {
             reflectance: colour_map(reader, "reflectance", ingredients)?,
             emission: reader.colour("emission"),
+            sides: Sides::named(&reader.text("emission_sides")),
         }))
     },
 };
@@ -32,6 +37,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 struct Diffuse {
     reflectance: ColourMap,
     emission: Rgb,
+    sides: Sides,
 }
 
 impl Diffuse {
@@ -54,5 +60,9 @@ impl Material for Diffuse {
 
     fn emission(&self) -> Rgb {
         self.emission
+    }
+
+    fn emission_sides(&self) -> Sides {
+        self.sides
     }
 }

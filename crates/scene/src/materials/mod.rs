@@ -27,6 +27,7 @@ mod roughness;
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::lights::Sides;
 use crate::parameters::{Reader, Span, Spec};
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap, Texture};
@@ -54,9 +55,13 @@ pub trait Material: Send + Sync {
     fn most_lobes(&self) -> usize {
         1
     }
-    /// Radiance given out on both sides; black for what is no light.
+    /// Radiance given out; black for what is no light.
     fn emission(&self) -> Rgb {
         Rgb::BLACK
+    }
+    /// On which sides of its triangles a surface gives that out.
+    fn emission_sides(&self) -> Sides {
+        Sides::Both
     }
     /// How what is inside stands against what it overlaps with; `None` for what takes no part in that.
     fn nested(&self) -> Option<Nested> {
@@ -164,10 +169,19 @@ fn texture(
 /// Shared by all materials: what a surface gives out by itself.
 const EMISSION: Parameter = Parameter {
     name: "emission",
-    summary: "radiance that the surface gives out, on both sides",
+    summary: "radiance that the surface gives out",
     unit: "W/(m² sr)",
     kind: ParameterKind::Colour { min: 0.0, max: 1e12 },
     default: "0",
+};
+
+/// On which sides it does.
+const EMISSION_SIDES: Parameter = Parameter {
+    name: "emission_sides",
+    summary: "where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise",
+    unit: "",
+    kind: ParameterKind::Choice(Sides::NAMES),
+    default: "both",
 };
 
 const ABSORPTION: Parameter = Parameter {

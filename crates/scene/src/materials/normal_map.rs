@@ -5,6 +5,7 @@ use super::{Ingredients, Material, Nested, texture};
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::lights::Sides;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use crate::texture::Texture;
@@ -79,6 +80,10 @@ impl Material for NormalMapped {
 
     fn emission(&self) -> Rgb {
         self.material.emission()
+    }
+
+    fn emission_sides(&self) -> Sides {
+        self.material.emission_sides()
     }
 
     fn nested(&self) -> Option<Nested> {
