@@ -11,6 +11,7 @@ mod budget;
 mod error;
 mod float;
 mod formats;
+mod gltf;
 mod native;
 mod normals;
 mod obj;

@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
 mod asc;
+mod gltf;
 mod hostile;
 mod native;
 mod obj;

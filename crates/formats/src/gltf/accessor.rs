@@ -1,0 +1,280 @@
+//! Typed elements in buffers: every component type, normalised or not, interleaved, sparse.
+
+use super::document::Document;
+use super::json::Node;
+use crate::FormatError;
+use crate::budget::Budget;
+
+/// A list of elements, checked to lie within its buffer.
+pub(super) struct Accessor<'d> {
+    pub(super) node: Node<'d>,
+    pub(super) count: usize,
+    component: Component,
+    shape: Shape,
+    is_normalised: bool,
+    /// None where all is zero but for what is sparse.
+    data: Option<Strided<'d>>,
+    sparse: Option<Sparse<'d>>,
+}
+
+/// What numbers are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+/// How many numbers an element has, in columns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shape {
+    columns: usize,
+    rows: usize,
+}
+
+/// Elements at even distances, the first at the first byte.
+#[derive(Clone, Copy)]
+struct Strided<'d> {
+    bytes: &'d [u8],
+    stride: usize,
+}
+
+/// Elements that stand in place of others.
+struct Sparse<'d> {
+    indices: Vec<u32>,
+    values: Strided<'d>,
+}
+
+const SHAPES: [(&str, Shape); 7] = [
+    ("SCALAR", Shape { columns: 1, rows: 1 }),
+    ("VEC2", Shape { columns: 1, rows: 2 }),
+    ("VEC3", Shape { columns: 1, rows: 3 }),
+    ("VEC4", Shape { columns: 1, rows: 4 }),
+    ("MAT2", Shape { columns: 2, rows: 2 }),
+    ("MAT3", Shape { columns: 3, rows: 3 }),
+    ("MAT4", Shape { columns: 4, rows: 4 }),
+];
+
+impl<'d> Accessor<'d> {
+    /// The accessor that `index` names.
+    pub(super) fn named(
+        document: &'d Document<'d>,
+        index: Node<'d>,
+        budget: &mut Budget,
+    ) -> Result<Accessor<'d>, FormatError> {
+        Accessor::open(document, document.named("accessors", index)?, budget)
+    }
+
+    pub(super) fn open(
+        document: &'d Document<'d>,
+        node: Node<'d>,
+        budget: &mut Budget,
+    ) -> Result<Accessor<'d>, FormatError> {
+        let count = node.need("count")?.as_count()?;
+        let component = Component::read(node.need("componentType")?)?;
+        let kind = node.need("type")?;
+        let name = kind.as_text()?;
+        let Some((_, shape)) = SHAPES.iter().find(|(known, _)| *known == name) else {
+            let known = SHAPES.map(|(name, _)| name).join(", ");
+            return Err(kind.error(format!("'{name}' is no type of elements; there are {known}")));
+        };
+        let mut accessor = Accessor {
+            node,
+            count,
+            component,
+            shape: *shape,
+            is_normalised: node.switch("normalized")?,
+            data: None,
+            sparse: None,
+        };
+        let offset = node.count("byteOffset")?.unwrap_or(0);
+        let size = accessor.element_size();
+        if let Some(view) = node.get("bufferView") {
+            accessor.data = Some(strided(document, node, view, [offset, count, size])?);
+        } else if count > document.size() {
+            let message = format!("{count} elements without data are more than this file can mean");
+            return Err(node.error(message));
+        }
+        if let Some(sparse) = node.get("sparse") {
+            accessor.sparse = Some(Sparse::read(document, sparse, count, size, budget)?);
+        }
+        Ok(accessor)
+    }
+
+    /// Elements of exactly `N` numbers.
+    pub(super) fn floats<const N: usize>(&self, budget: &mut Budget) -> Result<Vec<[f32; N]>, FormatError> {
+        if self.width() != N {
+            let have = self.width();
+            return Err(self.node.error(format!("elements of {have} numbers stand where {N} are wanted")));
+        }
+        budget.take_bytes((self.count as u64).saturating_mul(4 * N as u64), &self.node.at().file)?;
+        let mut all = vec![[0.0; N]; self.count];
+        if let Some(data) = self.data {
+            all.iter_mut().enumerate().for_each(|(i, element)| self.read(data, i, element));
+        }
+        if let Some(sparse) = &self.sparse {
+            for (i, &index) in sparse.indices.iter().enumerate() {
+                self.read(sparse.values, i, &mut all[index as usize]);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Whole numbers, as indices are.
+    pub(super) fn indices(&self, budget: &mut Budget) -> Result<Vec<u32>, FormatError> {
+        if self.width() != 1 || !matches!(self.component, Component::U8 | Component::U16 | Component::U32) {
+            return Err(self.node.error("indices have to be SCALAR, of 8, 16 or 32 bits without a sign"));
+        }
+        budget.take_bytes((self.count as u64).saturating_mul(4), &self.node.at().file)?;
+        let mut all = vec![0; self.count];
+        let read = |from: Strided, i: usize| self.component.whole(&from.bytes[i * from.stride..]);
+        if let Some(data) = self.data {
+            all.iter_mut().enumerate().for_each(|(i, slot)| *slot = read(data, i));
+        }
+        if let Some(sparse) = &self.sparse {
+            for (i, &index) in sparse.indices.iter().enumerate() {
+                all[index as usize] = read(sparse.values, i);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Numbers of an element.
+    pub(super) fn width(&self) -> usize {
+        self.shape.columns * self.shape.rows
+    }
+
+    #[inline]
+    fn read(&self, from: Strided, index: usize, element: &mut [f32]) {
+        let bytes = &from.bytes[index * from.stride..];
+        let (size, rows) = (self.component.size(), self.shape.rows);
+        let column = self.column_size();
+        for (i, number) in element.iter_mut().enumerate() {
+            let at = i / rows * column + i % rows * size;
+            *number = self.component.number(&bytes[at..], self.is_normalised);
+        }
+    }
+
+    /// Bytes from one column to the next: those of matrices begin at multiples of 4.
+    fn column_size(&self) -> usize {
+        let bytes = self.shape.rows * self.component.size();
+        if self.shape.columns > 1 { bytes.next_multiple_of(4) } else { bytes }
+    }
+
+    fn element_size(&self) -> usize {
+        self.column_size() * self.shape.columns
+    }
+}
+
+/// Elements that lie within a view, or else an error at the node that says they do.
+fn strided<'d>(
+    document: &'d Document<'d>,
+    node: Node<'d>,
+    view: Node<'d>,
+    [offset, count, size]: [usize; 3],
+) -> Result<Strided<'d>, FormatError> {
+    let view = document.view(view)?;
+    let stride = view.stride.unwrap_or(size);
+    if stride < size {
+        return Err(node.error(format!("elements of {size} bytes stand {stride} bytes apart (byteStride)")));
+    }
+    let last = count.saturating_sub(1).checked_mul(stride);
+    let end = last.and_then(|last| last.checked_add(offset)?.checked_add(if count == 0 { 0 } else { size }));
+    if end.is_none_or(|end| end > view.bytes.len()) {
+        let have = view.bytes.len();
+        let message = format!(
+            "{count} elements, {stride} bytes apart, from byte {offset} go beyond the buffer view, which has {have} \
+             bytes"
+        );
+        return Err(node.error(message));
+    }
+    Ok(Strided { bytes: &view.bytes[offset..], stride })
+}
+
+impl<'d> Sparse<'d> {
+    fn read(
+        document: &'d Document<'d>,
+        node: Node<'d>,
+        total: usize,
+        size: usize,
+        budget: &mut Budget,
+    ) -> Result<Sparse<'d>, FormatError> {
+        let count = node.need("count")?.as_count()?;
+        if count > total {
+            return Err(node.error(format!("{count} elements cannot take the place of {total}")));
+        }
+        let (places, values) = (node.need("indices")?, node.need("values")?);
+        let component = Component::read(places.need("componentType")?)?;
+        if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
+            return Err(places.error("sparse indices have to be of 8, 16 or 32 bits without a sign"));
+        }
+        let offset = |node: Node<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
+        let from = strided(
+            document,
+            places,
+            places.need("bufferView")?,
+            [offset(places)?, count, component.size()],
+        )?;
+        budget.take_bytes(count as u64 * 4, &node.at().file)?;
+        let read = |i: usize| component.whole(&from.bytes[i * from.stride..]);
+        let indices: Vec<u32> = (0..count).map(read).collect();
+        let rises = indices.windows(2).all(|pair| pair[0] < pair[1]);
+        if !rises || indices.last().is_some_and(|&last| last as usize >= total) {
+            return Err(places.error(format!("sparse indices have to rise, and to be below {total}")));
+        }
+        let values = strided(document, values, values.need("bufferView")?, [offset(values)?, count, size])?;
+        Ok(Sparse { indices, values })
+    }
+}
+
+impl Component {
+    fn read(node: Node) -> Result<Component, FormatError> {
+        Ok(match node.as_count()? {
+            5120 => Component::I8,
+            5121 => Component::U8,
+            5122 => Component::I16,
+            5123 => Component::U16,
+            5125 => Component::U32,
+            5126 => Component::F32,
+            other => {
+                return Err(
+                    node.error(format!("{other} is no componentType; there are 5120 to 5123, 5125 and 5126"))
+                );
+            }
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Component::I8 | Component::U8 => 1,
+            Component::I16 | Component::U16 => 2,
+            Component::U32 | Component::F32 => 4,
+        }
+    }
+
+    /// The number at the first bytes. Normalised ones go from 0 or -1 to 1. [glTF 2.0, 3.6.2.2]
+    #[inline]
+    fn number(self, bytes: &[u8], is_normalised: bool) -> f32 {
+        let (x, greatest) = match self {
+            Component::F32 => return f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+            Component::I8 => (f32::from(bytes[0] as i8), 127.0),
+            Component::U8 => (f32::from(bytes[0]), 255.0),
+            Component::I16 => (f32::from(i16::from_le_bytes([bytes[0], bytes[1]])), 32767.0),
+            Component::U16 => (f32::from(u16::from_le_bytes([bytes[0], bytes[1]])), 65535.0),
+            Component::U32 => (self.whole(bytes) as f32, u32::MAX as f32),
+        };
+        if is_normalised { (x / greatest).max(-1.0) } else { x }
+    }
+
+    #[inline]
+    fn whole(self, bytes: &[u8]) -> u32 {
+        match self {
+            Component::I8 | Component::U8 => u32::from(bytes[0]),
+            Component::I16 | Component::U16 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
+            Component::U32 | Component::F32 => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The binary container, GLB: a header and chunks, of which the first is JSON and the second may be a buffer.
+
+use crate::FormatError;
+use crate::reading::Source;
+use crate::text::whole_file;
+
+/// What every GLB file begins with.
+pub(super) const MAGIC: &[u8] = b"glTF";
+const JSON: u32 = u32::from_le_bytes(*b"JSON");
+const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
+
+/// The parts of a file.
+pub(super) struct Container<'a> {
+    pub(super) json: &'a [u8],
+    /// The buffer that a GLB file brings.
+    pub(super) binary: Option<&'a [u8]>,
+    /// What was odd.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Takes a file apart; one that is no GLB is all JSON.
+pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError> {
+    let fail = |message: String| Err(FormatError::malformed(message, whole_file(source.name)));
+    let bytes = source.bytes;
+    let mut container = Container { json: bytes, binary: None, warnings: Vec::new() };
+    if !bytes.starts_with(MAGIC) {
+        if container.json.starts_with(b"\xef\xbb\xbf") {
+            container.json = &bytes[3..];
+            container.warnings.push("the file begins with a byte order mark, which glTF has not".to_owned());
+        }
+        return Ok(container);
+    }
+    let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
+        return fail("the GLB file ends within its header: it was cut off".to_owned());
+    };
+    if version != 2 {
+        return fail(format!("this is GLB of version {version}, and 2 is read: export it as glTF 2.0"));
+    }
+    let length = length as usize;
+    if length > bytes.len() {
+        let missing = length - bytes.len();
+        return fail(format!(
+            "the GLB file says that it has {length} bytes, of which {missing} are missing: it was cut off"
+        ));
+    }
+    if length < bytes.len() {
+        let more = bytes.len() - length;
+        container.warnings.push(format!("{more} bytes behind the end of the GLB file are not used"));
+    }
+    container.json = &[];
+    let mut at = 12;
+    for number in 0.. {
+        if at >= length {
+            break;
+        }
+        let (Some(size), Some(kind)) = (word(bytes, at), word(bytes, at + 4)) else {
+            return fail(format!("chunk {number} at byte {at} ends within its header: the file was cut off"));
+        };
+        let end = (at + 8).checked_add(size as usize).filter(|&end| end <= length);
+        let Some(chunk) = end.and_then(|end| bytes.get(at + 8..end)) else {
+            return fail(format!("chunk {number} at byte {at} says {size} bytes, which go beyond the file"));
+        };
+        match (number, kind) {
+            (0, JSON) => container.json = chunk,
+            (0, _) => return fail("the first chunk of a GLB file has to be JSON, but is not".to_owned()),
+            (1, BIN) => container.binary = Some(chunk),
+            (_, JSON | BIN) => {
+                container
+                    .warnings
+                    .push(format!("chunk {number} stands where none of its kind may: not used"));
+            }
+            _ => container.warnings.push(format!("chunk {number} is of an unknown kind: not used")),
+        }
+        at += 8 + chunk.len();
+    }
+    if container.json.is_empty() {
+        return fail("there is no JSON in this GLB file, or it is empty: export it again".to_owned());
+    }
+    Ok(container)
+}
+
+/// A 32-bit number, least byte first.
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    let four = bytes.get(at..at.checked_add(4)?)?;
+    Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+}

@@ -1,0 +1,90 @@
+//! The document as a whole: its JSON and the bytes of its buffers.
+
+use super::container::Container;
+use super::json::Node;
+use super::uri;
+use crate::FormatError;
+use crate::reading::{Oddities, Reading, Source};
+use std::borrow::Cow;
+
+/// JSON and buffers.
+pub(super) struct Document<'a> {
+    pub(super) root: Node<'a>,
+    buffers: Vec<Cow<'a, [u8]>>,
+    /// Bytes of all buffers and of the file itself.
+    size: usize,
+}
+
+/// A part of a buffer.
+#[derive(Clone, Copy)]
+pub(super) struct View<'d> {
+    pub(super) bytes: &'d [u8],
+    /// Bytes from one element to the next, where it says so.
+    pub(super) stride: Option<usize>,
+}
+
+impl<'a> Document<'a> {
+    /// Loads every buffer.
+    pub(super) fn load(
+        root: Node<'a>,
+        container: &Container<'a>,
+        reading: &mut Reading,
+        source: &Source<'a>,
+        oddities: &mut Oddities,
+    ) -> Result<Document<'a>, FormatError> {
+        let mut buffers = Vec::new();
+        for (i, node) in root.list("buffers")?.into_iter().enumerate() {
+            let wanted = node.need("byteLength")?.as_count()?;
+            let bytes: Cow<[u8]> = match (node.get("uri"), container.binary) {
+                (Some(uri), _) => Cow::Owned(uri::load(reading, source, uri)?),
+                (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
+                // What only a decoder fills; it is an error to look into it.
+                (None, _) => Cow::Borrowed(&[]),
+            };
+            if bytes.len() < wanted && !bytes.is_empty() {
+                oddities.note("a buffer is shorter than its byteLength says", || node.at());
+            }
+            buffers.push(bytes);
+        }
+        if container.binary.is_some_and(|b| !b.is_empty()) && buffers.is_empty() {
+            oddities.note("the binary chunk is named by no buffer and not used", || root.at());
+        }
+        let size = buffers.iter().map(|b| b.len()).sum::<usize>() + source.bytes.len();
+        Ok(Document { root, buffers, size })
+    }
+
+    /// Bytes of all that was read: a bound on what an honest file can describe without data.
+    pub(super) fn size(&self) -> usize {
+        self.size
+    }
+
+    /// The item of a list of the document that `index` names.
+    pub(super) fn named(&self, list: &'a str, index: Node<'a>) -> Result<Node<'a>, FormatError> {
+        let number = index.as_count()?;
+        self.root.item(list, number).ok_or_else(|| {
+            let count = self.root.list(list).map_or(0, |items| items.len());
+            index.error(format!("this names number {number} of '{list}', of which there are {count}"))
+        })
+    }
+
+    /// The bytes of the buffer view that `index` names.
+    pub(super) fn view(&self, index: Node<'a>) -> Result<View<'_>, FormatError> {
+        let node = self.named("bufferViews", index)?;
+        let buffer = node.need("buffer")?;
+        self.named("buffers", buffer)?;
+        let bytes = &self.buffers[buffer.as_count()?];
+        let offset = node.count("byteOffset")?.unwrap_or(0);
+        let length = node.need("byteLength")?.as_count()?;
+        let end = offset.checked_add(length);
+        let bytes = end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| {
+            let have = bytes.len();
+            let message = format!("{length} bytes from byte {offset} go beyond the buffer, which has {have}");
+            node.error(message)
+        })?;
+        let stride = node.count("byteStride")?;
+        if let Some(stride) = stride.filter(|stride| !(4..=252).contains(stride)) {
+            return Err(node.error(format!("byteStride is {stride}, but has to be from 4 to 252")));
+        }
+        Ok(View { bytes, stride })
+    }
+}

@@ -1,0 +1,64 @@
+//! Which extensions are understood.
+
+use super::json::Node;
+use crate::FormatError;
+use crate::reading::Oddities;
+use bilux_scene::error::nearest_name;
+
+/// Extensions that are read, in whole or with a warning that says what is not.
+const KNOWN: &[&str] = &[
+    "EXT_mesh_gpu_instancing",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Extensions that carry no part of the picture.
+const NOTHING_TO_SEE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld", "KHR_animation_pointer"];
+
+/// Refuses what a file cannot be drawn without, and warns of all else that is not understood.
+pub(super) fn check(root: Node, oddities: &mut Oddities) -> Result<(), FormatError> {
+    for name in root.list("extensionsRequired")? {
+        let text = name.as_text()?;
+        if !KNOWN.contains(&text) && !NOTHING_TO_SEE.contains(&text) {
+            let known: Vec<String> = KNOWN.iter().map(|&name| name.to_owned()).collect();
+            let meant = nearest_name(text, &known).filter(|n| n.len().abs_diff(text.len()) < 3);
+            let meant = meant.map_or_else(String::new, |name| format!(" (did it mean {name}?)"));
+            let message = format!(
+                "this file cannot be shown without the extension {text}, which is not understood{meant}: export it \
+                 without"
+            );
+            return Err(name.error(message));
+        }
+    }
+    note_unknown(root, oddities);
+    Ok(())
+}
+
+/// Looks for extensions wherever they are used. The JSON is no deeper than its parser allows.
+fn note_unknown(node: Node, oddities: &mut Oddities) {
+    for (key, value) in node.entries() {
+        if key == "extras" {
+            continue;
+        }
+        if key == "extensions" {
+            for (name, used) in value.entries() {
+                if !KNOWN.contains(&name) && !NOTHING_TO_SEE.contains(&name) {
+                    let what = format!("the extension {name} is not understood and not applied");
+                    oddities.note(&what, || used.at());
+                }
+            }
+        }
+        note_unknown(value, oddities);
+        value.children().for_each(|item| note_unknown(item, oddities));
+    }
+}

@@ -1,0 +1,72 @@
+//! The nodes of the scene, each with its place in the world.
+
+use super::json::Node;
+use super::place;
+use super::reader::Gltf;
+use crate::FormatError;
+use bilux_math::DMat4;
+
+/// A node that is in the scene.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<'d> {
+    pub(super) node: Node<'d>,
+    /// From its space to the world.
+    pub(super) world: DMat4,
+}
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// All nodes below the scene's, parents first, in the order of the file.
+    ///
+    /// # Errors
+    /// When a node is reached twice, from two parents or from itself.
+    pub(super) fn nodes(&mut self) -> Result<Vec<Placed<'d>>, FormatError> {
+        let root = self.document.root;
+        let count = root.list("nodes")?.len();
+        self.reading.budget.take_bytes((count * size_of::<[Placed; 2]>()) as u64, &self.file)?;
+        self.order = vec![None; count];
+        let mut waiting: Vec<(Node<'d>, DMat4)> =
+            self.roots()?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
+        let mut placed = Vec::new();
+        while let Some((index, parent)) = waiting.pop() {
+            let node = self.document.named("nodes", index)?;
+            let slot = &mut self.order[index.as_count()?];
+            if slot.replace(placed.len()).is_some() {
+                let message = "this node stands below two others, or below itself: a node has one parent";
+                return Err(index.error(message));
+            }
+            let world = parent * place::local(node)?;
+            if !world.is_finite() {
+                return Err(node.error("this node is scaled or moved beyond all numbers"));
+            }
+            placed.push(Placed { node, world });
+            let children = node.list("children")?;
+            waiting.extend(children.into_iter().rev().map(|child| (child, world)));
+        }
+        Ok(placed)
+    }
+
+    /// The indices of the scene's own nodes, as the file has them.
+    fn roots(&mut self) -> Result<Vec<Node<'d>>, FormatError> {
+        let root = self.document.root;
+        let scenes = root.list("scenes")?;
+        let scene = match root.get("scene") {
+            Some(index) => Some(self.document.named("scenes", index)?),
+            None => scenes.first().copied(),
+        };
+        if scenes.len() > 1 {
+            let chosen = if root.get("scene").is_some() { "the default one" } else { "the first" };
+            let what = format!("the file has {} scenes: {chosen} is shown", scenes.len());
+            self.oddities.note(&what, || root.at_key("scenes"));
+        }
+        match scene {
+            Some(scene) => scene.list("nodes"),
+            None => {
+                if root.get("nodes").is_some() {
+                    let what = "the file has no scene, so that nothing of it is shown";
+                    self.oddities.note(what, || root.at());
+                }
+                Ok(Vec::new())
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! `EXT_mesh_gpu_instancing`: one node, many places.
+
+use super::accessor::Accessor;
+use super::graph::Placed;
+use super::place::compose;
+use super::reader::Gltf;
+use crate::FormatError;
+use bilux_math::DMat4;
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// Where a node's mesh stands in the world: once, or as often as the extension says.
+    pub(super) fn instances(&mut self, placed: &Placed<'d>) -> Result<Vec<DMat4>, FormatError> {
+        let Some(extension) = placed.node.extension("EXT_mesh_gpu_instancing") else {
+            return Ok(vec![placed.world]);
+        };
+        let attributes = extension.need("attributes")?;
+        let mut count = None;
+        for (key, index) in attributes.entries() {
+            let here = Accessor::named(self.document, index, &mut self.reading.budget)?.count;
+            if count.is_some_and(|count| count != here) {
+                return Err(index.error("all attributes of instances have to have as many elements"));
+            }
+            count = Some(here);
+            if !matches!(key, "TRANSLATION" | "ROTATION" | "SCALE") {
+                self.oddities.note("an attribute of instances is not used", || index.at());
+            }
+        }
+        let count = count.unwrap_or(0);
+        let translations = attributes.get("TRANSLATION").map(|index| self.attribute::<3>(index, None));
+        let rotations = attributes.get("ROTATION").map(|index| self.attribute::<4>(index, None));
+        let scales = attributes.get("SCALE").map(|index| self.attribute::<3>(index, None));
+        let (translations, rotations, scales) =
+            (translations.transpose()?, rotations.transpose()?, scales.transpose()?);
+        self.reading.budget.take_bytes((count * size_of::<DMat4>()) as u64, &self.file)?;
+        let pick3 = |list: &Option<Vec<[f32; 3]>>, i: usize, default: f64| {
+            list.as_ref().map_or([default; 3], |list| list[i].map(f64::from))
+        };
+        let world = |i: usize| {
+            let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |list| list[i].map(f64::from));
+            let local = compose(pick3(&translations, i, 0.0), rotation, pick3(&scales, i, 1.0));
+            // What is broken is told where it is placed.
+            placed.world * local.unwrap_or(DMat4::ZERO)
+        };
+        Ok((0..count).map(world).collect())
+    }
+}

@@ -1,0 +1,177 @@
+//! A value of the document together with where it stands, as a JSON pointer. [Bryan 2013]
+
+use crate::FormatError;
+use bilux_scene::Span;
+use serde_json::Value;
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// A value and its place. Cheap to copy.
+#[derive(Clone, Copy)]
+pub(super) struct Node<'a> {
+    value: &'a Value,
+    file: &'a Arc<str>,
+    path: [Step<'a>; LONGEST_PATH],
+    length: usize,
+}
+
+#[derive(Clone, Copy)]
+enum Step<'a> {
+    Key(&'a str),
+    Index(usize),
+}
+
+/// Deeper places are told as that of what holds them.
+const LONGEST_PATH: usize = 10;
+
+impl<'a> Node<'a> {
+    /// The whole document.
+    pub(super) fn root(value: &'a Value, file: &'a Arc<str>) -> Node<'a> {
+        Node { value, file, path: [Step::Index(0); LONGEST_PATH], length: 0 }
+    }
+
+    fn step(&self, value: &'a Value, step: Step<'a>) -> Node<'a> {
+        let mut next = Node { value, ..*self };
+        if let Some(slot) = next.path.get_mut(self.length) {
+            *slot = step;
+            next.length += 1;
+        }
+        next
+    }
+
+    /// Where it stands: the file, and behind `#` the pointer.
+    pub(super) fn at(&self) -> Span {
+        let mut place = format!("{}#", self.file);
+        for step in &self.path[..self.length] {
+            // Writing into a string does not fail.
+            let _ = match step {
+                Step::Key(key) => write!(place, "/{}", key.replace('~', "~0").replace('/', "~1")),
+                Step::Index(index) => write!(place, "/{index}"),
+            };
+        }
+        Span { file: place.into(), line: 0, column: 0 }
+    }
+
+    /// The same place, one key further, whether there is anything or not.
+    pub(super) fn at_key(&self, key: &'a str) -> Span {
+        self.step(self.value, Step::Key(key)).at()
+    }
+
+    /// A refusal at this place.
+    pub(super) fn error(&self, message: impl Into<String>) -> FormatError {
+        FormatError::malformed(message, self.at())
+    }
+
+    fn wrong(&self, wanted: &str) -> FormatError {
+        let mut found = self.value.to_string();
+        if found.len() > 40 {
+            found = format!("{}…", found.chars().take(40).collect::<String>());
+        }
+        self.error(format!("this is {found}, but has to be {wanted}"))
+    }
+
+    /// The value of a key, if there is one.
+    pub(super) fn get(&self, key: &'a str) -> Option<Node<'a>> {
+        self.value.get(key).map(|value| self.step(value, Step::Key(key)))
+    }
+
+    /// The value of a key that has to be there.
+    pub(super) fn need(&self, key: &'a str) -> Result<Node<'a>, FormatError> {
+        self.get(key).ok_or_else(|| self.error(format!("'{key}' is missing here: export the file again")))
+    }
+
+    /// An extension, if it is used here.
+    pub(super) fn extension(&self, name: &'a str) -> Option<Node<'a>> {
+        self.get("extensions")?.get(name)
+    }
+
+    /// Keys with their values.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (&'a str, Node<'a>)> + use<'a> {
+        let here = *self;
+        let entries = self.value.as_object().into_iter().flatten();
+        entries.map(move |(key, value)| (key.as_str(), here.step(value, Step::Key(key))))
+    }
+
+    /// The items of a list.
+    pub(super) fn items(
+        &self,
+    ) -> Result<impl ExactSizeIterator<Item = Node<'a>> + Clone + use<'a>, FormatError> {
+        let here = *self;
+        let items = self.value.as_array().ok_or_else(|| self.wrong("a list"))?;
+        Ok(items.iter().enumerate().map(move |(i, value)| here.step(value, Step::Index(i))))
+    }
+
+    /// The items of a list; none where it is no list.
+    pub(super) fn children(&self) -> impl Iterator<Item = Node<'a>> + use<'a> {
+        let here = *self;
+        let items = self.value.as_array().into_iter().flatten().enumerate();
+        items.map(move |(i, value)| here.step(value, Step::Index(i)))
+    }
+
+    /// The items of the list under a key; none where there is no such key.
+    pub(super) fn list(&self, key: &'a str) -> Result<Vec<Node<'a>>, FormatError> {
+        self.get(key).map_or(Ok(Vec::new()), |list| Ok(list.items()?.collect()))
+    }
+
+    /// One item of the list under a key, such as a mesh of the document.
+    pub(super) fn item(&self, key: &'a str, index: usize) -> Option<Node<'a>> {
+        let list = self.get(key)?;
+        let value = list.value.as_array()?.get(index)?;
+        Some(list.step(value, Step::Index(index)))
+    }
+
+    pub(super) fn is_object(&self) -> bool {
+        self.value.is_object()
+    }
+
+    /// This as a finite number.
+    pub(super) fn as_number(&self) -> Result<f64, FormatError> {
+        let number = self.value.as_f64().filter(|x| (*x as f32).is_finite());
+        number.ok_or_else(|| self.wrong("a number that is finite in 32 bits"))
+    }
+
+    /// This as an index or a count, from 0. `3.0` counts as 3.
+    pub(super) fn as_count(&self) -> Result<usize, FormatError> {
+        let whole = |x: &f64| x.fract() == 0.0 && (0.0..9e15).contains(x);
+        let count = self.value.as_u64().or_else(|| self.value.as_f64().filter(whole).map(|x| x as u64));
+        let count = count.and_then(|count| usize::try_from(count).ok());
+        count.ok_or_else(|| self.wrong("a whole number, not below 0"))
+    }
+
+    pub(super) fn as_text(&self) -> Result<&'a str, FormatError> {
+        self.value.as_str().ok_or_else(|| self.wrong("text"))
+    }
+
+    pub(super) fn number(&self, key: &'a str) -> Result<Option<f64>, FormatError> {
+        self.get(key).map(|node| node.as_number()).transpose()
+    }
+
+    pub(super) fn count(&self, key: &'a str) -> Result<Option<usize>, FormatError> {
+        self.get(key).map(|node| node.as_count()).transpose()
+    }
+
+    pub(super) fn switch(&self, key: &'a str) -> Result<bool, FormatError> {
+        let read = |node: Node| node.value.as_bool().ok_or_else(|| node.wrong("true or false"));
+        self.get(key).map_or(Ok(false), read)
+    }
+
+    /// A list of exactly so many numbers.
+    pub(super) fn numbers<const N: usize>(&self, key: &'a str) -> Result<Option<[f64; N]>, FormatError> {
+        let Some(node) = self.get(key) else { return Ok(None) };
+        let wrong = || node.wrong(&format!("a list of {N} numbers"));
+        let items = node.items().map_err(|_| wrong())?;
+        if items.len() != N {
+            return Err(wrong());
+        }
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(items) {
+            *number = item.as_number()?;
+        }
+        Ok(Some(numbers))
+    }
+
+    /// What things are called in the file; empty where they are not.
+    pub(super) fn name(&self) -> &'a str {
+        self.value.get("name").and_then(Value::as_str).unwrap_or_default()
+    }
+}

@@ -1,0 +1,56 @@
+//! `KHR_lights_punctual`: candela and lux are taken one to one as W/sr and W/m².
+
+use super::graph::Placed;
+use super::json::Node;
+use crate::FormatError;
+use crate::reading::Oddities;
+use bilux_math::{DVec3, Rgb};
+use bilux_scene::Spec;
+
+/// A light at its node; none, with a warning, where its node leaves it no direction.
+pub(super) fn light<'d>(
+    root: Node<'d>,
+    user: Node<'d>,
+    placed: &Placed<'d>,
+    oddities: &mut Oddities,
+) -> Result<Option<Spec>, FormatError> {
+    let index = user.need("light")?;
+    let list = root.extension("KHR_lights_punctual");
+    let Some(light) = list.and_then(|list| list.item("lights", index.as_count().ok()?)) else {
+        return Err(index.error("there is no such light in the document's KHR_lights_punctual"));
+    };
+    let (position, kind) = (placed.world.w_axis.truncate(), light.need("type")?);
+    let Some(forward) = placed.world.transform_vector3(DVec3::NEG_Z).try_normalize() else {
+        oddities.note("a light's node is scaled to nothing: left out", || placed.node.at());
+        return Ok(None);
+    };
+    let colour = light.numbers::<3>("color")?.unwrap_or([1.0; 3]).map(|c| c.max(0.0) as f32);
+    let intensity = light.number("intensity")?.unwrap_or(1.0).max(0.0) as f32;
+    let power = Rgb::from_array(colour) * intensity;
+    let name = if placed.node.name().is_empty() { light.name() } else { placed.node.name() };
+    let spec = match kind.as_text()? {
+        "directional" => {
+            Spec::new(name, "directional").with("direction", forward.as_vec3()).with("irradiance", power)
+        }
+        "point" => Spec::new(name, "point").with("position", position.as_vec3()).with("intensity", power),
+        "spot" => {
+            let cone = light.need("spot")?;
+            let angle = |key, default: f64| Ok::<_, FormatError>(cone.number(key)?.unwrap_or(default));
+            let inner = angle("innerConeAngle", 0.0)?.clamp(0.0, 3.1).to_degrees() as f32;
+            let outer = angle("outerConeAngle", std::f64::consts::FRAC_PI_4)?.clamp(0.0, 3.1).to_degrees();
+            Spec::new(name, "spot")
+                .with("position", position.as_vec3())
+                .with("look_at", (position + forward * (1.0 + 1e-4 * position.abs().max_element())).as_vec3())
+                .with("intensity", power)
+                .with("angle", outer as f32)
+                .with("inner_angle", inner)
+        }
+        other => {
+            return Err(kind.error(format!("'{other}' is no light: directional, point and spot are")));
+        }
+    };
+    if light.get("range").is_some() {
+        oddities.note("a light's range is not used: its light falls off as light does", || light.at());
+    }
+    Ok(Some(Spec { span: light.at(), ..spec }))
+}

@@ -1,0 +1,50 @@
+//! glTF 2.0, as JSON with files beside it and as GLB. See `docs/formats/gltf.md`.
+
+mod accessor;
+mod cameras;
+mod container;
+mod document;
+mod extensions;
+mod graph;
+mod instances;
+mod json;
+mod lights;
+mod material;
+mod place;
+mod primitive;
+mod reader;
+mod uri;
+
+use crate::formats::SceneFormatEntry;
+use bilux_math::registry::Entry;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "gltf",
+        summary: "glTF 2.0 with its binaries and pictures, or all in one as GLB",
+        source: "glTF 2.0",
+        parameters: &[],
+    },
+    extensions: &["gltf", "glb"],
+    capabilities: &[
+        "triangles",
+        "normals",
+        "uv",
+        "vertex-kd",
+        "objects",
+        "instances",
+        "materials",
+        "cameras",
+        "lights",
+    ],
+    sniff,
+    read: Some(reader::read),
+    write: None,
+};
+
+/// The magic bytes, or a JSON object that speaks of its asset early on.
+fn sniff(bytes: &[u8]) -> bool {
+    let start = &bytes[..bytes.len().min(4096)];
+    let is_object = start.trim_ascii_start().starts_with(b"{");
+    bytes.starts_with(container::MAGIC) || is_object && start.windows(7).any(|word| word == b"\"asset\"")
+}

@@ -1,0 +1,32 @@
+//! Where nodes are: matrices, or translation, rotation and scale.
+
+use super::json::Node;
+use crate::FormatError;
+use bilux_math::glam::{DQuat, DVec4};
+use bilux_math::{DMat4, DVec3};
+
+/// From a node's space to its parent's.
+pub(super) fn local(node: Node) -> Result<DMat4, FormatError> {
+    if let Some(columns) = node.numbers::<16>("matrix")? {
+        let matrix = DMat4::from_cols_array(&columns);
+        let last = matrix.row(3).to_array();
+        if last != [0.0, 0.0, 0.0, 1.0] {
+            let message = format!("this matrix ends in the row {last:?}, but has to in [0, 0, 0, 1]");
+            return Err(FormatError::malformed(message, node.at_key("matrix")));
+        }
+        return Ok(matrix);
+    }
+    let translation = node.numbers::<3>("translation")?.unwrap_or([0.0; 3]);
+    let rotation = node.numbers::<4>("rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let scale = node.numbers::<3>("scale")?.unwrap_or([1.0; 3]);
+    compose(translation, rotation, scale).ok_or_else(|| {
+        FormatError::malformed("this rotation is zero, and turns nothing", node.at_key("rotation"))
+    })
+}
+
+/// Scale, then rotation (x, y, z, w), then translation; none where the rotation is zero.
+pub(super) fn compose(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> Option<DMat4> {
+    let rotation = DVec4::from(rotation).try_normalize()?;
+    let (scale, rotation) = (DVec3::from(scale), DQuat::from_vec4(rotation));
+    Some(DMat4::from_scale_rotation_translation(scale, rotation, DVec3::from(translation)))
+}

@@ -1,0 +1,107 @@
+//! Where buffers and images lie: in the text itself, or in a file beside it.
+
+use crate::FormatError;
+use crate::gltf::json::Node;
+use crate::reading::{Reading, Source};
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use std::borrow::Cow;
+
+/// What a URI stands for.
+pub(super) enum Resource {
+    /// Bytes that stand in the URI.
+    Data(Vec<u8>),
+    /// The name of a file, relative to the scene.
+    File(String),
+}
+
+/// What a URI stands for. Nothing is opened.
+///
+/// # Errors
+/// When it is broken, or names something on a network.
+pub(super) fn resolve(reading: &mut Reading, node: Node) -> Result<Resource, FormatError> {
+    let uri = node.as_text()?;
+    if let Some(data) = uri.strip_prefix("data:") {
+        let Some((kind, payload)) = data.split_once(',') else {
+            return Err(node.error("this data URI has no comma, behind which the data would stand"));
+        };
+        reading.budget.take_bytes(payload.len() as u64, &node.at().file)?;
+        if kind.ends_with(";base64") {
+            let decoded = BASE64.decode(payload);
+            return decoded.map(Resource::Data).map_err(|error| {
+                node.error(format!("the base64 of this data URI is broken: {error}; export the file again"))
+            });
+        }
+        return Ok(Resource::Data(percent_decoded(payload).into_owned()));
+    }
+    if scheme(uri).is_some() || uri.starts_with("//") {
+        return Err(node.error(format!(
+            "'{uri}' is an address, and nothing is fetched: put the file beside the scene, and name it here"
+        )));
+    }
+    let name = String::from_utf8(percent_decoded(uri).into_owned());
+    name.map(Resource::File).map_err(|_| node.error("this name is not in UTF-8: rename the file"))
+}
+
+/// The bytes of a URI.
+pub(super) fn load(reading: &mut Reading, source: &Source, node: Node) -> Result<Vec<u8>, FormatError> {
+    match resolve(reading, node)? {
+        Resource::Data(bytes) => Ok(bytes),
+        Resource::File(name) => {
+            let path = reading.locate(source.folder, &name, &node.at())?;
+            reading.load(&path)
+        }
+    }
+}
+
+/// With or without `=` at the end, as writers differ.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
+/// What stands before the colon of an address. One letter is a drive of a machine, not a scheme. [Berners-Lee 2005, 3.1]
+fn scheme(uri: &str) -> Option<&str> {
+    let (scheme, _) = uri.split_once(':')?;
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
+    (scheme.len() > 1 && scheme.chars().all(is_letter)).then_some(scheme)
+}
+
+/// `%20` and the like as the bytes that they stand for; what is broken stays as it is. [Berners-Lee 2005, 2.1]
+fn percent_decoded(text: &str) -> Cow<'_, [u8]> {
+    if !text.contains('%') {
+        return Cow::Borrowed(text.as_bytes());
+    }
+    let digit = |byte: Option<&u8>| byte.and_then(|&b| char::from(b).to_digit(16));
+    let (bytes, mut decoded) = (text.as_bytes(), Vec::with_capacity(text.len()));
+    let mut at = 0;
+    while let Some(&byte) = bytes.get(at) {
+        match (byte, digit(bytes.get(at + 1)), digit(bytes.get(at + 2))) {
+            (b'%', Some(high), Some(low)) => {
+                decoded.push((high * 16 + low) as u8);
+                at += 3;
+            }
+            _ => {
+                decoded.push(byte);
+                at += 1;
+            }
+        }
+    }
+    Cow::Owned(decoded)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_with_blanks_and_umlauts_are_decoded() {
+        assert_eq!(&*percent_decoded("a%20b.bin"), b"a b.bin");
+        assert_eq!(&*percent_decoded("f%C3%BCr%2.bin"), "für%2.bin".as_bytes());
+        assert_eq!(scheme("https://a"), Some("https"));
+        assert_eq!((scheme("a/b:c"), scheme("C:/x"), scheme("plain.bin")), (None, None, None));
+    }
+}

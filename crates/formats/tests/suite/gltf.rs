@@ -1,0 +1,254 @@
+//! glTF as programs write it.
+
+use crate::{read_text, refusal, warnings};
+use bilux_math::{Rgb, Vec2, Vec3};
+
+/// A document with one triangle, whose parts tests replace.
+const TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+fn read(text: &str) -> bilux_scene::SceneBuilder {
+    read_text("gltf", text).unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+/// Little-endian floats as a data URI that needs no base64.
+fn floats(numbers: &[f32]) -> String {
+    let bytes = numbers.iter().flat_map(|x| x.to_le_bytes());
+    let text: String = bytes.map(|byte| format!("%{byte:02x}")).collect();
+    format!("data:application/octet-stream,{text}")
+}
+
+/// A list of triangles with extra parts of the document.
+fn document(primitive: &str, accessors: &str, views: &str, bytes: usize, uri: &str, node: &str) -> String {
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{node}}}],
+        "meshes":[{{"primitives":[{primitive}]}}],"accessors":[{accessors}],"bufferViews":[{views}],
+        "buffers":[{{"byteLength":{bytes},"uri":"{uri}"}}]}}"#
+    )
+}
+
+#[test]
+fn a_triangle_is_that_triangle() {
+    let scene = read(TRIANGLE);
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(mesh.triangles, [[0, 1, 2]]);
+    assert!(mesh.normals.is_empty(), "flat without normals");
+    assert_eq!(warnings(&scene), "");
+    assert_eq!(read_text("", TRIANGLE).unwrap().objects[0].mesh, *mesh, "by its first bytes");
+}
+
+#[test]
+fn strips_and_fans_keep_their_side() {
+    let square = floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 0.]);
+    let accessor = r#"{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}"#;
+    let view = r#"{"buffer":0,"byteLength":48}"#;
+    let of_mode = |mode: u32| {
+        let primitive = format!(r#"{{"mode":{mode},"attributes":{{"POSITION":0}}}}"#);
+        read(&document(&primitive, accessor, view, 48, &square, ""))
+    };
+    assert_eq!(of_mode(5).objects[0].mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
+    assert_eq!(of_mode(6).objects[0].mesh.triangles, [[1, 2, 0], [2, 3, 0]]);
+    let lines = of_mode(1);
+    assert!(lines.objects.is_empty());
+    assert!(
+        warnings(&lines).contains("#/meshes/0/primitives/0: lines are not drawn"),
+        "{}",
+        warnings(&lines)
+    );
+}
+
+#[test]
+fn interleaved_normalised_and_sparse_elements_are_read() {
+    // Position as shorts (three, and two bytes of padding), colour as four bytes, uv as normalised bytes and padding.
+    let vertex = |x: i16, y: i16, rgb: [u8; 3], uv: [u8; 2]| {
+        let mut bytes = [x.to_le_bytes(), y.to_le_bytes(), [0; 2], [0; 2]].concat();
+        bytes.extend([rgb[0], rgb[1], rgb[2], 255, uv[0], uv[1], 0, 0]);
+        bytes
+    };
+    let bytes = [
+        vertex(0, 0, [255, 0, 0], [0, 0]),
+        vertex(100, 0, [0, 255, 0], [255, 0]),
+        vertex(0, -100, [0, 0, 255], [51, 255]),
+    ]
+    .concat();
+    let uri: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
+    // The first position is replaced by (7, 0, 0); both sparse views lie in zeros and ones of the same buffer.
+    let sparse =
+        r#","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}"#;
+    let text = document(
+        r#"{"attributes":{"POSITION":0,"COLOR_0":1,"TEXCOORD_0":2}}"#,
+        &format!(
+            r#"{{"bufferView":0,"componentType":5122,"count":3,"type":"VEC3"{sparse}}},
+            {{"bufferView":0,"byteOffset":8,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"}},
+            {{"bufferView":0,"byteOffset":12,"componentType":5121,"normalized":true,"count":3,"type":"VEC2"}}"#
+        ),
+        r#"{"buffer":0,"byteLength":48,"byteStride":16},{"buffer":0,"byteOffset":48,"byteLength":1},
+        {"buffer":0,"byteOffset":49,"byteLength":6}"#,
+        55,
+        &format!("data:,{uri}%00%07%00%00%00%00%00"),
+        "",
+    );
+    let scene = read(&text);
+    let mesh = &scene.objects[0].mesh;
+    let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+    assert_eq!(mesh.positions, [at(7.0, 0.0), at(100.0, 0.0), at(0.0, -100.0)]);
+    assert_eq!(mesh.vertex_kd[1], Rgb::new(0.0, 1.0, 0.0));
+    assert_eq!(mesh.uvs[2], Vec2::new(0.2, 0.0), "v upwards");
+    assert_eq!(warnings(&scene), "");
+}
+
+#[test]
+fn nodes_are_placed_below_their_parents() {
+    let text = TRIANGLE.replace(
+        r#"[{"mesh":0}]"#,
+        r#"[{"translation":[1,0,0],"scale":[-2,2,2],"children":[1,2]},
+        {"mesh":0,"name":"left","rotation":[0,0,0.7071067811865476,0.7071067811865476]},
+        {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}]"#,
+    );
+    let scene = read(&text);
+    let [left, right] = &scene.objects[..] else { panic!("{:?}", scene.objects) };
+    assert_eq!(left.name, "left");
+    assert!((left.motion.at(0.0).point(Vec3::X) - Vec3::new(1.0, 2.0, 0.0)).length() < 1e-6);
+    assert!((right.motion.at(0.0).point(Vec3::X) - Vec3::new(-1.0, 0.0, 10.0)).length() < 1e-6);
+    assert!(left.motion.at(0.0).mirrors() && std::sync::Arc::ptr_eq(&left.mesh, &right.mesh));
+}
+
+#[test]
+fn morph_targets_have_the_weights_that_the_file_gives() {
+    let uri = floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 4.]);
+    let accessors = r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+        {"bufferView":0,"byteOffset":12,"componentType":5126,"count":3,"type":"VEC3"}"#;
+    let text = document(
+        r#"{"attributes":{"POSITION":0},"targets":[{"POSITION":1}]}"#,
+        accessors,
+        r#"{"buffer":0,"byteLength":48}"#,
+        48,
+        &uri,
+        r#","weights":[0.5]"#,
+    );
+    let scene = read(&text);
+    assert_eq!(
+        scene.objects[0].mesh.positions,
+        [Vec3::X * 0.5, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0., 1., 2.)]
+    );
+}
+
+#[test]
+fn cameras_and_lights_stand_at_their_nodes() {
+    let text = TRIANGLE.replace(
+        r#"[{"mesh":0}]"#,
+        r#"[{"mesh":0,"camera":0,"translation":[0,0,3],"extensions":{"KHR_lights_punctual":{"light":0}}}]"#,
+    );
+    let text = text.replace(
+        r#""buffers""#,
+        r#""cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}],
+        "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0,0],"intensity":4,"range":9}]}},"buffers""#,
+    );
+    let scene = read(&text);
+    let camera = &scene.cameras[0].spec;
+    assert_eq!(camera.parameters.find("position").unwrap().0, &Vec3::new(0.0, 0.0, 3.0).into());
+    let light = &scene.lights[0];
+    assert_eq!(
+        (&*light.kind, light.parameters.find("intensity").unwrap().0),
+        ("point", &Rgb::new(4., 0., 0.).into())
+    );
+    assert!(warnings(&scene).contains("lights/0: a light's range is not used"));
+}
+
+#[test]
+fn what_is_broken_is_refused_with_its_pointer() {
+    let cases = [
+        ("POSITION\":0", "POSITION\":7", "#/meshes/0/primitives/0/attributes/POSITION: this names number 7"),
+        ("\"count\":3", "\"count\":4", "#/accessors/0: 4 elements, 12 bytes apart"),
+        ("\"count\":3", "\"count\":1000000000", "#/accessors/0: 1000000000 elements"),
+        ("\"count\":3", "\"count\":4611686018427387904", "#/accessors/0: 4611686018427387904 elements"),
+        (
+            "\"bufferView\":0,\"componentType\":5126,\"count\":3",
+            "\"componentType\":5126,\"count\":999999999",
+            "without data",
+        ),
+        ("\"count\":3", "\"count\":-3", "#/accessors/0/count: this is -3"),
+        ("5126", "5124", "is no componentType"),
+        ("VEC3", "VEC5", "'VEC5' is no type"),
+        ("VEC3", "VEC2", "elements of 2 numbers stand where 3 are wanted"),
+        ("\"byteLength\":36}],", "\"byteLength\":37}],", "#/bufferViews/0: 37 bytes from byte 0"),
+        ("\"byteLength\":36}],", "\"byteLength\":36,\"byteStride\":8}],", "stand 8 bytes apart"),
+        ("base64,AAAA", "base64,A!AA", "#/buffers/0/uri: the base64"),
+        ("data:application/octet-stream;base64", "https://example.org/a.bin?", "nothing is fetched"),
+        ("{\"mesh\":0}", "{\"mesh\":0,\"children\":[0]}", "#/nodes/0/children/0: this node stands below two"),
+        ("{\"nodes\":[0]}", "{\"nodes\":[0,0]}", "#/scenes/0/nodes/1: this node stands below two"),
+        (
+            "{\"mesh\":0}",
+            "{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,null,1]}",
+            "#/nodes/0/matrix/14: this is null",
+        ),
+        (
+            "{\"mesh\":0}",
+            "{\"mesh\":0,\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}",
+            "#/nodes/0/matrix: this matrix ends",
+        ),
+        ("{\"mesh\":0}", "{\"mesh\":0,\"scale\":[1e300,1,1]}", "finite in 32 bits"),
+        ("{\"mesh\":0}", "{\"mesh\":0,\"rotation\":[0,0,0,0]}", "#/nodes/0/rotation: this rotation is zero"),
+        ("\"2.0\"", "\"1.0\"", "this is glTF 1.0"),
+        ("\"2.0\"", "\"two\"", "a version is two numbers"),
+        (
+            "\"scene\":0",
+            "\"scene\":0,\"extensionsRequired\":[\"EXT_meshopt_compression\"]",
+            "without the extension EXT_meshopt_compression",
+        ),
+        ("]}]}", "]}]", ""),
+    ];
+    for (from, to, part) in cases {
+        let text = TRIANGLE.replacen(from, to, 1);
+        assert!(text != TRIANGLE || from == "]}]}", "{from}");
+        if text != TRIANGLE {
+            let message = refusal("gltf", &text);
+            assert!(message.contains(part), "{from} → {to}: {message}");
+        }
+    }
+    assert!(refusal("gltf", &TRIANGLE[..300]).contains("this is no JSON"));
+    let indexed = TRIANGLE
+        .replace("\"POSITION\":0}", "\"POSITION\":0},\"indices\":1")
+        .replace("\"VEC3\"}]", "\"VEC3\"},{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]");
+    assert!(
+        refusal("gltf", &indexed).contains("index 2 is 128, but there are 3 vertices"),
+        "{}",
+        refusal("gltf", &indexed)
+    );
+}
+
+#[test]
+fn what_is_not_understood_is_told_where_it_stands() {
+    let text = TRIANGLE.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"extensions":{"EXT_odd":{}}}"#);
+    let told = warnings(&read(&text));
+    assert!(
+        told.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not understood"),
+        "{told}"
+    );
+}
+
+#[test]
+fn containers_are_taken_apart() {
+    let json = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}"#;
+    let json = format!("{json:width$}", width = json.len().next_multiple_of(4));
+    let floats: Vec<u8> =
+        [0f32, 0., 0., 1., 0., 0., 0., 1., 0.].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let mut glb = [b"glTF".as_slice(), &word(2), &word(12 + 8 + json.len() + 8 + 36)].concat();
+    glb.extend([word(json.len()).as_slice(), b"JSON", json.as_bytes()].concat());
+    glb.extend([word(36).as_slice(), b"BIN\0", &floats].concat());
+    let scene = read_text("", &glb).unwrap();
+    assert_eq!(scene.objects[0].mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(warnings(&scene), "");
+    for length in 0..glb.len() {
+        assert!(read_text("glb", &glb[..length]).is_err(), "{length}");
+    }
+}
