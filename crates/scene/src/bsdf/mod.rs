@@ -12,6 +12,7 @@ mod bent;
 mod conductor;
 mod delta;
 mod dielectric;
+mod facing;
 mod ggx;
 mod lambert;
 mod mirror;
@@ -22,6 +23,7 @@ mod sample;
 
 pub use conductor::{Conductor, Fresnel, fresnel_conductor};
 pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
+pub use facing::Facing;
 pub use ggx::Ggx;
 pub use lambert::Lambert;
 pub use mirror::Mirror;
@@ -395,6 +397,9 @@ mod tests {
                 let mode = TransportMode::Importance;
                 let apart = (bsdf.eval(wo, wi, mode), bsdf.pdf_solid_angle(wo, wi, mode));
                 assert_eq!(bsdf.eval_and_pdf(wo, wi, mode), apart);
+                let back = bsdf.pdf_solid_angle(wi, wo, mode.reversed());
+                let both_ways = (!apart.0.is_black()).then_some((apart.0, apart.1, back));
+                assert_eq!(bsdf.facing(wo, mode).both_ways(wi), both_ways);
                 let apart = (a.eval(wo, wi, mode), a.pdf_solid_angle(wo, wi));
                 assert_eq!(a.eval_and_pdf(wo, wi, mode), apart);
             }

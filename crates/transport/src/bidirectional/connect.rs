@@ -119,24 +119,21 @@ pub(crate) fn merged<const N: usize>(
     z: &Vertex<N>,
     mut visit: impl FnMut(Way, &Found<N>),
 ) {
-    photons.around(z.surface.p, |y| {
+    let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
+    photons.around(z.surface.p, |spot, y| {
         // On the same surface, not on the other side of a sheet or around a corner.
-        if z.depth + u32::from(y.depth) + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+        if z.depth + u32::from(spot.depth) + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
-        let (scattered, pdf) = z.bsdf.eval_and_pdf(z.wo, y.wo, TransportMode::Radiance);
-        if scattered.is_black() {
-            return;
-        }
+        let Some((scattered, pdf, back)) = facing.both_ways(y.wo) else { return };
         // Photons come per area of the surface that they fell on, and grazing ones seldom; `eval` has the cosine to the
         // shading normal in it. By the normal at `z` a grazing photon from around a bend would be of any brightness.
         let cos = y.n_geom.dot(y.wo).abs();
-        let from_light = z.partial.before(z.bsdf.pdf_solid_angle(y.wo, z.wo, TransportMode::Importance));
-        let others = y.joined + y.d_vc * pdf + from_light;
+        let others = y.joined + y.d_vc * pdf + z.partial.before(back);
         let light = z.beta * scattered * y.beta * (1.0 / cos);
-        let way = Way::Merged { s: count(y.depth.into()), t: z.count() };
+        let way = Way::Merged { s: count(spot.depth.into()), t: z.count() };
         let own = photons.ways().eta;
-        visit(way, &Found { own, others, origin: y.origin, ..Found::only(light) });
+        visit(way, &Found { own, others, origin: spot.origin, ..Found::only(light) });
     });
 }
 

@@ -4,7 +4,7 @@
 use super::{Lanes, Tally, Vertex, Ways, light_vertices, show_to_camera};
 use crate::eye::Eye;
 use crate::window::Window;
-use bilux_math::hash::hash_words;
+use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Counters, Scene, Tracer};
 use rayon::prelude::*;
@@ -50,10 +50,19 @@ impl Merging {
     }
 }
 
+/// Where a light path has a vertex: all that is looked at of most photons.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spot {
+    pub(crate) p: Vec3,
+    /// Scattering events before it.
+    pub(crate) depth: u16,
+    /// As in [`super::Vertex`].
+    pub(crate) origin: u16,
+}
+
 /// A vertex of a light path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Photon<const N: usize = 1> {
-    pub(crate) p: Vec3,
     /// Where it came from.
     pub(crate) wo: Vec3,
     pub(crate) n_geom: Vec3,
@@ -61,17 +70,15 @@ pub(crate) struct Photon<const N: usize = 1> {
     /// [`Partial::joined`] and [`Partial::d_vc`] of the vertex.
     pub(crate) joined: Lanes<N>,
     pub(crate) d_vc: Lanes<N>,
-    /// Scattering events before it.
-    pub(crate) depth: u16,
-    /// As in [`super::Vertex`].
-    pub(crate) origin: u16,
 }
 
-/// All of an iteration, in a grid whose cells are as wide as the discs that merge.
+/// All of an iteration, in a grid whose cells are as wide as the discs that merge. Neighbours along the x axis are
+/// neighbours in memory.
 pub struct Photons<const N: usize = 1> {
     radius: f32,
     /// With the expected light paths on each square metre that they are merged over: η of [Georgiev 2012].
     ways: Ways<N>,
+    spots: Vec<Spot>,
     photons: Vec<Photon<N>>,
     /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
     starts: Vec<u32>,
@@ -126,23 +133,14 @@ impl<const N: usize> Photons<N> {
                     show_to_camera(&mut task, &vertices, &ways, tally);
                 }
                 let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || ways.direct;
-                photons.extend(vertices.iter().filter(is_kept).map(|vertex| Photon {
-                    p: vertex.surface.p,
-                    wo: vertex.wo,
-                    n_geom: vertex.surface.n_geom,
-                    beta: vertex.beta,
-                    joined: vertex.partial.joined,
-                    d_vc: vertex.partial.d_vc,
-                    depth: vertex.depth as u16,
-                    origin: vertex.origin,
-                }));
+                photons.extend(vertices.iter().filter(is_kept).map(Vertex::photon));
             }
             if let (Some(onlooker), Some(tally)) = (onlooker, tally) {
                 onlooker.take(index, tally);
             }
             (photons, tracer.counters)
         };
-        let (parts, counters): (Vec<Vec<Photon<N>>>, Vec<Counters>) =
+        let (parts, counters): (Vec<Vec<(Spot, Photon<N>)>>, Vec<Counters>) =
             tiles.par_iter().enumerate().map(of_tile).unzip();
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
@@ -150,21 +148,28 @@ impl<const N: usize> Photons<N> {
     }
 
     /// In the order of their cells, and within a cell in the order in which they are given.
-    pub(super) fn new(photons: Vec<Photon<N>>, radius: f32, ways: Ways<N>) -> Photons<N> {
-        let buckets = photons.len().next_power_of_two();
-        let hash = |p: Vec3| bucket(cell(p, radius), buckets);
-        let mut keys: Vec<(u32, u32)> =
-            photons.par_iter().enumerate().map(|(i, photon)| (hash(photon.p), i as u32)).collect();
-        keys.par_sort_unstable();
-        let mut starts = vec![0; buckets + 1];
-        for (bucket, _) in &keys {
-            starts[*bucket as usize + 1] += 1;
+    pub(super) fn new(given: Vec<(Spot, Photon<N>)>, radius: f32, ways: Ways<N>) -> Photons<N> {
+        let mask = given.len().next_power_of_two().max(FEWEST_BUCKETS) as u32 - 1;
+        let buckets: Vec<u32> =
+            given.par_iter().map(|(spot, _)| bucket(cell(spot.p, radius), mask)).collect();
+        // Photons before each bucket; after the next loop but one, those up to its end.
+        let mut starts = vec![0; mask as usize + 2];
+        for &bucket in &buckets {
+            starts[bucket as usize + 1] += 1;
         }
-        for i in 0..buckets {
-            starts[i + 1] += starts[i];
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
         }
-        let photons = keys.par_iter().map(|(_, i)| photons[*i as usize]).collect();
-        Photons { radius, ways, photons, starts }
+        let mut order = vec![0; given.len()];
+        for (i, &bucket) in buckets.iter().enumerate() {
+            let place = &mut starts[bucket as usize];
+            order[*place as usize] = i as u32;
+            *place += 1;
+        }
+        starts.rotate_right(1);
+        starts[0] = 0;
+        let (spots, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
+        Photons { radius, ways, spots, photons, starts }
     }
 
     /// All ways of finding a path that there are in this iteration.
@@ -173,38 +178,104 @@ impl<const N: usize> Photons<N> {
     }
 
     /// Calls `visit` with every photon that is no further than the radius from a point.
-    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Photon<N>)) {
-        let buckets = self.starts.len() - 1;
+    #[inline]
+    pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Spot, &Photon<N>)) {
+        let mask = self.starts.len() as u32 - 2;
         // Cells are two radii wide: what is near lies in the point's own or in the nearer neighbour on each axis.
-        let middle = cell(p, self.radius);
-        let within = p / (2.0 * self.radius) - p_floor(p, self.radius);
+        let scaled = p / (2.0 * self.radius);
+        let floor = scaled.floor();
+        let (middle, within) = ([floor.x as i64, floor.y as i64, floor.z as i64], scaled - floor);
         let beside = [within.x, within.y, within.z].map(|x| if x < 0.5 { -1 } else { 1 });
-        for corner in 0..8 {
-            let near: [i64; 3] = std::array::from_fn(|k| {
-                middle[k].saturating_add(if corner >> k & 1 == 1 { beside[k] } else { 0 })
-            });
-            let bucket = bucket(near, buckets) as usize;
-            for photon in &self.photons[self.starts[bucket] as usize..self.starts[bucket + 1] as usize] {
-                // Of other cells with the same hash some may be near too: each is visited from its own.
-                if photon.p.distance_squared(p) <= self.radius * self.radius
-                    && cell(photon.p, self.radius) == near
+        let corner = |i: usize| -> [i64; 3] {
+            std::array::from_fn(|k| middle[k].saturating_add(if i >> k & 1 == 1 { beside[k] } else { 0 }))
+        };
+        // Memory is slow to answer: where photons may lie is asked of all cells at once, before any is looked into.
+        let buckets: [u32; 8] = std::array::from_fn(|i| bucket(corner(i), mask));
+        let ranges = buckets.map(|b| self.starts[b as usize] as usize..self.starts[b as usize + 1] as usize);
+        // Of other cells with the same hash some may be near too: each is visited from its own.
+        let is_shared = share_buckets(&buckets, mask);
+        let radius2 = self.radius * self.radius;
+        for (i, range) in ranges.into_iter().enumerate() {
+            for (spot, photon) in self.spots[range.clone()].iter().zip(&self.photons[range]) {
+                if spot.p.distance_squared(p) <= radius2
+                    && (!is_shared || cell(spot.p, self.radius) == corner(i))
                 {
-                    visit(photon);
+                    visit(spot, photon);
                 }
             }
         }
     }
 }
 
-fn p_floor(p: Vec3, radius: f32) -> Vec3 {
-    (p / (2.0 * radius)).floor()
+/// True where two of the eight cells around a point may have one bucket. They come in pairs, neighbours on the x axis.
+#[inline]
+fn share_buckets(buckets: &[u32; 8], mask: u32) -> bool {
+    let share = |a: usize, b: usize| buckets[2 * a].wrapping_sub(buckets[2 * b]).wrapping_add(1) & mask <= 2;
+    share(0, 1) | share(0, 2) | share(0, 3) | share(1, 2) | share(1, 3) | share(2, 3)
 }
 
+/// A cell and its neighbours on the x axis have buckets of their own.
+const FEWEST_BUCKETS: usize = 4;
+
 fn cell(p: Vec3, radius: f32) -> [i64; 3] {
-    let floor = p_floor(p, radius);
+    let floor = (p / (2.0 * radius)).floor();
     [floor.x as i64, floor.y as i64, floor.z as i64]
 }
 
-fn bucket(cell: [i64; 3], buckets: usize) -> u32 {
-    hash_words(cell.map(|c| c as u64)) as u32 & (buckets as u32 - 1)
+/// A row along x begins anywhere; its cells follow one after the other.
+#[inline]
+fn bucket([x, y, z]: [i64; 3], mask: u32) -> u32 {
+    let row = mix64((y as u64) << 32 ^ z as u64 & 0xffff_ffff) as u32;
+    row.wrapping_add(x as u32) & mask
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::hash::{hash_words, unit_f32};
+
+    /// Points of a cube, or of a sheet of it.
+    fn point(i: u64, is_flat: bool) -> Vec3 {
+        let [x, y, z] = [0, 1, 2].map(|k| unit_f32(hash_words([i, k]) as u32) * 2.0 - 1.0);
+        Vec3::new(x, y, if is_flat { 0.25 } else { z })
+    }
+
+    fn photons(count: u64, radius: f32, is_flat: bool) -> Photons {
+        let photon = |i| {
+            let spot = Spot { p: point(i, is_flat), depth: 0, origin: i as u16 };
+            let (wo, n_geom) = (Vec3::Z, Vec3::Z);
+            (spot, Photon { wo, n_geom, beta: Rgb::WHITE, joined: Lanes::ZERO, d_vc: Lanes::ZERO })
+        };
+        Photons::new((0..count).map(photon).collect(), radius, Ways::CAMERA)
+    }
+
+    #[test]
+    fn each_photon_that_is_near_is_visited_once() {
+        // Few photons have few buckets, which many cells share; a great radius has few cells.
+        for (count, radius) in
+            [(0, 0.1), (1, 0.5), (3, 2.0), (20, 0.3), (500, 0.1), (4000, 0.02), (4000, 0.2)]
+        {
+            for is_flat in [false, true] {
+                let photons = photons(count, radius, is_flat);
+                for at in (0..300).map(|i| point(1 << 32 | i, is_flat)) {
+                    let mut found = Vec::new();
+                    photons.around(at, |spot, _| found.push(u64::from(spot.origin)));
+                    found.sort_unstable();
+                    let is_near = |i: &u64| point(*i, is_flat).distance_squared(at) <= radius * radius;
+                    assert!(found.into_iter().eq((0..count).filter(is_near)), "{count} {radius} {at}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn photons_of_a_cell_keep_their_order() {
+        let photons = photons(2000, 4.0, false);
+        let mut last = [0; 8];
+        for spot in &photons.spots {
+            let octant = cell(spot.p, 4.0).iter().fold(0, |sum, c| sum * 2 + usize::from(*c == 0));
+            assert!(spot.origin >= last[octant]);
+            last[octant] = spot.origin;
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! A subpath while it grows, from whichever end.
 
+use super::photons::{Photon, Spot};
 use super::{Lanes, Partial, Ways};
 use crate::emission::Start;
 use crate::media::Media;
@@ -28,6 +29,13 @@ impl<const N: usize> Vertex<N> {
     /// Vertices of the subpath up to here, with that on the light or at the camera.
     pub(crate) fn count(&self) -> u32 {
         count(self.depth)
+    }
+
+    /// What is kept of it to merge with.
+    pub(super) fn photon(&self) -> (Spot, Photon<N>) {
+        let spot = Spot { p: self.surface.p, depth: self.depth as u16, origin: self.origin };
+        let (wo, n_geom, beta) = (self.wo, self.surface.n_geom, self.beta);
+        (spot, Photon { wo, n_geom, beta, joined: self.partial.joined, d_vc: self.partial.d_vc })
     }
 
     /// The media in which light goes on along `direction`.

@@ -2,7 +2,7 @@
 
 use super::path::{Node, Path, Start};
 use super::{PANEL_NORMAL, Verdict};
-use crate::bidirectional::photons::Photon;
+use crate::bidirectional::photons::{Photon, Spot};
 use crate::bidirectional::*;
 use bilux_math::{Vec2, warp};
 use bilux_scene::Ray;
@@ -110,17 +110,10 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
         if light_end.depth == 0 && !ways.direct {
             continue;
         }
-        let photon = Photon {
-            p: camera_end.surface.p,
-            wo: light_end.wo,
-            n_geom: camera_end.surface.n_geom,
-            beta: light_end.beta,
-            joined: light_end.partial.joined,
-            d_vc: light_end.partial.d_vc,
-            depth: light_end.depth as u16,
-            origin: 0,
-        };
-        let photons = Photons::new(vec![photon], 1.0, *ways);
+        let (spot, photon) = light_end.photon();
+        let spot = Spot { p: camera_end.surface.p, ..spot };
+        let photon = Photon { n_geom: camera_end.surface.n_geom, ..photon };
+        let photons = Photons::new(vec![(spot, photon)], 1.0, *ways);
         // One vertex in the place of both: it scatters as at the camera's end.
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
         let shared = nodes.pop().unwrap();

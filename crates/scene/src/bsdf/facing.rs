@@ -1,0 +1,50 @@
+//! A [`Bsdf`] from which one direction leaves and many arrive, as photons do: what the one is to it is found once.
+
+use super::{Bsdf, TransportMode};
+use bilux_math::{Rgb, Vec3};
+
+/// A [`Bsdf`] with its `wo`.
+#[derive(Clone, Copy, Debug)]
+pub struct Facing<'a> {
+    bsdf: &'a Bsdf,
+    wo: Vec3,
+    local_wo: Vec3,
+    cos_geom: f32,
+    mode: TransportMode,
+}
+
+impl Bsdf {
+    /// With the direction that stays the same.
+    #[inline]
+    pub fn facing(&self, wo: Vec3, mode: TransportMode) -> Facing<'_> {
+        Facing { bsdf: self, wo, local_wo: self.frame.to_local(wo), cos_geom: wo.dot(self.n_geom), mode }
+    }
+}
+
+impl Facing<'_> {
+    /// [`Bsdf::eval_and_pdf`], and [`Bsdf::pdf_solid_angle`] of the way back, the same bits; `None` where it is black.
+    #[inline]
+    pub fn both_ways(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
+        let Facing { bsdf, wo, local_wo, cos_geom, mode } = *self;
+        if bsdf.bends {
+            let (scattered, pdf) = bsdf.eval_and_pdf(wo, wi, mode);
+            let back = || bsdf.pdf_solid_angle(wi, wo, mode.reversed());
+            return (!scattered.is_black()).then(|| (scattered, pdf, back()));
+        }
+        let local_wi = bsdf.frame.to_local(wi);
+        let sides_agree = cos_geom * wi.dot(bsdf.n_geom) * (local_wo.z * local_wi.z) > 0.0;
+        if !sides_agree {
+            return None;
+        }
+        let (mut scattered, mut pdf, mut back) = (Rgb::BLACK, 0.0, 0.0);
+        for (i, (weight, lobe)) in bsdf.weighted().enumerate() {
+            let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
+            scattered += f * weight;
+            pdf += bsdf.strengths[i] * p;
+            back += bsdf.strengths[i] * lobe.pdf_solid_angle(local_wi, local_wo);
+        }
+        let scattered = bsdf.carried(scattered, bsdf.frame.n, wo, wi, mode);
+        let of_all = |pdf: f32| if bsdf.total_strength > 0.0 { pdf / bsdf.total_strength } else { 0.0 };
+        (!scattered.is_black()).then(|| (scattered, of_all(pdf), of_all(back)))
+    }
+}
