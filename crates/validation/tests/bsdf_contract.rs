@@ -28,7 +28,8 @@ fn is_white(lobe: &Lobe) -> bool {
         Lobe::Lambert(l) => l.albedo == Rgb::WHITE,
         Lobe::Mirror(m) => m.reflectance == Rgb::WHITE,
         Lobe::Dielectric(d) => d.tint == Rgb::WHITE,
-        Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) => false,
+        Lobe::Gloss(gloss) => gloss.is_white(),
+        Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) => false,
     }
 }
 

@@ -64,6 +64,18 @@ impl Fresnel {
         Fresnel::Tinted { straight, dip }
     }
 
+    /// The mean of the reflected fraction over all directions, weighted by the cosine; of measured metals what is
+    /// reflected straight on.
+    pub fn mean(&self) -> Rgb {
+        match self {
+            Fresnel::Complex { .. } => self.at(1.0),
+            // ∫ (1-µ)⁵ 2µ dµ and ∫ µ (1-µ)⁶ 2µ dµ
+            Fresnel::Tinted { straight, dip } => {
+                (straight.lerp(Rgb::WHITE, 1.0 / 21.0) + *dip * (-1.0 / 126.0)).clamp(0.0, 1.0)
+            }
+        }
+    }
+
     /// The reflected fraction; `cos_theta` of the direction against the facet, 0..=1.
     #[inline]
     pub fn at(&self, cos_theta: f32) -> Rgb {

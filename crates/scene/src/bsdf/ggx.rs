@@ -57,6 +57,12 @@ impl Ggx {
         self.least == 0.0
     }
 
+    /// The lesser alpha of all directions.
+    #[inline]
+    pub(super) fn least(&self) -> f32 {
+        self.least
+    }
+
     #[inline]
     fn stretched(&self, x: f32, y: f32) -> Vec2 {
         let [xx, xy, yy] = self.stretch;

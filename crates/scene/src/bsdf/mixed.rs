@@ -6,8 +6,15 @@ impl Bsdf {
     /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal. Lobes beyond
     /// [`MOST_LOBES`] are left out.
     pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
-        let mut sum =
-            Bsdf { lobes: [None; MOST_LOBES], strengths: [0.0; MOST_LOBES], total_strength: 0.0, ..*self };
+        let none = [0.0; MOST_LOBES];
+        let mut sum = Bsdf {
+            lobes: [None; MOST_LOBES],
+            strengths: none,
+            total_strength: 0.0,
+            rises: none,
+            total_rise: 0.0,
+            ..*self
+        };
         let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
         let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
         for (i, (weight, lobe)) in parts.enumerate().take(MOST_LOBES) {

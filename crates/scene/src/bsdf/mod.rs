@@ -8,30 +8,40 @@
 //! same light between the same directions, what it found along `wo` leaves along `wi` by
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
+mod albedo;
 mod bent;
 mod conductor;
+mod cover;
 mod delta;
 mod dielectric;
 mod facing;
 mod ggx;
+mod gloss;
 mod lambert;
+mod lobe;
+mod matt;
 mod mirror;
 mod mixed;
 mod phong_lobe;
 mod rough_dielectric;
 mod sample;
 
+pub use albedo::Albedo;
 pub use conductor::{Conductor, Fresnel, fresnel_conductor};
+pub use cover::Cover;
 pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
 pub use facing::Facing;
 pub use ggx::Ggx;
+pub use gloss::Gloss;
 pub use lambert::Lambert;
+pub use lobe::{BSDFS, BsdfEntry, Lobe};
+pub use matt::Matt;
 pub use mirror::Mirror;
 pub use phong_lobe::PhongLobe;
 pub use rough_dielectric::RoughDielectric;
 pub use sample::BsdfSample;
 
-use bilux_math::{Frame, Rgb, Vec2, Vec3, registry::Entry};
+use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
 /// What is carried along a path: radiance from the lights, or importance from the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,108 +63,6 @@ impl TransportMode {
     }
 }
 
-/// One way of scattering, on a local frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lobe {
-    /// Equal in all directions.
-    Lambert(Lambert),
-    /// A perfect mirror.
-    Mirror(Mirror),
-    /// Smooth glass: Fresnel and Snell.
-    Dielectric(Dielectric),
-    /// A cosine power around the mirrored direction, normalised.
-    Phong(PhongLobe),
-    /// Metal, smooth or rough.
-    Conductor(Conductor),
-    /// Rough glass.
-    RoughDielectric(RoughDielectric),
-}
-
-macro_rules! each_lobe {
-    ($lobe:expr, $l:ident => $body:expr) => {
-        match $lobe {
-            Lobe::Lambert($l) => $body,
-            Lobe::Mirror($l) => $body,
-            Lobe::Dielectric($l) => $body,
-            Lobe::Phong($l) => $body,
-            Lobe::Conductor($l) => $body,
-            Lobe::RoughDielectric($l) => $body,
-        }
-    };
-}
-
-impl Lobe {
-    /// f·|cosθi|; black for delta lobes. For importance, f is that of the two directions exchanged.
-    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
-        each_lobe!(self, l => l.eval(wo, wi, mode))
-    }
-
-    /// Density of [`Lobe::sample`]; zero for delta lobes.
-    pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
-        each_lobe!(self, l => l.pdf_solid_angle(wo, wi))
-    }
-
-    /// [`Lobe::eval`] and [`Lobe::pdf_solid_angle`], the same bits: at once they take little more than one of them.
-    #[inline]
-    pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
-        each_lobe!(self, l => l.eval_and_pdf(wo, wi, mode))
-    }
-
-    /// A direction; `None` where nothing is scattered.
-    #[inline]
-    pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
-        each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
-    }
-
-    /// Where one without width lets light through that is known to come along `wo`, however little.
-    #[inline]
-    fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
-        match self {
-            Lobe::Dielectric(lobe) => lobe.transmitted(wo),
-            _ => None,
-        }
-    }
-
-    /// True when it has no width.
-    #[inline]
-    pub fn is_delta(&self) -> bool {
-        match self {
-            Lobe::Mirror(_) | Lobe::Dielectric(_) => true,
-            Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
-            Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) => false,
-        }
-    }
-
-    /// About how much light it sends on, the weight by which it is chosen.
-    #[inline]
-    pub fn strength(&self) -> f32 {
-        each_lobe!(self, l => l.strength())
-    }
-}
-
-/// A row of [`BSDFS`].
-#[derive(Clone, Copy, Debug)]
-pub struct BsdfEntry {
-    /// Name, summary, source.
-    pub entry: Entry,
-    /// True when eval(a, b) · |cos b| = eval(b, a) · |cos a| is promised.
-    pub reciprocal: bool,
-    /// True when a white one loses no light.
-    pub lossless: bool,
-    /// Cases for the contract tests: a name and a lobe.
-    pub cases: fn() -> Vec<(&'static str, Lobe)>,
-}
-
-/// Every lobe that there is.
-pub const BSDFS: &[BsdfEntry] = &[
-    lambert::ENTRY,
-    mirror::ENTRY,
-    conductor::ENTRY,
-    dielectric::ENTRY,
-    rough_dielectric::ENTRY,
-    phong_lobe::ENTRY,
-];
-
 /// Where a shading normal raises importance by more than this, its direction is the surface's own but for rounding.
 const MOST_TURNED: f32 = (1u64 << 60) as f32;
 
@@ -170,6 +78,9 @@ pub struct Bsdf {
     /// By how much each lobe is chosen: weight times strength.
     strengths: [f32; MOST_LOBES],
     total_strength: f32,
+    /// What the strengths gain where they are seen along the surface.
+    rises: [f32; MOST_LOBES],
+    total_rise: f32,
     bends: bool,
 }
 
@@ -188,12 +99,14 @@ impl Bsdf {
             weights: [1.0; MOST_LOBES],
             strengths: [strength, 0.0, 0.0, 0.0],
             total_strength: strength,
+            rises: [0.0; MOST_LOBES],
+            total_rise: 0.0,
             bends: false,
         }
     }
 
-    /// A sum of at most three lobes around a shading normal.
-    pub fn new(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; 3]) -> Bsdf {
+    /// A sum of at most [`MOST_LOBES`] lobes around a shading normal.
+    pub fn new<const N: usize>(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; N]) -> Bsdf {
         let mut sum = Bsdf {
             frame: Frame::from_normal(n_shade),
             n_geom,
@@ -201,9 +114,11 @@ impl Bsdf {
             weights: [1.0; MOST_LOBES],
             strengths: [0.0; MOST_LOBES],
             total_strength: 0.0,
+            rises: [0.0; MOST_LOBES],
+            total_rise: 0.0,
             bends: false,
         };
-        for (i, lobe) in lobes.into_iter().flatten().enumerate() {
+        for (i, lobe) in lobes.into_iter().flatten().take(MOST_LOBES).enumerate() {
             sum.set(i, lobe, 1.0);
         }
         sum
@@ -213,6 +128,18 @@ impl Bsdf {
         let strength = weight * lobe.strength();
         (self.lobes[i], self.weights[i], self.strengths[i]) = (Some(lobe), weight, strength);
         self.total_strength += strength;
+        self.rises[i] = weight * lobe.rise();
+        self.total_rise += self.rises[i];
+    }
+
+    /// How much of the rises counts for light that is known to come along `wo`: what Schlick's law adds.
+    #[inline]
+    fn risen(&self, wo: Vec3) -> f32 {
+        if self.rises == [0.0; MOST_LOBES] {
+            return 0.0;
+        }
+        let m = (1.0 - wo.dot(self.frame.n).abs()).clamp(0.0, 1.0);
+        (m * m) * (m * m) * m
     }
 
     /// The lobes, each with its weight.
@@ -278,10 +205,13 @@ impl Bsdf {
 
     #[inline]
     fn pdf_about(&self, frame: &Frame, wo: Vec3, wi: Vec3) -> f32 {
+        let risen = self.risen(wo);
         let (wo, wi) = (frame.to_local(wo), frame.to_local(wi));
-        let lobes = self.strengths.iter().zip(&self.lobes).map_while(|(s, lobe)| Some((s, lobe.as_ref()?)));
-        lobes.map(|(strength, lobe)| strength * lobe.pdf_solid_angle(wo, wi)).sum::<f32>()
-            / self.total_strength
+        let mut pdf = 0.0;
+        for (i, lobe) in self.lobes.iter().map_while(|lobe| lobe.as_ref()).enumerate() {
+            pdf += (self.strengths[i] + self.rises[i] * risen) * lobe.pdf_solid_angle(wo, wi);
+        }
+        pdf / (self.total_strength + self.total_rise * risen)
     }
 
     /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
@@ -290,30 +220,31 @@ impl Bsdf {
         if self.bends {
             return (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi, mode));
         }
+        let risen = self.risen(wo);
         let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
         let (mut scattered, mut pdf) = (Rgb::BLACK, 0.0);
         for (i, (weight, lobe)) in self.weighted().enumerate() {
             let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
             scattered += f * weight;
-            pdf += self.strengths[i] * p;
+            pdf += (self.strengths[i] + self.rises[i] * risen) * p;
         }
         let scattered = if self.sides_agree(self.frame.n, wo, wi) {
             self.carried(scattered, self.frame.n, wo, wi, mode)
         } else {
             Rgb::BLACK
         };
-        (scattered, if self.total_strength > 0.0 { pdf / self.total_strength } else { 0.0 })
+        let total = self.total_strength + self.total_rise * risen;
+        (scattered, if total > 0.0 { pdf / total } else { 0.0 })
     }
 
     /// A direction: `u_choice` picks the lobe (and reflection or refraction in it), `u` the direction.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
-        let (index, u_choice) = self.choose(u_choice)?;
+        let (index, u_choice, share) = self.choose(wo, u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
         if chosen.is_delta() {
-            let (weight, share) = (self.weights[index], self.strengths[index] / self.total_strength);
             let mut sample = self.sample_delta(chosen, wo, u_choice, mode)?;
-            sample.weight *= weight / share;
+            sample.weight *= self.weights[index] / share;
             sample.pdf_solid_angle *= share;
             return (sample.pdf_solid_angle > 0.0).then_some(sample);
         }
@@ -353,20 +284,24 @@ impl Bsdf {
         (wo.dot(self.n_geom) * sample.wi.dot(self.n_geom) < 0.0) == sample.transmits
     }
 
-    /// A lobe by its share of the strength, and what is left of the random number.
+    /// A lobe by its share of the strength, what is left of the random number, and that share.
     #[inline]
-    fn choose(&self, u: f32) -> Option<(usize, f32)> {
-        let mut rest = u * self.total_strength;
+    fn choose(&self, wo: Vec3, u: f32) -> Option<(usize, f32, f32)> {
+        let risen = self.risen(wo);
+        let total = self.total_strength + self.total_rise * risen;
+        let mut rest = u * total;
         let mut last = None;
-        for (i, &strength) in self.strengths.iter().enumerate() {
+        for i in 0..MOST_LOBES {
+            let strength = self.strengths[i] + self.rises[i] * risen;
             if strength <= 0.0 {
                 continue;
             }
             if rest < strength {
-                return Some((i, (rest / strength).clamp(0.0, 1.0 - f32::EPSILON)));
+                let left = (rest / strength).clamp(0.0, 1.0 - f32::EPSILON);
+                return Some((i, left, strength / total));
             }
             rest -= strength;
-            last = Some((i, 1.0 - f32::EPSILON));
+            last = Some((i, 1.0 - f32::EPSILON, strength / total));
         }
         last
     }

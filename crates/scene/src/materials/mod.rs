@@ -10,6 +10,7 @@
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
 //! | `conductor` | 0 | 0 | reflectance straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
+//! | `principled` | base that is not metal | as ka | what is reflected straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `mix` | in between | in between | in between | in between | in between | in between | as what lets light in |
 //!
 //! Roughness α spreads the reflected and refracted rays of `cook` by up to the arc tangent of α.
@@ -22,6 +23,7 @@ mod mirror;
 mod mix;
 mod normal_map;
 mod phong;
+mod principled;
 mod roughness;
 
 use crate::bsdf::{Bsdf, MOST_LOBES};
@@ -128,8 +130,15 @@ impl<'a> Ingredients<'a> {
 }
 
 /// Every material that there is.
-pub const MATERIALS: &[MaterialEntry] =
-    &[phong::ENTRY, diffuse::ENTRY, mirror::ENTRY, conductor::ENTRY, dielectric::ENTRY, mix::ENTRY];
+pub const MATERIALS: &[MaterialEntry] = &[
+    phong::ENTRY,
+    diffuse::ENTRY,
+    mirror::ENTRY,
+    conductor::ENTRY,
+    dielectric::ENTRY,
+    principled::ENTRY,
+    mix::ENTRY,
+];
 
 /// Makes the material that a spec describes.
 ///

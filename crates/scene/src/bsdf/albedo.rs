@@ -1,0 +1,303 @@
+//! How much of the light along a direction the facets of a rough boundary reflect at once. What they lack to all of it
+//! goes below, or to facets that reflect it again. [Kulla 2017]
+//!
+//! Found by quadrature when it is first asked for, and kept as a table over the cosine, the roughness and the index.
+//! Fresnel's reflectance is split into what it is straight on and the share of the rest that it gains towards grazing:
+//! the second hardly depends on the index, so that a few of those suffice.
+
+use super::{Ggx, fresnel_dielectric};
+use bilux_math::frame::reflect;
+use bilux_math::{Vec2, Vec3};
+use std::sync::LazyLock;
+
+/// Roughness, the square root of alpha, in even steps from 0 to 1.
+const ROUGHNESSES: usize = 28;
+/// Square roots of cosines, in even steps from 0 to 1.
+const COSINES: usize = 24;
+/// Square roots of the amplitude that is reflected straight on, in even steps from 0 to 1.
+const INDICES: usize = 15;
+/// Facets along and across, on one half of the cap, which mirrors the other.
+const FACETS: [u32; 2] = [8, 16];
+
+/// For one cosine and roughness: the gain of each index, and all that facets reflect that let nothing through.
+type Entry = [f32; INDICES + 1];
+
+struct Table {
+    at: [[Entry; COSINES]; ROUGHNESSES],
+    /// Over the hemisphere, weighted by the cosine.
+    mean: [Entry; ROUGHNESSES],
+    /// What opaque facets leave on average between each two cosines, and how much of it the first of them hold.
+    left: [[f32; COSINES - 1]; ROUGHNESSES],
+    left_before: [[f32; COSINES]; ROUGHNESSES],
+}
+
+static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
+
+/// What the facets of a boundary between two media reflect at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Albedo {
+    /// Place among the roughnesses.
+    roughness: f32,
+    /// Place among the indices.
+    index: f32,
+    /// Reflected fraction of light that falls in straight.
+    straight: f32,
+}
+
+impl Albedo {
+    /// Nothing: an index of 1.
+    pub const NONE: Albedo = Albedo { roughness: 0.0, index: 0.0, straight: 0.0 };
+
+    /// Of facets with an index `eta` of what is below over what is above, at least 1. Facets that have a direction count
+    /// as rough as along it, where they reflect more.
+    pub fn new(ggx: &Ggx, eta: f32) -> Albedo {
+        let amplitude = ((eta - 1.0) / (eta + 1.0)).clamp(0.0, 1.0);
+        Albedo {
+            roughness: ggx.least().clamp(0.0, 1.0).sqrt() * (ROUGHNESSES - 1) as f32,
+            index: amplitude.sqrt() * (INDICES - 1) as f32,
+            straight: amplitude * amplitude,
+        }
+    }
+
+    /// The reflected fraction along a direction of this cosine with the normal, 0..=1.
+    #[inline]
+    pub fn at(&self, cos: f32) -> f32 {
+        self.entry(cos, self.shared())
+    }
+
+    /// The same of facets that let nothing through.
+    #[inline]
+    pub fn opaque_at(&self, cos: f32) -> f32 {
+        self.entry(cos, |entry| entry[INDICES])
+    }
+
+    /// The mean of [`Albedo::at`] over the hemisphere, weighted by the cosine.
+    pub fn mean(&self) -> f32 {
+        self.between(self.shared())
+    }
+
+    /// The mean of [`Albedo::opaque_at`].
+    pub fn opaque_mean(&self) -> f32 {
+        self.between(|entry| entry[INDICES])
+    }
+
+    /// A cosine by how much opaque facets leave of the light along it: with the density over the hemisphere that
+    /// [`Albedo::left_pdf`] tells.
+    pub(super) fn sample_left(&self, u: f32) -> f32 {
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        let [a, b] = [&TABLE.left_before[row], &TABLE.left_before[row + 1]];
+        let before = |k: usize| lerp(a[k], b[k], between);
+        let wanted = u * before(COSINES - 1);
+        let k = (1..COSINES - 1).find(|&k| before(k) > wanted).unwrap_or(COSINES - 1) - 1;
+        let within =
+            ((wanted - before(k)) / (before(k + 1) - before(k)).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        // Within a step the square of the cosine is even.
+        let square = |k: usize| {
+            let root = k as f32 / (COSINES - 1) as f32;
+            (root * root) * (root * root)
+        };
+        lerp(square(k), square(k + 1), within).sqrt()
+    }
+
+    /// Density of [`Albedo::sample_left`] over the hemisphere, over that of the cosine.
+    #[inline]
+    pub(super) fn left_pdf(&self, cos: f32) -> f32 {
+        let (k, _) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        let whole =
+            lerp(TABLE.left_before[row][COSINES - 1], TABLE.left_before[row + 1][COSINES - 1], between);
+        lerp(TABLE.left[row][k], TABLE.left[row + 1][k], between) / whole
+    }
+
+    /// One number of each of the four entries around a place, in between.
+    #[inline]
+    fn entry(&self, cos: f32, of: impl Fn(&Entry) -> f32) -> f32 {
+        let (column, share) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        let at = |row: usize| {
+            let row = &TABLE.at[row];
+            lerp(of(&row[column]), of(&row[column + 1]), share)
+        };
+        lerp(at(row), at(row + 1), between)
+    }
+
+    fn between(&self, of: impl Fn(&Entry) -> f32) -> f32 {
+        let (row, between) = place(self.roughness, ROUGHNESSES);
+        lerp(of(&TABLE.mean[row]), of(&TABLE.mean[row + 1]), between)
+    }
+
+    #[inline]
+    fn shared(&self) -> impl Fn(&Entry) -> f32 {
+        let (index, share) = place(self.index, INDICES);
+        let straight = self.straight;
+        move |entry| {
+            entry[INDICES] * straight + lerp(entry[index], entry[index + 1], share) * (1.0 - straight)
+        }
+    }
+}
+
+/// The first of two neighbours, and how far a place is from it to the second.
+#[inline]
+fn place(x: f32, count: usize) -> (usize, f32) {
+    let first = (x as usize).min(count - 2);
+    (first, x - first as f32)
+}
+
+#[inline]
+fn lerp(a: f32, b: f32, share: f32) -> f32 {
+    a + (b - a) * share
+}
+
+impl Table {
+    fn new() -> Table {
+        let step = |i: usize, count: usize| i as f32 / (count - 1) as f32;
+        let at: [[Entry; COSINES]; ROUGHNESSES] = std::array::from_fn(|row| {
+            let roughness = step(row, ROUGHNESSES);
+            let ggx = Ggx::new(roughness * roughness);
+            std::array::from_fn(|column| {
+                // Light along the surface itself sees no facet from above: the limit is taken.
+                let root = step(column, COSINES).max(1e-3);
+                reflected(&ggx, root * root)
+            })
+        });
+        let mean = std::array::from_fn(|row| mean(&at[row]));
+        let left: [[f32; COSINES - 1]; ROUGHNESSES] = std::array::from_fn(|row| {
+            let left = |k: usize| 1.0 - at[row][k][INDICES];
+            std::array::from_fn(|k| (0.5 * (left(k) + left(k + 1))).max(1e-6))
+        });
+        let left_before = std::array::from_fn(|row| {
+            let fourth = |k: usize| {
+                let root = step(k, COSINES);
+                (root * root) * (root * root)
+            };
+            let of = |k: usize| left[row][k] * (fourth(k + 1) - fourth(k));
+            std::array::from_fn(|k| (0..k).map(of).sum())
+        });
+        Table { at, mean, left, left_before }
+    }
+}
+
+/// An entry of the table, by quadrature over the facets that are seen.
+fn reflected(ggx: &Ggx, cos: f32) -> Entry {
+    if ggx.is_smooth() {
+        return gained(cos, 1.0);
+    }
+    let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let seen = ggx.seen(wo);
+    let (mut sum, mut shares) = ([0f64; INDICES + 1], 0f64);
+    let [across, along] = FACETS;
+    for i in 0..across * along {
+        // Few facets are turned far, and what they reflect is not little: they lie the more densely.
+        let left = 1.0 - ((i / across) as f32 + 0.5) / along as f32;
+        let u = Vec2::new(0.5 * ((i % across) as f32 + 0.5) / across as f32, 1.0 - left * left * left);
+        let share = left * left;
+        shares += f64::from(share);
+        let m = ggx.sample_visible(wo, u, Ggx::FULL);
+        let wi = reflect(wo, m);
+        if wi.z > 0.0 {
+            let weight = share * 4.0 * ggx.visible(wo, wi) / seen;
+            for (sum, gain) in sum.iter_mut().zip(gained(wo.dot(m), weight)) {
+                *sum += f64::from(gain);
+            }
+        }
+    }
+    sum.map(|sum| (sum / shares) as f32)
+}
+
+/// The gain of each index at a facet, and all of the light.
+fn gained(cos: f32, weight: f32) -> Entry {
+    std::array::from_fn(|i| {
+        let root = i as f32 / (INDICES - 1) as f32;
+        // No light at all is reflected at the first index, and nothing is left to gain at the last.
+        let amplitude = (root * root).min(0.999);
+        let eta = (1.0 + amplitude) / (1.0 - amplitude);
+        let straight = amplitude * amplitude;
+        if i == INDICES {
+            weight
+        } else {
+            weight * (fresnel_dielectric(cos, eta) - straight) / (1.0 - straight)
+        }
+    })
+}
+
+/// ∫ E(µ) 2µ dµ of what is linear in √µ between the table's cosines.
+fn mean(row: &[Entry; COSINES]) -> Entry {
+    let mut sum = [0f64; INDICES + 1];
+    for (k, pair) in row.windows(2).enumerate() {
+        let step = 1.0 / (COSINES - 1) as f64;
+        let (a, b) = (k as f64 * step, (k + 1) as f64 * step);
+        // Of 4t³, and of 4t³ times how far t is between the two.
+        let (a4, b4) = ((a * a) * (a * a), (b * b) * (b * b));
+        let whole = b4 - a4;
+        let second = (0.8 * (b4 * b - a4 * a) - a * whole) / step;
+        for (i, sum) in sum.iter_mut().enumerate() {
+            *sum += f64::from(pair[0][i]) * (whole - second) + f64::from(pair[1][i]) * second;
+        }
+    }
+    sum.map(|sum| sum as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where little light falls the table may be coarser.
+    fn within(cos: f32) -> f32 {
+        if cos < 0.15 { 1.5e-2 } else { 4e-3 }
+    }
+
+    #[test]
+    fn a_smooth_boundary_reflects_by_fresnel() {
+        for eta in [1.05, 1.2, 1.33, 1.5, 1.8, 2.4, 4.0] {
+            for i in 2..=50 {
+                let cos = i as f32 / 50.0;
+                let (found, wanted) = (Albedo::new(&Ggx::SMOOTH, eta).at(cos), fresnel_dielectric(cos, eta));
+                assert!((found - wanted).abs() < within(cos), "eta {eta}, cos {cos}: {found}, {wanted}");
+            }
+        }
+    }
+
+    /// Against as many facets as it takes, between the table's entries.
+    #[test]
+    fn rough_boundaries_reflect_what_their_facets_do() {
+        for (alpha, eta) in [(0.03f32, 1.5f32), (0.1, 1.4), (0.3, 1.6), (0.6, 2.0), (0.9, 1.3)] {
+            let ggx = Ggx::new(alpha);
+            for cos in [0.05f32, 0.11, 0.3, 0.55, 0.9] {
+                let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+                let (mut glass, mut all) = (0.0, 0.0);
+                const N: usize = 300;
+                for i in 0..N * N {
+                    let u = Vec2::new(((i % N) as f32 + 0.5) / N as f32, ((i / N) as f32 + 0.5) / N as f32);
+                    let m = ggx.sample_visible(wo, u, Ggx::FULL);
+                    let wi = reflect(wo, m);
+                    if wi.z > 0.0 {
+                        let weight = 4.0 * ggx.visible(wo, wi) / ggx.seen(wo) / (N * N) as f32;
+                        glass += f64::from(weight * fresnel_dielectric(wo.dot(m), eta));
+                        all += f64::from(weight);
+                    }
+                }
+                let albedo = Albedo::new(&ggx, eta);
+                let (at, opaque) = (f64::from(albedo.at(cos)), f64::from(albedo.opaque_at(cos)));
+                assert!(
+                    (at - glass).abs() < f64::from(within(cos)),
+                    "alpha {alpha}, eta {eta}, cos {cos}: {at}, {glass}"
+                );
+                assert!(
+                    (opaque - all).abs() < f64::from(within(cos)),
+                    "alpha {alpha}, cos {cos}: {opaque}, {all}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn means_are_those_over_the_hemisphere() {
+        let albedo = Albedo::new(&Ggx::new(0.37), 1.45);
+        const N: usize = 20_000;
+        let mid = |i: usize| (i as f32 + 0.5) / N as f32;
+        let sum: f64 = (0..N).map(|i| f64::from(albedo.at(mid(i)) * 2.0 * mid(i))).sum();
+        assert!((sum / N as f64 - f64::from(albedo.mean())).abs() < 1e-5);
+        let sum: f64 = (0..N).map(|i| f64::from(albedo.opaque_at(mid(i)) * 2.0 * mid(i))).sum();
+        assert!((sum / N as f64 - f64::from(albedo.opaque_mean())).abs() < 1e-5);
+    }
+}

@@ -1,0 +1,187 @@
+//! What is reflected at the surface itself, by facets that are glass, metal or a mixture of both. What facets of metal
+//! reflect onto each other comes out in the end, spread widely, without being followed: so much that a white metal
+//! loses nothing, and a coloured one is the more saturated. [Kulla 2017]
+
+use super::conductor::facet_between;
+use super::{Albedo, BsdfEntry, BsdfSample, Cover, Fresnel, Ggx, Lobe, TransportMode, fresnel_dielectric};
+use bilux_math::frame::reflect;
+use bilux_math::registry::Entry;
+use bilux_math::transcendental::sin_cos;
+use bilux_math::{Rgb, Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, TAU};
+
+/// Row of [`super::BSDFS`].
+pub(super) const ENTRY: BsdfEntry = BsdfEntry {
+    entry: Entry {
+        name: "gloss",
+        summary: "reflection at facets of glass, metal or both, what is reflected twice included",
+        source: "Kulla 2017",
+        parameters: &[],
+    },
+    reciprocal: true,
+    lossless: true,
+    cases: || {
+        let of = |ggx, metal: f32| {
+            let tint = Fresnel::tinted(Rgb::new(1.0, 0.78, 0.34), Rgb::new(0.9, 1.0, 0.8));
+            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::grey(1.0 - metal), tint, metal, Cover::NONE))
+        };
+        let white = |ggx| {
+            let tint = Fresnel::tinted(Rgb::WHITE, Rgb::WHITE);
+            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::BLACK, tint, 1.0, Cover::NONE))
+        };
+        vec![
+            ("polished plastic", of(Ggx::SMOOTH, 0.0)),
+            ("plastic", of(Ggx::new(0.2), 0.0)),
+            ("gold", of(Ggx::new(0.3), 1.0)),
+            ("half gold", of(Ggx::anisotropic(0.1, 0.5, 0.4), 0.5)),
+            ("white, smooth", white(Ggx::SMOOTH)),
+            ("white, satin", white(Ggx::new(0.08))),
+            ("white, rough", white(Ggx::new(0.4))),
+            ("white, as rough as can be", white(Ggx::new(1.0))),
+        ]
+    },
+};
+
+/// Reflection at the surface, on both of its sides alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gloss {
+    ggx: Ggx,
+    /// Index of what is below facets of glass over what is above.
+    eta: f32,
+    /// Factor on what facets of glass reflect; black where there are none.
+    glass: Rgb,
+    metal: Fresnel,
+    /// How much of the surface is metal, 0..=1.
+    metalness: f32,
+    albedo: Albedo,
+    /// What comes out after more than one reflection, over the two fractions that one reflection leaves.
+    again: Rgb,
+    /// How often a direction of that is drawn, over what one reflection leaves along `wo`.
+    again_share: f32,
+    cover: Cover,
+    /// Factor on light from below.
+    from_below: f32,
+}
+
+impl Gloss {
+    /// Facets of an index `eta`, at least 1, that reflect `glass` times Fresnel's fraction, and `metalness` times
+    /// that of metal. White `glass` and `metalness` are at most 1 together.
+    pub fn new(ggx: Ggx, eta: f32, glass: Rgb, metal: Fresnel, metalness: f32, cover: Cover) -> Gloss {
+        let albedo = Albedo::new(&ggx, eta);
+        let mut gloss = Gloss {
+            ggx,
+            eta,
+            glass,
+            metal,
+            metalness,
+            albedo,
+            again: Rgb::BLACK,
+            again_share: 0.0,
+            cover,
+            from_below: 1.0,
+        };
+        if metalness > 0.0 && !ggx.is_smooth() {
+            let (mean, facet) = (albedo.opaque_mean(), metal.mean());
+            let comes_out = facet.map(|f| f * f * mean / (1.0 - f * (1.0 - mean)));
+            gloss.again = comes_out * (metalness / (1.0 - mean).max(1e-6));
+            gloss.again_share =
+                (comes_out.luminance() * metalness / gloss.strength().max(f32::MIN_POSITIVE)).min(1.0);
+        }
+        gloss
+    }
+
+    /// The same with a factor, 0..=1, on light from below the surface.
+    pub fn from_below(self, factor: f32) -> Gloss {
+        Gloss { from_below: factor, ..self }
+    }
+
+    /// True for white metal without a cover, which reflects all light.
+    pub fn is_white(&self) -> bool {
+        let is_bare = self.cover.is_none() && self.from_below == 1.0;
+        is_bare && self.metalness == 1.0 && self.metal == Fresnel::tinted(Rgb::WHITE, Rgb::WHITE)
+    }
+
+    #[inline]
+    fn fresnel(&self, cos: f32) -> Rgb {
+        let mut reflected = Rgb::BLACK;
+        if self.metalness > 0.0 {
+            reflected = self.metal.at(cos) * self.metalness;
+        }
+        if !self.glass.is_black() {
+            reflected += self.glass * fresnel_dielectric(cos, self.eta);
+        }
+        reflected
+    }
+
+    /// What is left of light on its way through what covers the facets.
+    #[inline]
+    fn covered(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let passed = self.cover.both(wo.z.abs(), wi.z.abs());
+        if wo.z < 0.0 { passed * self.from_below } else { passed }
+    }
+
+    #[inline]
+    pub(super) fn is_delta(&self) -> bool {
+        self.ggx.is_smooth()
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        self.eval_and_pdf(wo, wi, mode).0
+    }
+
+    #[inline]
+    pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        self.eval_and_pdf(wo, wi, TransportMode::Radiance).1
+    }
+
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> (Rgb, f32) {
+        let covered = self.covered(wo, wi);
+        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (Rgb::BLACK, 0.0) };
+        let distribution = self.ggx.distribution(m);
+        let mut f = self.fresnel(wo.dot(m)) * (distribution * self.ggx.visible(wo, wi));
+        let mut pdf = distribution * self.ggx.reflected_within_bound(wo);
+        if self.again_share > 0.0 {
+            let left = 1.0 - self.albedo.opaque_at(wo.z);
+            f += self.again * (left * (1.0 - self.albedo.opaque_at(wi.z)) * FRAC_1_PI * wi.z);
+            let again = self.again_share * left;
+            pdf = (1.0 - again) * pdf + again * self.albedo.left_pdf(wi.z) * (FRAC_1_PI * wi.z);
+        }
+        (f * covered, pdf)
+    }
+
+    pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        if self.ggx.is_smooth() {
+            let wi = Vec3::new(-wo.x, -wo.y, wo.z);
+            let weight = self.fresnel(wo.z.abs()) * self.covered(wo, wi);
+            let sample =
+                BsdfSample { wi, weight, pdf_solid_angle: 1.0, is_delta: true, transmits: false, eta: 1.0 };
+            return Some(sample);
+        }
+        let above = Vec3::new(wo.x, wo.y, wo.z.abs());
+        let is_again =
+            self.again_share > 0.0 && u_choice < self.again_share * (1.0 - self.albedo.opaque_at(above.z));
+        let wi = if is_again {
+            let cos = self.albedo.sample_left(u.x);
+            let ((sin_turn, cos_turn), sin) = (sin_cos(TAU * u.y), (1.0 - cos * cos).max(0.0).sqrt());
+            Vec3::new(sin * cos_turn, sin * sin_turn, cos)
+        } else {
+            reflect(above, self.ggx.sample_visible(above, u, self.ggx.bound(above)))
+        };
+        let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(wi.z * wo.z)).normalize();
+        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
+        BsdfSample::reflected(wi, f, pdf_solid_angle)
+    }
+
+    #[inline]
+    pub(super) fn strength(&self) -> f32 {
+        self.fresnel(1.0).luminance()
+    }
+
+    /// Facets that face the light reflect more of it towards grazing, the more so the smoother they are.
+    #[inline]
+    pub(super) fn rise(&self) -> f32 {
+        let grazing = self.glass.luminance() + self.metalness;
+        (grazing - self.strength()).max(0.0) * (1.0 - self.ggx.least()).max(0.0)
+    }
+}

@@ -1,0 +1,129 @@
+//! A lobe, one of [`BSDFS`].
+
+use super::{
+    BsdfSample, Conductor, Dielectric, Gloss, Lambert, Matt, Mirror, PhongLobe, RoughDielectric,
+    TransportMode,
+};
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2, Vec3};
+
+/// One way of scattering, on a local frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// Equal in all directions.
+    Lambert(Lambert),
+    /// A perfect mirror.
+    Mirror(Mirror),
+    /// Smooth glass: Fresnel and Snell.
+    Dielectric(Dielectric),
+    /// A cosine power around the mirrored direction, normalised.
+    Phong(PhongLobe),
+    /// Metal, smooth or rough.
+    Conductor(Conductor),
+    /// Rough glass.
+    RoughDielectric(RoughDielectric),
+    /// Facets of glass, metal or both, with what they reflect onto each other.
+    Gloss(Gloss),
+    /// Diffuse below a boundary.
+    Matt(Matt),
+}
+
+macro_rules! each_lobe {
+    ($lobe:expr, $l:ident => $body:expr) => {
+        match $lobe {
+            Lobe::Lambert($l) => $body,
+            Lobe::Mirror($l) => $body,
+            Lobe::Dielectric($l) => $body,
+            Lobe::Phong($l) => $body,
+            Lobe::Conductor($l) => $body,
+            Lobe::RoughDielectric($l) => $body,
+            Lobe::Gloss($l) => $body,
+            Lobe::Matt($l) => $body,
+        }
+    };
+}
+
+impl Lobe {
+    /// f·|cosθi|; black for delta lobes. For importance, f is that of the two directions exchanged.
+    pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        each_lobe!(self, l => l.eval(wo, wi, mode))
+    }
+
+    /// Density of [`Lobe::sample`]; zero for delta lobes.
+    pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        each_lobe!(self, l => l.pdf_solid_angle(wo, wi))
+    }
+
+    /// [`Lobe::eval`] and [`Lobe::pdf_solid_angle`], the same bits: at once they take little more than one of them.
+    #[inline]
+    pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        each_lobe!(self, l => l.eval_and_pdf(wo, wi, mode))
+    }
+
+    /// A direction; `None` where nothing is scattered.
+    #[inline]
+    pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
+    }
+
+    /// Where one without width lets light through that is known to come along `wo`, however little.
+    #[inline]
+    pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
+        match self {
+            Lobe::Dielectric(lobe) => lobe.transmitted(wo),
+            _ => None,
+        }
+    }
+
+    /// True when it has no width.
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Lobe::Mirror(_) | Lobe::Dielectric(_) => true,
+            Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
+            Lobe::Gloss(lobe) => lobe.is_delta(),
+            Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) => false,
+        }
+    }
+
+    /// About how much light it sends on, the weight by which it is chosen.
+    #[inline]
+    pub fn strength(&self) -> f32 {
+        each_lobe!(self, l => l.strength())
+    }
+
+    /// By how much more light than [`Lobe::strength`] it sends on when seen along the surface; less where negative.
+    #[inline]
+    pub fn rise(&self) -> f32 {
+        match self {
+            Lobe::Gloss(lobe) => lobe.rise(),
+            Lobe::Matt(lobe) => lobe.rise(),
+            _ => 0.0,
+        }
+    }
+}
+
+/// A row of [`BSDFS`].
+#[derive(Clone, Copy, Debug)]
+pub struct BsdfEntry {
+    /// Name, summary, source.
+    pub entry: Entry,
+    /// True when eval(a, b) · |cos b| = eval(b, a) · |cos a| is promised.
+    pub reciprocal: bool,
+    /// True when a white one loses no light.
+    pub lossless: bool,
+    /// Cases for the contract tests: a name and a lobe.
+    pub cases: fn() -> Vec<(&'static str, Lobe)>,
+}
+
+/// Every lobe that there is.
+pub const BSDFS: &[BsdfEntry] = &[
+    super::lambert::ENTRY,
+    super::mirror::ENTRY,
+    super::conductor::ENTRY,
+    super::dielectric::ENTRY,
+    super::rough_dielectric::ENTRY,
+    super::phong_lobe::ENTRY,
+    super::gloss::ENTRY,
+    super::matt::ENTRY,
+];

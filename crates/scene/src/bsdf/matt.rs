@@ -1,0 +1,115 @@
+//! Diffuse reflection below a boundary and what covers it: what they let through is all scattered, and comes out again.
+//! [Kulla 2017]
+
+use super::{Albedo, BsdfEntry, BsdfSample, Cover, Ggx, Lobe, TransportMode};
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2, Vec3, warp};
+use std::f32::consts::FRAC_1_PI;
+
+/// Row of [`super::BSDFS`].
+pub(super) const ENTRY: BsdfEntry = BsdfEntry {
+    entry: Entry {
+        name: "matt",
+        summary: "diffuse below a boundary: what that lets through",
+        source: "Kulla 2017",
+        parameters: &[],
+    },
+    reciprocal: true,
+    lossless: false,
+    cases: || {
+        let paint = |alpha: f32, cover| {
+            let below = Albedo::new(&Ggx::new(alpha), 1.5);
+            Lobe::Matt(Matt::new(Rgb::new(0.9, 0.5, 0.2), below, cover))
+        };
+        vec![
+            ("polished paint", paint(0.0, Cover::NONE)),
+            ("rough paint", paint(0.4, Cover::NONE)),
+            ("coated paint", paint(0.2, Cover::coat(0.8, Albedo::new(&Ggx::new(0.05), 1.6)))),
+        ]
+    },
+};
+
+/// Diffuse reflection below a boundary, on both sides of the surface alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matt {
+    /// Reflected fraction of the light that gets there, over the mean of what passes.
+    scale: Rgb,
+    /// What the boundary reflects.
+    boundary: Albedo,
+    cover: Cover,
+}
+
+/// Gauss and Legendre's places and weights on 0..=1.
+const GAUSS: [(f32, f32); 8] = [
+    (0.019_855_07, 0.050_614_27),
+    (0.101_666_76, 0.111_190_52),
+    (0.237_233_8, 0.156_853_32),
+    (0.408_282_7, 0.181_341_89),
+    (0.591_717_3, 0.181_341_89),
+    (0.762_766_2, 0.156_853_32),
+    (0.898_333_24, 0.111_190_52),
+    (0.980_144_93, 0.050_614_27),
+];
+
+impl Matt {
+    /// Reflects `albedo`, 0..=1, of what passes a boundary and what covers that.
+    pub fn new(albedo: Rgb, boundary: Albedo, cover: Cover) -> Matt {
+        let passed = |cos: f32| (1.0 - boundary.at(cos)) * cover.passed(cos);
+        let mean = if cover.is_none() {
+            1.0 - boundary.mean()
+        } else {
+            // ∫ g(µ) 2µ dµ with µ = t²
+            GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * passed(t * t)).sum()
+        };
+        Matt { scale: albedo / mean.max(f32::MIN_POSITIVE), boundary, cover }
+    }
+
+    /// The fraction that gets there along a direction.
+    #[inline]
+    fn passed(&self, cos: f32) -> f32 {
+        (1.0 - self.boundary.at(cos)) * self.cover.passed(cos)
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
+        if wo.z * wi.z <= 0.0 {
+            return Rgb::BLACK;
+        }
+        let cos = wi.z.abs();
+        self.scale * (self.passed(wo.z.abs()) * self.passed(cos) * FRAC_1_PI * cos)
+    }
+
+    #[inline]
+    pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z * wi.z > 0.0 { warp::cosine_hemisphere_pdf_solid_angle(wi.z.abs()) } else { 0.0 }
+    }
+
+    #[inline]
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
+    pub(super) fn sample(
+        &self,
+        wo: Vec3,
+        _u_choice: f32,
+        u: Vec2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        let mut wi = warp::sample_cosine_hemisphere(u);
+        wi.z *= 1f32.copysign(wo.z);
+        BsdfSample::reflected(wi, self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
+    pub(super) fn strength(&self) -> f32 {
+        self.scale.luminance() * self.passed(1.0)
+    }
+
+    /// Towards grazing next to nothing gets there; a tenth is left, so that no direction is drawn too rarely.
+    #[inline]
+    pub(super) fn rise(&self) -> f32 {
+        -0.9 * self.strength()
+    }
+}
