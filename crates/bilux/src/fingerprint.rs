@@ -22,8 +22,12 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         hash.update(format!("{} {:?}", object.material, object.motion));
     }
     for texture in &scene.textures {
-        hash.update(format!("{} {}", texture.width, texture.height));
-        floats(&mut hash, texture.texels.iter().flat_map(|c| c.to_array()));
+        let (width, height) = (texture.width(), texture.height());
+        hash.update(format!(
+            "{width} {height} {:?} {:?} {:?}",
+            texture.wrap, texture.filter, texture.transform
+        ));
+        floats(&mut hash, texture.texels().flat_map(|c| c.to_array()));
     }
     for spec in scene.materials.iter().chain(&scene.lights) {
         hash_spec(&mut hash, spec);

@@ -12,6 +12,7 @@ mod error;
 mod float;
 mod formats;
 mod gltf;
+mod images;
 mod native;
 mod normals;
 mod obj;

@@ -1,10 +1,11 @@
 //! One job of reading: what is allowed, what has been used, which files belong to it.
 
 use crate::budget::Budget;
+use crate::images::image_of;
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
-use bilux_math::Rgb;
 use bilux_pictures::Limits;
+use bilux_scene::texture::{Channel, Image};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -36,7 +37,7 @@ pub(crate) enum Texels {
     /// Colours, in linear light.
     Colours,
     /// Numbers, as the file has them: of all channels, or of one.
-    Numbers(Option<usize>),
+    Numbers(Option<Channel>),
 }
 
 /// What all readers of one job share.
@@ -88,11 +89,30 @@ impl<'o> Reading<'o> {
     }
 
     /// Takes memory for texels, for good.
-    pub(crate) fn hold_texels(&mut self, count: usize, file: &str) -> Result<(), FormatError> {
-        let bytes = (count * size_of::<Rgb>()) as u64;
-        self.budget.take_bytes(bytes, file)?;
-        self.texture_bytes += bytes;
+    pub(crate) fn hold_image(&mut self, image: &Image, file: &str) -> Result<(), FormatError> {
+        self.budget.take_bytes(image.size(), file)?;
+        self.texture_bytes += image.size();
         Ok(())
+    }
+
+    /// A picture decoded within what memory is left. It counts as held until the end.
+    pub(crate) fn decode(
+        &mut self,
+        bytes: &[u8],
+        hint: Option<&str>,
+        is_data: bool,
+        (name, at): (&str, &Span),
+    ) -> Result<Image, FormatError> {
+        // The decoder's planes and the texels are held side by side for a moment.
+        let limits = Limits::new(self.budget.left() / 2);
+        let picture = bilux_pictures::read_bytes(bytes, hint, &limits).map_err(|e| {
+            FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
+        })?;
+        let image = image_of(picture, is_data).ok_or_else(|| {
+            FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
+        })?;
+        self.hold_image(&image, name)?;
+        Ok(image)
     }
 
     /// Bytes of all textures that were read.
@@ -182,24 +202,11 @@ impl<'o> Reading<'o> {
         }
         let bytes = self.load(&path)?;
         let hint = path.extension().and_then(|e| e.to_str());
-        // The decoder's planes and the texels are held side by side for a moment.
-        let limits = Limits::new(self.budget.left() / 2);
-        let decoded = bilux_pictures::read_bytes(&bytes, hint, &limits);
-        let picture = decoded.map_err(|e| {
-            FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
-        })?;
-        let picture = if holds == Texels::Colours { picture.into_linear() } else { picture };
-        self.hold_texels(picture.pixel_count(), name)?;
-        let (width, height) = (picture.width(), picture.height());
-        let mut texels = picture.to_rgb().ok_or_else(|| {
-            FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
-        })?;
-        self.release(bytes);
-        if let Texels::Numbers(Some(channel)) = holds {
-            texels.iter_mut().for_each(|texel| *texel = Rgb::grey(texel[channel]));
-        }
         let is_data = holds != Texels::Colours;
-        let texture = Arc::new(Texture { name: name.to_owned(), width, height, texels, is_data });
+        let image = self.decode(&bytes, hint, is_data, (name, at))?;
+        self.release(bytes);
+        let channel = if let Texels::Numbers(channel) = holds { channel } else { None };
+        let texture = Arc::new(Texture { channel, ..Texture::of(name, Arc::new(image), is_data) });
         self.textures.insert((path, holds), texture.clone());
         Ok(texture)
     }

@@ -1,5 +1,6 @@
 //! One job of writing: files are made in memory, and reach the disk only when all are done.
 
+use crate::images::is_bright;
 use crate::{FormatError, WriteOptions};
 use bilux_pictures::{ColourSpace, Picture, write_atomically};
 use bilux_scene::{SceneBuilder, Span, Warning};
@@ -45,10 +46,10 @@ impl<'o> Writing<'o> {
         if let Some((_, name)) = self.textures.iter().find(|(i, _)| *i == index) {
             return Ok(Some(name.clone()));
         }
-        let bright = texture.texels.iter().any(|t| !t.is_finite() || t.max_channel() > 1.0);
+        let bright = texture.texels().any(is_bright);
         let format = if bright { "exr" } else { "png" };
         let name = format!("{}-texture-{}.{format}", self.stem, index + 1);
-        let mut picture = Picture::from_rgb(texture.width, texture.height, texture.texels.clone())?;
+        let mut picture = Picture::from_rgb(texture.width(), texture.height(), texture.texels().collect())?;
         if texture.is_data && !bright {
             // As the file holds them, so that no curve is laid over numbers.
             picture.colour_space = ColourSpace::Srgb;

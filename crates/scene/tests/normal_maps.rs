@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// A square towards +z with a texture that leans by `texel` everywhere.
 fn square(texel: Rgb, uvs: [Vec2; 4], transform: Transform, scale: f32) -> Scene {
     let mut builder = SceneBuilder::default();
-    let texture = Texture { name: String::new(), width: 1, height: 1, texels: vec![texel], is_data: true };
+    let texture = Texture::new("", 1, 1, vec![texel], true);
     builder.textures.push(Arc::new(texture));
     let spec = Spec::new("", "diffuse").with("normal", Value::Texture(0)).with("normal_scale", scale);
     let material = builder.add_material(spec);
@@ -67,13 +67,7 @@ fn no_normal_is_on_the_inside() {
 #[test]
 fn the_parts_of_a_mix_have_no_normal_maps_of_their_own() {
     let mut builder = SceneBuilder::default();
-    builder.textures.push(Arc::new(Texture {
-        name: String::new(),
-        width: 1,
-        height: 1,
-        texels: vec![Rgb::WHITE],
-        is_data: true,
-    }));
+    builder.textures.push(Arc::new(Texture::new("", 1, 1, vec![Rgb::WHITE], true)));
     let a = builder.add_material(Spec::new("", "diffuse").with("normal", Value::Texture(0)));
     builder.add_material(Spec::new("", "mix").with("a", Value::Material(a)).with("b", Value::Material(a)));
     let error = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).err().unwrap().to_string();

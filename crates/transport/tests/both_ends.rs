@@ -135,7 +135,7 @@ fn waves() -> Texture {
         let lean = |k: i32| 0.5 + 0.45 * bilux_math::transcendental::sin_cos(k as f32 * PI / 4.0).0;
         Rgb::new(lean(i % 8), lean(i / 8), 0.75)
     });
-    Texture { name: String::new(), width: 8, height: 8, texels: texels.collect(), is_data: true }
+    Texture::new("", 8, 8, texels.collect(), true)
 }
 
 #[test]
@@ -166,8 +166,7 @@ fn a_picture_of_the_sky_gives_the_same_from_both_ends() {
         let sun = if (12..14).contains(&x) && y == 4 { 40.0 } else { 0.0 };
         Rgb::new(0.3, 0.4, 0.6) * (1.0 - y as f32 / 16.0) + Rgb::new(1.0, 0.8, 0.5) * sun
     });
-    let picture =
-        Texture { name: String::new(), width: 32, height: 16, texels: texels.collect(), is_data: false };
+    let picture = Texture::new("", 32, 16, texels.collect(), false);
     let light = Spec::new("", "environment").with("radiance", Value::Texture(0)).with("rotation", 20.0f32);
     let mut builder = without_mirrors(light);
     builder.textures.push(Arc::new(picture));

@@ -138,7 +138,7 @@ fn with_wide_lamps(scene: &SceneBuilder) -> Result<SceneBuilder, Error> {
         let solid_angle = (PI / ROWS as f32) * (PI / ROWS as f32) * sin_cos(PI * v).0.max(0.05);
         let mut texels = vec![Rgb::BLACK; 2 * ROWS * ROWS];
         texels[at(v, ROWS) * 2 * ROWS + at(u, 2 * ROWS)] = reader.colour("irradiance") / solid_angle;
-        let picture = Texture { name: String::new(), width: 2 * ROWS, height: ROWS, texels, is_data: false };
+        let picture = Texture::new("", 2 * ROWS, ROWS, texels, false);
         wide.textures.push(Arc::new(picture));
         let radiance = Value::Texture(wide.textures.len() - 1);
         wide.lights.push(Spec::new("sun", "environment").with("radiance", radiance));

@@ -132,13 +132,8 @@ fn cases() -> Vec<LightCase> {
     ]);
     let sun = |x: usize, y: usize| if (x, y) == (41, 9) { 900.0 } else { 0.0 };
     let sky = |x: usize, y: usize| Rgb::new(0.2, 0.4, 0.7) * (1.0 - y as f32 / 32.0) + Rgb::WHITE * sun(x, y);
-    let picture = Arc::new(Texture {
-        name: "sky".to_owned(),
-        width: 64,
-        height: 32,
-        texels: (0..64 * 32).map(|i| sky(i % 64, i / 64)).collect(),
-        is_data: false,
-    });
+    let picture =
+        Arc::new(Texture::new("", 64, 32, (0..64 * 32).map(|i| sky(i % 64, i / 64)).collect(), false));
     cases.push(case("picture", 0.0, |builder| {
         builder.textures.push(picture);
         let spec = Spec::new("", "environment").with("radiance", Value::Texture(0));

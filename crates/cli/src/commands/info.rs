@@ -49,7 +49,7 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         })).collect::<Vec<_>>(),
         "materials": scene.materials.iter().map(|m| json!({ "name": m.name, "kind": m.kind })).collect::<Vec<_>>(),
         "textures": scene.textures.iter().map(|t| json!({
-            "name": t.name, "width": t.width, "height": t.height,
+            "name": t.name, "width": t.width(), "height": t.height(),
         })).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|l| json!({ "name": l.name, "kind": l.kind })).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|c| json!({
@@ -86,7 +86,7 @@ fn as_text(scene: &SceneBuilder) -> String {
         size.y,
         size.z,
         names(scene.materials.iter().map(spec).collect()),
-        names(scene.textures.iter().map(|t| format!("{} ({}x{})", t.name, t.width, t.height)).collect()),
+        names(scene.textures.iter().map(|t| format!("{} ({}x{})", t.name, t.width(), t.height())).collect()),
         names(scene.lights.iter().map(spec).collect()),
         names(scene.cameras.iter().map(|c| spec(&c.spec)).collect()),
     )

@@ -150,6 +150,10 @@ impl<'a> Node<'a> {
         self.get(key).map(|node| node.as_count()).transpose()
     }
 
+    pub(super) fn text(&self, key: &'a str) -> Result<Option<&'a str>, FormatError> {
+        self.get(key).map(|node| node.as_text()).transpose()
+    }
+
     pub(super) fn switch(&self, key: &'a str) -> Result<bool, FormatError> {
         let read = |node: Node| node.value.as_bool().ok_or_else(|| node.wrong("true or false"));
         self.get(key).map_or(Ok(false), read)

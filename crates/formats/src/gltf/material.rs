@@ -1,10 +1,13 @@
-//! Materials.
+//! Materials and their extensions, in the terms of our `principled`.
 
 use super::json::Node;
 use super::reader::Gltf;
+use super::textures::Taken;
 use crate::FormatError;
 use bilux_math::Rgb;
-use bilux_scene::Spec;
+use bilux_scene::texture::Channel;
+use bilux_scene::{Span, Spec, Value};
+use std::f64::consts::TAU;
 
 /// A material as primitives use it.
 #[derive(Clone, Copy)]
@@ -13,6 +16,27 @@ pub(super) struct UsedMaterial {
     pub(super) index: usize,
     /// Which texture coordinates it is looked up by.
     pub(super) uv_set: usize,
+    /// Whether it matters which way these grow.
+    pub(super) has_direction: bool,
+}
+
+/// A material while it is read: parameters of `principled`, whether or not that has them all.
+pub(super) struct Draft {
+    pub(super) spec: Spec,
+    uv_set: Option<usize>,
+}
+
+impl Draft {
+    fn set(&mut self, key: &str, value: impl Into<Value>, at: Span) {
+        self.spec.parameters.set_at(key, value.into(), at);
+    }
+
+    fn number(&self, key: &str) -> Option<f64> {
+        match self.spec.parameters.find(key)?.0 {
+            Value::Number(x) => Some(*x),
+            _ => None,
+        }
+    }
 }
 
 impl<'d> Gltf<'d, '_, '_> {
@@ -22,27 +46,249 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(material) = self.materials.get(&key) {
             return Ok(*material);
         }
-        let spec = match index {
-            Some(index) => spec(self.document.named("materials", index)?)?,
-            None => Spec::new("default", "diffuse"),
-        };
-        let used = UsedMaterial { index: self.scene.add_material(spec), uv_set: 0 };
+        let mut draft = Draft { spec: Spec::new("default", "principled"), uv_set: None };
+        match index {
+            Some(index) => self.draft(self.document.named("materials", index)?, &mut draft)?,
+            None => {
+                draft.set("base_color", Rgb::WHITE, Span::default());
+                draft.set("base_metalness", 1.0, Span::default());
+                draft.set("specular_roughness", 1.0, Span::default());
+            }
+        }
+        let has = |key| draft.spec.parameters.find(key).is_some();
+        let has_direction = has("normal") || has("specular_roughness_anisotropy");
+        let uv_set = draft.uv_set.unwrap_or(0);
+        let used = UsedMaterial { index: self.fitted(draft.spec), uv_set, has_direction };
         self.materials.insert(key, used);
         Ok(used)
     }
-}
 
-fn spec(node: Node) -> Result<Spec, FormatError> {
-    let base = match node.get("pbrMetallicRoughness") {
-        Some(pbr) => pbr.numbers::<4>("baseColorFactor")?,
-        None => None,
-    };
-    let [r, g, b, _] = base.unwrap_or([1.0; 4]).map(|c| c.clamp(0.0, 1.0) as f32);
-    let emission = node.numbers::<3>("emissiveFactor")?.unwrap_or([0.0; 3]).map(|c| c.max(0.0) as f32);
-    let mut spec = Spec::new(node.name(), "diffuse").with("reflectance", Rgb::new(r, g, b));
-    if emission != [0.0; 3] {
-        spec.parameters.set("emission", Rgb::from_array(emission));
+    fn draft(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        draft.spec = Spec { span: node.at(), ..Spec::new(node.name(), "principled") };
+        self.base(node, draft)?;
+        self.emission(node, draft)?;
+        if let Some(info) = node.get("normalTexture") {
+            let map = self.texture(info, Taken::VECTORS, &mut draft.uv_set)?;
+            draft.set("normal", map, info.at());
+            let scale = info.number("scale")?.unwrap_or(1.0);
+            draft.set("normal_scale", scale as f32, info.at());
+        }
+        if let Some(ior) = node.extension("KHR_materials_ior") {
+            let number = ior.number("ior")?.unwrap_or(1.5);
+            // Zero stands for a surface that reflects everything.
+            draft.set("specular_ior", (if number == 0.0 { 10.0 } else { number }) as f32, ior.at());
+        }
+        self.specular(node, draft)?;
+        self.anisotropy(node, draft)?;
+        self.transmission(node, draft)?;
+        self.coat(node, draft)?;
+        self.fuzz(node, draft)?;
+        if let Some(unlit) = node.extension("KHR_materials_unlit") {
+            self.unlit(unlit, draft);
+        }
+        Ok(())
     }
-    spec.span = node.at();
-    Ok(spec)
+
+    fn base(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let pbr = node.get("pbrMetallicRoughness");
+        let at = pbr.unwrap_or(node).at();
+        let factor = pbr.map_or(Ok(None), |pbr| pbr.numbers::<4>("baseColorFactor"))?.unwrap_or([1.0; 4]);
+        let [r, g, b, alpha] = factor.map(|c| c as f32);
+        let picture = pbr.and_then(|pbr| pbr.get("baseColorTexture"));
+        self.colour(draft, "base_color", Rgb::new(r, g, b), picture, &at)?;
+        let factor = |key| pbr.map_or(Ok(None), |pbr| pbr.number(key));
+        let (metal, rough) =
+            (factor("metallicFactor")?.unwrap_or(1.0), factor("roughnessFactor")?.unwrap_or(1.0));
+        let picture_of = pbr.and_then(|pbr| pbr.get("metallicRoughnessTexture"));
+        self.scalar(draft, "base_metalness", metal, picture_of, Channel::B, &at)?;
+        self.scalar(draft, "specular_roughness", rough, picture_of, Channel::G, &at)?;
+        let mode = node.text("alphaMode")?.unwrap_or("OPAQUE");
+        let threshold = match mode {
+            "OPAQUE" => return Ok(()),
+            "BLEND" => None,
+            "MASK" => Some(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
+            other => return Err(node.error(format!("'{other}' is no alphaMode: OPAQUE, MASK and BLEND are"))),
+        };
+        let opacity = match (picture, threshold) {
+            (Some(info), _) => {
+                let taken = Taken { threshold, ..Taken::channel(Channel::A, f64::from(alpha)) };
+                self.texture(info, taken, &mut draft.uv_set)?
+            }
+            (None, Some(threshold)) => (if alpha < threshold { 0.0 } else { 1.0 }).into(),
+            (None, None) => alpha.into(),
+        };
+        draft.set("opacity", opacity, node.at());
+        Ok(())
+    }
+
+    fn emission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let factor = node.numbers::<3>("emissiveFactor")?.unwrap_or([0.0; 3]).map(|c| c.max(0.0) as f32);
+        let strength = match node.extension("KHR_materials_emissive_strength") {
+            Some(extension) => extension.number("emissiveStrength")?.unwrap_or(1.0).max(0.0),
+            None => 1.0,
+        };
+        let factor = Rgb::from_array(factor) * strength as f32;
+        if !factor.is_black() {
+            self.colour(draft, "emission", factor, node.get("emissiveTexture"), &node.at())?;
+        }
+        Ok(())
+    }
+
+    fn specular(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_specular") else { return Ok(()) };
+        if draft.number("base_metalness") == Some(1.0) {
+            // It is of what is not metal.
+            return Ok(());
+        }
+        let at = extension.at();
+        let weight = extension.number("specularFactor")?.unwrap_or(1.0);
+        self.scalar(draft, "specular_weight", weight, extension.get("specularTexture"), Channel::A, &at)?;
+        let [r, g, b] = extension.numbers::<3>("specularColorFactor")?.unwrap_or([1.0; 3]).map(|c| c as f32);
+        let picture = extension.get("specularColorTexture");
+        self.colour(draft, "specular_color", Rgb::new(r, g, b), picture, &at)
+    }
+
+    /// Theirs is rougher along a direction, and ours smoother across it, by the same ratio.
+    fn anisotropy(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_anisotropy") else { return Ok(()) };
+        let strength = extension.number("anisotropyStrength")?.unwrap_or(0.0).clamp(0.0, 1.0);
+        if strength == 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        let roughness = draft.number("specular_roughness").unwrap_or(0.5);
+        let (along, across) = (roughness * roughness, roughness * roughness);
+        let along = along + (1.0 - along) * strength * strength;
+        let ratio = if along > 0.0 { across / along } else { 1.0 };
+        if draft.number("specular_roughness").is_some() {
+            let even = along / (2.0 / (1.0 + ratio * ratio)).sqrt();
+            draft.set("specular_roughness", even.sqrt() as f32, at.clone());
+        }
+        let picture = extension.get("anisotropyTexture");
+        if let Some(picture) = picture {
+            let what = "of a picture of anisotropy the strength is used, and the direction is not";
+            self.oddities.note(what, || picture.at());
+        }
+        self.scalar(draft, "specular_roughness_anisotropy", 1.0 - ratio, picture, Channel::B, &at)?;
+        let turns = extension.number("anisotropyRotation")?.unwrap_or(0.0) / TAU + 0.25;
+        draft.set("anisotropy_rotation", turns.rem_euclid(1.0) as f32, at);
+        Ok(())
+    }
+
+    fn transmission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_transmission") else { return Ok(()) };
+        let weight = extension.number("transmissionFactor")?.unwrap_or(0.0);
+        if weight <= 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        let picture = extension.get("transmissionTexture");
+        self.scalar(draft, "transmission_weight", weight, picture, Channel::R, &at)?;
+        let volume = node.extension("KHR_materials_volume");
+        let thickness = volume.map_or(Ok(None), |volume| volume.number("thicknessFactor"))?.unwrap_or(0.0);
+        draft.set("thin_walled", thickness <= 0.0, at.clone());
+        let base = draft.spec.parameters.find("base_color").map(|(value, _)| value.clone());
+        let depth = volume.map_or(Ok(None), |volume| volume.number("attenuationDistance"))?;
+        let (Some(volume), Some(depth)) = (volume.filter(|_| thickness > 0.0), depth.filter(|d| *d > 0.0))
+        else {
+            // Light is tinted where it goes through the surface.
+            draft.set("transmission_color", base.unwrap_or(1.0.into()), at);
+            return Ok(());
+        };
+        let colour = volume.numbers::<3>("attenuationColor")?.unwrap_or([1.0; 3]).map(|c| c as f32);
+        draft.set("transmission_color", Rgb::from_array(colour), volume.at());
+        draft.set("transmission_depth", depth as f32, volume.at());
+        if base.is_some_and(|base| base != Value::from(Rgb::WHITE)) {
+            let what = "the base colour of what absorbs light on its way does not tint it at the surface too";
+            self.oddities.note(what, || volume.at());
+        }
+        Ok(())
+    }
+
+    fn coat(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_clearcoat") else { return Ok(()) };
+        let weight = extension.number("clearcoatFactor")?.unwrap_or(0.0);
+        if weight <= 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        self.scalar(draft, "coat_weight", weight, extension.get("clearcoatTexture"), Channel::R, &at)?;
+        let (rough, picture) = (
+            extension.number("clearcoatRoughnessFactor")?.unwrap_or(0.0),
+            extension.get("clearcoatRoughnessTexture"),
+        );
+        self.scalar(draft, "coat_roughness", rough, picture, Channel::G, &at)?;
+        draft.set("coat_ior", 1.5, at);
+        if let Some(normals) = extension.get("clearcoatNormalTexture") {
+            self.oddities.note("a coat has the normals of what it covers, not its own", || normals.at());
+        }
+        Ok(())
+    }
+
+    fn fuzz(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_sheen") else { return Ok(()) };
+        let colour = extension.numbers::<3>("sheenColorFactor")?.unwrap_or([0.0; 3]).map(|c| c as f32);
+        let weight = colour.into_iter().fold(0.0, f32::max);
+        if weight <= 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        draft.set("fuzz_weight", weight, at.clone());
+        let picture = extension.get("sheenColorTexture");
+        self.colour(draft, "fuzz_color", Rgb::from_array(colour) * (1.0 / weight), picture, &at)?;
+        let rough = extension.number("sheenRoughnessFactor")?.unwrap_or(0.0);
+        self.scalar(draft, "fuzz_roughness", rough, extension.get("sheenRoughnessTexture"), Channel::A, &at)
+    }
+
+    /// A picture that is to look the same in any light gives light itself.
+    fn unlit(&mut self, unlit: Node<'d>, draft: &mut Draft) {
+        let what = "what is unlit gives light in its own colour, which falls on its surroundings too";
+        self.oddities.note(what, || unlit.at());
+        let mut spec = Spec { span: draft.spec.span.clone(), ..Spec::new(&draft.spec.name, "principled") };
+        for (key, value, at) in std::mem::take(&mut draft.spec.parameters.0) {
+            match key.as_str() {
+                "base_color" => spec.parameters.set_at("emission", value, at),
+                "opacity" => spec.parameters.set_at("opacity", value, at),
+                _ => {}
+            }
+        }
+        spec.parameters.set("base_color", 0.0);
+        spec.parameters.set("specular_weight", 0.0);
+        draft.spec = spec;
+    }
+
+    fn colour(
+        &mut self,
+        draft: &mut Draft,
+        key: &str,
+        factor: Rgb,
+        picture: Option<Node<'d>>,
+        at: &Span,
+    ) -> Result<(), FormatError> {
+        let value = match picture {
+            Some(info) => self.texture(info, Taken::colours(factor), &mut draft.uv_set)?,
+            None => factor.into(),
+        };
+        draft.set(key, value, picture.map_or_else(|| at.clone(), |info| info.at()));
+        Ok(())
+    }
+
+    fn scalar(
+        &mut self,
+        draft: &mut Draft,
+        key: &str,
+        factor: f64,
+        picture: Option<Node<'d>>,
+        channel: Channel,
+        at: &Span,
+    ) -> Result<(), FormatError> {
+        let value = match picture {
+            Some(info) if factor != 0.0 => {
+                self.texture(info, Taken::channel(channel, factor), &mut draft.uv_set)?
+            }
+            _ => Value::Number(factor),
+        };
+        draft.set(key, value, picture.map_or_else(|| at.clone(), |info| info.at()));
+        Ok(())
+    }
 }

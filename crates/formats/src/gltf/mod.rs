@@ -5,6 +5,7 @@ mod cameras;
 mod container;
 mod document;
 mod extensions;
+mod fitting;
 mod graph;
 mod instances;
 mod json;
@@ -13,6 +14,7 @@ mod material;
 mod place;
 mod primitive;
 mod reader;
+mod textures;
 mod uri;
 
 use crate::formats::SceneFormatEntry;
@@ -34,6 +36,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "objects",
         "instances",
         "materials",
+        "textures",
         "cameras",
         "lights",
     ],

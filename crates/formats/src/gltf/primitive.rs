@@ -2,6 +2,7 @@
 
 use super::accessor::Accessor;
 use super::json::Node;
+use super::material::UsedMaterial;
 use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -62,7 +63,7 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(colour) = attributes.get("COLOR_0") {
             mesh.vertex_kd = self.colours(colour, count)?;
         }
-        self.note_unused(attributes, material.uv_set);
+        self.note_unused(attributes, material);
         mesh.triangles = self.triangles(node, mode, count)?;
         if mesh.triangles.is_empty() {
             self.oddities.note("a primitive has no triangle and is left out", || node.at());
@@ -132,8 +133,8 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn note_unused(&mut self, attributes: Node<'d>, uv_set: usize) {
-        let used_uv = if uv_set == 1 { "TEXCOORD_1" } else { "TEXCOORD_0" };
+    fn note_unused(&mut self, attributes: Node<'d>, material: UsedMaterial) {
+        let used_uv = if material.uv_set == 1 { "TEXCOORD_1" } else { "TEXCOORD_0" };
         for (key, node) in attributes.entries() {
             let is_skin = key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_");
             // What programs keep for themselves begins with an underscore.
@@ -141,6 +142,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 continue;
             }
             let what = match key {
+                "TANGENT" if !material.has_direction => continue,
                 "TANGENT" => "tangents are made from texture coordinates, and those of the file not used",
                 _ if key.starts_with("TEXCOORD_") => {
                     "a mesh has one set of texture coordinates here: others are not used"

@@ -11,6 +11,7 @@ use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
 use bilux_math::Transform;
 use bilux_math::motion::Motion;
+use bilux_scene::texture::Image;
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -31,6 +32,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let document = Document::load(root, &container, reading, source, &mut oddities)?;
     let mut gltf = Gltf {
         document: &document,
+        source,
         file: source.name.clone(),
         reading,
         scene: SceneBuilder::default(),
@@ -38,6 +40,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         order: Vec::new(),
         meshes: HashMap::new(),
         materials: HashMap::new(),
+        images: HashMap::new(),
     };
     gltf.scene()?;
     let Gltf { mut scene, oddities, .. } = gltf;
@@ -48,6 +51,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
 /// A file on its way to a scene.
 pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) document: &'d Document<'d>,
+    pub(super) source: &'r Source<'r>,
     pub(super) file: Arc<str>,
     pub(super) reading: &'r mut Reading<'o>,
     pub(super) scene: SceneBuilder,
@@ -58,6 +62,8 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     meshes: HashMap<(usize, Vec<u64>), Arc<Vec<Part>>>,
     /// By index in the file; the default one is none.
     pub(super) materials: HashMap<Option<usize>, UsedMaterial>,
+    /// Pictures with their names, by index in the file and whether they are numbers; none where one cannot be had.
+    pub(super) images: HashMap<(usize, bool), Option<(String, Arc<Image>)>>,
 }
 
 /// Meshes that stand in the scene several times are kept once where copies would have more triangles than this.

@@ -7,6 +7,7 @@ use crate::FormatError;
 use crate::reading::Texels;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::cameras::CameraSpec;
+use bilux_scene::texture::Channel;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, Value};
 
 /// Keys that all of them have.
@@ -125,14 +126,14 @@ impl Native<'_, '_> {
 }
 
 /// The channels that a number can be read from.
-pub(super) const CHANNELS: [&str; 3] = ["r", "g", "b"];
+pub(super) const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
 
 /// `channel = "g"`: which one a number is read from.
-fn channel(table: &Table) -> Result<Option<usize>, FormatError> {
+fn channel(table: &Table) -> Result<Option<Channel>, FormatError> {
     let Some(item) = table.find("channel") else { return Ok(None) };
     let name = item.text("channel")?;
     match CHANNELS.iter().position(|known| *known == name) {
-        Some(index) => Ok(Some(index)),
+        Some(index) => Ok(Some([Channel::R, Channel::G, Channel::B, Channel::A][index])),
         None => Err(SceneError::unknown("channel", name, CHANNELS, &item.at).into()),
     }
 }

@@ -208,8 +208,7 @@ impl Library<'_, '_, '_> {
                 continue;
             };
             if let Some(texture) = self.texture(file, at, scene)? {
-                let tinted = self.tinted(texture, draft.colour(tint).unwrap_or(Rgb::WHITE))?;
-                scene.textures.push(tinted);
+                scene.textures.push(tinted(texture, draft.colour(tint).unwrap_or(Rgb::WHITE)));
                 spec.parameters.set_at(key, Value::Texture(scene.textures.len() - 1), at.clone());
             }
         }
@@ -235,16 +234,14 @@ impl Library<'_, '_, '_> {
             }
         }
     }
+}
 
-    /// A texture times a colour. Black is taken as white: many exporters write it beside every texture.
-    fn tinted(&mut self, texture: Arc<Texture>, tint: Rgb) -> Result<Arc<Texture>, FormatError> {
-        if tint == Rgb::WHITE || tint.is_black() {
-            return Ok(texture);
-        }
-        self.reading.hold_texels(texture.texels.len(), self.source.name)?;
-        let texels = texture.texels.iter().map(|&texel| texel * tint).collect();
-        Ok(Arc::new(Texture { name: texture.name.clone(), texels, ..*texture }))
+/// A texture times a colour. Black is taken as white: many exporters write it beside every texture.
+fn tinted(texture: Arc<Texture>, tint: Rgb) -> Arc<Texture> {
+    if tint == Rgb::WHITE || tint.is_black() {
+        return texture;
     }
+    Arc::new(Texture { factor: tint, ..(*texture).clone() })
 }
 
 /// Our material for an MTL one.

@@ -252,3 +252,90 @@ fn containers_are_taken_apart() {
         assert!(read_text("glb", &glb[..length]).is_err(), "{length}");
     }
 }
+
+/// The triangle with a material and what that names.
+fn with_material(material: &str, more: &str) -> String {
+    TRIANGLE
+        .replace("\"POSITION\":0}}", "\"POSITION\":0},\"material\":0}")
+        .replace("\"buffers\"", &format!("\"materials\":[{material}],{more}\"buffers\""))
+}
+
+fn spec_of(scene: &bilux_scene::SceneBuilder) -> &bilux_scene::Spec {
+    &scene.materials[scene.objects[0].material]
+}
+
+#[test]
+fn materials_are_in_the_terms_of_principled() {
+    let material = r#"{"name":"paint","pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"metallicFactor":0.5,
+        "roughnessFactor":7},"extensions":{"KHR_materials_ior":{"ior":1.25}}}"#;
+    let scene = read(&with_material(material, ""));
+    let spec = spec_of(&scene);
+    let value = |key: &str| spec.parameters.find(key).unwrap().0.clone();
+    assert_eq!((&*spec.name, &*spec.kind), ("paint", "principled"));
+    assert_eq!(value("base_color"), Rgb::new(0.5, 0.25, 1.0).into());
+    assert_eq!((value("base_metalness"), value("specular_ior")), (0.5f32.into(), 1.25f32.into()));
+    assert_eq!(value("specular_roughness"), 1.0f32.into());
+    let told = warnings(&scene);
+    assert!(
+        told.contains("#/materials/0/pbrMetallicRoughness: specular_roughness of a material is out of range"),
+        "{told}"
+    );
+    scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
+}
+
+#[test]
+fn every_extension_gives_a_material_that_can_be_built() {
+    let extensions = [
+        r#""KHR_materials_transmission":{"transmissionFactor":1}"#,
+        r#""KHR_materials_transmission":{"transmissionFactor":0.5},"KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":0.1,"attenuationColor":[1,0.5,0]}"#,
+        r#""KHR_materials_clearcoat":{"clearcoatFactor":1,"clearcoatRoughnessFactor":0.1}"#,
+        r#""KHR_materials_sheen":{"sheenColorFactor":[1,0.5,0],"sheenRoughnessFactor":0.3}"#,
+        r#""KHR_materials_specular":{"specularFactor":0.5,"specularColorFactor":[2,1,1]}"#,
+        r#""KHR_materials_anisotropy":{"anisotropyStrength":0.8,"anisotropyRotation":1}"#,
+        r#""KHR_materials_emissive_strength":{"emissiveStrength":5}"#,
+        r#""KHR_materials_unlit":{}"#,
+        "",
+    ];
+    for extension in extensions {
+        for mode in ["", r#","alphaMode":"BLEND""#, r#","alphaMode":"MASK""#] {
+            let material = format!(
+                r#"{{"pbrMetallicRoughness":{{"baseColorFactor":[1,1,0,0.5],"metallicFactor":0}},
+                "emissiveFactor":[0,0,1],"extensions":{{{extension}}}{mode}}}"#
+            );
+            let scene = read(&with_material(&material, ""));
+            scene
+                .build(&Default::default(), [0.0, 0.0], 1.0)
+                .map(drop)
+                .unwrap_or_else(|e| panic!("{material}: {e}"));
+        }
+    }
+}
+
+#[test]
+fn textures_lie_beside_the_scene_and_missing_ones_are_seen() {
+    use bilux_pictures::{Picture, WriteOptions, write as write_picture};
+    let folder = tempfile::tempdir().unwrap();
+    let texels = vec![Rgb::BLACK, Rgb::WHITE, Rgb::BLACK, Rgb::WHITE];
+    let picture = Picture::from_rgb(2, 2, texels).unwrap();
+    std::fs::create_dir(folder.path().join("inner")).unwrap();
+    write_picture(folder.path().join("inner/für alle.png"), &picture, &WriteOptions::default()).unwrap();
+    let material = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":
+        {"offset":[0.5,0]}}},"metallicRoughnessTexture":{"index":1}}}"#;
+    let more = r#""textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{"wrapS":33071,"magFilter":9728}],
+        "images":[{"uri":"f%C3%BCr%20alle.png"},{"uri":"gone.png"}],"#;
+    let path = folder.path().join("inner").join("scene.gltf");
+    std::fs::write(&path, with_material(material, more)).unwrap();
+    let scene = bilux_formats::read(&path, &Default::default()).unwrap();
+    let base = &scene.textures[0];
+    assert_eq!((&*base.name, base.width()), ("für alle.png", 2));
+    assert_eq!(base.at(Vec2::new(0.1, 0.5)), Rgb::WHITE, "shifted by half");
+    assert_eq!(base.at(Vec2::new(0.9, 0.5)), Rgb::WHITE, "held at the edge");
+    assert_eq!(scene.textures[1].width(), 8);
+    let told = warnings(&scene);
+    assert!(told.contains("#/images/1: a checker of magenta stands in place of a texture"), "{told}");
+    let climbing = with_material(material, &more.replace("gone.png", "../gone.png"));
+    std::fs::write(folder.path().join("gone.png"), b"x").unwrap();
+    std::fs::write(&path, climbing).unwrap();
+    let scene = bilux_formats::read(&path, &Default::default()).unwrap();
+    assert!(warnings(&scene).contains("lies outside the scene's folder"), "{}", warnings(&scene));
+}

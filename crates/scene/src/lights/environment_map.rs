@@ -55,7 +55,7 @@ const FLOOR: f64 = 1e-3;
 impl EnvironmentMap {
     /// A picture whose colours are multiplied by `scale`, turned to the right by `rotation` in radians.
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
-        let (columns, rows) = (texture.width.min(MOST.0), texture.height.min(MOST.1));
+        let (columns, rows) = (texture.width().min(MOST.0), texture.height().min(MOST.1));
         let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
         let mut map = EnvironmentMap {
             texture,
@@ -74,8 +74,8 @@ impl EnvironmentMap {
     }
 
     fn add_up(&mut self) {
-        let (width, height) = (self.texture.width, self.texture.height);
-        if self.texture.texels.len() != width * height || width == 0 || height == 0 {
+        let (width, height) = (self.texture.width(), self.texture.height());
+        if !self.texture.image.is_whole() {
             (self.columns, self.rows) = (0, 0);
             return;
         }
@@ -117,14 +117,14 @@ impl EnvironmentMap {
 
     /// The picture at a place in texels, blended, round about and cut off at the poles.
     fn texel(&self, at: Vec2) -> Rgb {
-        let (width, height) = (self.texture.width, self.texture.height);
+        let (width, height) = (self.texture.width(), self.texture.height());
         let (x, y) = (at.x - 0.5, at.y - 0.5);
         let (fx, fy) = (x - x.floor(), y - y.floor());
         let column = |x: f32| (x as i64).rem_euclid(width as i64) as usize;
         let row = |y: f32| (y.max(0.0) as usize).min(height - 1);
         let (x0, x1) = (column(x.floor()), column(x.floor() + 1.0));
         let (y0, y1) = (row(y.floor()), row(y.floor() + 1.0));
-        let texel = |x: usize, y: usize| self.texture.texels[y * width + x];
+        let texel = |x: usize, y: usize| self.texture.texel(x, y);
         texel(x0, y0).lerp(texel(x1, y0), fx).lerp(texel(x0, y1).lerp(texel(x1, y1), fx), fy)
     }
 
@@ -250,7 +250,7 @@ impl Light for EnvironmentMap {
         if self.rows == 0 {
             return Rgb::BLACK;
         }
-        let (width, height) = (self.texture.width as f32, self.texture.height as f32);
+        let (width, height) = (self.texture.width() as f32, self.texture.height() as f32);
         self.texel(self.place(direction) * Vec2::new(width, height)) * self.scale
     }
 

@@ -86,7 +86,7 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
         let lean = |k: i32| 0.5 + 0.3 * bilux_math::transcendental::sin_cos(k as f32 * FRAC_PI_4).0;
         Rgb::new(lean(i % 8), lean(i / 8), 0.75)
     });
-    let waves = Texture { name: String::new(), width: 8, height: 8, texels: waves.collect(), is_data: true };
+    let waves = Texture::new("", 8, 8, waves.collect(), true);
     builder.textures.push(Arc::new(waves));
     let bent = shapes::diffuse(0.7f32).with("normal", Value::Texture(0));
     shapes::put(&mut builder, "floor", shapes::floor(0.0, 2.5), bent);

@@ -1,0 +1,158 @@
+//! Textures: a picture, how it is looked up, and where it lies.
+
+use super::json::Node;
+use super::reader::Gltf;
+use super::uri::{self, Resource};
+use crate::FormatError;
+use bilux_math::Rgb;
+use bilux_scene::texture::{Channel, Filter, Image, UvTransform, Wrap};
+use bilux_scene::{Texture, Value};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What of a picture's texels counts, and what they are multiplied by.
+#[derive(Clone, Copy)]
+pub(super) struct Taken {
+    pub(super) is_data: bool,
+    pub(super) channel: Option<Channel>,
+    pub(super) factor: Rgb,
+    pub(super) threshold: Option<f32>,
+}
+
+impl Taken {
+    /// Colours, encoded for a display.
+    pub(super) fn colours(factor: Rgb) -> Taken {
+        Taken { is_data: false, channel: None, factor, threshold: None }
+    }
+
+    /// Numbers of one channel.
+    pub(super) fn channel(channel: Channel, factor: f64) -> Taken {
+        Taken { is_data: true, channel: Some(channel), factor: Rgb::grey(factor as f32), threshold: None }
+    }
+
+    /// Numbers of all channels.
+    pub(super) const VECTORS: Taken =
+        Taken { is_data: true, channel: None, factor: Rgb::WHITE, threshold: None };
+}
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// The texture that a material names, put into the scene. `uv_set` is the set of texture coordinates of the
+    /// material, told by the first of its textures.
+    pub(super) fn texture(
+        &mut self,
+        info: Node<'d>,
+        taken: Taken,
+        uv_set: &mut Option<usize>,
+    ) -> Result<Value, FormatError> {
+        let node = self.document.named("textures", info.need("index")?)?;
+        let lies = info.extension("KHR_texture_transform");
+        let set = match lies.and_then(|lies| lies.get("texCoord")) {
+            Some(set) => set.as_count()?,
+            None => info.count("texCoord")?.unwrap_or(0),
+        };
+        if *uv_set.get_or_insert(set) != set {
+            let what =
+                "a material looks up textures by two sets of texture coordinates: the first is used for all";
+            self.oddities.note(what, || info.at());
+        }
+        let mut texture = match self.picture(node, taken.is_data)? {
+            Some((name, image)) => {
+                Texture { factor: taken.factor, ..Texture::of(&name, image, taken.is_data) }
+            }
+            None => Texture::missing(node.name()),
+        };
+        (texture.channel, texture.threshold) = (taken.channel, taken.threshold);
+        if let Some(index) = node.get("sampler") {
+            let sampler = self.document.named("samplers", index)?;
+            texture.wrap = [wrap(sampler, "wrapS")?, wrap(sampler, "wrapT")?];
+            if sampler.count("magFilter")? == Some(9728) {
+                texture.filter = Filter::Nearest;
+            }
+        }
+        if let Some(lies) = lies {
+            let pair = |pair: [f64; 2]| pair.map(|x| x as f32);
+            texture.transform = Some(UvTransform::new(
+                pair(lies.numbers::<2>("offset")?.unwrap_or([0.0; 2])),
+                lies.number("rotation")?.unwrap_or(0.0) as f32,
+                pair(lies.numbers::<2>("scale")?.unwrap_or([1.0; 2])),
+            ));
+        }
+        self.reading.budget.take_bytes(size_of::<[Texture; 2]>() as u64, &self.file)?;
+        self.scene.textures.push(Arc::new(texture));
+        Ok(Value::Texture(self.scene.textures.len() - 1))
+    }
+
+    /// The picture of a texture and its name; none, with a warning, where it cannot be had.
+    fn picture(
+        &mut self,
+        texture: Node<'d>,
+        is_data: bool,
+    ) -> Result<Option<(String, Arc<Image>)>, FormatError> {
+        let webp = texture.extension("EXT_texture_webp").and_then(|webp| webp.get("source"));
+        let Some(index) = texture.get("source").or(webp) else {
+            let what =
+                "a texture has no picture that is understood: a checker of magenta stands in its place";
+            self.oddities.note(what, || texture.at());
+            return Ok(None);
+        };
+        let image = self.document.named("images", index)?;
+        let number = index.as_count()?;
+        let known = self.images.get(&(number, is_data)).or_else(|| {
+            // Bytes are the same picture whatever they mean.
+            let other = self.images.get(&(number, !is_data));
+            other.filter(|other| other.as_ref().is_none_or(|(_, image)| image.is_bytes()))
+        });
+        if let Some(known) = known {
+            return Ok(known.clone());
+        }
+        let decoded = match self.decode(image, is_data) {
+            Ok(decoded) => Some(decoded),
+            Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+            Err(error) => {
+                let reason = error.without_place();
+                let what = format!("a checker of magenta stands in place of a texture: {reason}");
+                self.oddities.note(&what, || image.at());
+                None
+            }
+        };
+        self.images.insert((number, is_data), decoded.clone());
+        Ok(decoded)
+    }
+
+    fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<(String, Arc<Image>), FormatError> {
+        let at = image.at();
+        if let Some(view) = image.get("bufferView") {
+            let view = self.document.view(view)?;
+            let kind = image.text("mimeType")?.unwrap_or_default();
+            let name = if image.name().is_empty() { "a picture in the file" } else { image.name() };
+            let hint = kind.strip_prefix("image/");
+            let decoded = self.reading.decode(view.bytes, hint, is_data, (name, &at))?;
+            return Ok((name.to_owned(), Arc::new(decoded)));
+        }
+        let place = image.need("uri")?;
+        let (name, bytes) = match uri::resolve(self.reading, place)? {
+            Resource::Data(bytes) => (image.name().to_owned(), bytes),
+            Resource::File(name) => {
+                let path = self.reading.locate(self.source.folder, &name, &place.at())?;
+                let bytes = self.reading.load(&path)?;
+                (name, bytes)
+            }
+        };
+        let hint = Path::new(&name).extension().and_then(|e| e.to_str());
+        let decoded = self.reading.decode(&bytes, hint, is_data, (&name, &at))?;
+        self.reading.release(bytes);
+        Ok((name, Arc::new(decoded)))
+    }
+}
+
+fn wrap<'d>(sampler: Node<'d>, key: &'d str) -> Result<Wrap, FormatError> {
+    Ok(match sampler.count(key)? {
+        None | Some(10497) => Wrap::Repeat,
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        Some(other) => {
+            let message = format!("{other} is no way to wrap; there are 10497, 33071 and 33648");
+            return Err(FormatError::malformed(message, sampler.at_key(key)));
+        }
+    })
+}

@@ -1,0 +1,252 @@
+//! Pictures on surfaces.
+
+mod image;
+mod sampling;
+
+pub use image::{Image, Texels};
+pub use sampling::{Filter, UvTransform, Wrap};
+
+use bilux_math::{Rgb, Vec2};
+use std::sync::Arc;
+
+/// A picture as it lies on a surface, linear light or plain numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// The file that it came from, relative to the scene.
+    pub name: String,
+    /// Its texels; textures may share them.
+    pub image: Arc<Image>,
+    /// They are numbers, such as roughness, and not colours: files hold them as they are.
+    pub is_data: bool,
+    /// What lies beyond its left and right, and its upper and lower edge.
+    pub wrap: [Wrap; 2],
+    /// What lies between texels.
+    pub filter: Filter,
+    /// Where it lies, if not from 0 to 1.
+    pub transform: Option<UvTransform>,
+    /// What every texel is multiplied by; of one channel, red.
+    pub factor: Rgb,
+    /// The channel that counts, as a grey, if it is only one.
+    pub channel: Option<Channel>,
+    /// Where it is given, what is less becomes 0 and all else 1, once texels are blended.
+    pub threshold: Option<f32>,
+}
+
+/// One of the numbers of a texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// Red.
+    R,
+    /// Green.
+    G,
+    /// Blue.
+    B,
+    /// Alpha.
+    A,
+}
+
+impl Texture {
+    /// A picture that is repeated, blended and otherwise left as it is.
+    pub fn of(name: &str, image: Arc<Image>, is_data: bool) -> Texture {
+        Texture {
+            name: name.to_owned(),
+            image,
+            is_data,
+            wrap: [Wrap::Repeat; 2],
+            filter: Filter::Linear,
+            transform: None,
+            factor: Rgb::WHITE,
+            channel: None,
+            threshold: None,
+        }
+    }
+
+    /// The same of `width * height` texels in rows, the top one first.
+    pub fn new(name: &str, width: usize, height: usize, texels: Vec<Rgb>, is_data: bool) -> Texture {
+        let texels = Texels::Floats { colours: texels, alpha: Vec::new() };
+        Texture::of(name, Arc::new(Image { width, height, texels }), is_data)
+    }
+
+    /// Stands in place of a picture that is not there: squares of magenta and black, which nobody overlooks.
+    pub fn missing(name: &str) -> Texture {
+        let square =
+            |i: usize| if (i + i / 8).is_multiple_of(2) { [255, 0, 255, 255] } else { [0, 0, 0, 255] };
+        let image = Image { width: 8, height: 8, texels: Texels::Bytes((0..64).map(square).collect()) };
+        Texture { filter: Filter::Nearest, ..Texture::of(name, Arc::new(image), false) }
+    }
+
+    /// Texels a row.
+    pub fn width(&self) -> usize {
+        self.image.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.image.height
+    }
+
+    /// A texel of a column and a row, counted from the upper left, with all that is done to it.
+    ///
+    /// # Panics
+    /// When there is none.
+    #[inline]
+    pub fn texel(&self, x: usize, y: usize) -> Rgb {
+        self.finished(self.raw(x, y))
+    }
+
+    /// All texels in rows, the top one first.
+    pub fn texels(&self) -> impl Iterator<Item = Rgb> + '_ {
+        let count = if self.image.is_whole() { self.width() * self.height() } else { 0 };
+        (0..count).map(|i| self.texel(i % self.width(), i / self.width()))
+    }
+
+    /// The colour at texture coordinates, v upwards; white where there is no picture.
+    pub fn at(&self, uv: Vec2) -> Rgb {
+        if !self.image.is_whole() || !uv.is_finite() {
+            return Rgb::WHITE;
+        }
+        let uv = Vec2::new(uv.x, 1.0 - uv.y);
+        let uv = self.transform.map_or(uv, |transform| transform.apply(uv));
+        let (width, height) = (self.width(), self.height());
+        let [wrap_x, wrap_y] = self.wrap;
+        let (x, y) = (uv.x * width as f32, uv.y * height as f32);
+        if !(x.is_finite() && y.is_finite()) {
+            return Rgb::WHITE;
+        }
+        if self.filter == Filter::Nearest {
+            let [x, _] = wrap_x.pair(x, width);
+            let [y, _] = wrap_y.pair(y, height);
+            return self.texel(x, y);
+        }
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (fx, fy) = (x - x.floor(), y - y.floor());
+        let ([x0, x1], [y0, y1]) = (wrap_x.pair(x, width), wrap_y.pair(y, height));
+        let (above, below) =
+            (self.raw(x0, y0).lerp(self.raw(x1, y0), fx), self.raw(x0, y1).lerp(self.raw(x1, y1), fx));
+        self.finished(above.lerp(below, fy))
+    }
+
+    /// A number at texture coordinates: the channel that counts, else the luminance.
+    #[inline]
+    pub fn number(&self, uv: Vec2) -> f32 {
+        let colour = self.at(uv);
+        if self.channel.is_some() { colour.r } else { colour.luminance() }
+    }
+
+    #[inline]
+    fn raw(&self, x: usize, y: usize) -> Rgb {
+        self.image.texel(y * self.image.width + x, self.channel, self.is_data)
+    }
+
+    #[inline]
+    fn finished(&self, texel: Rgb) -> Rgb {
+        let factor = if self.channel.is_some() { Rgb::grey(self.factor.r) } else { self.factor };
+        let texel = texel * factor;
+        match self.threshold {
+            Some(threshold) => texel.map(|c| if c < threshold { 0.0 } else { 1.0 }),
+            None => texel,
+        }
+    }
+}
+
+/// A number that may vary over a surface.
+#[derive(Clone, Debug)]
+pub struct NumberMap {
+    /// The number, where there is no texture.
+    pub number: f32,
+    /// The least and the greatest that a texture can say.
+    pub range: [f32; 2],
+    /// The texture, if there is one; of colours their luminance counts.
+    pub texture: Option<Arc<Texture>>,
+}
+
+impl NumberMap {
+    /// The number at texture coordinates.
+    #[inline]
+    pub fn at(&self, uv: Vec2) -> f32 {
+        match &self.texture {
+            // What is not a number becomes the least one.
+            Some(texture) => texture.number(uv).max(self.range[0]).min(self.range[1]),
+            None => self.number,
+        }
+    }
+}
+
+/// A colour that may vary over a surface.
+#[derive(Clone, Debug)]
+pub struct ColourMap {
+    /// The colour, or what the texture is multiplied by.
+    pub colour: Rgb,
+    /// The texture, if there is one.
+    pub texture: Option<Arc<Texture>>,
+}
+
+impl ColourMap {
+    /// The colour at texture coordinates.
+    pub fn at(&self, uv: Vec2) -> Rgb {
+        match &self.texture {
+            Some(texture) => self.colour * texture.at(uv),
+            None => self.colour,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(wrap: Wrap, filter: Filter) -> Texture {
+        let texels = (0..4).map(|i| Rgb::grey(i as f32)).collect();
+        Texture { wrap: [wrap; 2], filter, ..Texture::new("", 4, 1, texels, true) }
+    }
+
+    fn reds(texture: &Texture, us: &[f32]) -> Vec<f32> {
+        us.iter().map(|&u| texture.at(Vec2::new(u, 0.5)).r).collect()
+    }
+
+    #[test]
+    fn edges_repeat_mirror_and_clamp() {
+        let us = [-0.125, 0.125, 0.875, 1.125, 1.375];
+        assert_eq!(reds(&row(Wrap::Repeat, Filter::Nearest), &us), [3., 0., 3., 0., 1.]);
+        assert_eq!(reds(&row(Wrap::Mirror, Filter::Nearest), &us), [0., 0., 3., 3., 2.]);
+        assert_eq!(reds(&row(Wrap::Clamp, Filter::Nearest), &us), [0., 0., 3., 3., 3.]);
+        let between = [0.0, 0.25, 1.0];
+        assert_eq!(reds(&row(Wrap::Repeat, Filter::Linear), &between), [1.5, 0.5, 1.5]);
+        assert_eq!(reds(&row(Wrap::Mirror, Filter::Linear), &between), [0.0, 0.5, 3.0]);
+        assert_eq!(reds(&row(Wrap::Clamp, Filter::Linear), &between), [0.0, 0.5, 3.0]);
+        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+            for u in [f32::MAX, f32::MIN, f32::NAN, f32::INFINITY] {
+                assert!(row(wrap, Filter::Linear).at(Vec2::splat(u)).is_finite());
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_are_the_same_picture_as_floats() {
+        let bytes = [[0u8, 64, 255, 128], [10, 20, 30, 255]];
+        let image = Arc::new(Image { width: 2, height: 1, texels: Texels::Bytes(bytes.to_vec()) });
+        let colours = Texture::of("", image.clone(), false);
+        assert_eq!(colours.texel(0, 0).g, bilux_math::colour::srgb_decode(64.0 / 255.0));
+        let alpha = Texture { channel: Some(Channel::A), ..Texture::of("", image.clone(), false) };
+        assert_eq!(alpha.texel(0, 0), Rgb::grey(128.0 / 255.0), "alpha has no curve");
+        let cut = Texture { threshold: Some(0.75), ..alpha };
+        assert_eq!((cut.texel(0, 0), cut.texel(1, 0)), (Rgb::BLACK, Rgb::WHITE));
+        let green = Texture {
+            channel: Some(Channel::G),
+            factor: Rgb::new(0.5, 9.0, 9.0),
+            ..Texture::of("", image, true)
+        };
+        assert_eq!(green.number(Vec2::new(0.25, 0.5)), 32.0 / 255.0);
+    }
+
+    #[test]
+    fn transforms_are_of_coordinates_that_grow_downwards() {
+        // The second texel of the row fills the square; then half a turn about the upper left corner.
+        let part = UvTransform::new([0.25, 0.0], 0.0, [0.25, 1.0]);
+        let texture = Texture { transform: Some(part), ..row(Wrap::Repeat, Filter::Nearest) };
+        assert_eq!(reds(&texture, &[0.1, 0.9]), [1.0, 1.0]);
+        let quarter = UvTransform::new([0.0, 0.0], std::f32::consts::FRAC_PI_2, [1.0, 1.0]);
+        let turned = quarter.apply(Vec2::new(0.0, 1.0));
+        assert!((turned - Vec2::X).length() < 1e-6, "{turned}");
+    }
+}
