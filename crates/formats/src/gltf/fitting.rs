@@ -7,21 +7,8 @@ use bilux_math::transcendental::ln;
 use bilux_scene::materials::{self, Ingredients};
 use bilux_scene::{MATERIALS, Span, Spec, Value};
 
-/// Parameters by their names in `principled`, each with the name that a simpler material has for it.
-type Names = &'static [(&'static str, &'static str)];
-
-const MATT: Names = &[
-    ("base_color", "reflectance"),
-    ("emission", "emission"),
-    ("normal", "normal"),
-    ("normal_scale", "normal_scale"),
-];
-const METAL: Names = &[
-    ("base_color", "reflectance"),
-    ("specular_roughness", "roughness"),
-    ("normal", "normal"),
-    ("normal_scale", "normal_scale"),
-];
+/// The one material that glTF is mapped to.
+const KIND: &str = "principled";
 
 impl Gltf<'_, '_, '_> {
     /// Puts a material into the scene, within the ranges of its row; what the row has no word for is mixed in, or told.
@@ -41,33 +28,24 @@ impl Gltf<'_, '_, '_> {
     }
 
     fn knows(&self, key: &str) -> bool {
-        let row = MATERIALS.iter().find(|row| row.entry.name == "principled");
+        let row = MATERIALS.iter().find(|row| row.entry.name == KIND);
         row.is_some_and(|row| row.entry.parameters.iter().any(|parameter| parameter.name == key))
     }
 
     fn principled(&mut self, draft: Spec) -> Spec {
-        let row = MATERIALS.iter().find(|row| row.entry.name == "principled");
-        let is_metal = number(&draft, "base_metalness").is_none_or(|metalness| metalness > 0.5);
-        let (kind, names) = match row {
-            Some(_) => ("principled", None),
-            None if is_metal && draft.parameters.find("emission").is_none() => ("conductor", Some(METAL)),
-            None => ("diffuse", Some(MATT)),
-        };
-        let row = MATERIALS.iter().find(|row| row.entry.name == kind);
+        let row = MATERIALS.iter().find(|row| row.entry.name == KIND);
         let known = row.map_or(&[][..], |row| row.entry.parameters);
-        let mut fitted = Spec { span: draft.span.clone(), ..Spec::new(&draft.name, kind) };
+        let mut fitted = Spec { span: draft.span.clone(), ..Spec::new(&draft.name, KIND) };
         for (key, value, at) in draft.parameters.0 {
-            let named =
-                names.map_or(Some(&*key), |names| names.iter().find(|(k, _)| *k == key).map(|(_, n)| *n));
-            let Some(parameter) = known.iter().find(|parameter| Some(parameter.name) == named) else {
-                if names.is_none() && !says_nothing(&key, &value) {
+            let Some(parameter) = known.iter().find(|parameter| parameter.name == key) else {
+                if !says_nothing(&key, &value) {
                     let what = format!("{} of a material is not shown", key.replace('_', " "));
                     self.oddities.note(&what, || at.clone());
                 }
                 continue;
             };
             if let Some(value) = self.within(parameter, value, &at) {
-                fitted.parameters.set_at(parameter.name, value, at);
+                fitted.parameters.set_at(&key, value, at);
             }
         }
         fitted
@@ -177,13 +155,6 @@ impl Gltf<'_, '_, '_> {
 fn take(spec: &mut Spec, key: &str, wanted: bool) -> Option<Value> {
     let index = spec.parameters.0.iter().position(|(k, ..)| k == key).filter(|_| wanted)?;
     Some(spec.parameters.0.remove(index).1)
-}
-
-fn number(spec: &Spec, key: &str) -> Option<f64> {
-    match spec.parameters.find(key)?.0 {
-        Value::Number(x) => Some(*x),
-        _ => None,
-    }
 }
 
 fn clamped(value: &Value, min: f64, max: f64) -> Value {
