@@ -48,6 +48,9 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(scene)
 }
 
+/// A picture with its name.
+pub(super) type Named = (String, Arc<Image>);
+
 /// A file on its way to a scene.
 pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) document: &'d Document<'d>,
@@ -63,7 +66,7 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     /// By index in the file; the default one is none.
     pub(super) materials: HashMap<Option<usize>, UsedMaterial>,
     /// Pictures with their names, by index in the file and whether they are numbers; none where one cannot be had.
-    pub(super) images: HashMap<(usize, bool), Option<(String, Arc<Image>)>>,
+    pub(super) images: HashMap<(usize, bool), Option<Named>>,
 }
 
 /// Meshes that stand in the scene several times are kept once where copies would have more triangles than this.

@@ -1,11 +1,11 @@
 //! Textures: a picture, how it is looked up, and where it lies.
 
 use super::json::Node;
-use super::reader::Gltf;
+use super::reader::{Gltf, Named};
 use super::uri::{self, Resource};
 use crate::FormatError;
 use bilux_math::Rgb;
-use bilux_scene::texture::{Channel, Filter, Image, UvTransform, Wrap};
+use bilux_scene::texture::{Channel, Filter, UvTransform, Wrap};
 use bilux_scene::{Texture, Value};
 use std::path::Path;
 use std::sync::Arc;
@@ -83,11 +83,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The picture of a texture and its name; none, with a warning, where it cannot be had.
-    fn picture(
-        &mut self,
-        texture: Node<'d>,
-        is_data: bool,
-    ) -> Result<Option<(String, Arc<Image>)>, FormatError> {
+    fn picture(&mut self, texture: Node<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
         let webp = texture.extension("EXT_texture_webp").and_then(|webp| webp.get("source"));
         let Some(index) = texture.get("source").or(webp) else {
             let what =
@@ -119,7 +115,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(decoded)
     }
 
-    fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<(String, Arc<Image>), FormatError> {
+    fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
         let at = image.at();
         if let Some(view) = image.get("bufferView") {
             let view = self.document.view(view)?;
