@@ -1,5 +1,6 @@
 //! From the document to a scene.
 
+use super::accessor::Accessor;
 use super::container;
 use super::document::Document;
 use super::graph::Placed;
@@ -79,6 +80,7 @@ impl<'d> Gltf<'d, '_, '_> {
             self.place(placed)?;
         }
         self.share_trees();
+        self.check_accessors()?;
         let root = self.document.root;
         if root.get("animations").is_some() {
             let what = "animation is not applied: everything stands as its nodes say";
@@ -86,6 +88,18 @@ impl<'d> Gltf<'d, '_, '_> {
         }
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() {
             self.oddities.note("there is nothing to see in this file", || root.at());
+        }
+        Ok(())
+    }
+
+    /// Tells of what is broken, though nothing that is shown needs it.
+    fn check_accessors(&mut self) -> Result<(), FormatError> {
+        for node in self.document.root.list("accessors")? {
+            match Accessor::open(self.document, node, &mut self.reading.budget) {
+                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+                Err(error) => self.oddities.note(&error.without_place(), || node.at()),
+                Ok(_) => {}
+            }
         }
         Ok(())
     }

@@ -4,6 +4,7 @@
 
 mod asc;
 mod gltf;
+mod gltf_files;
 mod hostile;
 mod native;
 mod obj;

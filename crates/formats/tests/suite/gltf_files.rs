@@ -1,0 +1,82 @@
+//! glTF files of others: test models that have to open, and broken ones that have to be refused or told of.
+
+use crate::shared_files::{files, scenes};
+use crate::warnings;
+use bilux_formats::{ReadOptions, read};
+use bilux_scene::SceneBuilder;
+use std::path::PathBuf;
+
+/// Every `.gltf` and `.glb` below a folder of the scenes.
+fn found(folder: &str) -> Vec<PathBuf> {
+    let Some(root) = scenes() else { return Vec::new() };
+    let mut all = Vec::new();
+    files(&root.join(folder), &mut all);
+    all.retain(|path| path.extension().is_some_and(|e| e == "gltf" || e == "glb"));
+    all
+}
+
+fn triangles(scene: &SceneBuilder) -> usize {
+    scene.objects.iter().map(|object| object.mesh.triangles.len()).sum()
+}
+
+/// Files that cannot be shown, and a part of what is said of each.
+const REFUSED: [(&str, &str); 3] = [
+    ("Draco/Box.gltf", "KHR_draco_mesh_compression"),
+    ("IridescenceSuzanne.glb", "KHR_materials_iridescence"),
+    ("BoxMeshopt.glb", "EXT_meshopt_compression"),
+];
+
+/// Triangles and greatest extent of some.
+const KNOWN: [(&str, usize, f32); 7] = [
+    ("Box.glb", 12, 1.0),
+    ("BoxInterleaved.glb", 12, 1.0),
+    ("SimpleInstancing.glb", 1500, 15.0),
+    ("SimpleSparseAccessor.gltf", 12, 6.0),
+    ("WaterBottle.gltf", 4510, 0.26),
+    ("Suzanne.gltf", 3936, 2.7),
+    ("SimpleMorph.gltf", 1, 1.5),
+];
+
+#[test]
+fn test_models_open_and_build() {
+    let mut count = 0;
+    for path in found("gltf") {
+        let name = path.display().to_string();
+        let refused = REFUSED.iter().find(|(file, _)| name.ends_with(file));
+        let scene = match (read(&path, &ReadOptions::default()), refused) {
+            (Ok(scene), None) => scene,
+            (Err(error), Some((_, part))) if error.to_string().contains(part) => continue,
+            (other, _) => panic!("{name}: {:?}", other.err().map(|e| e.to_string())),
+        };
+        count += 1;
+        println!("{name}: {}", warnings(&scene));
+        assert!(triangles(&scene) > 0, "{name}");
+        assert!(!warnings(&scene).contains("checker"), "{name}: {}", warnings(&scene));
+        if let Some((_, known, extent)) = KNOWN.iter().find(|(file, ..)| name.ends_with(&format!("/{file}")))
+        {
+            let found = scene.bounds(0.0).extent().max_element();
+            assert_eq!(triangles(&scene), *known, "{name}");
+            assert!((found / extent - 1.0).abs() < 0.1, "{name}: {found}");
+        }
+        if triangles(&scene) < 20_000 {
+            let built = scene.build(&Default::default(), [0.0, 0.0], 1.0);
+            assert!(built.is_ok(), "{name}: {}", built.err().unwrap());
+        }
+    }
+    assert!(count == 0 || count >= 35, "only {count} files were found");
+}
+
+#[test]
+fn broken_files_are_refused_or_told_of() {
+    let options = ReadOptions { max_memory: 64 << 20, ..ReadOptions::default() };
+    for path in found("broken") {
+        let report = std::fs::read_to_string(format!("{}.report.json", path.display())).unwrap_or_default();
+        let is_broken = !report.is_empty() && !report.contains("\"numErrors\": 0");
+        let told = match read(&path, &options) {
+            Ok(scene) => warnings(&scene),
+            Err(error) => error.to_string(),
+        };
+        println!("{}: {told}", path.display());
+        assert!(!is_broken || !told.is_empty(), "{}", path.display());
+    }
+}
