@@ -269,10 +269,8 @@ impl Geometry {
             unit_or(to_world.normal(blend(indices.map(|i| mesh.normals[i]))), winding)
         };
         let n_geom = if n_shade.dot(winding) < 0.0 { -winding } else { winding };
-        let uv = if mesh.uvs.is_empty() {
-            Vec2::new(hit.u, hit.v)
-        } else {
-            let [a, b, c] = indices.map(|i| mesh.uvs[i]);
+        let uv = {
+            let [a, b, c] = triangle_uvs(mesh, mesh.triangles[triangle as usize]);
             a * weights[0] + b * weights[1] + c * weights[2]
         };
         let (tangent, handedness) = if placed.has_tangents {
@@ -306,6 +304,11 @@ impl Geometry {
             time: ray.time,
         }
     }
+}
+
+/// The texture coordinates of a triangle's corners: where a mesh has none, the weights of the second and the third.
+pub(crate) fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
+    if mesh.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y] } else { triangle.map(|i| mesh.uvs[i as usize]) }
 }
 
 /// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say

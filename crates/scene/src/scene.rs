@@ -2,8 +2,8 @@
 
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
-use crate::geometry::Geometry;
-use crate::lights::{Light, MeshLight, SphereLight};
+use crate::geometry::{Geometry, triangle_uvs};
+use crate::lights::{Light, MeshLight, Picture, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
 use bilux_accel::instancing::TwoLevel;
@@ -53,7 +53,11 @@ impl SceneParts {
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
             let (triangles, motion) = geometry.object_triangles(i as u32);
             let material = &materials[object.material as usize];
-            let given = (material.emission(), material.emission_sides());
+            let picture = material.emission_map().map(|map| Picture {
+                map: map.clone(),
+                uvs: object.mesh.triangles.iter().map(|t| triangle_uvs(&object.mesh, *t)).collect(),
+            });
+            let given = (material.emission(), picture, material.emission_sides());
             let mirrored = object.motion.at(0.0).mirrors();
             let classic = panels.iter().find(|(o, _)| *o == i).map(|(_, colour)| *colour);
             let first = geometry.first_primitive(i as u32);
@@ -173,7 +177,11 @@ impl Scene {
     /// outwards.
     #[inline]
     pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
-        let emission = self.material(surface).emission();
+        let material = self.material(surface);
+        let emission = match material.emission_map() {
+            Some(map) => map.at(surface.uv),
+            None => material.emission(),
+        };
         let shines = || match self.light_index_of(surface.object) {
             Some(light) => self.lights()[light].light.shines(surface, wo),
             None => true,

@@ -92,6 +92,24 @@ fn luminous_meshes() -> Vec<LightCase> {
     ]
 }
 
+/// A panel of 1 by 0.8 metres that gives light by a picture, most of which is black.
+fn by_picture(sides: f64) -> LightCase {
+    let texel = |i: usize| if i == 9 { RADIANCE * 7.0 } else { RADIANCE * (i % 4) as f32 * 0.2 };
+    let picture = Texture::new("sign", 4, 4, (0..16).map(texel).collect(), false);
+    let mean = (0..16).map(|i| f64::from((texel(i) * 0.5).luminance())).sum::<f64>() / 16.0;
+    let name = format!("panel with a picture on {sides} sides");
+    let placed = case(&name, 0.0, |builder| {
+        builder.textures.push(Arc::new(picture));
+        let glowing = Spec::new("sign", "diffuse").with("emission", Value::Texture(0));
+        let glowing = glowing.with("emission_scale", 0.5f32);
+        let sign =
+            builder.add_material(glowing.with("emission_sides", if sides == 1.0 { "front" } else { "both" }));
+        let panel = quad(Vec3::new(0.2, 2.5, 0.1), Vec3::X, Vec3::Z * 0.8);
+        builder.objects.push(Object::new("sign", Arc::new(panel), sign));
+    });
+    LightCase { power: Some(mean * 0.8 * 0.5 * TAU * sides), ..placed }
+}
+
 fn with_light(name: &str, spec: Spec) -> LightCase {
     case(name, 0.0, |builder| builder.lights.push(spec))
 }
@@ -134,6 +152,7 @@ fn cases() -> Vec<LightCase> {
     let sky = |x: usize, y: usize| Rgb::new(0.2, 0.4, 0.7) * (1.0 - y as f32 / 32.0) + Rgb::WHITE * sun(x, y);
     let picture =
         Arc::new(Texture::new("", 64, 32, (0..64 * 32).map(|i| sky(i % 64, i / 64)).collect(), false));
+    cases.extend([by_picture(1.0), by_picture(2.0)]);
     cases.push(case("picture", 0.0, |builder| {
         builder.textures.push(picture);
         let spec = Spec::new("", "environment").with("radiance", Value::Texture(0));

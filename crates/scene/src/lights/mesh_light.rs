@@ -4,15 +4,17 @@ use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
 use crate::geometry::transform_with_error;
 use crate::surface::{Surface, gamma};
+use crate::texture::ColourMap;
 use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::PI;
 
-/// An emissive object, sampled uniformly by the area that its triangles have in their own space.
+/// An emissive object, sampled by the area that its triangles have in their own space, times how bright they are; evenly
+/// within each.
 pub struct MeshLight {
     triangles: Vec<[Vec3; 3]>,
-    /// `cdf[i]` is the share of the area in triangles `0..=i`; the last is 1.
+    /// `cdf[i]` is the share of triangles `0..=i`; the last is 1.
     cdf: Vec<f32>,
     /// The object's first triangle, as rays number it.
     first: Primitive,
@@ -21,12 +23,45 @@ pub struct MeshLight {
     motion: Motion,
     /// The triangles where they are; none when they move.
     resting: Vec<Facet>,
+    /// The mean over its area.
     radiance: Rgb,
+    picture: Option<Picture>,
     sides: Sides,
     /// By which a triangle's corners, as they are in the world, turn round its front: -1 behind a mirror, else 1.
     turn: f32,
     classic: Option<Rgb>,
 }
+
+/// What a light gives out where.
+pub struct Picture {
+    /// By texture coordinates.
+    pub map: ColourMap,
+    /// Those of each triangle's corners.
+    pub uvs: Vec<[Vec2; 3]>,
+}
+
+impl Picture {
+    fn at(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
+        let [a, b, c] = self.uvs[triangle];
+        self.map.at(a * weights[0] + b * weights[1] + c * weights[2])
+    }
+
+    /// The mean over a triangle, from the middles of sixteen that it is cut into.
+    fn mean(&self, triangle: usize) -> Rgb {
+        let mut sum = Rgb::BLACK;
+        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
+            // Every second one stands on its head.
+            let (i, j, third) = if i + j < 4 { (i, j, 1.0 / 3.0) } else { (7 - i - j, j, 2.0 / 3.0) };
+            let (u, v) = ((i as f32 + third) / 4.0, (j as f32 + third) / 4.0);
+            sum += self.at(triangle, [1.0 - u - v, u, v]);
+        }
+        sum / 16.0
+    }
+}
+
+/// Triangles get at least this part of the mean brightness as theirs, since the mean of some points may miss what is
+/// bright in them.
+const LEAST_SHARE: f64 = 0.1;
 
 /// A triangle where it is at a moment.
 #[derive(Clone, Copy)]
@@ -49,7 +84,7 @@ impl MeshLight {
         mirrored: bool,
         first: Primitive,
         motion: Motion,
-        (radiance, sides): (Rgb, Sides),
+        (radiance, picture, sides): (Rgb, Option<Picture>, Sides),
         classic: Option<Rgb>,
     ) -> Option<MeshLight> {
         let areas: Vec<f64> = triangles.iter().map(|t| f64::from(area(t))).map(finite_or_zero).collect();
@@ -57,12 +92,16 @@ impl MeshLight {
         if total <= 0.0 {
             return None;
         }
-        let mut sum = 0.0;
-        let mut cdf: Vec<f32> = areas
+        let (radiance, weights) = match &picture {
+            None => (radiance, areas.clone()),
+            Some(picture) => weights_by_brightness(picture, &areas),
+        };
+        let (mut sum, all) = (0.0, weights.iter().sum::<f64>());
+        let mut cdf: Vec<f32> = weights
             .iter()
-            .map(|a| {
-                sum += a;
-                (sum / total) as f32
+            .map(|weight| {
+                sum += weight;
+                (sum / all) as f32
             })
             .collect();
         if let Some(last) = cdf.last_mut() {
@@ -72,8 +111,19 @@ impl MeshLight {
         let middle = triangles.iter().zip(&areas).filter(|(_, a)| **a > 0.0).map(weighted).sum();
         let resting = Vec::new();
         let turn = if mirrored { -1.0 } else { 1.0 };
-        let mut light =
-            MeshLight { triangles, cdf, first, middle, motion, resting, radiance, sides, turn, classic };
+        let mut light = MeshLight {
+            triangles,
+            cdf,
+            first,
+            middle,
+            motion,
+            resting,
+            radiance,
+            picture,
+            sides,
+            turn,
+            classic,
+        };
         if light.motion.is_still() {
             light.resting = (0..light.triangles.len()).map(|i| light.facet(i, 0.0)).collect();
         }
@@ -82,6 +132,11 @@ impl MeshLight {
 
     fn share(&self, triangle: usize) -> f32 {
         self.cdf[triangle] - if triangle == 0 { 0.0 } else { self.cdf[triangle - 1] }
+    }
+
+    /// What it gives out at a point of a triangle.
+    fn radiance(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
+        self.picture.as_ref().map_or(self.radiance, |picture| picture.at(triangle, weights))
     }
 
     fn corners(&self, triangle: usize, time: f32) -> [Vec3; 3] {
@@ -119,11 +174,11 @@ impl MeshLight {
         (triangle, [1.0 - weights.x - weights.y, weights.x, weights.y])
     }
 
-    /// A point, and its triangle.
-    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Facet) {
+    /// A point, its triangle and what it gives out.
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Facet, Rgb) {
         let (triangle, weights) = self.sample_weights(u);
         let facet = self.facet(triangle, time);
-        (blend(&facet.corners, weights), facet)
+        (blend(&facet.corners, weights), facet, self.radiance(triangle, weights))
     }
 
     /// A point of a triangle and the bound on its error, both as a hit there would have them.
@@ -149,7 +204,7 @@ impl MeshLight {
             p_error,
             n_light: if normal.dot(direction) < 0.0 { -normal } else { normal },
             direction,
-            le: self.radiance,
+            le: self.radiance(triangle, weights),
             pdf_emission,
             pdf_direct: pdf_area,
             primitive: Primitive { index: self.first.index + triangle as u32, ..self.first },
@@ -163,6 +218,17 @@ impl MeshLight {
     fn world_area(&self, time: f32) -> f32 {
         (0..self.triangles.len()).map(|i| area(&self.corners(i, time))).sum()
     }
+}
+
+/// The mean radiance over all triangles, and how often each of them is sampled, in any unit.
+fn weights_by_brightness(picture: &Picture, areas: &[f64]) -> (Rgb, Vec<f64>) {
+    let total: f64 = areas.iter().sum();
+    let means: Vec<Rgb> = (0..areas.len()).map(|i| picture.mean(i)).collect();
+    let mean: Rgb = means.iter().zip(areas).map(|(mean, area)| *mean * (area / total) as f32).sum();
+    let least = LEAST_SHARE * f64::from(mean.luminance());
+    let weight = |(mean, area): (&Rgb, &f64)| area * (f64::from(mean.luminance()) + least);
+    let weights = if least > 0.0 { means.iter().zip(areas).map(weight).collect() } else { areas.to_vec() };
+    (mean, weights)
 }
 
 fn blend(corners: &[Vec3; 3], weights: [f32; 3]) -> Vec3 {
@@ -188,7 +254,7 @@ fn finite_or_zero(x: f64) -> f64 {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (point, Facet { corners, normal, pdf_area }) = self.sample_point(time, u);
+        let (point, Facet { corners, normal, pdf_area }, li) = self.sample_point(time, u);
         let to_light = point - from;
         let distance2 = to_light.length_squared();
         let wi = to_light.try_normalize()?;
@@ -199,7 +265,7 @@ impl Light for MeshLight {
         let pdf_solid_angle = pdf_area * distance2 / cos.abs();
         (pdf_solid_angle.is_finite() && pdf_solid_angle > 0.0).then(|| LightSample {
             wi,
-            li: self.radiance,
+            li,
             point: Some(point),
             n_light: if cos < 0.0 { normal } else { -normal },
             pdf_solid_angle,
@@ -277,7 +343,7 @@ impl Light for MeshLight {
 
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let middle = self.middle(time);
-        let (point, Facet { corners, normal, .. }) = self.sample_point(time, u);
+        let (point, Facet { corners, normal, .. }, _) = self.sample_point(time, u);
         let position = middle + (point - middle) * extent;
         let wi = (position - from).try_normalize()?;
         let cos = normal.dot(wi);

@@ -16,7 +16,7 @@ mod rect;
 mod sphere;
 mod spot;
 
-pub use mesh_light::MeshLight;
+pub use mesh_light::{MeshLight, Picture};
 pub use sphere::SphereLight;
 
 use crate::classic::ClassicLight;

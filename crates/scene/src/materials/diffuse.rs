@@ -1,11 +1,11 @@
 //! `diffuse`: matt, equally bright from everywhere.
 
 use super::{
-    EMISSION, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance,
+    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map,
+    reflectance,
 };
 use crate::bsdf::{Bsdf, Lambert, Lobe};
 use crate::classic::ClassicMaterial;
-use crate::lights::Sides;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
@@ -20,24 +20,19 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         parameters: &[
             reflectance("reflectance", "reflected fraction of the light", "0.7"),
             EMISSION,
+            EMISSION_SCALE,
             EMISSION_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],
     },
     build: |reader, ingredients| {
-        Ok(Arc::new(Diffuse {
-            reflectance: colour_map(reader, "reflectance", ingredients)?,
-            emission: reader.colour("emission"),
-            sides: Sides::named(&reader.text("emission_sides")),
-        }))
+        Ok(Arc::new(Diffuse { reflectance: colour_map(reader, "reflectance", ingredients)? }))
     },
 };
 
 struct Diffuse {
     reflectance: ColourMap,
-    emission: Rgb,
-    sides: Sides,
 }
 
 impl Diffuse {
@@ -56,13 +51,5 @@ impl Material for Diffuse {
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let kd = self.albedo(surface);
         ClassicMaterial { ka: kd, kd, ..ClassicMaterial::default() }
-    }
-
-    fn emission(&self) -> Rgb {
-        self.emission
-    }
-
-    fn emission_sides(&self) -> Sides {
-        self.sides
     }
 }

@@ -1,11 +1,13 @@
 //! `mirror`: reflects like polished metal.
 
-use super::{EMISSION, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance, spread};
+use super::{
+    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map,
+    reflectance, spread,
+};
 use crate::bsdf::{Bsdf, Lobe, Mirror};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
-use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use std::sync::Arc;
 
@@ -18,6 +20,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             reflectance("reflectance", "reflected fraction of the light", "0.95"),
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             EMISSION,
+            EMISSION_SCALE,
+            EMISSION_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],
@@ -26,7 +30,6 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         Ok(Arc::new(MirrorMaterial {
             reflectance: colour_map(reader, "reflectance", ingredients)?,
             gloss: reader.number("gloss").to_radians(),
-            emission: reader.colour("emission"),
         }))
     },
 };
@@ -34,7 +37,6 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 struct MirrorMaterial {
     reflectance: ColourMap,
     gloss: f32,
-    emission: Rgb,
 }
 
 impl Material for MirrorMaterial {
@@ -51,9 +53,5 @@ impl Material for MirrorMaterial {
             gloss: self.gloss,
             ..ClassicMaterial::default()
         }
-    }
-
-    fn emission(&self) -> Rgb {
-        self.emission
     }
 }

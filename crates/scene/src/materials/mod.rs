@@ -18,6 +18,7 @@
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod glow;
 mod metals;
 mod mirror;
 mod mix;
@@ -35,6 +36,7 @@ use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap, Texture};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
+use glow::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 use normal_map::{NORMAL, NORMAL_SCALE};
 use std::sync::Arc;
 
@@ -57,9 +59,13 @@ pub trait Material: Send + Sync {
     fn most_lobes(&self) -> usize {
         1
     }
-    /// Radiance given out; black for what is no light.
+    /// Radiance given out, black for what is no light; the greatest, where a picture tells it.
     fn emission(&self) -> Rgb {
         Rgb::BLACK
+    }
+    /// The picture that tells it.
+    fn emission_map(&self) -> Option<&ColourMap> {
+        None
     }
     /// On which sides of its triangles a surface gives that out.
     fn emission_sides(&self) -> Sides {
@@ -151,7 +157,11 @@ pub fn build(spec: &Spec, ingredients: &Ingredients) -> Result<Arc<dyn Material>
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
     let reader = Reader::new(spec, &row.entry)?;
-    normal_map::apply((row.build)(&reader, ingredients)?, &reader, ingredients)
+    let mut material = (row.build)(&reader, ingredients)?;
+    if row.entry.parameters.iter().any(|parameter| parameter.name == EMISSION.name) {
+        material = glow::apply(material, &reader, ingredients)?;
+    }
+    normal_map::apply(material, &reader, ingredients)
 }
 
 /// The colour or texture under a key.
@@ -174,24 +184,6 @@ fn texture(
     let missing = || SceneError::invalid(format!("no texture {index}"), reader.span(key));
     ingredients.textures.get(index).cloned().map(Some).ok_or_else(missing)
 }
-
-/// Shared by all materials: what a surface gives out by itself.
-const EMISSION: Parameter = Parameter {
-    name: "emission",
-    summary: "radiance that the surface gives out",
-    unit: "W/(m² sr)",
-    kind: ParameterKind::Colour { min: 0.0, max: 1e12 },
-    default: "0",
-};
-
-/// On which sides it does.
-const EMISSION_SIDES: Parameter = Parameter {
-    name: "emission_sides",
-    summary: "where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise",
-    unit: "",
-    kind: ParameterKind::Choice(Sides::NAMES),
-    default: "both",
-};
 
 const ABSORPTION: Parameter = Parameter {
     name: "absorption",

@@ -8,7 +8,7 @@ use crate::error::SceneError;
 use crate::lights::Sides;
 use crate::parameters::Reader;
 use crate::surface::Surface;
-use crate::texture::Texture;
+use crate::texture::{ColourMap, Texture};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
@@ -80,6 +80,10 @@ impl Material for NormalMapped {
 
     fn emission(&self) -> Rgb {
         self.material.emission()
+    }
+
+    fn emission_map(&self) -> Option<&ColourMap> {
+        self.material.emission_map()
     }
 
     fn emission_sides(&self) -> Sides {

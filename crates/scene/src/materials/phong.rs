@@ -5,8 +5,8 @@
 //! the lobes are scaled down together, so that it never gives out more light than it gets.
 
 use super::{
-    ABSORPTION, EMISSION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, THIN, colour_map, reflectance,
-    spread,
+    ABSORPTION, EMISSION, EMISSION_SCALE, EMISSION_SIDES, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
+    THIN, colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
 use crate::classic::ClassicMaterial;
@@ -46,6 +46,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
             EMISSION,
+            EMISSION_SCALE,
+            EMISSION_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],
@@ -68,7 +70,6 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 translucency: reader.number("translucency").to_radians(),
                 ..ClassicMaterial::default()
             },
-            emission: reader.colour("emission"),
         }))
     },
 };
@@ -80,7 +81,6 @@ struct Phong {
     ks: ColourMap,
     kt: ColourMap,
     constants: ClassicMaterial,
-    emission: Rgb,
 }
 
 impl Material for Phong {
@@ -120,10 +120,6 @@ impl Material for Phong {
 
     fn most_lobes(&self) -> usize {
         3
-    }
-
-    fn emission(&self) -> Rgb {
-        self.emission
     }
 
     fn sigma_a(&self) -> Rgb {

@@ -4,7 +4,8 @@
 //! the diffuse part lacks, and no more: a white surface loses nothing. [OpenPBR 1.1; Kulla 2017]
 
 use super::{
-    EMISSION, Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, number_map, reflectance,
+    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
+    colour_map, number_map, reflectance,
 };
 use crate::bsdf::{Albedo, Bsdf, Cover, Fresnel, Ggx, Gloss, Lambert, Lobe, Matt};
 use crate::classic::ClassicMaterial;
@@ -54,6 +55,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 default: "0",
             },
             EMISSION,
+            EMISSION_SCALE,
+            EMISSION_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],
@@ -61,7 +64,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     build: |reader, ingredients| {
         let maps = Maps::read(reader, ingredients)?;
         let even = maps.are_even().then(|| maps.at(Vec2::ZERO).lobes());
-        Ok(Arc::new(Principled { maps, even, emission: reader.colour("emission") }))
+        Ok(Arc::new(Principled { maps, even }))
     },
 };
 
@@ -175,7 +178,6 @@ struct Principled {
     maps: Maps,
     /// What it comes to where it is the same everywhere.
     even: Option<Lobes>,
-    emission: Rgb,
 }
 
 impl Principled {
@@ -218,9 +220,5 @@ impl Material for Principled {
 
     fn most_lobes(&self) -> usize {
         2
-    }
-
-    fn emission(&self) -> Rgb {
-        self.emission
     }
 }

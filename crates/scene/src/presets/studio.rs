@@ -72,7 +72,8 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing) {
 fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
     let black = |value: &Value| match value {
         Value::List(list) => list.iter().all(|v| matches!(v, Value::Integer(0) | Value::Number(0.0))),
-        one => matches!(one, Value::Integer(0) | Value::Number(0.0)),
+        // What glows by a picture are signs and screens, no light to see the rest by.
+        one => matches!(one, Value::Integer(0) | Value::Number(0.0) | Value::Texture(_)),
     };
     let emission = scene.materials.get(object.material).and_then(|m| m.parameters.find("emission"));
     emission.is_some_and(|(value, _)| !black(value))
