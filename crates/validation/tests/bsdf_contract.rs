@@ -29,7 +29,8 @@ fn is_white(lobe: &Lobe) -> bool {
         Lobe::Mirror(m) => m.reflectance == Rgb::WHITE,
         Lobe::Dielectric(d) => d.tint == Rgb::WHITE,
         Lobe::Gloss(gloss) => gloss.is_white(),
-        Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) => false,
+        Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) => false,
+        Lobe::Matt(_) | Lobe::Clear(_) => false,
     }
 }
 

@@ -23,11 +23,11 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     cases: || {
         let of = |ggx, metal: f32| {
             let tint = Fresnel::tinted(Rgb::new(1.0, 0.78, 0.34), Rgb::new(0.9, 1.0, 0.8));
-            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::grey(1.0 - metal), tint, metal, Cover::NONE))
+            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::grey(1.0 - metal), tint, Rgb::grey(metal), Cover::NONE))
         };
         let white = |ggx| {
             let tint = Fresnel::tinted(Rgb::WHITE, Rgb::WHITE);
-            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::BLACK, tint, 1.0, Cover::NONE))
+            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::BLACK, tint, Rgb::WHITE, Cover::NONE))
         };
         vec![
             ("polished plastic", of(Ggx::SMOOTH, 0.0)),
@@ -51,8 +51,8 @@ pub struct Gloss {
     /// Factor on what facets of glass reflect; black where there are none.
     glass: Rgb,
     metal: Fresnel,
-    /// How much of the surface is metal, 0..=1.
-    metalness: f32,
+    /// Factor on what facets of metal reflect; black where there are none.
+    metal_weight: Rgb,
     albedo: Albedo,
     /// What comes out after more than one reflection, over the two fractions that one reflection leaves.
     again: Rgb,
@@ -64,28 +64,28 @@ pub struct Gloss {
 }
 
 impl Gloss {
-    /// Facets of an index `eta`, at least 1, that reflect `glass` times Fresnel's fraction, and `metalness` times
-    /// that of metal. White `glass` and `metalness` are at most 1 together.
-    pub fn new(ggx: Ggx, eta: f32, glass: Rgb, metal: Fresnel, metalness: f32, cover: Cover) -> Gloss {
+    /// Facets of an index `eta`, at least 1, that reflect `glass` times Fresnel's fraction, and `metal_weight` times that
+    /// of metal. The two are at most white together.
+    pub fn new(ggx: Ggx, eta: f32, glass: Rgb, metal: Fresnel, metal_weight: Rgb, cover: Cover) -> Gloss {
         let albedo = Albedo::new(&ggx, eta);
         let mut gloss = Gloss {
             ggx,
             eta,
             glass,
             metal,
-            metalness,
+            metal_weight,
             albedo,
             again: Rgb::BLACK,
             again_share: 0.0,
             cover,
             from_below: 1.0,
         };
-        if metalness > 0.0 && !ggx.is_smooth() {
+        if !metal_weight.is_black() && !ggx.is_smooth() {
             let (mean, facet) = (albedo.opaque_mean(), metal.mean());
             let comes_out = facet.map(|f| f * f * mean / (1.0 - f * (1.0 - mean)));
-            gloss.again = comes_out * (metalness / (1.0 - mean).max(1e-6));
+            gloss.again = comes_out * metal_weight / (1.0 - mean).max(1e-6);
             gloss.again_share =
-                (comes_out.luminance() * metalness / gloss.strength().max(f32::MIN_POSITIVE)).min(1.0);
+                ((comes_out * metal_weight).luminance() / gloss.strength().max(f32::MIN_POSITIVE)).min(1.0);
         }
         gloss
     }
@@ -98,14 +98,14 @@ impl Gloss {
     /// True for white metal without a cover, which reflects all light.
     pub fn is_white(&self) -> bool {
         let is_bare = self.cover.is_none() && self.from_below == 1.0;
-        is_bare && self.metalness == 1.0 && self.metal == Fresnel::tinted(Rgb::WHITE, Rgb::WHITE)
+        is_bare && self.metal_weight == Rgb::WHITE && self.metal == Fresnel::tinted(Rgb::WHITE, Rgb::WHITE)
     }
 
     #[inline]
     fn fresnel(&self, cos: f32) -> Rgb {
         let mut reflected = Rgb::BLACK;
-        if self.metalness > 0.0 {
-            reflected = self.metal.at(cos) * self.metalness;
+        if !self.metal_weight.is_black() {
+            reflected = self.metal.at(cos) * self.metal_weight;
         }
         if !self.glass.is_black() {
             reflected += self.glass * fresnel_dielectric(cos, self.eta);
@@ -181,7 +181,7 @@ impl Gloss {
     /// Facets that face the light reflect more of it towards grazing, the more so the smoother they are.
     #[inline]
     pub(super) fn rise(&self) -> f32 {
-        let grazing = self.glass.luminance() + self.metalness;
+        let grazing = (self.glass + self.metal_weight).luminance();
         (grazing - self.strength()).max(0.0) * (1.0 - self.ggx.least()).max(0.0)
     }
 }

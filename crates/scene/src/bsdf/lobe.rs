@@ -1,7 +1,7 @@
 //! A lobe, one of [`BSDFS`].
 
 use super::{
-    BsdfSample, Conductor, Dielectric, Gloss, Lambert, Matt, Mirror, PhongLobe, RoughDielectric,
+    BsdfSample, Clear, Conductor, Dielectric, Gloss, Lambert, Matt, Mirror, PhongLobe, RoughDielectric,
     TransportMode,
 };
 use bilux_math::registry::Entry;
@@ -26,6 +26,8 @@ pub enum Lobe {
     Gloss(Gloss),
     /// Diffuse below a boundary.
     Matt(Matt),
+    /// Glass below what covers it.
+    Clear(Clear),
 }
 
 macro_rules! each_lobe {
@@ -39,6 +41,7 @@ macro_rules! each_lobe {
             Lobe::RoughDielectric($l) => $body,
             Lobe::Gloss($l) => $body,
             Lobe::Matt($l) => $body,
+            Lobe::Clear($l) => $body,
         }
     };
 }
@@ -71,6 +74,7 @@ impl Lobe {
     pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
         match self {
             Lobe::Dielectric(lobe) => lobe.transmitted(wo),
+            Lobe::Clear(lobe) => lobe.transmitted(wo),
             _ => None,
         }
     }
@@ -82,6 +86,7 @@ impl Lobe {
             Lobe::Mirror(_) | Lobe::Dielectric(_) => true,
             Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
             Lobe::Gloss(lobe) => lobe.is_delta(),
+            Lobe::Clear(lobe) => lobe.is_delta(),
             Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) => false,
         }
     }
@@ -126,4 +131,5 @@ pub const BSDFS: &[BsdfEntry] = &[
     super::phong_lobe::ENTRY,
     super::gloss::ENTRY,
     super::matt::ENTRY,
+    super::clear::ENTRY,
 ];

@@ -10,6 +10,7 @@
 
 mod albedo;
 mod bent;
+mod clear;
 mod conductor;
 mod cover;
 mod delta;
@@ -27,6 +28,7 @@ mod rough_dielectric;
 mod sample;
 
 pub use albedo::Albedo;
+pub use clear::Clear;
 pub use conductor::{Conductor, Fresnel, fresnel_conductor};
 pub use cover::Cover;
 pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
@@ -171,6 +173,7 @@ impl Bsdf {
             match lobe {
                 Lobe::Dielectric(glass) if !glass.thin => glass.eta /= eta_outside,
                 Lobe::RoughDielectric(glass) if !glass.thin => *lobe = glass.against(eta_outside),
+                Lobe::Clear(clear) => *clear = clear.against(eta_outside),
                 _ => {}
             }
         }

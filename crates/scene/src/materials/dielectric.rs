@@ -47,7 +47,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
 };
 
-const PRIORITY: Parameter = Parameter {
+pub(super) const PRIORITY: Parameter = Parameter {
     name: "priority",
     summary: "where several of these overlap, that of the greatest priority is, and eta is over that of air; 0 takes no \
               part in it",

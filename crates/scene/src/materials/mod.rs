@@ -10,7 +10,7 @@
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
 //! | `conductor` | 0 | 0 | reflectance straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
-//! | `principled` | base that is not metal | as ka | what is reflected straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
+//! | `principled` | base that is neither metal nor clear | as ka | what is reflected straight on; 1 where kt > 0 | transmission | 2/α² − 2, at most 500 | 1 | where kt > 0 |
 //! | `mix` | in between | in between | in between | in between | in between | in between | as what lets light in |
 //!
 //! Roughness α spreads the reflected and refracted rays of `cook` by up to the arc tangent of α.

@@ -1,20 +1,22 @@
-//! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: glossy plastic, metal, or a mixture.
+//! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: plastic, metal, glass, or
+//! a mixture, below a clear coat.
 //!
 //! Below is what scatters diffusely, or metal; at the surface, facets reflect by Fresnel's equations. What they reflect
 //! the diffuse part lacks, and no more: a white surface loses nothing. [OpenPBR 1.1; Kulla 2017]
 
+use super::dielectric::PRIORITY;
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
-    colour_map, number_map, reflectance,
+    Nested, THIN, colour_map, number_map, reflectance,
 };
-use crate::bsdf::{Albedo, Bsdf, Cover, Fresnel, Ggx, Gloss, Lambert, Lobe, Matt};
+use crate::bsdf::{Albedo, Bsdf, Clear, Cover, Fresnel, Ggx, Gloss, Lambert, Lobe, Matt};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_math::transcendental::atan;
+use bilux_math::transcendental::{atan, ln};
 use bilux_math::{Rgb, Vec2};
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -22,7 +24,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "principled",
-        summary: "plastic, metal, paint: one surface for nearly everything",
+        summary: "plastic, metal, paint, glass: one surface for nearly everything",
         source: "OpenPBR 1.1",
         parameters: &[
             reflectance("base_color", "what diffuse parts reflect, and metal straight on", "0.8"),
@@ -34,13 +36,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 "1",
             ),
             number("specular_roughness", ROUGHNESS, 1.0, "0.3"),
-            Parameter {
-                name: "specular_ior",
-                summary: "refractive index of what is not metal",
-                unit: "",
-                kind: ParameterKind::NumberTexture { min: 1.0, max: 10.0 },
-                default: "1.5",
-            },
+            index("specular_ior", "refractive index of what is not metal", "1.5"),
             number(
                 "specular_roughness_anisotropy",
                 "how much smoother it is along its brushing than across",
@@ -54,6 +50,25 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 kind: ParameterKind::NumberTexture { min: -1.0, max: 1.0 },
                 default: "0",
             },
+            number("transmission_weight", "how much of what is not metal is clear", 1.0, "0"),
+            reflectance(
+                "transmission_color",
+                "what is left of light that passes: at each surface, or after transmission_depth inside",
+                "1",
+            ),
+            Parameter {
+                name: "transmission_depth",
+                summary: "how far light goes inside until it has transmission_color; 0 tints at the surface",
+                unit: "m",
+                kind: ParameterKind::Number { min: 0.0, max: 1e6 },
+                default: "0",
+            },
+            Parameter { name: "thin_walled", ..THIN },
+            PRIORITY,
+            number("coat_weight", "how much of the surface has a clear coat", 1.0, "0"),
+            reflectance("coat_color", "what is left of light that passes the coat and comes back", "1"),
+            number("coat_roughness", ROUGHNESS, 1.0, "0"),
+            index("coat_ior", "refractive index of the coat", "1.6"),
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
@@ -64,9 +79,29 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     build: |reader, ingredients| {
         let maps = Maps::read(reader, ingredients)?;
         let even = maps.are_even().then(|| maps.at(Vec2::ZERO).lobes());
-        Ok(Arc::new(Principled { maps, even }))
+        let depth = reader.number("transmission_depth");
+        let is_deep = !maps.tints_surface;
+        if is_deep && maps.transmission_color.texture.is_some() {
+            let message =
+                "with a transmission_depth transmission_color is of the inside, which has no texture";
+            return Err(SceneError::invalid(message, reader.span("transmission_color")));
+        }
+        let sigma_a = if is_deep && is_there(&maps.transmission_weight) {
+            maps.transmission_color.colour.map(|c| -ln(c.clamp(DARKEST, 1.0)) / depth)
+        } else {
+            Rgb::BLACK
+        };
+        Ok(Arc::new(Principled { maps, even, sigma_a, priority: reader.integer("priority") as u32 }))
     },
 };
+
+/// What is clear lets this much through at least, or no number would tell how much it absorbs.
+const DARKEST: f32 = 1e-6;
+
+const fn index(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    let kind = ParameterKind::NumberTexture { min: 1.0, max: 10.0 };
+    Parameter { name, summary, unit: "", kind, default }
+}
 
 const ROUGHNESS: &str = "0 is polished, 1 as rough as can be; the square root of GGX's alpha";
 
@@ -84,6 +119,15 @@ struct Maps {
     specular_ior: NumberMap,
     anisotropy: NumberMap,
     rotation: NumberMap,
+    transmission_weight: NumberMap,
+    transmission_color: ColourMap,
+    /// True where transmission_color is of the surface, and not of what is inside.
+    tints_surface: bool,
+    thin: bool,
+    coat_weight: NumberMap,
+    coat_color: ColourMap,
+    coat_roughness: NumberMap,
+    coat_ior: NumberMap,
 }
 
 impl Maps {
@@ -99,12 +143,20 @@ impl Maps {
             specular_ior: number("specular_ior")?,
             anisotropy: number("specular_roughness_anisotropy")?,
             rotation: number("anisotropy_rotation")?,
+            transmission_weight: number("transmission_weight")?,
+            transmission_color: colour("transmission_color")?,
+            tints_surface: reader.number("transmission_depth") == 0.0 || reader.bool("thin_walled"),
+            thin: reader.bool("thin_walled"),
+            coat_weight: number("coat_weight")?,
+            coat_color: colour("coat_color")?,
+            coat_roughness: number("coat_roughness")?,
+            coat_ior: number("coat_ior")?,
         })
     }
 
     /// True where no texture changes anything over the surface.
     fn are_even(&self) -> bool {
-        let colours = [&self.base_color, &self.specular_color];
+        let colours = [&self.base_color, &self.specular_color, &self.transmission_color, &self.coat_color];
         let numbers = [
             &self.base_metalness,
             &self.specular_weight,
@@ -112,6 +164,10 @@ impl Maps {
             &self.specular_ior,
             &self.anisotropy,
             &self.rotation,
+            &self.transmission_weight,
+            &self.coat_weight,
+            &self.coat_roughness,
+            &self.coat_ior,
         ];
         colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
     }
@@ -126,6 +182,17 @@ impl Maps {
             ior: self.specular_ior.at(uv),
             anisotropy: self.anisotropy.at(uv),
             rotation: self.rotation.at(uv),
+            transmission: self.transmission_weight.at(uv),
+            passed: if self.tints_surface {
+                self.transmission_color.at(uv).clamp(0.0, 1.0)
+            } else {
+                Rgb::WHITE
+            },
+            thin: self.thin,
+            coat: self.coat_weight.at(uv),
+            coat_color: self.coat_color.at(uv).clamp(0.0, 1.0),
+            coat_roughness: self.coat_roughness.at(uv),
+            coat_ior: self.coat_ior.at(uv),
         }
     }
 }
@@ -140,21 +207,30 @@ struct Point {
     ior: f32,
     anisotropy: f32,
     rotation: f32,
+    transmission: f32,
+    passed: Rgb,
+    thin: bool,
+    coat: f32,
+    coat_color: Rgb,
+    coat_roughness: f32,
+    coat_ior: f32,
 }
 
-/// A way of scattering, and what its light is multiplied by.
-type Lobes = [Option<Lobe>; 2];
+/// Coat, boundary, base, clear part.
+type Lobes = [Option<Lobe>; 4];
 
 impl Point {
     fn lobes(&self) -> Lobes {
-        let cover = Cover::NONE;
-        let opaque = 1.0 - self.metalness;
         let ggx = Ggx::from_roughness(self.roughness, self.anisotropy, self.rotation * TAU);
-        let eta = weakened(self.ior, self.specular_weight);
+        let (coat, cover) = self.coat_and_cover();
+        let tint = Rgb::WHITE.lerp(self.coat_color, self.coat);
+        let (opaque, clear) = (tint * self.opaque(), tint * self.clear());
+        let eta = self.eta();
         let glass = if eta > 1.0 { self.specular_color * opaque } else { Rgb::BLACK };
         let metal = Fresnel::tinted(self.base_color * self.specular_weight, self.specular_color);
-        let gloss = (self.metalness > 0.0 || !glass.is_black())
-            .then(|| Lobe::Gloss(Gloss::new(ggx, eta, glass, metal, self.metalness, cover)));
+        let metal_weight = tint * self.metalness;
+        let gloss = (!metal_weight.is_black() || !glass.is_black())
+            .then(|| Lobe::Gloss(Gloss::new(ggx, eta, glass, metal, metal_weight, cover)));
         let albedo = self.base_color * opaque;
         let is_bare = eta <= 1.0 && cover.is_none();
         let base = (!albedo.is_black()).then(|| {
@@ -164,8 +240,47 @@ impl Point {
                 Lobe::Matt(Matt::new(albedo, Albedo::new(&ggx, eta), cover))
             }
         });
-        [gloss, base]
+        let clear = (!clear.is_black()).then(|| {
+            let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
+            Lobe::Clear(Clear::new(self.ior, ggx, self.thin, reflected, passed, cover))
+        });
+        [coat, gloss, base, clear]
     }
+
+    /// How much of the surface is neither metal nor clear.
+    fn opaque(&self) -> f32 {
+        (1.0 - self.metalness) * (1.0 - self.transmission)
+    }
+
+    fn clear(&self) -> f32 {
+        (1.0 - self.metalness) * self.transmission
+    }
+
+    /// The index of the boundary of what is neither metal nor clear. Below a coat it is over that of the coat; where
+    /// that is greater it is taken the other way round, or too much would be reflected totally. [OpenPBR 1.1]
+    fn eta(&self) -> f32 {
+        let ratio = self.ior / self.coat_ior;
+        let eta = self.ior + (ratio.max(1.0 / ratio) - self.ior) * self.coat;
+        weakened(eta, self.specular_weight)
+    }
+
+    fn coat_and_cover(&self) -> (Option<Lobe>, Cover) {
+        if self.coat == 0.0 || self.coat_ior <= 1.0 {
+            return (None, Cover::NONE);
+        }
+        let ggx = Ggx::from_roughness(self.coat_roughness, 0.0, 0.0);
+        let none = Fresnel::tinted(Rgb::BLACK, Rgb::WHITE);
+        let coat = Gloss::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, Cover::NONE);
+        // Who is inside of what is clear sees no coat.
+        let outside = if self.thin { 1.0 } else { 1.0 - self.clear() };
+        let cover = Cover::coat(self.coat, Albedo::new(&ggx, self.coat_ior));
+        (Some(Lobe::Gloss(coat.from_below(outside))), cover)
+    }
+}
+
+/// True where a weight is above 0, or may be somewhere.
+fn is_there(weight: &NumberMap) -> bool {
+    weight.texture.is_some() || weight.number > 0.0
 }
 
 /// The index of a boundary that reflects `weight` times what this one does, straight on. [OpenPBR 1.1, eq. 27]
@@ -178,6 +293,8 @@ struct Principled {
     maps: Maps,
     /// What it comes to where it is the same everywhere.
     even: Option<Lobes>,
+    sigma_a: Rgb,
+    priority: u32,
 }
 
 impl Principled {
@@ -200,25 +317,42 @@ impl Material for Principled {
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let point = self.point(surface);
         let alpha = point.roughness * point.roughness;
-        let kd = point.base_color * (1.0 - point.metalness);
+        let (kd, kt) = (point.base_color * point.opaque(), point.passed * point.clear());
         let amplitude = (point.ior - 1.0) / (point.ior + 1.0);
         let glass = point.specular_color * (amplitude * amplitude * (1.0 - point.metalness));
+        let ks = (point.base_color * point.metalness + glass) * point.specular_weight;
         ClassicMaterial {
             ka: kd,
             kd,
-            ks: (point.base_color * point.metalness + glass) * point.specular_weight,
+            ks: if kt.is_black() { ks } else { Rgb::WHITE },
+            kt,
             exponent: (2.0 / (alpha * alpha) - 2.0).min(500.0),
             reflectivity: 1.0,
+            eta: point.ior,
+            sigma_a: self.sigma_a,
+            thin: point.thin,
             gloss: atan(alpha),
-            ..ClassicMaterial::default()
+            translucency: atan(alpha),
+            fresnel: !kt.is_black(),
         }
     }
 
     fn needs_tangents(&self) -> bool {
-        self.maps.anisotropy.texture.is_some() || self.maps.anisotropy.number > 0.0
+        is_there(&self.maps.anisotropy)
     }
 
     fn most_lobes(&self) -> usize {
-        2
+        2 + usize::from(is_there(&self.maps.transmission_weight))
+            + usize::from(is_there(&self.maps.coat_weight))
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        let is_solid = !self.maps.thin && is_there(&self.maps.transmission_weight);
+        (is_solid && self.priority > 0)
+            .then_some(Nested { priority: self.priority, eta: self.maps.specular_ior.number })
+    }
+
+    fn sigma_a(&self) -> Rgb {
+        self.sigma_a
     }
 }

@@ -1,0 +1,112 @@
+//! The clear part of a surface: glass, smooth or rough, solid or a pane, below what covers it.
+
+use super::{BsdfEntry, BsdfSample, Cover, Dielectric, Ggx, Lobe, RoughDielectric, TransportMode};
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2, Vec3};
+
+/// Row of [`super::BSDFS`].
+pub(super) const ENTRY: BsdfEntry = BsdfEntry {
+    entry: Entry {
+        name: "clear",
+        summary: "glass, smooth or rough, below a coat",
+        source: "Walter 2007",
+        parameters: &[],
+    },
+    reciprocal: false,
+    lossless: false,
+    cases: || {
+        let coat = Cover::coat(1.0, super::Albedo::new(&Ggx::new(0.1), 1.6));
+        let glass = |ggx, thin, cover| {
+            Lobe::Clear(Clear::new(1.5, ggx, thin, Rgb::grey(0.9), Rgb::new(0.5, 0.8, 0.9), cover))
+        };
+        vec![
+            ("bottle", glass(Ggx::SMOOTH, false, Cover::NONE)),
+            ("coated glass", glass(Ggx::new(0.2), false, coat)),
+            ("coated pane", glass(Ggx::new(0.3), true, coat)),
+        ]
+    },
+};
+
+/// Glass that tints what it reflects and what it lets through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clear {
+    /// With facets or without, as it is in the open.
+    glass: RoughDielectric,
+    reflected: Rgb,
+    passed: Rgb,
+    cover: Cover,
+}
+
+impl Clear {
+    /// An index `eta` of the inside over the outside; `thin` for a pane; factors on what is reflected and on what
+    /// passes, 0..=1.
+    pub fn new(eta: f32, ggx: Ggx, thin: bool, reflected: Rgb, passed: Rgb, cover: Cover) -> Clear {
+        Clear { glass: RoughDielectric { eta, tint: Rgb::WHITE, thin, ggx }, reflected, passed, cover }
+    }
+
+    /// The same where the outside has this refractive index.
+    pub(super) fn against(&self, eta_outside: f32) -> Clear {
+        let eta = if self.glass.thin { self.glass.eta } else { self.glass.eta / eta_outside };
+        Clear { glass: RoughDielectric { eta, ..self.glass }, ..*self }
+    }
+
+    #[inline]
+    pub(super) fn is_delta(&self) -> bool {
+        !RoughDielectric::is_rough(self.glass.eta, self.glass.thin, &self.glass.ggx)
+    }
+
+    #[inline]
+    fn smooth(&self) -> Dielectric {
+        Dielectric { eta: self.glass.eta, tint: Rgb::WHITE, thin: self.glass.thin }
+    }
+
+    /// Where glass without width lets light through.
+    #[inline]
+    pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
+        if self.is_delta() { self.smooth().transmitted(wo) } else { None }
+    }
+
+    /// What is left of light between two directions. Inside of what is solid there is no cover.
+    #[inline]
+    fn left(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        let tint = if wo.z * wi.z > 0.0 { self.reflected } else { self.passed };
+        if self.cover.is_none() {
+            return tint;
+        }
+        let covered = |v: Vec3| v.z > 0.0 || self.glass.thin;
+        let passed = |v: Vec3| if covered(v) { self.cover.passed(v.z.abs()) } else { 1.0 };
+        tint * passed(wo).min(passed(wi))
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        self.eval_and_pdf(wo, wi, mode).0
+    }
+
+    #[inline]
+    pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_delta() { 0.0 } else { self.glass.pdf_solid_angle(wo, wi) }
+    }
+
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        if self.is_delta() {
+            return (Rgb::BLACK, 0.0);
+        }
+        let (f, pdf) = self.glass.eval_and_pdf(wo, wi, mode);
+        (f * self.left(wo, wi), pdf)
+    }
+
+    pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        let sample = if self.is_delta() {
+            self.smooth().sample(wo, u_choice, u, mode)
+        } else {
+            self.glass.sample(wo, u_choice, u, mode)
+        }?;
+        Some(BsdfSample { weight: sample.weight * self.left(wo, sample.wi), ..sample })
+    }
+
+    #[inline]
+    pub(super) fn strength(&self) -> f32 {
+        self.reflected.luminance().max(self.passed.luminance())
+    }
+}

@@ -1,0 +1,198 @@
+//! `principled` keeps the contract of scattering over its parameters, in their corners and between.
+
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::materials::{Ingredients, build};
+use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode};
+use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
+use bilux_validation::chi_square::uniforms;
+
+fn surface(n_shade: Vec3) -> Surface {
+    Surface {
+        t: 1.0,
+        p: Vec3::ZERO,
+        p_error: Vec3::ZERO,
+        n_geom: Vec3::Z,
+        n_shade,
+        tangent: Vec3::X,
+        handedness: 1.0,
+        uv: Vec2::ZERO,
+        vertex_kd: None,
+        vertex_ks: None,
+        primitive: Primitive { instance: 0, index: 0 },
+        object: 0,
+        time: 0.0,
+    }
+}
+
+fn principled(numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
+    about(Vec3::Z, numbers, base)
+}
+
+fn about(n_shade: Vec3, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
+    let spec = Spec::new("", "principled").with("base_color", base);
+    let spec = numbers.iter().fold(spec, |spec, (key, number)| spec.with(key, *number));
+    build(&spec, &Ingredients::default()).unwrap().bsdf(&surface(n_shade))
+}
+
+const ORANGE: Rgb = Rgb { r: 0.9, g: 0.5, b: 0.1 };
+
+/// What they are, their parameters, and whether light is refracted.
+const CASES: &[(&str, &[(&str, f32)], bool)] = &[
+    ("rough plastic", &[("specular_roughness", 0.7)], false),
+    ("metal in part, brushed", &[("base_metalness", 0.5), ("specular_roughness_anisotropy", 0.8)], false),
+    ("coated paint", &[("specular_roughness", 0.5), ("coat_weight", 0.8), ("coat_roughness", 0.3)], false),
+    ("frosted", &[("transmission_weight", 0.7), ("specular_roughness", 0.4), ("coat_weight", 0.5)], true),
+    ("dense", &[("specular_ior", 2.4), ("specular_weight", 0.4), ("base_metalness", 0.2)], false),
+];
+
+#[test]
+fn its_parameters_keep_the_contract() {
+    for (name, numbers, refracts) in CASES {
+        let bsdf = principled(numbers, ORANGE);
+        for (check, run) in CHECKS {
+            let result = run(&bsdf.into(), Promise { reciprocal: !refracts, lossless: false });
+            assert_eq!(result, Ok(()), "{name}: {check}");
+        }
+    }
+}
+
+#[test]
+fn turned_normals_keep_it_too() {
+    let n_shade = Vec3::new(-0.3, 0.4, 1.0).normalize();
+    let (_, run) = CHECKS.iter().find(|(check, _)| *check == "the same from both ends").unwrap();
+    for (name, numbers, _) in &CASES[1..4] {
+        let result =
+            run(&about(n_shade, numbers, ORANGE).into(), Promise { reciprocal: false, lossless: false });
+        assert_eq!(result, Ok(()), "{name}");
+    }
+}
+
+/// A white one in an even light: the least and the greatest of what is seen along directions steep and grazing.
+fn furnace(bsdf: &Bsdf) -> [f64; 2] {
+    let seen = [1.0f32, 0.8, 0.5, 0.25, 0.12].map(|cos| {
+        let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+        const N: u64 = 30_000;
+        let samples = (0..N).map(|k| uniforms(900, k));
+        let weights = samples.filter_map(|(c, u)| bsdf.sample(wo, c, u, TransportMode::Radiance));
+        weights.map(|s| f64::from(s.weight.g)).sum::<f64>() / N as f64
+    });
+    [seen.into_iter().fold(f64::INFINITY, f64::min), seen.into_iter().fold(0.0, f64::max)]
+}
+
+#[test]
+fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
+    for roughness in [0.0f32, 0.2, 0.45, 0.7, 1.0] {
+        for metalness in [0.0, 0.5, 1.0] {
+            for ior in [1.2, 1.5, 2.5] {
+                let numbers =
+                    [("specular_roughness", roughness), ("base_metalness", metalness), ("specular_ior", ior)];
+                let [least, most] = furnace(&principled(&numbers, Rgb::WHITE));
+                assert!(least > 0.985 && most < 1.012, "{numbers:?}: {least:.4} to {most:.4}");
+            }
+        }
+    }
+    let grey = furnace(&principled(&[("specular_roughness", 0.7)], Rgb::grey(0.9)));
+    assert!(grey[0] < 0.985, "a grey one passes for white: {grey:?}");
+}
+
+#[test]
+fn a_coat_takes_little_from_white() {
+    for roughness in [0.0f32, 0.3, 0.8] {
+        for coat_roughness in [0.0, 0.4, 1.0] {
+            for metalness in [0.0, 1.0] {
+                let numbers = [
+                    ("specular_roughness", roughness),
+                    ("coat_roughness", coat_roughness),
+                    ("base_metalness", metalness),
+                    ("coat_weight", 1.0),
+                ];
+                let [least, most] = furnace(&principled(&numbers, Rgb::WHITE));
+                assert!(least > 0.75 && most < 1.015, "{numbers:?}: {least:.4} to {most:.4}");
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_on_top_leaves_the_diffuse_base() {
+    let bare = principled(&[("specular_weight", 0.0)], ORANGE);
+    let spec = Spec::new("", "diffuse").with("reflectance", ORANGE);
+    let diffuse = build(&spec, &Ingredients::default()).unwrap().bsdf(&surface(Vec3::Z));
+    for (c, u) in (0..500).map(|k| uniforms(901, k)) {
+        let wo = bilux_math::warp::sample_sphere(u);
+        let found = bare.sample(wo, c, u, TransportMode::Radiance);
+        assert_eq!(found, diffuse.sample(wo, c, u, TransportMode::Radiance));
+    }
+}
+
+#[test]
+fn every_corner_is_finite() {
+    let keys = [
+        "base_metalness",
+        "specular_weight",
+        "specular_roughness",
+        "specular_roughness_anisotropy",
+        "transmission_weight",
+        "coat_weight",
+        "coat_roughness",
+    ];
+    for corner in 0..1u32 << keys.len() {
+        for ior in [1.0f32, 10.0] {
+            let mut numbers: Vec<(&str, f32)> =
+                keys.iter().enumerate().map(|(i, key)| (*key, (corner >> i & 1) as f32)).collect();
+            numbers.extend([("specular_ior", ior), ("coat_ior", 11.0 - ior)]);
+            let bsdf = principled(&numbers, Rgb::WHITE);
+            for (k, z) in [1.0f32, 0.3, 1e-3, 1e-20, -0.5, 0.0].into_iter().enumerate() {
+                let wo = Vec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+                for (c, u) in (0..16).map(|i| uniforms(910 + k as u64, i)) {
+                    for mode in [TransportMode::Radiance, TransportMode::Importance] {
+                        let sample = bsdf.sample(wo, c, u, mode);
+                        let sound = sample.is_none_or(|s| {
+                            s.weight.is_finite() && s.pdf_solid_angle > 0.0 && s.weight.r >= 0.0
+                        });
+                        assert!(sound, "{numbers:?} from {wo}: {sample:?}");
+                        let (f, pdf) = bsdf.eval_and_pdf(wo, bilux_math::warp::sample_sphere(u), mode);
+                        assert!(f.is_finite() && pdf.is_finite() && pdf >= 0.0, "{numbers:?} from {wo}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_checks_see_bugs_in_it() {
+    let bsdf = principled(CASES[2].1, ORANGE);
+    let mut one_way = Scatterer::from(bsdf);
+    one_way.eval = Box::new(move |wo, wi, mode| bsdf.eval(wo, wi, mode) * (1.0 - 0.1 * wo.z.abs()));
+    // A choice of lobe that forgets from where it was made.
+    let mut other_view = Scatterer::from(bsdf);
+    other_view.pdf = Box::new(move |wo, wi, mode| bsdf.pdf_solid_angle(wi, wo, mode));
+    let mut bright = Scatterer::from(principled(&[("specular_roughness", 0.6)], Rgb::WHITE));
+    let sample = bright.sample;
+    bright.sample = Box::new(move |wo, c, u, mode| {
+        sample(wo, c, u, mode).map(|s| bilux_scene::BsdfSample { weight: s.weight * 1.03, ..s })
+    });
+    let planted = [
+        (one_way, "reciprocity, or else the adjoint"),
+        (other_view, "samples follow the density"),
+        (bright, "energy"),
+    ];
+    for (scatterer, name) in planted {
+        let (_, run) = CHECKS.iter().find(|(check, _)| *check == name).unwrap();
+        assert!(run(&scatterer, Promise { reciprocal: true, lossless: false }).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn parameters_out_of_range_are_told() {
+    for (key, number, range) in [
+        ("specular_roughness", -0.1, "0 to 1"),
+        ("specular_ior", 0.0, "1 to 10"),
+        ("coat_weight", f32::NAN, "0 to 1"),
+    ] {
+        let error = build(&Spec::new("", "principled").with(key, number), &Ingredients::default()).err();
+        let message = error.map(|e| e.to_string()).unwrap_or_default();
+        assert!(message.contains(key) && message.contains(range), "{message}");
+    }
+}
