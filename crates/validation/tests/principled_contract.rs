@@ -36,8 +36,10 @@ fn about(n_shade: Vec3, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
 
 const ORANGE: Rgb = Rgb { r: 0.9, g: 0.5, b: 0.1 };
 
-/// What they are, their parameters, and whether light is refracted.
-const CASES: &[(&str, &[(&str, f32)], bool)] = &[
+/// What it is, its parameters, and whether light is refracted.
+type Case = (&'static str, &'static [(&'static str, f32)], bool);
+
+const CASES: &[Case] = &[
     ("rough plastic", &[("specular_roughness", 0.7)], false),
     ("metal in part, brushed", &[("base_metalness", 0.5), ("specular_roughness_anisotropy", 0.8)], false),
     ("coated paint", &[("specular_roughness", 0.5), ("coat_weight", 0.8), ("coat_roughness", 0.3)], false),
