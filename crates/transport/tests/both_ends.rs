@@ -113,6 +113,23 @@ fn panel_over(material: Spec) -> SceneBuilder {
 }
 
 #[test]
+fn layered_surfaces_look_the_same_from_both_ends() {
+    let principled = || Spec::new("", "principled").with("base_color", Rgb::new(0.7, 0.3, 0.2));
+    let metal = principled().with("base_metalness", 1.0f32).with("specular_roughness", 0.3f32);
+    let coated = principled().with("specular_roughness", 0.5f32).with("coat_weight", 0.8f32);
+    let clear = principled().with("transmission_weight", 1.0f32).with("specular_roughness", 0.3f32);
+    for (name, material) in [
+        ("plastic", principled().with("specular_roughness", 0.2f32)),
+        ("metal", metal.with("specular_roughness_anisotropy", 0.6f32)),
+        ("coated", coated.with("coat_roughness", 0.2f32).with("coat_color", Rgb::new(0.9, 0.7, 0.6))),
+        ("clear", clear.clone().with("transmission_color", Rgb::new(0.6, 0.9, 0.8))),
+        ("clear in part", clear.with("transmission_weight", 0.5f32)),
+    ] {
+        check(name, &built(&panel_over(material)), &["light", "bdpt", "vcm"]);
+    }
+}
+
+#[test]
 fn rough_metal_and_glass_look_the_same_from_both_ends() {
     let brushed = Spec::new("", "conductor").with("metal", "copper").with("roughness", 0.5f32);
     let brushed = brushed.with("anisotropy", 0.7f32).with("rotation", 30.0f32);
