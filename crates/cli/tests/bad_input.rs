@@ -52,7 +52,7 @@ fn files_that_are_no_scenes_are_refused_in_one_sentence() {
     refused("program.asc", &["no plain text"]);
     refused("program.obj", &["program.obj:1:1: this file is no plain text"]);
     refused("index.obj", &["index.obj:4:1: this face names vertex 9, but the file has only 3"]);
-    refused("picture.gif", &["picture.gif: this is no scene format", "known are asc, obj"]);
+    refused("picture.gif", &["picture.gif: this is no scene format", "known are asc, gltf, glb, obj"]);
     assert!(!path.join("out.png").exists());
 }
 

@@ -10,6 +10,8 @@ pub struct Facing<'a> {
     wo: Vec3,
     local_wo: Vec3,
     cos_geom: f32,
+    /// [`Bsdf::risen`] there.
+    risen: f32,
     mode: TransportMode,
 }
 
@@ -17,7 +19,8 @@ impl Bsdf {
     /// With the direction that stays the same.
     #[inline]
     pub fn facing(&self, wo: Vec3, mode: TransportMode) -> Facing<'_> {
-        Facing { bsdf: self, wo, local_wo: self.frame.to_local(wo), cos_geom: wo.dot(self.n_geom), mode }
+        let (local_wo, cos_geom) = (self.frame.to_local(wo), wo.dot(self.n_geom));
+        Facing { bsdf: self, wo, local_wo, cos_geom, risen: self.risen(wo), mode }
     }
 }
 
@@ -25,7 +28,7 @@ impl Facing<'_> {
     /// [`Bsdf::eval_and_pdf`], and [`Bsdf::pdf_solid_angle`] of the way back, the same bits; `None` where it is black.
     #[inline]
     pub fn both_ways(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
-        let Facing { bsdf, wo, local_wo, cos_geom, mode } = *self;
+        let Facing { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;
         if bsdf.bends {
             let (scattered, pdf) = bsdf.eval_and_pdf(wo, wi, mode);
             let back = || bsdf.pdf_solid_angle(wi, wo, mode.reversed());
@@ -36,15 +39,20 @@ impl Facing<'_> {
         if !sides_agree {
             return None;
         }
+        let risen_back = bsdf.risen(wi);
         let (mut scattered, mut pdf, mut back) = (Rgb::BLACK, 0.0, 0.0);
         for (i, (weight, lobe)) in bsdf.weighted().enumerate() {
             let (f, p) = lobe.eval_and_pdf(local_wo, local_wi, mode);
             scattered += f * weight;
-            pdf += bsdf.strengths[i] * p;
-            back += bsdf.strengths[i] * lobe.pdf_solid_angle(local_wi, local_wo);
+            pdf += (bsdf.strengths[i] + bsdf.rises[i] * risen) * p;
+            back +=
+                (bsdf.strengths[i] + bsdf.rises[i] * risen_back) * lobe.pdf_solid_angle(local_wi, local_wo);
         }
         let scattered = bsdf.carried(scattered, bsdf.frame.n, wo, wi, mode);
-        let of_all = |pdf: f32| if bsdf.total_strength > 0.0 { pdf / bsdf.total_strength } else { 0.0 };
-        (!scattered.is_black()).then(|| (scattered, of_all(pdf), of_all(back)))
+        let of_all = |pdf: f32, risen: f32| {
+            let total = bsdf.total_strength + bsdf.total_rise * risen;
+            if total > 0.0 { pdf / total } else { 0.0 }
+        };
+        (!scattered.is_black()).then(|| (scattered, of_all(pdf, risen), of_all(back, risen_back)))
     }
 }
