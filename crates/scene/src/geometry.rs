@@ -224,6 +224,19 @@ impl Geometry {
         }
     }
 
+    /// The material that a hit belongs to, and the texture coordinates there; those of spheres are not told.
+    pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, Vec2) {
+        let (object, triangle) = self.locate(hit);
+        let material = self.material_of(object);
+        match self.objects.get(object as usize) {
+            Some(placed) => {
+                let [a, b, c] = triangle_uvs(&placed.mesh, placed.mesh.triangles[triangle as usize]);
+                (material, a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v)
+            }
+            None => (material, Vec2::ZERO),
+        }
+    }
+
     /// All that shading needs to know of a hit.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {

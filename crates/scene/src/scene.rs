@@ -6,8 +6,10 @@ use crate::geometry::{Geometry, triangle_uvs};
 use crate::lights::{Light, MeshLight, Picture, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
+use crate::texture::ColourMap;
 use bilux_accel::instancing::TwoLevel;
-use bilux_accel::{Accelerator, Counters, Query, Ray};
+use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
+use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Aabb, Rgb, Vec3};
 use std::sync::Arc;
 
@@ -38,6 +40,7 @@ pub(crate) struct SceneParts {
     cameras: Vec<(String, Arc<dyn Camera>)>,
     classic_ambient: Rgb,
     has_nested: bool,
+    has_holes: bool,
 }
 
 impl SceneParts {
@@ -53,8 +56,11 @@ impl SceneParts {
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
             let (triangles, motion) = geometry.object_triangles(i as u32);
             let material = &materials[object.material as usize];
-            let picture = material.emission_map().map(|map| Picture {
-                map: map.clone(),
+            let even = || ColourMap { colour: material.emission(), texture: None };
+            let varies = material.emission_map().is_some() || material.opacity().is_some();
+            let picture = varies.then(|| Picture {
+                map: material.emission_map().cloned().unwrap_or_else(even),
+                opacity: material.opacity().cloned(),
                 uvs: object.mesh.triangles.iter().map(|t| triangle_uvs(&object.mesh, *t)).collect(),
             });
             let given = (material.emission(), picture, material.emission_sides());
@@ -67,7 +73,8 @@ impl SceneParts {
             }
         }
         for (i, (sphere, (name, classic))) in geometry.spheres().iter().zip(lamps).enumerate() {
-            let radiance = materials[sphere.material as usize].emission();
+            let material = &materials[sphere.material as usize];
+            let radiance = material.emission() * material.opacity().map_or(1.0, |opacity| opacity.number);
             let primitive = geometry.sphere_primitive(i as u32);
             let light = SphereLight::new(*sphere, primitive, radiance, *classic);
             object_lights.push(Some(lights.len() as u32));
@@ -86,7 +93,27 @@ impl SceneParts {
         let classic_ambient = lights.iter().map(|l| l.light.classic_ambient()).sum();
         let of_object = |o: &crate::geometry::Placed| materials[o.material as usize].nested();
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
-        SceneParts { geometry, materials, lights, object_lights, cameras, classic_ambient, has_nested }
+        let has_holes = materials.iter().any(|material| material.opacity().is_some());
+        SceneParts {
+            geometry,
+            materials,
+            lights,
+            object_lights,
+            cameras,
+            classic_ambient,
+            has_nested,
+            has_holes,
+        }
+    }
+
+    /// True when the surface is there for a ray that hits it: where it has holes each ray decides for itself, by a
+    /// number that depends on nothing but the ray and the hit.
+    fn stops(&self, ray: u64, hit: &Hit) -> bool {
+        let (material, uv) = self.geometry.material_and_uv(hit);
+        let Some(opacity) = self.materials[material as usize].opacity() else { return true };
+        let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
+        let number = hash_words([ray, place, u64::from(hit.t.to_bits())]) as u32;
+        unit_f32(number) < opacity.at(uv)
     }
 }
 
@@ -239,35 +266,56 @@ impl<'s> Tracer<'s> {
     /// What a ray meets first.
     #[inline]
     pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
-        let (accelerator, query) = (&self.scene.accelerator, &self.scene.query);
-        let hit = if self.counting {
-            accelerator.closest_hit_counted(ray, query, &mut self.counters)
+        let scene = self.scene;
+        let hit = if scene.parts.has_holes {
+            let number = number_of(ray);
+            let stops = |hit: &Hit| scene.parts.stops(number, hit);
+            self.closest_hit(ray, &Query { filter: Some(&stops), ..scene.query })
         } else {
-            self.counters.rays += 1;
-            match &self.scene.alone {
-                Some(tree) if ray.mask != 0 => self.scene.parts.geometry.closest_hit(&**tree, ray, query),
-                _ => accelerator.closest_hit(ray, query),
-            }
+            self.closest_hit(ray, &scene.query)
         }?;
-        let mut surface = self.scene.parts.geometry.surface(ray, &hit);
+        let mut surface = scene.parts.geometry.surface(ray, &hit);
         if surface.tangent != Vec3::ZERO {
-            surface.n_shade = self.scene.material(&surface).n_shade(&surface);
+            surface.n_shade = scene.material(&surface).n_shade(&surface);
         }
         Some(surface)
+    }
+
+    #[inline]
+    fn closest_hit(&mut self, ray: &Ray, query: &Query) -> Option<Hit> {
+        let accelerator = &self.scene.accelerator;
+        if self.counting {
+            return accelerator.closest_hit_counted(ray, query, &mut self.counters);
+        }
+        self.counters.rays += 1;
+        match &self.scene.alone {
+            Some(tree) if ray.mask != 0 => self.scene.parts.geometry.closest_hit(&**tree, ray, query),
+            _ => accelerator.closest_hit(ray, query),
+        }
     }
 
     /// True when anything is between a ray's ends.
     #[inline]
     pub fn occluded(&mut self, ray: &Ray) -> bool {
-        let (accelerator, query) = (&self.scene.accelerator, &self.scene.query);
+        let scene = self.scene;
+        if scene.parts.has_holes {
+            let number = number_of(ray);
+            let stops = |hit: &Hit| scene.parts.stops(number, hit);
+            return self.any_hit(ray, &Query { filter: Some(&stops), ..scene.query });
+        }
+        self.any_hit(ray, &scene.query)
+    }
+
+    #[inline]
+    fn any_hit(&mut self, ray: &Ray, query: &Query) -> bool {
+        let accelerator = &self.scene.accelerator;
         if self.counting {
-            accelerator.any_hit_counted(ray, query, &mut self.counters)
-        } else {
-            self.counters.rays += 1;
-            match &self.scene.alone {
-                Some(tree) if ray.mask != 0 => self.scene.parts.geometry.any_hit(&**tree, ray, query),
-                _ => accelerator.any_hit(ray, query),
-            }
+            return accelerator.any_hit_counted(ray, query, &mut self.counters);
+        }
+        self.counters.rays += 1;
+        match &self.scene.alone {
+            Some(tree) if ray.mask != 0 => self.scene.parts.geometry.any_hit(&**tree, ray, query),
+            _ => accelerator.any_hit(ray, query),
         }
     }
 
@@ -290,4 +338,11 @@ impl<'s> Tracer<'s> {
         }
         false
     }
+}
+
+/// What tells a ray from others.
+fn number_of(ray: &Ray) -> u64 {
+    let [x, y, z] = ray.origin.map(|c| u64::from(c.to_bits()));
+    let [dx, dy, dz] = ray.direction.map(|c| u64::from(c.to_bits()));
+    hash_words([x << 32 | dx, y << 32 | dy, z << 32 | dz])
 }

@@ -4,7 +4,7 @@ use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
 use crate::geometry::transform_with_error;
 use crate::surface::{Surface, gamma};
-use crate::texture::ColourMap;
+use crate::texture::{ColourMap, NumberMap};
 use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
@@ -36,6 +36,9 @@ pub struct MeshLight {
 pub struct Picture {
     /// By texture coordinates.
     pub map: ColourMap,
+    /// Where it has holes, how much of it there is: as much of its light is there for who looks for it. Who hits it has
+    /// been let through in the other cases.
+    pub opacity: Option<NumberMap>,
     /// Those of each triangle's corners.
     pub uvs: Vec<[Vec2; 3]>,
 }
@@ -43,7 +46,8 @@ pub struct Picture {
 impl Picture {
     fn at(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
         let [a, b, c] = self.uvs[triangle];
-        self.map.at(a * weights[0] + b * weights[1] + c * weights[2])
+        let uv = a * weights[0] + b * weights[1] + c * weights[2];
+        self.map.at(uv) * self.opacity.as_ref().map_or(1.0, |opacity| opacity.at(uv))
     }
 
     /// The mean over a triangle, from the middles of sixteen that it is cut into.

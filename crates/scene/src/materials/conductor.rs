@@ -2,7 +2,7 @@
 
 use super::metals::{METALS, NAMES};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
-use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map, reflectance};
+use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, colour_map, reflectance};
 use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -43,6 +43,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             roughness("0.3"),
             ANISOTROPY,
             ROTATION,
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],

@@ -2,8 +2,8 @@
 
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
 use super::{
-    ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, THIN, colour_map, reflectance,
-    spread,
+    ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN, colour_map,
+    reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Dielectric, Lobe, RoughDielectric};
 use crate::classic::ClassicMaterial;
@@ -29,6 +29,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             ROTATION,
             spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
             spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],

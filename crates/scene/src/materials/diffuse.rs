@@ -1,8 +1,8 @@
 //! `diffuse`: matt, equally bright from everywhere.
 
 use super::{
-    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map,
-    reflectance,
+    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
+    colour_map, reflectance,
 };
 use crate::bsdf::{Bsdf, Lambert, Lobe};
 use crate::classic::ClassicMaterial;
@@ -22,6 +22,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],

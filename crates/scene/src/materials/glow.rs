@@ -1,16 +1,12 @@
-//! Light that a surface gives out: what any material can say of it, and the wrapper of one that does.
+//! Light that a surface gives out by itself.
 
-use super::{Ingredients, Material, Nested, texture};
-use crate::bsdf::Bsdf;
-use crate::classic::ClassicMaterial;
+use super::{Ingredients, texture};
 use crate::error::SceneError;
 use crate::lights::Sides;
 use crate::parameters::Reader;
-use crate::surface::Surface;
 use crate::texture::{ColourMap, Texture};
+use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};
-use bilux_math::{Rgb, Vec3};
-use std::sync::Arc;
 
 /// Shared by all materials: what a surface gives out by itself.
 pub(super) const EMISSION: Parameter = Parameter {
@@ -39,73 +35,27 @@ pub(super) const EMISSION_SIDES: Parameter = Parameter {
     default: "both",
 };
 
-/// A material that gives out light, if it is told to.
-pub(super) fn apply(
-    material: Arc<dyn Material>,
-    reader: &Reader,
-    ingredients: &Ingredients,
-) -> Result<Arc<dyn Material>, SceneError> {
+/// What a surface gives out.
+pub(super) struct Glow {
+    /// The colour, or what its picture is multiplied by, and that.
+    pub(super) map: ColourMap,
+    /// The greatest of each channel.
+    pub(super) brightest: Rgb,
+    pub(super) sides: Sides,
+}
+
+/// The light that a material is told to give out, if any.
+pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<Glow>, SceneError> {
     let picture = texture(reader, "emission", ingredients)?;
     let scale = reader.colour(if picture.is_some() { "emission_scale" } else { "emission" });
     let brightest = picture.as_deref().map_or(scale, |picture| brightest(picture) * scale);
-    if brightest.is_black() {
-        return Ok(material);
-    }
     let sides = Sides::named(&reader.text("emission_sides"));
-    Ok(Arc::new(Glowing { material, map: ColourMap { colour: scale, texture: picture }, brightest, sides }))
+    let map = ColourMap { colour: scale, texture: picture };
+    Ok((!brightest.is_black()).then_some(Glow { map, brightest, sides }))
 }
 
 /// The greatest of each channel.
 fn brightest(picture: &Texture) -> Rgb {
     let greater = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
     picture.texels().fold(Rgb::BLACK, greater)
-}
-
-struct Glowing {
-    material: Arc<dyn Material>,
-    map: ColourMap,
-    brightest: Rgb,
-    sides: Sides,
-}
-
-impl Material for Glowing {
-    fn emission(&self) -> Rgb {
-        self.brightest
-    }
-
-    fn emission_map(&self) -> Option<&ColourMap> {
-        Some(&self.map).filter(|map| map.texture.is_some())
-    }
-
-    fn emission_sides(&self) -> Sides {
-        self.sides
-    }
-
-    fn n_shade(&self, surface: &Surface) -> Vec3 {
-        self.material.n_shade(surface)
-    }
-
-    fn bsdf(&self, surface: &Surface) -> Bsdf {
-        self.material.bsdf(surface)
-    }
-
-    fn classic(&self, surface: &Surface) -> ClassicMaterial {
-        self.material.classic(surface)
-    }
-
-    fn needs_tangents(&self) -> bool {
-        self.material.needs_tangents()
-    }
-
-    fn most_lobes(&self) -> usize {
-        self.material.most_lobes()
-    }
-
-    fn nested(&self) -> Option<Nested> {
-        self.material.nested()
-    }
-
-    fn sigma_a(&self) -> Rgb {
-        self.material.sigma_a()
-    }
 }

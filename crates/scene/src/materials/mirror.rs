@@ -1,8 +1,8 @@
 //! `mirror`: reflects like polished metal.
 
 use super::{
-    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, colour_map,
-    reflectance, spread,
+    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
+    colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Lobe, Mirror};
 use crate::classic::ClassicMaterial;
@@ -22,6 +22,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],

@@ -1,6 +1,6 @@
 //! `mix`: two materials in one place, each for a share of the light.
 
-use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, number_map};
+use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, number_map};
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -26,6 +26,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
                 default: "0.5",
             },
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],
@@ -53,6 +54,10 @@ fn read_part(reader: &Reader, ingredients: &Ingredients, key: &str) -> Result<Ar
     let material = ingredients.material(index, reader.span(key))?;
     if ingredients.materials[index].parameters.find("normal").is_some() {
         let message = format!("'{key}' has a normal map, which its mix would not: give it to the mix");
+        return Err(SceneError::invalid(message, reader.span(key)));
+    }
+    if material.opacity().is_some() {
+        let message = format!("'{key}' has holes, which its mix would not: give the opacity to the mix");
         return Err(SceneError::invalid(message, reader.span(key)));
     }
     if !material.emission().is_black() {

@@ -18,11 +18,13 @@
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod dressed;
 mod glow;
 mod metals;
 mod mirror;
 mod mix;
 mod normal_map;
+mod opacity;
 mod phong;
 mod principled;
 mod roughness;
@@ -38,6 +40,7 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 use glow::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 use normal_map::{NORMAL, NORMAL_SCALE};
+use opacity::OPACITY;
 use std::sync::Arc;
 
 /// Something that surfaces are made of.
@@ -70,6 +73,10 @@ pub trait Material: Send + Sync {
     /// On which sides of its triangles a surface gives that out.
     fn emission_sides(&self) -> Sides {
         Sides::Both
+    }
+    /// How much of the surface there is, where it has holes.
+    fn opacity(&self) -> Option<&NumberMap> {
+        None
     }
     /// How what is inside stands against what it overlaps with; `None` for what takes no part in that.
     fn nested(&self) -> Option<Nested> {
@@ -157,11 +164,7 @@ pub fn build(spec: &Spec, ingredients: &Ingredients) -> Result<Arc<dyn Material>
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
     let reader = Reader::new(spec, &row.entry)?;
-    let mut material = (row.build)(&reader, ingredients)?;
-    if row.entry.parameters.iter().any(|parameter| parameter.name == EMISSION.name) {
-        material = glow::apply(material, &reader, ingredients)?;
-    }
-    normal_map::apply(material, &reader, ingredients)
+    dressed::dress((row.build)(&reader, ingredients)?, row, &reader, ingredients)
 }
 
 /// The colour or texture under a key.

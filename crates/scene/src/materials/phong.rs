@@ -6,7 +6,7 @@
 
 use super::{
     ABSORPTION, EMISSION, EMISSION_SCALE, EMISSION_SIDES, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
-    THIN, colour_map, reflectance, spread,
+    OPACITY, THIN, colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
 use crate::classic::ClassicMaterial;
@@ -48,6 +48,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],

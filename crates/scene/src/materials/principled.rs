@@ -7,7 +7,7 @@
 use super::dielectric::PRIORITY;
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
-    Nested, THIN, colour_map, number_map, reflectance,
+    Nested, OPACITY, THIN, colour_map, number_map, reflectance,
 };
 use crate::bsdf::{Albedo, Bsdf, Clear, Cover, Fresnel, Ggx, Gloss, Lambert, Lobe, Matt};
 use crate::classic::ClassicMaterial;
@@ -72,6 +72,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
+            OPACITY,
             NORMAL,
             NORMAL_SCALE,
         ],

@@ -1,0 +1,85 @@
+//! What any material may have besides its way to scatter light: normals from a picture, light of its own, holes.
+
+use super::glow::{self, Glow};
+use super::normal_map::{self, NormalMap};
+use super::{Ingredients, Material, MaterialEntry, Nested, opacity};
+use crate::bsdf::Bsdf;
+use crate::classic::ClassicMaterial;
+use crate::error::SceneError;
+use crate::lights::Sides;
+use crate::parameters::Reader;
+use crate::surface::Surface;
+use crate::texture::{ColourMap, NumberMap};
+use bilux_math::{Rgb, Vec3};
+use std::sync::Arc;
+
+/// The material with what its parameters say of these; the same one where they say nothing.
+pub(super) fn dress(
+    material: Arc<dyn Material>,
+    row: &MaterialEntry,
+    reader: &Reader,
+    ingredients: &Ingredients,
+) -> Result<Arc<dyn Material>, SceneError> {
+    let may_glow = row.entry.parameters.iter().any(|parameter| parameter.name == glow::EMISSION.name);
+    let normals = normal_map::read(reader, ingredients)?;
+    let glow = if may_glow { glow::read(reader, ingredients)? } else { None };
+    let opacity = opacity::read(reader, ingredients)?;
+    if normals.is_none() && glow.is_none() && opacity.is_none() {
+        return Ok(material);
+    }
+    Ok(Arc::new(Dressed { material, normals, glow, opacity }))
+}
+
+struct Dressed {
+    material: Arc<dyn Material>,
+    normals: Option<NormalMap>,
+    glow: Option<Glow>,
+    opacity: Option<NumberMap>,
+}
+
+impl Material for Dressed {
+    fn n_shade(&self, surface: &Surface) -> Vec3 {
+        self.normals.as_ref().map_or(surface.n_shade, |normals| normals.at(surface))
+    }
+
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        let bsdf = self.material.bsdf(surface);
+        if self.normals.is_some() { bsdf.bending() } else { bsdf }
+    }
+
+    fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        self.material.classic(surface)
+    }
+
+    fn needs_tangents(&self) -> bool {
+        self.normals.is_some() || self.material.needs_tangents()
+    }
+
+    fn most_lobes(&self) -> usize {
+        self.material.most_lobes()
+    }
+
+    fn emission(&self) -> Rgb {
+        self.glow.as_ref().map_or(Rgb::BLACK, |glow| glow.brightest)
+    }
+
+    fn emission_map(&self) -> Option<&ColourMap> {
+        self.glow.as_ref().map(|glow| &glow.map).filter(|map| map.texture.is_some())
+    }
+
+    fn emission_sides(&self) -> Sides {
+        self.glow.as_ref().map_or(Sides::Both, |glow| glow.sides)
+    }
+
+    fn opacity(&self) -> Option<&NumberMap> {
+        self.opacity.as_ref()
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        self.material.nested()
+    }
+
+    fn sigma_a(&self) -> Rgb {
+        self.material.sigma_a()
+    }
+}

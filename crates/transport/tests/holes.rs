@@ -1,0 +1,93 @@
+//! Surfaces that are there in part: leaves and lace cut out by pictures, gauze.
+
+mod common;
+
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{AccelChoice, Mesh, SceneBuilder, Spec, Texture, Value};
+use bilux_transport::{RenderSettings, integrators};
+use common::statistics::{agreement, blocks};
+use common::{built, diffuse, floor, integrator, look, put, quad, shoot, sky};
+use std::sync::Arc;
+
+/// Less likely than this by chance: a bug.
+const UNLIKELY: f64 = 1e-4;
+
+/// A square above the floor, with texture coordinates.
+fn sheet(height: f32, half: f32) -> Arc<Mesh> {
+    let mut mesh = (*floor(height, half)).clone();
+    mesh.uvs = vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+    Arc::new(mesh)
+}
+
+/// A sheet over a floor below a lamp and a weak sky.
+fn sheet_over_a_floor(material: Spec, lamp: f32) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    put(&mut builder, "sheet", sheet(0.6, 1.0), material);
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.3, 2.5, 0.2)).with("intensity", lamp);
+    builder.lights.push(panel);
+    sky(&mut builder, 0.2);
+    // Rows of holes with soft edges, and one that is there in part.
+    let texels = [1.0, 0.0, 1.0, 0.3, 0.0, 0.0, 1.0, 0.3, 1.0, 1.0, 0.0, 0.3, 0.5, 0.5, 0.5, 0.0];
+    builder.textures.push(Arc::new(Texture::new("", 4, 4, texels.map(Rgb::grey).to_vec(), true)));
+    look(&mut builder, Vec3::new(0.0, 2.2, 4.0), Vec3::new(0.0, 0.3, 0.0), 40.0);
+    builder
+}
+
+#[test]
+fn what_has_holes_looks_the_same_from_both_ends() {
+    let lace = diffuse(0.6f32).with("opacity", Value::Texture(0));
+    let screen = Spec::new("", "principled").with("opacity", 0.4f32).with("base_color", 0.7f32);
+    let sign = diffuse(0.3f32).with("emission", Rgb::new(3.0, 2.0, 1.0)).with("opacity", Value::Texture(0));
+    let glow = diffuse(0.3f32).with("emission", 2.0f32).with("opacity", 0.3f32);
+    for (name, material, lamp) in
+        [("lace", lace, 12.0), ("gauze", screen, 12.0), ("sign", sign, 1.0), ("glowing gauze", glow, 1.0)]
+    {
+        let scene = built(&sheet_over_a_floor(material, lamp));
+        let path = blocks(&scene, &*integrator("path"), 0);
+        for (i, other) in ["light", "bdpt", "vcm", "auto"].iter().enumerate() {
+            let found = blocks(&scene, &*integrator(other), 100 * (i as u64 + 1));
+            let p = agreement(&path, &found);
+            assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
+        }
+    }
+}
+
+/// A sheet before a sky lets the rest of it through, and glows by its share.
+#[test]
+fn a_share_of_the_surface_gives_that_share_of_the_light() {
+    let seen = |material: Spec| {
+        let mut builder = SceneBuilder::default();
+        let (corner, u, v) = (Vec3::new(-9.0, -9.0, 0.0), Vec3::X * 18.0, Vec3::Y * 18.0);
+        put(&mut builder, "sheet", quad(corner, u, v), material);
+        sky(&mut builder, 0.5);
+        look(&mut builder, Vec3::Z * 4.0, Vec3::ZERO, 40.0);
+        let settings = RenderSettings::new(32, 32, 64);
+        let pixels = shoot(&built(&builder), &*integrator("path"), &settings).film.to_rgb();
+        pixels.iter().map(|p| f64::from(p.g)).sum::<f64>() / pixels.len() as f64
+    };
+    // Of 65,536 rays the share strays by 0.002.
+    let black = seen(diffuse(0.0f32).with("opacity", 0.3f32));
+    assert!((black - 0.35).abs() < 0.004, "{black}");
+    let glowing = seen(diffuse(0.0f32).with("emission", 2.0f32).with("opacity", 0.25f32));
+    assert!((glowing - 0.875).abs() < 0.012, "{glowing}");
+    // What is not there at all, or all there, leaves nothing to chance.
+    assert_eq!(seen(diffuse(0.0f32).with("opacity", 0.0f32)), 0.5);
+    assert_eq!(seen(diffuse(0.0f32).with("opacity", 1.0f32)), 0.0);
+}
+
+#[test]
+fn holes_are_the_same_whatever_finds_them() {
+    let lace = diffuse(0.6f32).with("opacity", Value::Texture(0));
+    let builder = sheet_over_a_floor(lace, 12.0);
+    let picture = |accel: &str| {
+        let choice = AccelChoice { name: accel.to_owned(), ..AccelChoice::default() };
+        let scene = builder.build(&choice, [0.0, 0.0], 1.0).unwrap();
+        let settings = RenderSettings::new(24, 24, 8);
+        shoot(&scene, &*integrators::build(&Spec::new("", "path")).unwrap(), &settings).film.to_rgb()
+    };
+    let brute = picture("brute");
+    for row in bilux_accel::ACCELERATORS {
+        assert!(picture(row.entry.name) == brute, "{} sees other holes than brute", row.entry.name);
+    }
+}
