@@ -66,7 +66,7 @@ impl Job {
     /// # Errors
     /// When anything in the scene is wrong.
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
-        let completed = crate::presets::completed(scene);
+        let completed = crate::presets::completed(scene, &settings.studio);
         let aspect = settings.width as f32 / settings.height as f32;
         let triangles = completed.objects.iter().map(|object| object.mesh.triangles.len()).sum();
         let accel = settings.accel_for(triangles);

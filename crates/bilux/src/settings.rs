@@ -2,6 +2,7 @@
 //! all of it the same keys of one table.
 
 use crate::Error;
+use crate::presets::{Ground, Studio};
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -34,6 +35,20 @@ pub const RENDER: Entry = Entry {
         integer("max_depth", "scattering events after the camera; 0 is emission only", 0, 10_000, "16"),
         integer("threads", "threads at work; 0 for all cores", 0, 4096, "0"),
         text("camera", "name or number of the camera", "0"),
+        choice("ground", "what a model without camera and light stands on", GROUNDS, "auto"),
+        text(
+            "orbit",
+            "from where the studio's camera looks: degrees to the right of the front, and above it, as AZ,EL",
+            "26.5,17.8",
+        ),
+        number(
+            "focal",
+            "focal length of the studio's camera, for a picture 24 mm high",
+            "mm",
+            1.0,
+            10_000.0,
+            "45",
+        ),
         number("time", "when the picture is taken", "s", -1e9, 1e9, "0"),
         number("shutter", "how long light is let in", "s", 0.0, 1e9, "0"),
         number("fps", "frames a second, for --frames", "1/s", 1e-6, 1e6, "24"),
@@ -100,6 +115,8 @@ const fn number(
     Parameter { name, summary, unit, kind: ParameterKind::Number { min, max }, default }
 }
 
+const GROUNDS: &[&str] = &["auto", "shadow", "mirror", "none"];
+
 /// Settings, checked.
 #[derive(Clone, Debug)]
 pub struct Settings {
@@ -129,6 +146,8 @@ pub struct Settings {
     pub camera: String,
     /// Where the camera was asked for.
     pub camera_at: Span,
+    /// What is asked of the studio.
+    pub studio: Studio,
     /// When, in seconds.
     pub time: f32,
     /// How long light is let in, in seconds.
@@ -184,6 +203,7 @@ impl Settings {
                 name => name,
             },
             camera_at: reader.span("camera").clone(),
+            studio: studio(&reader)?,
             time: reader.number("time"),
             shutter: reader.number("shutter"),
             fps: reader.number("fps"),
@@ -339,4 +359,33 @@ mod tests {
         assert_eq!(told.len(), 1);
         assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
     }
+}
+
+/// What is asked of the studio, where anything is.
+fn studio(reader: &Reader) -> Result<Studio, Error> {
+    let orbit = match reader.is_given("orbit") {
+        true => {
+            let wrong = |text: &str| {
+                let message = format!(
+                    "'{text}' is no orbit: write AZ,EL in degrees, such as 30,15; EL is from -90 to 90"
+                );
+                SceneError::invalid(message, reader.span("orbit"))
+            };
+            let text = reader.text("orbit");
+            Some(parse_orbit(&text).ok_or_else(|| wrong(&text))?)
+        }
+        false => None,
+    };
+    Ok(Studio {
+        ground: Ground::named(&reader.text("ground")),
+        orbit,
+        focal: reader.is_given("focal").then(|| reader.number("focal")),
+    })
+}
+
+/// Azimuth and elevation, in degrees, of `AZ,EL`; `None` for what is none.
+pub fn parse_orbit(text: &str) -> Option<[f32; 2]> {
+    let (azimuth, elevation) = text.split_once(',')?;
+    let [azimuth, elevation]: [f32; 2] = [azimuth.trim().parse().ok()?, elevation.trim().parse().ok()?];
+    (azimuth.abs() <= 3600.0 && elevation.abs() <= 90.0).then_some([azimuth, elevation])
 }

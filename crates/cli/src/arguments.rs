@@ -92,6 +92,8 @@ pub enum Command {
 #[command(after_help = "Examples:\n  \
     bilux render scene.toml -o scene.png\n  \
     bilux render *.obj -o '{stem}.png'\n  \
+    bilux render chair.glb -o chair.png --orbit 40,20 --ground mirror\n  \
+    bilux render chair.glb -o 'chair-{frame}.png' --turntable 36\n  \
     bilux render walk.toml --frames 0-47 -o 'walk-{frame}.png'\n  \
     bilux render scene.toml --samples 0..64 -o a.exr    one half here,\n  \
     bilux render scene.toml --samples 64..128 -o b.exr  the other there:\n  \
@@ -140,6 +142,18 @@ pub struct Render {
     /// Which camera
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
+    /// From where a studio's camera looks: degrees to the right of the model's front, and above it
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
+    pub orbit: Option<String>,
+    /// Focal length of the studio's camera, in mm for a picture 24 mm high [default: 45]
+    #[arg(long, value_name = "MM")]
+    pub focal: Option<f32>,
+    /// What a model stands on [default: a matt cove, where the file has neither camera nor light]
+    #[arg(long, value_name = "shadow|mirror|none")]
+    pub ground: Option<String>,
+    /// N pictures from all around, one by one; needs {frame} in OUT
+    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"])]
+    pub turntable: Option<u32>,
     /// When, in moving scenes
     #[arg(long, value_name = "SECONDS")]
     pub at: Option<f32>,

@@ -4,7 +4,7 @@ use bilux_math::motion::Motion;
 use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
 use bilux_scene::cameras::{self, CameraSpec};
 use bilux_scene::generators::teapot::Teapot;
-use bilux_scene::presets::{PRESETS, apply, complete};
+use bilux_scene::presets::{Ground, PRESETS, Studio, apply, complete};
 use bilux_scene::{AccelChoice, CameraSample, Mesh, Object, SceneBuilder, Spec, Value};
 use std::sync::Arc;
 
@@ -64,7 +64,7 @@ fn builds(scene: &SceneBuilder) {
 #[test]
 fn a_bare_model_is_framed_whole_and_fills_the_picture() {
     let mut scene = teapot();
-    complete(&mut scene);
+    complete(&mut scene, &Studio::default());
     builds(&scene);
     let reach = reach(&scene);
     assert!((0.85..0.9).contains(&reach), "{reach}");
@@ -86,7 +86,7 @@ fn framing_stands_whatever_a_file_holds() {
     ];
     for case in cases {
         let mut scene = points(case);
-        complete(&mut scene);
+        complete(&mut scene, &Studio::default());
         builds(&scene);
         if case.iter().flatten().all(|c| c.is_finite()) {
             let reach = reach(&scene);
@@ -95,7 +95,7 @@ fn framing_stands_whatever_a_file_holds() {
     }
     for far in [1e30, 3e38] {
         let mut scene = points(&[[far, 0.0, 0.0], [-far, far, 0.0]]);
-        complete(&mut scene);
+        complete(&mut scene, &Studio::default());
         builds(&scene);
     }
 }
@@ -104,15 +104,19 @@ fn framing_stands_whatever_a_file_holds() {
 fn a_bare_model_of_no_material_is_of_clay_on_a_floor() {
     let mut scene = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     scene.materials[0] = Spec::new("default", "phong");
-    complete(&mut scene);
+    complete(&mut scene, &Studio::default());
     assert!(scene.materials[0].parameters.find("kd").is_some());
     assert_eq!(scene.objects.len(), 2);
     let floor = &scene.objects[1].mesh.positions;
-    assert!(floor.iter().all(|p| p.y < 0.0 && p.y > -0.01));
+    let lowest = floor.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+    assert!(lowest < 0.0 && lowest > -0.01);
+    // What rises is the wall behind the model.
+    let away = |p: &Vec3| Vec2::new(p.x - 0.5, p.z).dot(Vec2::new(-0.447, -0.894));
+    assert!(floor.iter().all(|p| p.y == lowest || away(p) > 2.0));
     let mut told = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     told.materials[0] = Spec::new("mine", "phong").with("kd", 0.1f32);
     let mine = told.materials[0].clone();
-    complete(&mut told);
+    complete(&mut told, &Studio::default());
     assert_eq!(told.materials[0], mine);
 }
 
@@ -120,22 +124,22 @@ fn a_bare_model_of_no_material_is_of_clay_on_a_floor() {
 fn only_what_is_missing_is_added() {
     let mut lit = teapot();
     lit.lights.push(Spec::new("mine", "point"));
-    complete(&mut lit);
+    complete(&mut lit, &Studio::default());
     assert_eq!((lit.lights.len(), lit.cameras.len(), lit.objects.len()), (1, 1, 1));
 
     let mut luminous = teapot();
     luminous.materials[0].parameters.set("emission", 1.0f32);
-    complete(&mut luminous);
+    complete(&mut luminous, &Studio::default());
     assert_eq!((luminous.lights.len(), luminous.cameras.len()), (0, 1));
     let mut dark = teapot();
     dark.materials[0].parameters.set("emission", Value::triple([0.0; 3]));
-    complete(&mut dark);
+    complete(&mut dark, &Studio::default());
     assert_eq!((dark.lights.len(), dark.cameras.len()), (3, 1));
 
     let mut seen = teapot();
     let mine = CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() };
     seen.cameras.push(mine.clone());
-    complete(&mut seen);
+    complete(&mut seen, &Studio::default());
     assert_eq!((seen.cameras, seen.lights.len()), (vec![mine], 3));
 }
 
@@ -184,4 +188,40 @@ fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
     }
     assert!(reach(&scene) < 1.0);
     assert!(scene.bounds(0.0).min.z > -0.6, "{:?}", scene.bounds(0.0));
+}
+
+#[test]
+fn a_studio_is_as_it_is_asked_for() {
+    // From the right, at the height of its middle, through a long lens: seen whole, as big as through any other.
+    let asked = Studio { ground: Some(Ground::Mirror), orbit: Some([90.0, 0.0]), focal: Some(135.0) };
+    let mut scene = teapot();
+    complete(&mut scene, &asked);
+    builds(&scene);
+    assert!((0.85..0.9).contains(&reach(&scene)), "{}", reach(&scene));
+    let camera = cameras::build(&scene.cameras[0], 1.0).unwrap();
+    let ray = camera.ray(&CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 });
+    let direction = Vec3::from(ray.direction);
+    assert!((direction - Vec3::NEG_X).length() < 1e-5, "{direction}");
+    assert_eq!(scene.materials.last().map(|m| m.kind.as_str()), Some("principled"));
+    // What is asked for comes before what a file brings, and the rest of it is kept.
+    let mut seen = teapot();
+    seen.cameras.push(CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() });
+    seen.lights.push(Spec::new("mine", "point"));
+    complete(&mut seen, &Studio { orbit: Some([0.0, 30.0]), ..Studio::default() });
+    let names: Vec<_> = seen.cameras.iter().map(|camera| camera.spec.name.as_str()).collect();
+    assert_eq!((names, seen.lights.len(), seen.objects.len()), (vec!["studio", "mine"], 1, 1));
+    // From below a floor would hide the model.
+    let mut below = teapot();
+    complete(&mut below, &Studio { orbit: Some([0.0, -40.0]), ..Studio::default() });
+    assert_eq!(below.objects.len(), 1);
+}
+
+#[test]
+fn signs_are_no_lamps() {
+    for (emission, lights) in [(0.6f32, 3), (1.0, 0), (20.0, 0)] {
+        let mut scene = teapot();
+        scene.materials[0].parameters.set("emission", Value::triple([0.0, emission, 0.0]));
+        complete(&mut scene, &Studio::default());
+        assert_eq!(scene.lights.len(), lights, "{emission}");
+    }
 }

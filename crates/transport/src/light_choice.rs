@@ -1,11 +1,13 @@
 //! Which lights to sample: all of a few; of many one, more often where there is more to come.
 
-use bilux_scene::Scene;
+use bilux_math::hash::{hash_words, unit_f32};
+use bilux_math::{Vec2, Vec3};
+use bilux_scene::{Light, Scene};
 use std::ops::Range;
 
 /// A probability for every light of a scene. Where there are few, each is always sampled: a shadow ray costs less
-/// than the noise of a choice that is blind to the place. Otherwise by its power, with a tenth shared out alike, so
-/// that a weak light close by is never forgotten.
+/// than the noise of a choice that is blind to the place. Otherwise by what it brings to the scene's objects, were nothing
+/// between, with a tenth shared out alike, so that a weak light close by is never forgotten.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
     probabilities: Vec<f32>,
@@ -22,12 +24,12 @@ const SHARED_ALIKE: f64 = 0.1;
 impl LightChoice {
     /// For the lights of a scene, in their order.
     pub fn new(scene: &Scene) -> LightChoice {
-        let bounds = scene.bounds();
-        LightChoice::from_powers(scene.lights().iter().map(|l| l.light.power(&bounds)))
+        let places = places(scene);
+        LightChoice::by(scene.lights().iter().map(|l| irradiance(&*l.light, &places, scene)))
     }
 
-    fn from_powers(powers: impl Iterator<Item = f32>) -> LightChoice {
-        let mut probabilities = weights(powers);
+    fn by(irradiances: impl Iterator<Item = f32>) -> LightChoice {
+        let mut probabilities = weights(irradiances);
         let few = probabilities.iter().filter(|p| **p > 0.0).count() <= FEW;
         if few {
             probabilities.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p = 1.0);
@@ -57,6 +59,43 @@ impl LightChoice {
     pub fn probability(&self, light: usize) -> f32 {
         self.probabilities[light]
     }
+}
+
+/// So many places tell what lights bring.
+const PLACES: u64 = 64;
+/// What it brings to so many of them, the ones where it is most, is left out: nobody is as close to a lamp as its own shade.
+const CLOSEST: usize = 8;
+
+/// Vertices of some objects, each object as likely as the next. What power says of lights from infinity grows with
+/// the scene's bounds, and so with every empty yard of a floor.
+fn places(scene: &Scene) -> Vec<Vec3> {
+    let (objects, spheres) = (scene.geometry().objects(), scene.geometry().spheres());
+    let count = (objects.len() + spheres.len()) as u64;
+    let place = |i: u64| {
+        let picked = (hash_words([i, 0]) % count.max(1)) as usize;
+        let Some(object) = objects.get(picked) else {
+            return spheres.get(picked - objects.len()).map(|s| s.centre);
+        };
+        let vertex = hash_words([i, 1]) % (object.mesh.positions.len() as u64).max(1);
+        let p = *object.mesh.positions.get(vertex as usize)?;
+        Some(object.motion.at(scene.shutter()[0]).point(p))
+    };
+    (0..PLACES).filter_map(place).collect()
+}
+
+/// What a light brings to some places on average, were nothing between, as luminance; never nothing of one that shines.
+fn irradiance(light: &dyn Light, places: &[Vec3], scene: &Scene) -> f32 {
+    let at = |(i, place): (usize, &Vec3)| {
+        let number = |k: u64| unit_f32(hash_words([i as u64, k]) as u32);
+        let sample = light.sample_li(*place, scene.shutter()[0], Vec2::new(number(2), number(3)))?;
+        let irradiance = sample.li.luminance() / sample.pdf_solid_angle;
+        irradiance.is_finite().then_some(irradiance)
+    };
+    let mut found: Vec<f32> = places.iter().enumerate().map(|place| at(place).unwrap_or(0.0)).collect();
+    found.sort_by(f32::total_cmp);
+    let sum: f32 = found[..found.len().saturating_sub(CLOSEST)].iter().sum();
+    let least = if light.power(&scene.bounds()) > 0.0 { f32::MIN_POSITIVE } else { 0.0 };
+    sum.max(least)
 }
 
 /// Probabilities for lights of these powers.
@@ -89,7 +128,7 @@ mod tests {
     #[test]
     fn each_light_is_picked_as_often_as_it_says() {
         let powers = [3.0, 0.0, 1.0, f32::NAN, 80.0, 12.0, 4.0];
-        let choice = LightChoice::from_powers(powers.into_iter());
+        let choice = LightChoice::by(powers.into_iter());
         let mut counts = [0; 7];
         for i in 0..100_000 {
             let picked = choice.sample((i as f32 + 0.5) / 100_000.0);
@@ -105,15 +144,15 @@ mod tests {
 
     #[test]
     fn of_few_lights_each_is_sampled_that_shines() {
-        let choice = LightChoice::from_powers([1.0, 0.0, 1e9].into_iter());
+        let choice = LightChoice::by([1.0, 0.0, 1e9].into_iter());
         assert_eq!(choice.sample(0.5), 0..3);
         assert_eq!([0, 1, 2].map(|light| choice.probability(light)), [1.0, 0.0, 1.0]);
     }
 
     #[test]
     fn where_nothing_shines_nothing_is_picked() {
-        let dark = LightChoice::from_powers([0.0].into_iter());
+        let dark = LightChoice::by([0.0].into_iter());
         assert_eq!(dark.probability(0), 0.0);
-        assert!(LightChoice::from_powers([].into_iter()).sample(0.5).is_empty());
+        assert!(LightChoice::by([].into_iter()).sample(0.5).is_empty());
     }
 }

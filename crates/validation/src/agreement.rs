@@ -109,7 +109,7 @@ pub fn shipped(folder: &Path) -> Result<Vec<(String, SceneBuilder)>, Error> {
 /// # Errors
 /// When something in it is wrong.
 pub fn stages(name: &str, scene: &SceneBuilder, size: [u32; 2]) -> Result<Vec<Stage>, Error> {
-    let scene = bilux::presets::completed(scene);
+    let scene = bilux::presets::completed(scene, &Default::default());
     let mut stages = vec![Stage::new(name, &scene, size)?];
     if scene.lights.iter().any(is_point) {
         stages[0].has_points = true;

@@ -98,8 +98,31 @@ fn render_one(
 ) -> anyhow::Result<u8> {
     let scene = read_scene(path, arguments, common)?;
     tell_warnings(&scene.warnings, common)?;
+    let Some(count) = arguments.turntable else {
+        return render_scene(&scene, path, output, user, arguments, common, interrupt);
+    };
+    for frame in 0..count {
+        let turned = settings_from::turned(user, frame as f32 / count as f32)?;
+        let output = frame_path(output, frame);
+        let status = render_scene(&scene, path, &output, &turned, arguments, common, interrupt)?;
+        if status != DONE {
+            return Ok(status);
+        }
+    }
+    Ok(DONE)
+}
+
+fn render_scene(
+    scene: &SceneBuilder,
+    path: &Path,
+    output: &Path,
+    user: &Parameters,
+    arguments: &Render,
+    common: &Common,
+    interrupt: &Interrupt,
+) -> anyhow::Result<u8> {
     let begun = Instant::now();
-    let mut job = Job::new(&scene, user)?;
+    let mut job = Job::new(scene, user)?;
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
     aov::prepare(arguments, &mut job)?;

@@ -7,7 +7,7 @@ mod course;
 mod paper;
 mod studio;
 
-pub use studio::complete;
+pub use studio::{Ground, Studio, complete};
 
 use crate::builder::SceneBuilder;
 use crate::error::SceneError;

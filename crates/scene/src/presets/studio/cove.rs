@@ -1,0 +1,48 @@
+//! What a photographer puts a product on: a floor that bends up into a wall, so that no edge is seen behind it.
+
+use super::framing::Framing;
+use crate::mesh::Mesh;
+use bilux_math::transcendental::sin_cos_f64;
+use bilux_math::{DVec3, Vec3};
+use std::f64::consts::FRAC_PI_2;
+
+/// Lengths in radii of the model: to both sides, behind it before the bend, of the bend, and of the wall above that.
+const WIDE: f64 = 20.0;
+const BEHIND: f64 = 3.0;
+const BEND: f64 = 4.0;
+const WALL: f64 = 10.0;
+/// Strips of the bend.
+const STRIPS: u32 = 48;
+
+/// The cove behind a model, as seen by the studio's camera; it reaches behind that too.
+pub(super) fn cove(framing: &Framing) -> Mesh {
+    let radius = framing.radius;
+    let [right, ..] = framing.axes;
+    let away = DVec3::Y.cross(right);
+    // A little below, so that a model with a floor of its own keeps that.
+    let foot = DVec3::new(framing.middle.x, framing.lowest - radius * 1e-3, framing.middle.z);
+    let front = -(framing.distance + radius * 8.0);
+    let mut profile = vec![(front, 0.0, DVec3::Y)];
+    for i in 0..=STRIPS {
+        let (sin, cos) = sin_cos_f64(FRAC_PI_2 * f64::from(i) / f64::from(STRIPS));
+        profile.push((
+            (BEHIND + BEND * sin) * radius,
+            BEND * (1.0 - cos) * radius,
+            DVec3::Y * cos - away * sin,
+        ));
+    }
+    profile.push(((BEHIND + BEND) * radius, (BEND + WALL) * radius, -away));
+    let mut mesh = Mesh { name: super::GROUND.to_owned(), ..Mesh::default() };
+    for (back, up, normal) in profile {
+        for side in [-WIDE, WIDE] {
+            let p = foot + away * back + DVec3::Y * up + right * (side * radius);
+            mesh.positions.push(p.as_vec3());
+            mesh.normals.push(normal.as_vec3());
+        }
+    }
+    let strips = (mesh.positions.len() / 2 - 1) as u32;
+    mesh.triangles =
+        (0..strips).flat_map(|i| [[2 * i, 2 * i + 1, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 2]]).collect();
+    debug_assert!(mesh.positions.iter().all(|p: &Vec3| !p.is_nan()));
+    mesh
+}

@@ -1,0 +1,105 @@
+//! Where a model is, and from where it is seen whole.
+
+use super::Studio;
+use crate::builder::SceneBuilder;
+use crate::cameras::CameraSpec;
+use crate::parameters::Spec;
+use bilux_math::DVec3;
+use bilux_math::transcendental::{atan, sin_cos_f64, tan};
+
+/// Share of the picture's width and height that the model may take.
+const FILL: f64 = 0.88;
+/// Beyond this the squares of lengths overflow in f32.
+const FARTHEST: f64 = 1e17;
+
+/// Where a model is, and where it has to be seen from.
+pub(super) struct Framing {
+    pub(super) middle: DVec3,
+    /// Never zero, and never so small beside the distance from the origin that f32 could not tell.
+    pub(super) radius: f64,
+    pub(super) lowest: f64,
+    /// Right, up, and into the picture.
+    pub(super) axes: [DVec3; 3],
+    eye: DVec3,
+    /// Vertical field of view, in degrees.
+    fov: f32,
+    /// From the eye to the middle of what it sees.
+    pub(super) distance: f64,
+}
+
+impl Framing {
+    pub(super) fn of(scene: &SceneBuilder, studio: &Studio) -> Framing {
+        let limit = |p: DVec3| p.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST));
+        let bounds = scene.bounds(0.0);
+        let (low, high) = match bounds.is_empty() {
+            true => (DVec3::splat(-1.0), DVec3::ONE),
+            false => (limit(bounds.min.as_dvec3()), limit(bounds.max.as_dvec3())),
+        };
+        let middle = (low + high) * 0.5;
+        let radius = match ((high - low).length() * 0.5).max(middle.length() * 1e-5) {
+            r if r > 0.0 => r,
+            _ => 1.0,
+        };
+        let axes = axes(studio.orbit.unwrap_or(Studio::ORBIT));
+        let fov = field_of_view(studio.focal.unwrap_or(Studio::FOCAL));
+        let mut framing = Framing { middle, radius, lowest: low.y, axes, eye: middle, fov, distance: radius };
+        framing.stand_back(scene);
+        framing
+    }
+
+    /// Finds the nearest eye that sees all vertices within the middle `FILL` of a square picture.
+    ///
+    /// A point at (x, y, z) from the middle, along the axes, is seen from a shift of `s` and a distance of `d`
+    /// when |x - s| ≤ (d + z) k. So `d` has to be at least the greatest of x/k - z, less s/k, and the greatest
+    /// of -x/k - z, plus s/k: least where both are equal.
+    fn stand_back(&mut self, scene: &SceneBuilder) {
+        let k = f64::from(tan(self.fov.to_radians() * 0.5)) * FILL;
+        let mut reach = [f64::NEG_INFINITY; 4];
+        for object in &scene.objects {
+            let to_world = object.motion.at(0.0);
+            for &p in &object.mesh.positions {
+                let p = to_world.point(p).as_dvec3();
+                if p.is_finite() && p.abs().max_element() <= FARTHEST {
+                    let [x, y, z] = self.axes.map(|axis| axis.dot(p - self.middle));
+                    let needs = [x / k - z, -x / k - z, y / k - z, -y / k - z];
+                    reach = std::array::from_fn(|i| reach[i].max(needs[i]));
+                }
+            }
+        }
+        if !reach.iter().all(|r| r.is_finite()) {
+            reach = [self.radius / k; 4];
+        }
+        let [right, left, up, down] = reach;
+        let shift = self.axes[0] * ((right - left) * 0.5 * k) + self.axes[1] * ((up - down) * 0.5 * k);
+        let distance = ((right + left) * 0.5).max((up + down) * 0.5).max(self.radius * 0.5);
+        self.distance = distance;
+        self.eye = self.middle + shift - self.axes[2] * distance;
+    }
+
+    /// True where the eye is not above all of the model's lowest point.
+    pub(super) fn is_below(&self) -> bool {
+        self.eye.y <= self.lowest
+    }
+
+    pub(super) fn camera(&self) -> CameraSpec {
+        let spec = Spec::new("studio", "perspective")
+            .with("position", self.eye.as_vec3())
+            .with("look_at", (self.eye + self.axes[2] * self.distance).as_vec3())
+            .with("fov", self.fov);
+        CameraSpec { spec, keyframes: Vec::new() }
+    }
+}
+
+/// Right, up, and into the picture, for who looks at the middle from this azimuth and elevation.
+fn axes([azimuth, elevation]: [f32; 2]) -> [DVec3; 3] {
+    let (sin_azimuth, cos_azimuth) = sin_cos_f64(f64::from(azimuth).to_radians());
+    let (sin, cos) = sin_cos_f64(f64::from(elevation).to_radians());
+    let forward = -DVec3::new(cos * sin_azimuth, sin, cos * cos_azimuth);
+    let right = DVec3::new(cos_azimuth, 0.0, -sin_azimuth);
+    [right, right.cross(forward), forward]
+}
+
+/// Vertical field of view, in degrees, of a lens before a picture of 24 mm height.
+fn field_of_view(focal: f32) -> f32 {
+    (2.0 * atan(12.0 / focal)).to_degrees()
+}

@@ -1,0 +1,185 @@
+//! `studio`: any model, framed and lit well. What [`complete`] gives to scenes without a camera or a light.
+
+mod cove;
+mod framing;
+
+use super::PresetEntry;
+use crate::builder::{Object, SceneBuilder};
+use crate::error::SceneError;
+use crate::parameters::{Spec, Value};
+use bilux_math::registry::Entry;
+use bilux_math::{DVec3, Rgb};
+use framing::Framing;
+use std::sync::Arc;
+
+pub(super) const ENTRY: PresetEntry = PresetEntry {
+    entry: Entry {
+        name: "studio",
+        summary: "framed from the front, a little from the right and above, softly lit, before a cove",
+        source: "",
+        parameters: &[],
+    },
+    apply,
+};
+
+/// What a model stands on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// A matt cove, which takes the model's shadow.
+    Shadow,
+    /// A polished one, which mirrors it too.
+    Mirror,
+    /// Nothing.
+    None,
+}
+
+impl Ground {
+    /// As users name them.
+    pub const NAMES: &'static [&'static str] = &["shadow", "mirror", "none"];
+
+    /// By its name.
+    pub fn named(name: &str) -> Option<Ground> {
+        let all = [Ground::Shadow, Ground::Mirror, Ground::None];
+        Ground::NAMES.iter().position(|n| *n == name).map(|i| all[i])
+    }
+}
+
+/// How a model is photographed. What is `None` is made up for only where a scene says nothing of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Studio {
+    /// What it stands on.
+    pub ground: Option<Ground>,
+    /// From where it is seen: degrees to the right of its front (+z), and above it.
+    pub orbit: Option<[f32; 2]>,
+    /// Focal length in mm, for a picture 24 mm high.
+    pub focal: Option<f32>,
+}
+
+impl Studio {
+    /// A little from the right and above.
+    pub const ORBIT: [f32; 2] = [26.5, 17.8];
+    /// The lens of portraits, or a little more.
+    pub const FOCAL: f32 = 45.0;
+}
+
+/// What the ground's object and material are called.
+const GROUND: &str = "studio floor";
+
+fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
+    scene.cameras.clear();
+    scene.lights.clear();
+    let studio = Studio::default();
+    let framing = Framing::of(scene, &studio);
+    scene.cameras.push(framing.camera());
+    scene.lights.extend(lights(&framing));
+    furnish(scene, &framing, Ground::Shadow);
+    Ok(())
+}
+
+/// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
+/// studio where it has neither. What is asked for in `studio` is there in any case: its camera is the first one then.
+/// Does nothing to a scene that has both where nothing is asked for.
+pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
+    let lit = !scene.lights.is_empty() || scene.objects.iter().any(|o| gives_light(scene, o));
+    let seen = !scene.cameras.is_empty();
+    let asked = studio.orbit.is_some() || studio.focal.is_some();
+    let ground = studio.ground.unwrap_or(if lit || seen { Ground::None } else { Ground::Shadow });
+    if lit && seen && !asked && ground == Ground::None {
+        return;
+    }
+    let framing = Framing::of(scene, studio);
+    if !seen || asked {
+        scene.cameras.insert(0, framing.camera());
+    }
+    if !lit {
+        scene.lights.extend(lights(&framing));
+    }
+    if !lit && !seen {
+        of_clay(scene);
+    }
+    furnish(scene, &framing, ground);
+}
+
+/// Makes of clay what nobody has said a word about.
+fn of_clay(scene: &mut SceneBuilder) {
+    for material in scene.materials.iter_mut().filter(|m| m.kind == "phong" && m.parameters.0.is_empty()) {
+        let clay = Spec::new(&material.name, "phong").with("kd", Rgb::new(0.62, 0.59, 0.55));
+        *material = clay.with("ks", 0.05f32).with("exponent", 40.0f32).with("reflectivity", 0.0f32);
+    }
+}
+
+/// Puts something under the model.
+fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground) {
+    let paper = Rgb::new(0.72, 0.71, 0.70);
+    let material = match ground {
+        Ground::None => return,
+        // Who looks up from below would see nothing else.
+        _ if scene.objects.is_empty() || framing.is_below() => return,
+        Ground::Shadow => Spec::new(GROUND, "diffuse").with("reflectance", paper),
+        Ground::Mirror => Spec::new(GROUND, "principled")
+            .with("base_color", paper * 0.8)
+            .with("specular_ior", 2.0f32)
+            .with("specular_roughness", 0.1f32),
+    };
+    let material = scene.add_material(material);
+    scene.objects.push(Object::new(GROUND, Arc::new(cove::cove(framing)), material));
+}
+
+/// True for what lights a scene: what is less bright than the white of a screen is a sign, no lamp.
+fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
+    let bright = |value: &Value| match value {
+        Value::Integer(i) => *i >= 1,
+        Value::Number(x) => *x >= 1.0,
+        // So are pictures.
+        _ => false,
+    };
+    let emission = scene.materials.get(object.material).and_then(|m| m.parameters.find("emission"));
+    emission.is_some_and(|(value, _)| match value {
+        Value::List(list) => list.iter().any(bright),
+        one => bright(one),
+    })
+}
+
+/// A large panel from the left and above, a weaker one from behind on the right, and a pale room.
+fn lights(framing: &Framing) -> [Spec; 3] {
+    let [right, up, forward] = framing.axes;
+    let warm = Rgb::new(1.0, 0.96, 0.90);
+    let cool = Rgb::new(0.86, 0.93, 1.0);
+    let key = Lamp { name: "key", towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
+    let rim = Lamp { name: "rim", towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
+    [
+        key.spec(framing, warm * 4.4).with("classic", warm * 0.72),
+        rim.spec(framing, cool * 3.2).with("classic", cool * 0.28),
+        Spec::new("room", "environment")
+            .with("zenith", Rgb::new(0.40, 0.42, 0.46))
+            .with("horizon", Rgb::new(0.26, 0.27, 0.29))
+            .with("ground", Rgb::new(0.10, 0.096, 0.092)),
+    ]
+}
+
+/// A panel five radii away; its size is given for a distance of 1.
+struct Lamp {
+    name: &'static str,
+    towards: DVec3,
+    size: [f64; 2],
+}
+
+impl Lamp {
+    fn spec(&self, framing: &Framing, radiance: Rgb) -> Spec {
+        let towards = self.towards.normalize();
+        // Light from a panel depends on the angles under which it is seen, so that a tiny model may have one
+        // that is large beside it; its area has to be a number in f32. For huge models no panel does.
+        let away = 5.0 * framing.radius.max(1e-6);
+        if away > 1e8 {
+            return Spec::new(self.name, "directional")
+                .with("direction", (-towards).as_vec3())
+                .with("irradiance", radiance * (self.size[0] * self.size[1]) as f32);
+        }
+        let across = towards.cross(DVec3::Y).normalize_or(DVec3::X) * away;
+        Spec::new(self.name, "rect")
+            .with("position", (framing.middle + towards * away).as_vec3())
+            .with("edge_u", (across * self.size[0]).as_vec3())
+            .with("edge_v", (across.cross(towards) * self.size[1]).as_vec3())
+            .with("radiance", radiance)
+    }
+}
