@@ -30,7 +30,7 @@ fn is_white(lobe: &Lobe) -> bool {
         Lobe::Dielectric(d) => d.tint == Rgb::WHITE,
         Lobe::Gloss(gloss) => gloss.is_white(),
         Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) => false,
-        Lobe::Matt(_) | Lobe::Clear(_) => false,
+        Lobe::Matt(_) | Lobe::Clear(_) | Lobe::Fuzz(_) => false,
     }
 }
 

@@ -44,6 +44,9 @@ const CASES: &[Case] = &[
     ("metal in part, brushed", &[("base_metalness", 0.5), ("specular_roughness_anisotropy", 0.8)], false),
     ("coated paint", &[("specular_roughness", 0.5), ("coat_weight", 0.8), ("coat_roughness", 0.3)], false),
     ("frosted", &[("transmission_weight", 0.7), ("specular_roughness", 0.4), ("coat_weight", 0.5)], true),
+    ("velvet", &[("fuzz_weight", 0.9), ("fuzz_roughness", 0.4), ("coat_weight", 0.5)], false),
+    ("leaf", &[("diffuse_transmission_weight", 0.6), ("fuzz_weight", 0.3)], false),
+    ("oily", &[("thin_film_weight", 0.8), ("base_metalness", 0.5), ("specular_roughness", 0.4)], false),
     ("dense", &[("specular_ior", 2.4), ("specular_weight", 0.4), ("base_metalness", 0.2)], false),
 ];
 
@@ -93,6 +96,25 @@ fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
             }
         }
     }
+    // A sheet loses nothing on its two sides together.
+    let [least, most] = furnace(&principled(&[("diffuse_transmission_weight", 0.6)], Rgb::WHITE));
+    assert!(least > 0.985 && most < 1.012, "a sheet: {least:.4} to {most:.4}");
+    for roughness in [0.0f32, 0.3, 0.6, 1.0] {
+        let numbers = [("fuzz_weight", 1.0), ("fuzz_roughness", roughness), ("specular_weight", 0.0)];
+        let [least, most] = furnace(&principled(&numbers, Rgb::WHITE));
+        assert!(least > 0.97 && most < 1.03, "fuzz of {roughness}: {least:.4} to {most:.4}");
+    }
+    for thickness in [0.1f32, 0.3, 0.6] {
+        for metalness in [0.0, 1.0] {
+            let numbers = [
+                ("thin_film_weight", 1.0),
+                ("thin_film_thickness", thickness),
+                ("base_metalness", metalness),
+            ];
+            let [_, most] = furnace(&principled(&numbers, Rgb::WHITE));
+            assert!(most < 1.012, "film of {thickness}: {most:.4}");
+        }
+    }
     let grey = furnace(&principled(&[("specular_roughness", 0.7)], Rgb::grey(0.9)));
     assert!(grey[0] < 0.985, "a grey one passes for white: {grey:?}");
 }
@@ -137,6 +159,9 @@ fn every_corner_is_finite() {
         "transmission_weight",
         "coat_weight",
         "coat_roughness",
+        "fuzz_weight",
+        "diffuse_transmission_weight",
+        "thin_film_weight",
     ];
     for corner in 0..1u32 << keys.len() {
         for ior in [1.0f32, 10.0] {

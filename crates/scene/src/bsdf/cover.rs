@@ -1,11 +1,11 @@
-//! What a coat lets through to what is below it, and back.
+//! What a coat and fuzz let through to what is below them, and back.
 //!
 //! A coat reflects E(µ) of the light along a direction, and g = 1 - E passes. Below it, single directions and lobes about
 //! them are scaled by the lesser g of the two directions: reciprocal, never more than what passed, and all of it where
 //! both are alike, as for a mirror. Diffuse light is scaled by the product of the two over the mean of g, which loses
 //! none of it. [Kulla 2017]
 
-use super::Albedo;
+use super::{Albedo, FuzzAlbedo};
 
 /// What lies over a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,27 +13,43 @@ pub struct Cover {
     /// How much of the surface has the coat, 0..=1.
     coat_weight: f32,
     coat: Albedo,
+    /// How much of it has fuzz on top, and how that stands.
+    fuzz: Option<(f32, FuzzAlbedo)>,
 }
 
 impl Cover {
     /// Nothing.
-    pub const NONE: Cover = Cover { coat_weight: 0.0, coat: Albedo::NONE };
+    pub const NONE: Cover = Cover { coat_weight: 0.0, coat: Albedo::NONE, fuzz: None };
 
     /// A coat on this much of the surface, 0..=1.
     pub fn coat(weight: f32, coat: Albedo) -> Cover {
-        Cover { coat_weight: weight, coat }
+        Cover { coat_weight: weight, coat, fuzz: None }
+    }
+
+    /// The same with a coat too, below the rest.
+    pub fn coated(self, weight: f32, coat: Albedo) -> Cover {
+        Cover { coat_weight: weight, coat, ..self }
+    }
+
+    /// The same below fuzz on this much of the surface, 0..=1.
+    pub fn below(self, weight: f32, fuzz: FuzzAlbedo) -> Cover {
+        Cover { fuzz: (weight > 0.0).then_some((weight, fuzz)), ..self }
     }
 
     /// True where there is nothing.
     #[inline]
     pub fn is_none(&self) -> bool {
-        self.coat_weight == 0.0
+        self.coat_weight == 0.0 && self.fuzz.is_none()
     }
 
     /// The fraction that passes along a direction of this cosine with the normal.
     #[inline]
     pub fn passed(&self, cos: f32) -> f32 {
-        if self.is_none() { 1.0 } else { 1.0 - self.coat_weight * self.coat.at(cos) }
+        if self.is_none() {
+            return 1.0;
+        }
+        let below_fuzz = self.fuzz.map_or(1.0, |(weight, fuzz)| 1.0 - weight * fuzz.at(cos));
+        below_fuzz * (1.0 - self.coat_weight * self.coat.at(cos))
     }
 
     /// The fraction of what is scattered between two directions that passes on its way in and out.

@@ -3,7 +3,9 @@
 //! loses nothing, and a coloured one is the more saturated. [Kulla 2017]
 
 use super::conductor::facet_between;
-use super::{Albedo, BsdfEntry, BsdfSample, Cover, Fresnel, Ggx, Lobe, TransportMode, fresnel_dielectric};
+use super::{
+    Albedo, BsdfEntry, BsdfSample, Cover, Film, Fresnel, Ggx, Lobe, TransportMode, fresnel_dielectric,
+};
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::sin_cos;
@@ -33,6 +35,20 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
             ("polished plastic", of(Ggx::SMOOTH, 0.0)),
             ("plastic", of(Ggx::new(0.2), 0.0)),
             ("gold", of(Ggx::new(0.3), 1.0)),
+            (
+                "below oil",
+                Lobe::Gloss(
+                    Gloss::new(
+                        Ggx::new(0.2),
+                        1.5,
+                        Rgb::grey(0.5),
+                        Fresnel::tinted(Rgb::grey(0.6), Rgb::WHITE),
+                        Rgb::grey(0.5),
+                        Cover::NONE,
+                    )
+                    .below(Film { weight: 0.8, thickness: 420.0, eta: 1.4 }),
+                ),
+            ),
             ("half gold", of(Ggx::anisotropic(0.1, 0.5, 0.4), 0.5)),
             ("white, smooth", white(Ggx::SMOOTH)),
             ("white, satin", white(Ggx::new(0.08))),
@@ -59,6 +75,7 @@ pub struct Gloss {
     /// How often a direction of that is drawn, over what one reflection leaves along `wo`.
     again_share: f32,
     cover: Cover,
+    film: Option<Film>,
     /// Factor on light from below.
     from_below: f32,
 }
@@ -78,6 +95,7 @@ impl Gloss {
             again: Rgb::BLACK,
             again_share: 0.0,
             cover,
+            film: None,
             from_below: 1.0,
         };
         if !metal_weight.is_black() && !ggx.is_smooth() {
@@ -95,6 +113,11 @@ impl Gloss {
         Gloss { from_below: factor, ..self }
     }
 
+    /// The same below a thin film.
+    pub fn below(self, film: Film) -> Gloss {
+        Gloss { film: Some(film), ..self }
+    }
+
     /// True for white metal without a cover, which reflects all light.
     pub fn is_white(&self) -> bool {
         let is_bare = self.cover.is_none() && self.from_below == 1.0;
@@ -103,6 +126,9 @@ impl Gloss {
 
     #[inline]
     fn fresnel(&self, cos: f32) -> Rgb {
+        if let Some(film) = &self.film {
+            return self.fresnel_below(film, cos);
+        }
         let mut reflected = Rgb::BLACK;
         if !self.metal_weight.is_black() {
             reflected = self.metal.at(cos) * self.metal_weight;
@@ -111,6 +137,19 @@ impl Gloss {
             reflected += self.glass * fresnel_dielectric(cos, self.eta);
         }
         reflected
+    }
+
+    #[inline(never)]
+    fn fresnel_below(&self, film: &Film, cos: f32) -> Rgb {
+        let bare = Gloss { film: None, ..*self }.fresnel(cos);
+        let mut reflected = Rgb::BLACK;
+        if !self.metal_weight.is_black() {
+            reflected = film.over_metal(cos, &self.metal) * self.metal_weight;
+        }
+        if !self.glass.is_black() {
+            reflected += self.glass * film.over_glass(cos, self.eta);
+        }
+        bare.lerp(reflected, film.weight)
     }
 
     /// What is left of light on its way through what covers the facets.

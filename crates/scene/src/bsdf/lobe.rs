@@ -1,7 +1,7 @@
 //! A lobe, one of [`BSDFS`].
 
 use super::{
-    BsdfSample, Clear, Conductor, Dielectric, Gloss, Lambert, Matt, Mirror, PhongLobe, RoughDielectric,
+    BsdfSample, Clear, Conductor, Dielectric, Fuzz, Gloss, Lambert, Matt, Mirror, PhongLobe, RoughDielectric,
     TransportMode,
 };
 use bilux_math::registry::Entry;
@@ -28,6 +28,8 @@ pub enum Lobe {
     Matt(Matt),
     /// Glass below what covers it.
     Clear(Clear),
+    /// Fine upright fibres.
+    Fuzz(Fuzz),
 }
 
 macro_rules! each_lobe {
@@ -42,6 +44,7 @@ macro_rules! each_lobe {
             Lobe::Gloss($l) => $body,
             Lobe::Matt($l) => $body,
             Lobe::Clear($l) => $body,
+            Lobe::Fuzz($l) => $body,
         }
     };
 }
@@ -87,7 +90,9 @@ impl Lobe {
             Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
             Lobe::Gloss(lobe) => lobe.is_delta(),
             Lobe::Clear(lobe) => lobe.is_delta(),
-            Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) => false,
+            Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) | Lobe::Fuzz(_) => {
+                false
+            }
         }
     }
 
@@ -103,6 +108,7 @@ impl Lobe {
         match self {
             Lobe::Gloss(lobe) => lobe.rise(),
             Lobe::Matt(lobe) => lobe.rise(),
+            Lobe::Fuzz(lobe) => lobe.rise(),
             _ => 0.0,
         }
     }
@@ -132,4 +138,5 @@ pub const BSDFS: &[BsdfEntry] = &[
     super::gloss::ENTRY,
     super::matt::ENTRY,
     super::clear::ENTRY,
+    super::fuzz::ENTRY,
 ];

@@ -1,7 +1,7 @@
 //! Diffuse reflection below a boundary and what covers it: what they let through is all scattered, and comes out again.
 //! [Kulla 2017]
 
-use super::{Albedo, BsdfEntry, BsdfSample, Cover, Ggx, Lobe, TransportMode};
+use super::{Albedo, BsdfEntry, BsdfSample, Cover, FuzzAlbedo, Ggx, Lobe, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
@@ -21,7 +21,13 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
             let below = Albedo::new(&Ggx::new(alpha), 1.5);
             Lobe::Matt(Matt::new(Rgb::new(0.9, 0.5, 0.2), below, cover))
         };
+        let leaf = |cover| {
+            let (green, light) = (Rgb::new(0.2, 0.5, 0.1), Rgb::new(0.4, 0.5, 0.1));
+            Lobe::Matt(Matt::sheet(green, light, Albedo::new(&Ggx::new(0.3), 1.4), cover))
+        };
         vec![
+            ("leaf", leaf(Cover::NONE)),
+            ("leaf with a bloom", leaf(Cover::NONE.below(0.7, FuzzAlbedo::new(0.4)))),
             ("polished paint", paint(0.0, Cover::NONE)),
             ("rough paint", paint(0.4, Cover::NONE)),
             ("coated paint", paint(0.2, Cover::coat(0.8, Albedo::new(&Ggx::new(0.05), 1.6)))),
@@ -34,6 +40,8 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 pub struct Matt {
     /// Reflected fraction of the light that gets there, over the mean of what passes.
     scale: Rgb,
+    /// The same of what comes out on the other side.
+    through: Rgb,
     /// What the boundary reflects.
     boundary: Albedo,
     cover: Cover,
@@ -54,14 +62,30 @@ const GAUSS: [(f32, f32); 8] = [
 impl Matt {
     /// Reflects `albedo`, 0..=1, of what passes a boundary and what covers that.
     pub fn new(albedo: Rgb, boundary: Albedo, cover: Cover) -> Matt {
-        let passed = |cos: f32| (1.0 - boundary.at(cos)) * cover.passed(cos);
+        Matt::sheet(albedo, Rgb::BLACK, boundary, cover)
+    }
+
+    /// A sheet of paper or a leaf: of what gets into it, it reflects one part and lets another out on its other side,
+    /// at most 1 together.
+    pub fn sheet(reflected: Rgb, passed: Rgb, boundary: Albedo, cover: Cover) -> Matt {
+        let gets_in = |cos: f32| (1.0 - boundary.at(cos)) * cover.passed(cos);
         let mean = if cover.is_none() {
             1.0 - boundary.mean()
         } else {
             // ∫ g(µ) 2µ dµ with µ = t²
-            GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * passed(t * t)).sum()
+            GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * gets_in(t * t)).sum()
         };
-        Matt { scale: albedo / mean.max(f32::MIN_POSITIVE), boundary, cover }
+        let scale = 1.0 / mean.max(f32::MIN_POSITIVE);
+        Matt { scale: reflected * scale, through: passed * scale, boundary, cover }
+    }
+
+    /// How often a direction on the other side is drawn.
+    #[inline]
+    fn share_through(&self) -> f32 {
+        if self.through.is_black() {
+            return 0.0;
+        }
+        self.through.luminance() / (self.through.luminance() + self.scale.luminance())
     }
 
     /// The fraction that gets there along a direction.
@@ -72,16 +96,22 @@ impl Matt {
 
     #[inline]
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
-        if wo.z * wi.z <= 0.0 {
+        let scale = if wo.z * wi.z > 0.0 {
+            self.scale
+        } else if wo.z * wi.z < 0.0 {
+            self.through
+        } else {
             return Rgb::BLACK;
-        }
+        };
         let cos = wi.z.abs();
-        self.scale * (self.passed(wo.z.abs()) * self.passed(cos) * FRAC_1_PI * cos)
+        scale * (self.passed(wo.z.abs()) * self.passed(cos) * FRAC_1_PI * cos)
     }
 
     #[inline]
     pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if wo.z * wi.z > 0.0 { warp::cosine_hemisphere_pdf_solid_angle(wi.z.abs()) } else { 0.0 }
+        let through = self.share_through();
+        let side = if wo.z * wi.z > 0.0 { 1.0 - through } else { through };
+        side * warp::cosine_hemisphere_pdf_solid_angle(wi.z.abs())
     }
 
     #[inline]
@@ -90,21 +120,18 @@ impl Matt {
     }
 
     #[inline]
-    pub(super) fn sample(
-        &self,
-        wo: Vec3,
-        _u_choice: f32,
-        u: Vec2,
-        mode: TransportMode,
-    ) -> Option<BsdfSample> {
+    pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let mut wi = warp::sample_cosine_hemisphere(u);
-        wi.z *= 1f32.copysign(wo.z);
-        BsdfSample::reflected(wi, self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+        let transmits = u_choice < self.share_through();
+        wi.z *= 1f32.copysign(if transmits { -wo.z } else { wo.z });
+        let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
+        let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;
+        Some(BsdfSample { transmits, ..sample })
     }
 
     #[inline]
     pub(super) fn strength(&self) -> f32 {
-        self.scale.luminance() * self.passed(1.0)
+        (self.scale + self.through).luminance() * self.passed(1.0)
     }
 
     /// Towards grazing next to nothing gets there; a tenth is left, so that no direction is drawn too rarely.

@@ -16,6 +16,8 @@ mod cover;
 mod delta;
 mod dielectric;
 mod facing;
+mod film;
+mod fuzz;
 mod ggx;
 mod gloss;
 mod lambert;
@@ -33,6 +35,8 @@ pub use conductor::{Conductor, Fresnel, fresnel_conductor};
 pub use cover::Cover;
 pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
 pub use facing::Facing;
+pub use film::Film;
+pub use fuzz::{Fuzz, FuzzAlbedo};
 pub use ggx::Ggx;
 pub use gloss::Gloss;
 pub use lambert::Lambert;
@@ -87,7 +91,7 @@ pub struct Bsdf {
 }
 
 /// So many lobes are summed at most.
-pub const MOST_LOBES: usize = 4;
+pub const MOST_LOBES: usize = 5;
 
 impl Bsdf {
     /// A lobe around a shading normal.
@@ -97,9 +101,9 @@ impl Bsdf {
         Bsdf {
             frame: Frame::from_normal(n_shade),
             n_geom,
-            lobes: [Some(lobe), None, None, None],
+            lobes: [Some(lobe), None, None, None, None],
             weights: [1.0; MOST_LOBES],
-            strengths: [strength, 0.0, 0.0, 0.0],
+            strengths: [strength, 0.0, 0.0, 0.0, 0.0],
             total_strength: strength,
             rises: [0.0; MOST_LOBES],
             total_rise: 0.0,

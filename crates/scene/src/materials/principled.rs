@@ -1,5 +1,5 @@
 //! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: plastic, metal, glass, or
-//! a mixture, below a clear coat.
+//! a mixture, below a clear coat, below fuzz.
 //!
 //! Below is what scatters diffusely, or metal; at the surface, facets reflect by Fresnel's equations. What they reflect
 //! the diffuse part lacks, and no more: a white surface loses nothing. [OpenPBR 1.1; Kulla 2017]
@@ -9,7 +9,9 @@ use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE,
     Nested, OPACITY, THIN, colour_map, number_map, reflectance,
 };
-use crate::bsdf::{Albedo, Bsdf, Clear, Cover, Fresnel, Ggx, Gloss, Lambert, Lobe, Matt};
+use crate::bsdf::{
+    Albedo, Bsdf, Clear, Cover, Film, Fresnel, Fuzz, FuzzAlbedo, Ggx, Gloss, Lambert, Lobe, Matt,
+};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::parameters::Reader;
@@ -69,6 +71,39 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             reflectance("coat_color", "what is left of light that passes the coat and comes back", "1"),
             number("coat_roughness", ROUGHNESS, 1.0, "0"),
             index("coat_ior", "refractive index of the coat", "1.6"),
+            number("fuzz_weight", "how much of the surface has fine fibres on top, as velvet has", 1.0, "0"),
+            reflectance("fuzz_color", "colour of the fibres", "1"),
+            number(
+                "fuzz_roughness",
+                "low for fibres that stand upright and are seen only along the surface",
+                1.0,
+                "0.5",
+            ),
+            number(
+                "diffuse_transmission_weight",
+                "how much of the diffuse part comes out behind, as in a leaf",
+                1.0,
+                "0",
+            ),
+            reflectance(
+                "diffuse_transmission_color",
+                "what comes out behind of light that scatters there",
+                "1",
+            ),
+            number(
+                "thin_film_weight",
+                "how much of the surface has a film as thin as light's waves",
+                1.0,
+                "0",
+            ),
+            Parameter {
+                name: "thin_film_thickness",
+                summary: "thickness of that film",
+                unit: "µm",
+                kind: ParameterKind::NumberTexture { min: 0.0, max: 10.0 },
+                default: "0.5",
+            },
+            index("thin_film_ior", "refractive index of that film", "1.4"),
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
@@ -129,6 +164,14 @@ struct Maps {
     coat_color: ColourMap,
     coat_roughness: NumberMap,
     coat_ior: NumberMap,
+    fuzz_weight: NumberMap,
+    fuzz_color: ColourMap,
+    fuzz_roughness: NumberMap,
+    passing: NumberMap,
+    passing_color: ColourMap,
+    film_weight: NumberMap,
+    film_thickness: NumberMap,
+    film_ior: NumberMap,
 }
 
 impl Maps {
@@ -152,12 +195,27 @@ impl Maps {
             coat_color: colour("coat_color")?,
             coat_roughness: number("coat_roughness")?,
             coat_ior: number("coat_ior")?,
+            fuzz_weight: number("fuzz_weight")?,
+            fuzz_color: colour("fuzz_color")?,
+            fuzz_roughness: number("fuzz_roughness")?,
+            passing: number("diffuse_transmission_weight")?,
+            passing_color: colour("diffuse_transmission_color")?,
+            film_weight: number("thin_film_weight")?,
+            film_thickness: number("thin_film_thickness")?,
+            film_ior: number("thin_film_ior")?,
         })
     }
 
     /// True where no texture changes anything over the surface.
     fn are_even(&self) -> bool {
-        let colours = [&self.base_color, &self.specular_color, &self.transmission_color, &self.coat_color];
+        let colours = [
+            &self.base_color,
+            &self.specular_color,
+            &self.transmission_color,
+            &self.coat_color,
+            &self.fuzz_color,
+            &self.passing_color,
+        ];
         let numbers = [
             &self.base_metalness,
             &self.specular_weight,
@@ -169,6 +227,12 @@ impl Maps {
             &self.coat_weight,
             &self.coat_roughness,
             &self.coat_ior,
+            &self.fuzz_weight,
+            &self.fuzz_roughness,
+            &self.passing,
+            &self.film_weight,
+            &self.film_thickness,
+            &self.film_ior,
         ];
         colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
     }
@@ -194,6 +258,16 @@ impl Maps {
             coat_color: self.coat_color.at(uv).clamp(0.0, 1.0),
             coat_roughness: self.coat_roughness.at(uv),
             coat_ior: self.coat_ior.at(uv),
+            fuzz: self.fuzz_weight.at(uv),
+            fuzz_color: self.fuzz_color.at(uv).clamp(0.0, 1.0),
+            fuzz_roughness: self.fuzz_roughness.at(uv),
+            passing: self.passing.at(uv),
+            passing_color: self.passing_color.at(uv).clamp(0.0, 1.0),
+            film: Film {
+                weight: self.film_weight.at(uv),
+                thickness: self.film_thickness.at(uv) * 1e3,
+                eta: self.film_ior.at(uv),
+            },
         }
     }
 }
@@ -215,37 +289,49 @@ struct Point {
     coat_color: Rgb,
     coat_roughness: f32,
     coat_ior: f32,
+    fuzz: f32,
+    fuzz_color: Rgb,
+    fuzz_roughness: f32,
+    /// How much of the diffuse part comes out behind.
+    passing: f32,
+    passing_color: Rgb,
+    film: Film,
 }
 
-/// Coat, boundary, base, clear part.
-type Lobes = [Option<Lobe>; 4];
+/// Fuzz, coat, boundary, base, clear part.
+type Lobes = [Option<Lobe>; 5];
 
 impl Point {
     fn lobes(&self) -> Lobes {
         let ggx = Ggx::from_roughness(self.roughness, self.anisotropy, self.rotation * TAU);
-        let (coat, cover) = self.coat_and_cover();
+        let (fuzz, bloom) = self.fuzz_and_cover();
+        let (coat, cover) = self.coat_and_cover(bloom);
         let tint = Rgb::WHITE.lerp(self.coat_color, self.coat);
         let (opaque, clear) = (tint * self.opaque(), tint * self.clear());
         let eta = self.eta();
         let glass = if eta > 1.0 { self.specular_color * opaque } else { Rgb::BLACK };
         let metal = Fresnel::tinted(self.base_color * self.specular_weight, self.specular_color);
         let metal_weight = tint * self.metalness;
-        let gloss = (!metal_weight.is_black() || !glass.is_black())
-            .then(|| Lobe::Gloss(Gloss::new(ggx, eta, glass, metal, metal_weight, cover)));
-        let albedo = self.base_color * opaque;
-        let is_bare = eta <= 1.0 && cover.is_none();
-        let base = (!albedo.is_black()).then(|| {
+        let gloss = (!metal_weight.is_black() || !glass.is_black()).then(|| {
+            let gloss = Gloss::new(ggx, eta, glass, metal, metal_weight, cover);
+            Lobe::Gloss(if self.film.weight > 0.0 { gloss.below(self.film) } else { gloss })
+        });
+        let (albedo, passing) =
+            (self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing);
+        let is_bare = eta <= 1.0 && cover.is_none() && passing.is_black();
+        let base = (!albedo.is_black() || !passing.is_black()).then(|| {
             if is_bare {
-                Lobe::Lambert(Lambert { albedo })
-            } else {
-                Lobe::Matt(Matt::new(albedo, Albedo::new(&ggx, eta), cover))
+                return Lobe::Lambert(Lambert { albedo });
             }
+            // What a film reflects at its brightest colour does not get in at any.
+            let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
+            Lobe::Matt(Matt::sheet(albedo, passing, Albedo::new(&ggx, most), cover))
         });
         let clear = (!clear.is_black()).then(|| {
             let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
             Lobe::Clear(Clear::new(self.ior, ggx, self.thin, reflected, passed, cover))
         });
-        [coat, gloss, base, clear]
+        [fuzz, coat, gloss, base, clear]
     }
 
     /// How much of the surface is neither metal nor clear.
@@ -265,17 +351,31 @@ impl Point {
         weakened(eta, self.specular_weight)
     }
 
-    fn coat_and_cover(&self) -> (Option<Lobe>, Cover) {
-        if self.coat == 0.0 || self.coat_ior <= 1.0 {
+    /// Fibres, and what they cover.
+    fn fuzz_and_cover(&self) -> (Option<Lobe>, Cover) {
+        if self.fuzz == 0.0 {
             return (None, Cover::NONE);
+        }
+        let albedo = FuzzAlbedo::new(self.fuzz_roughness);
+        let fuzz = Fuzz::new(self.fuzz_color * self.fuzz, albedo).from_below(self.outside());
+        (Some(Lobe::Fuzz(fuzz)), Cover::NONE.below(self.fuzz, albedo))
+    }
+
+    /// A coat below what covers that, and all of it together.
+    fn coat_and_cover(&self, above: Cover) -> (Option<Lobe>, Cover) {
+        if self.coat == 0.0 || self.coat_ior <= 1.0 {
+            return (None, above);
         }
         let ggx = Ggx::from_roughness(self.coat_roughness, 0.0, 0.0);
         let none = Fresnel::tinted(Rgb::BLACK, Rgb::WHITE);
-        let coat = Gloss::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, Cover::NONE);
-        // Who is inside of what is clear sees no coat.
-        let outside = if self.thin { 1.0 } else { 1.0 - self.clear() };
-        let cover = Cover::coat(self.coat, Albedo::new(&ggx, self.coat_ior));
-        (Some(Lobe::Gloss(coat.from_below(outside))), cover)
+        let coat = Gloss::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, above);
+        let cover = above.coated(self.coat, Albedo::new(&ggx, self.coat_ior));
+        (Some(Lobe::Gloss(coat.from_below(self.outside()))), cover)
+    }
+
+    /// Who is inside of what is clear sees neither coat nor fuzz: how much of them is seen from below.
+    fn outside(&self) -> f32 {
+        if self.thin { 1.0 } else { 1.0 - self.clear() }
     }
 }
 
@@ -345,6 +445,7 @@ impl Material for Principled {
     fn most_lobes(&self) -> usize {
         2 + usize::from(is_there(&self.maps.transmission_weight))
             + usize::from(is_there(&self.maps.coat_weight))
+            + usize::from(is_there(&self.maps.fuzz_weight))
     }
 
     fn nested(&self) -> Option<Nested> {

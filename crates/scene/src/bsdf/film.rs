@@ -1,0 +1,190 @@
+//! A film as thin as light's waves on a surface, such as oil or the oxide of steel: what its two sides reflect adds up or
+//! cancels, at each wavelength otherwise.
+//!
+//! Between amplitudes a above and b below it, with q = ab, Airy's sum reflects
+//! R = 1 - (1-a²)(1-b²) / (1-q²) · (1 + 2 Σ (-q)^m cos mδ), δ = 2π · path / wavelength. Only the cosines depend on the
+//! wavelength: their means over what the channels see are a table over the path. [Belcour 2017; Born 1999, 7.6]
+
+use super::Fresnel;
+use bilux_math::Rgb;
+use bilux_math::transcendental::{cos, exp};
+use std::f32::consts::TAU;
+use std::sync::LazyLock;
+
+/// A film on part of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// How much of the surface has it, 0..=1.
+    pub weight: f32,
+    /// Thickness in nm.
+    pub thickness: f32,
+    /// Refractive index, at least 1.
+    pub eta: f32,
+}
+
+/// How often light goes to and fro before the rest of it counts for nothing.
+const ORDERS: i32 = 5;
+
+impl Film {
+    /// What a boundary of this index (at least 1) over what is above reflects below the film, by the channels.
+    pub(super) fn over_glass(&self, cosine: f32, eta: f32) -> Rgb {
+        let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
+        let below = (1.0 - (1.0 - above * above) / (eta * eta)).max(0.0).sqrt();
+        let across = amplitude(self.eta * within, eta * below);
+        let along = amplitude(within / self.eta, below / eta);
+        self.reflected(above, within, [Rgb::grey(across), Rgb::grey(along)])
+    }
+
+    /// The same of metal, which turns the phase of light by half.
+    pub(super) fn over_metal(&self, cosine: f32, metal: &Fresnel) -> Rgb {
+        let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
+        let b = metal.at(within).map(f32::sqrt);
+        self.reflected(above, within, [b * -1.0, b])
+    }
+
+    /// The index of a boundary that reflects as much straight on as this film over one of `eta` ever does.
+    pub fn most(&self, eta: f32) -> f32 {
+        let (a, b) = ((self.eta - 1.0) / (self.eta + 1.0), (eta - self.eta).abs() / (eta + self.eta));
+        let most = (a + b) / (1.0 + a * b);
+        let own = (eta - 1.0) / (eta + 1.0);
+        let amplitude = (own + (most.max(own) - own) * self.weight).min(0.99);
+        (1.0 + amplitude) / (1.0 - amplitude)
+    }
+
+    /// Above and within the film; `None` where light does not get into it.
+    fn cosines(&self, cosine: f32) -> Option<(f32, f32)> {
+        let above = cosine.clamp(0.0, 1.0);
+        let within = 1.0 - (1.0 - above * above) / (self.eta * self.eta);
+        (within > 0.0).then(|| (above, within.sqrt()))
+    }
+
+    /// The mean of both polarisations; `b` has the amplitudes below for light that swings across and along the plane of
+    /// incidence.
+    fn reflected(&self, above: f32, within: f32, b: [Rgb; 2]) -> Rgb {
+        let path = 2.0 * self.eta * self.thickness * within;
+        let a = [amplitude(above, self.eta * within), amplitude(above, within / self.eta)];
+        let mut sum = Rgb::BLACK;
+        for (a, b) in a.into_iter().zip(b) {
+            let q = b * a;
+            let mut series = Rgb::WHITE;
+            let mut power = Rgb::WHITE;
+            for order in 1..=ORDERS {
+                power = power * q * -1.0;
+                series += power * mean_cosine(path * order as f32) * 2.0;
+            }
+            let passed = b.map(|b| (1.0 - a * a) * (1.0 - b * b)) * q.map(|q| 1.0 / (1.0 - q * q).max(1e-6));
+            sum += passed * series;
+        }
+        (Rgb::WHITE + sum * -0.5).clamp(0.0, 1.0)
+    }
+}
+
+/// Amplitude that is reflected from one medium to another: of light that swings across the plane of incidence, given index
+/// times cosine of each; of light that swings along it, given cosine over index.
+#[inline]
+fn amplitude(first: f32, second: f32) -> f32 {
+    (first - second) / (first + second).max(f32::MIN_POSITIVE)
+}
+
+/// Paths in nm, in even steps; longer ones give no colour.
+const LONGEST: f32 = 16_000.0;
+const STEPS: usize = 1601;
+
+/// The mean of cos(2π · path / wavelength), weighted by what the channels see.
+#[inline]
+fn mean_cosine(path: f32) -> Rgb {
+    let place = path / LONGEST * (STEPS - 1) as f32;
+    let first = place as usize;
+    match (COSINES.get(first), COSINES.get(first + 1)) {
+        (Some(a), Some(b)) => a.lerp(*b, place - first as f32),
+        _ => Rgb::BLACK,
+    }
+}
+
+static COSINES: LazyLock<Vec<Rgb>> = LazyLock::new(|| {
+    let seen: Vec<(f32, Rgb)> =
+        (0..90).map(|i| 385.0 + 4.0 * i as f32).map(|nm| (nm, sensitivity(nm))).collect();
+    let whole: Rgb = seen.iter().map(|(_, rgb)| *rgb).sum();
+    let mean = |step: usize| {
+        let path = step as f32 * LONGEST / (STEPS - 1) as f32;
+        let sum: Rgb = seen.iter().map(|(nm, rgb)| *rgb * cos(TAU * path / nm)).sum();
+        Rgb::new(sum.r / whole.r, sum.g / whole.g, sum.b / whole.b)
+    };
+    (0..STEPS).map(mean).collect()
+});
+
+/// What the channels of Rec. 709 see of light of a wavelength in nm, in no unit: the standard observer's curves
+/// [Wyman 2013, eq. 4] by the primaries' matrix.
+fn sensitivity(nm: f32) -> Rgb {
+    let bell = |middle: f32, below: f32, above: f32| {
+        let t = (nm - middle) / if nm < middle { below } else { above };
+        exp(-0.5 * t * t)
+    };
+    let x =
+        1.056 * bell(599.8, 37.9, 31.0) + 0.362 * bell(442.0, 16.0, 26.7) - 0.065 * bell(501.1, 20.4, 26.2);
+    let y = 0.821 * bell(568.8, 46.9, 40.5) + 0.286 * bell(530.9, 16.3, 31.1);
+    let z = 1.217 * bell(437.0, 11.8, 36.0) + 0.681 * bell(459.0, 26.0, 13.8);
+    Rgb::new(
+        3.2406 * x - 1.5372 * y - 0.4986 * z,
+        -0.9689 * x + 1.8758 * y + 0.0415 * z,
+        0.0557 * x - 0.2040 * y + 1.0570 * z,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Airy's sum itself, wavelength by wavelength, and by complex amplitudes.
+    fn by_wavelengths(film: &Film, cosine: f32, eta: f32) -> Rgb {
+        let (c1, sin2) = (f64::from(cosine), 1.0 - f64::from(cosine * cosine));
+        let (n2, n3) = (f64::from(film.eta), f64::from(eta));
+        let (c2, c3) = ((1.0 - sin2 / (n2 * n2)).sqrt(), (1.0 - sin2 / (n3 * n3)).sqrt());
+        let pairs = [
+            ((c1 - n2 * c2) / (c1 + n2 * c2), (n2 * c2 - n3 * c3) / (n2 * c2 + n3 * c3)),
+            ((n2 * c1 - c2) / (n2 * c1 + c2), (n3 * c2 - n2 * c3) / (n3 * c2 + n2 * c3)),
+        ];
+        let (mut sum, mut whole) = (Rgb::BLACK, Rgb::BLACK);
+        for nm in 385..745 {
+            let delta = 4.0 * std::f64::consts::PI * n2 * f64::from(film.thickness) * c2 / f64::from(nm);
+            let (re, im) = (delta.cos(), delta.sin());
+            let reflected = pairs.map(|(a, b)| {
+                let (top, bottom) = ((a + b * re, b * im), (1.0 + a * b * re, a * b * im));
+                (top.0 * top.0 + top.1 * top.1) / (bottom.0 * bottom.0 + bottom.1 * bottom.1)
+            });
+            let seen = sensitivity(nm as f32);
+            whole += seen;
+            sum += seen * (0.5 * (reflected[0] + reflected[1])) as f32;
+        }
+        Rgb::new(sum.r / whole.r, sum.g / whole.g, sum.b / whole.b).clamp(0.0, 1.0)
+    }
+
+    #[test]
+    fn colours_are_those_of_airys_sum() {
+        let mut most = 0f32;
+        for thickness in [0.0f32, 110.0, 250.0, 380.0, 550.0, 800.0] {
+            for (film_eta, eta) in [(1.33f32, 1.5f32), (1.8, 1.5), (1.4, 2.6)] {
+                let film = Film { weight: 1.0, thickness, eta: film_eta };
+                for cosine in [1.0f32, 0.8, 0.5, 0.2] {
+                    let (found, wanted) = (film.over_glass(cosine, eta), by_wavelengths(&film, cosine, eta));
+                    let off = found + wanted * -1.0;
+                    let off = off.r.abs().max(off.g.abs()).max(off.b.abs());
+                    assert!(off < 0.006, "{film:?} over {eta} at {cosine}: {found:?}, {wanted:?}");
+                    most = most.max(wanted.max_channel() - wanted.r.min(wanted.g).min(wanted.b));
+                }
+            }
+        }
+        // There are colours to be told apart.
+        assert!(most > 0.05, "{most}");
+    }
+
+    #[test]
+    fn no_film_at_all_changes_nothing() {
+        let film = Film { weight: 1.0, thickness: 0.0, eta: 1.4 };
+        for cosine in [1.0f32, 0.6, 0.3] {
+            let (found, wanted) =
+                (film.over_glass(cosine, 1.5).g, super::super::fresnel_dielectric(cosine, 1.5));
+            assert!((found - wanted).abs() < 2e-3, "{cosine}: {found}, {wanted}");
+        }
+    }
+}

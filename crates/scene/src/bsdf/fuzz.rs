@@ -1,0 +1,200 @@
+//! Fuzz: fine upright fibres on top of a surface, velvet's pile or the bloom of a peach. They are seen where one looks
+//! along the surface, and cover what is below there. [Estevez 2017; Neubelt 2013]
+
+use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
+use bilux_math::registry::Entry;
+use bilux_math::transcendental::{powf, sin_cos};
+use bilux_math::{Rgb, Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, PI};
+use std::sync::LazyLock;
+
+/// Row of [`super::BSDFS`].
+pub(super) const ENTRY: BsdfEntry = BsdfEntry {
+    entry: Entry {
+        name: "fuzz",
+        summary: "fine upright fibres, seen where one looks along the surface",
+        source: "Estevez 2017",
+        parameters: &[],
+    },
+    reciprocal: true,
+    lossless: false,
+    cases: || {
+        let velvet = |roughness| Lobe::Fuzz(Fuzz::new(Rgb::new(0.9, 0.6, 0.7), FuzzAlbedo::new(roughness)));
+        vec![("silk", velvet(0.2)), ("velvet", velvet(0.5)), ("fur", velvet(1.0))]
+    },
+};
+
+/// Fibres upright on the surface, on both of its sides alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fuzz {
+    /// Of the fibres, times how much of the surface has them.
+    colour: Rgb,
+    albedo: FuzzAlbedo,
+    /// Factor on light from below.
+    from_below: f32,
+}
+
+impl Fuzz {
+    /// Fibres of a colour, 0..=1, and how they stand.
+    pub fn new(colour: Rgb, albedo: FuzzAlbedo) -> Fuzz {
+        Fuzz { colour, albedo, from_below: 1.0 }
+    }
+
+    /// The same with a factor, 0..=1, on light from below the surface.
+    pub fn from_below(self, factor: f32) -> Fuzz {
+        Fuzz { from_below: factor, ..self }
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
+        if wo.z * wi.z <= 0.0 {
+            return Rgb::BLACK;
+        }
+        let side = if wo.z < 0.0 { self.from_below } else { 1.0 };
+        let scattered = scattered(self.albedo.inverse_alpha, wo, wi) * self.albedo.scale;
+        self.colour * (scattered * side * wi.z.abs())
+    }
+
+    /// Uniform: near the horizon, where fibres are seen, there are not too few.
+    #[inline]
+    pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z * wi.z > 0.0 { 0.5 * FRAC_1_PI } else { 0.0 }
+    }
+
+    #[inline]
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
+    pub(super) fn sample(
+        &self,
+        wo: Vec3,
+        _u_choice: f32,
+        u: Vec2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        let z = (1.0 - u.x).max(f32::MIN_POSITIVE);
+        let ((sin, cos), radius) = (sin_cos(2.0 * PI * u.y), (1.0 - z * z).max(0.0).sqrt());
+        let wi = Vec3::new(radius * cos, radius * sin, z.copysign(wo.z));
+        BsdfSample::reflected(wi, self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi))
+    }
+
+    #[inline]
+    pub(super) fn strength(&self) -> f32 {
+        self.colour.luminance() * self.albedo.at(0.5)
+    }
+
+    #[inline]
+    pub(super) fn rise(&self) -> f32 {
+        (self.colour.luminance() * self.albedo.at(0.0) - self.strength()).max(0.0)
+    }
+}
+
+/// Of white fibres the light that they scatter from `wo` to `wi`, per cosine: their normals' distribution [Estevez 2017,
+/// eq. 2] and how fibres hide each other [Neubelt 2013].
+#[inline]
+fn scattered(inverse_alpha: f32, wo: Vec3, wi: Vec3) -> f32 {
+    let (o, i) = (wo.z.abs(), wi.z.abs());
+    let Some(m) = (wo + wi).try_normalize() else { return 0.0 };
+    let sin = (1.0 - m.z * m.z).max(0.0).sqrt();
+    let distribution = (2.0 + inverse_alpha) * powf(sin, inverse_alpha) * (0.5 * FRAC_1_PI);
+    distribution / (4.0 * (o + i - o * i)).max(f32::MIN_POSITIVE)
+}
+
+/// Square roots of alpha, in even steps from 0 to 1.
+const ROUGHNESSES: usize = 16;
+/// Square roots of cosines, in even steps from 0 to 1.
+const COSINES: usize = 20;
+/// Fibres that stand more evenly than this would be all seen at once along the surface.
+const LEAST_ALPHA: f32 = 0.05;
+
+/// What fibres scatter at each cosine, in the steps above.
+static TABLE: LazyLock<[[f32; COSINES]; ROUGHNESSES]> = LazyLock::new(|| {
+    std::array::from_fn(|row| {
+        let inverse = inverse_alpha(row as f32 / (ROUGHNESSES - 1) as f32);
+        std::array::from_fn(|column| {
+            let root = (column as f32 / (COSINES - 1) as f32).max(0.03);
+            all_scattered(inverse, root * root) as f32
+        })
+    })
+});
+
+fn inverse_alpha(roughness: f32) -> f32 {
+    1.0 / (roughness * roughness).max(LEAST_ALPHA)
+}
+
+/// By the midpoints of a grid over half of the hemisphere; squares of steps, so that there are many near the horizon.
+fn all_scattered(inverse_alpha: f32, cos: f32) -> f64 {
+    const STEPS: [u32; 2] = [32, 32];
+    let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
+    let mut sum = 0.0;
+    for (i, k) in (0..STEPS[0]).flat_map(|i| (0..STEPS[1]).map(move |k| (i, k))) {
+        let t = (i as f32 + 0.5) / STEPS[0] as f32;
+        let (z, share) = (t * t, 2.0 * t / STEPS[0] as f32);
+        let (sin, cos) = sin_cos(PI * (k as f32 + 0.5) / STEPS[1] as f32);
+        let radius = (1.0 - z * z).sqrt();
+        let wi = Vec3::new(radius * cos, radius * sin, z);
+        sum += f64::from(scattered(inverse_alpha, wo, wi) * z * share);
+    }
+    sum * 2.0 * f64::from(PI) / f64::from(STEPS[1])
+}
+
+/// How fibres stand, and the fraction of light along a direction that white ones scatter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FuzzAlbedo {
+    inverse_alpha: f32,
+    /// Place among the roughnesses.
+    roughness: f32,
+    /// Makes of all that is scattered no more than there is.
+    scale: f32,
+}
+
+impl FuzzAlbedo {
+    /// Of a roughness, 0..=1: low for fibres that stand upright, which are seen only along the surface.
+    pub fn new(roughness: f32) -> FuzzAlbedo {
+        let place = roughness.clamp(0.0, 1.0) * (ROUGHNESSES - 1) as f32;
+        let unscaled = FuzzAlbedo { inverse_alpha: inverse_alpha(roughness), roughness: place, scale: 1.0 };
+        FuzzAlbedo { scale: 1.0 / unscaled.at(0.0).max(1.0), ..unscaled }
+    }
+
+    /// The scattered fraction along a direction of this cosine with the normal, 0..=1.
+    #[inline]
+    pub fn at(&self, cos: f32) -> f32 {
+        let row = (self.roughness as usize).min(ROUGHNESSES - 2);
+        let place = cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32;
+        let column = (place as usize).min(COSINES - 2);
+        let (between_rows, between) = (self.roughness - row as f32, place - column as f32);
+        let of = |row: &[f32; COSINES]| row[column] + (row[column + 1] - row[column]) * between;
+        let (a, b) = (of(&TABLE[row]), of(&TABLE[row + 1]));
+        (a + (b - a) * between_rows) * self.scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against far more directions, between the table's entries.
+    #[test]
+    fn fibres_scatter_what_the_table_says() {
+        for roughness in [0.1f32, 0.33, 0.52, 0.77, 1.0] {
+            let albedo = FuzzAlbedo::new(roughness);
+            for cos in [0.02f32, 0.13, 0.4, 0.7, 1.0] {
+                let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+                const N: u32 = 400;
+                let sum: f64 = (0..N * N)
+                    .map(|i| {
+                        let u = Vec2::new((i % N) as f32 + 0.5, (i / N) as f32 + 0.5) / N as f32;
+                        let sample =
+                            Fuzz::new(Rgb::WHITE, albedo).sample(wo, 0.5, u, TransportMode::Radiance);
+                        sample.map_or(0.0, |s| f64::from(s.weight.g))
+                    })
+                    .sum();
+                let (found, said) = (sum / f64::from(N * N), f64::from(albedo.at(cos)));
+                assert!((found - said).abs() < 0.012, "{roughness}, {cos}: {found}, {said}");
+                assert!(said <= 1.0, "{roughness}, {cos}: {said}");
+            }
+        }
+    }
+}
