@@ -83,6 +83,8 @@ impl<'d> Gltf<'d, '_, '_> {
         self.transmission(node, draft)?;
         self.coat(node, draft)?;
         self.fuzz(node, draft)?;
+        self.film(node, draft)?;
+        self.diffuse_transmission(node, draft)?;
         if let Some(unlit) = node.extension("KHR_materials_unlit") {
             self.unlit(unlit, draft);
         }
@@ -238,6 +240,43 @@ impl<'d> Gltf<'d, '_, '_> {
         self.colour(draft, "fuzz_color", Rgb::from_array(colour) * (1.0 / weight), picture, &at)?;
         let rough = extension.number("sheenRoughnessFactor")?.unwrap_or(0.0);
         self.scalar(draft, "fuzz_roughness", rough, extension.get("sheenRoughnessTexture"), Channel::A, &at)
+    }
+
+    /// Theirs is in nm, between two thicknesses where a picture tells.
+    fn film(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_iridescence") else { return Ok(()) };
+        let weight = extension.number("iridescenceFactor")?.unwrap_or(0.0);
+        if weight <= 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        let picture = extension.get("iridescenceTexture");
+        self.scalar(draft, "thin_film_weight", weight, picture, Channel::R, &at)?;
+        let ior = extension.number("iridescenceIor")?.unwrap_or(1.3);
+        draft.set("thin_film_ior", ior as f32, at.clone());
+        let least = extension.number("iridescenceThicknessMinimum")?.unwrap_or(100.0);
+        let most = extension.number("iridescenceThicknessMaximum")?.unwrap_or(400.0);
+        let picture = extension.get("iridescenceThicknessTexture");
+        if let (Some(picture), true) = (picture, least != 0.0) {
+            let what = "the picture of a film's thickness is taken from 0, not from its least";
+            self.oddities.note(what, || picture.at());
+        }
+        self.scalar(draft, "thin_film_thickness", most / 1000.0, picture, Channel::G, &at)
+    }
+
+    fn diffuse_transmission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_diffuse_transmission") else { return Ok(()) };
+        let weight = extension.number("diffuseTransmissionFactor")?.unwrap_or(0.0);
+        if weight <= 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        let picture = extension.get("diffuseTransmissionTexture");
+        self.scalar(draft, "diffuse_transmission_weight", weight, picture, Channel::A, &at)?;
+        let [r, g, b] =
+            extension.numbers::<3>("diffuseTransmissionColorFactor")?.unwrap_or([1.0; 3]).map(|c| c as f32);
+        let picture = extension.get("diffuseTransmissionColorTexture");
+        self.colour(draft, "diffuse_transmission_color", Rgb::new(r, g, b), picture, &at)
     }
 
     /// A picture that is to look the same in any light gives light itself.
