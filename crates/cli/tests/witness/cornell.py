@@ -2,7 +2,8 @@
 
 usage: cornell.py BILUX [--seeds N] [--spp N] [--integrators path,bdpt,vcm,auto]
 
-Needs `pip install mitsuba numpy`. Boxes: matt, with a glass ball, with a mirror ball. The meshes are written once and read by
+Needs `pip install mitsuba numpy`. Boxes: matt, with a ball of glass, of frosted glass, a mirror, brushed metal, and `principled` gold. The two have
+other laws for how rough facets hide each other, and only ours gives back what they reflect twice: with little roughness no block tells. The meshes are written once and read by
 both; all triangles are flat. Blocks of 8 x 8 pixels of 64 x 64 are compared by Welch's t-test over seeds, corrected for
 their number [Sidak 1967]. Prints a line for each box and integrator; ends with 1 if any is less likely than one in ten thousand.
 """
@@ -20,6 +21,29 @@ SIZE, BLOCK = 64, 8
 WALL, RED, GREEN, LAMP = 0.725, [0.63, 0.065, 0.05], [0.14, 0.45, 0.091], 12.0
 EYE, AT, FOV = [0.0, 1.0, 3.9], [0.0, 1.0, 0.0], 38.0
 UNLIKELY = 1e-4
+
+ETA, K, GOLD, ROUGHNESS = [0.2, 0.9, 1.1], [3.9, 2.4, 2.2], [0.9, 0.7, 0.3], 0.3
+rgb = lambda value: {"type": "rgb", "value": value}
+# Theirs, and ours. Their roughness alpha is the square of our roughness.
+SURFACES = {
+    "glass": ({"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}, 'kind = "dielectric"\neta = 1.5'),
+    "mirror": (
+        {"type": "conductor", "material": "none", "specular_reflectance": rgb(0.9)},
+        'kind = "mirror"\nreflectance = 0.9',
+    ),
+    "frosted": (
+        {"type": "roughdielectric", "distribution": "ggx", "alpha": ROUGHNESS**2, "int_ior": 1.5, "ext_ior": 1.0},
+        f'kind = "dielectric"\neta = 1.5\nroughness = {ROUGHNESS}',
+    ),
+    "metal": (
+        {"type": "roughconductor", "distribution": "ggx", "alpha": ROUGHNESS**2, "eta": rgb(ETA), "k": rgb(K)},
+        f'kind = "conductor"\neta = {ETA}\nk = {K}\nroughness = {ROUGHNESS}',
+    ),
+    "gold": (
+        {"type": "principled", "base_color": rgb(GOLD), "metallic": 1.0, "roughness": ROUGHNESS},
+        f'kind = "principled"\nbase_color = {GOLD}\nbase_metalness = 1.0\nspecular_roughness = {ROUGHNESS}',
+    ),
+}
 
 
 def quad(corner, u, v):
@@ -56,9 +80,8 @@ def boxes():
     }
     lamp = quad([-0.3, 1.96, -0.3], [0.6, 0, 0], [0, 0, 0.6])
     matt = {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), 0.6)}
-    glass = {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), "glass")}
-    mirror = {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), "mirror")}
-    return lamp, {"matt": matt, "glass": glass, "mirror": mirror}
+    of = lambda surface: {**walls, "ball": (*ball([-0.35, 0.5, -0.2], 0.45), surface)}
+    return lamp, {"matt": matt, **{surface: of(surface) for surface in SURFACES}}
 
 
 def write_ply(path, points, faces):
@@ -74,7 +97,6 @@ def by_mitsuba(folder, parts, seeds, spp):
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
-    rgb = lambda value: {"type": "rgb", "value": value}
     scene = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 17},
@@ -88,10 +110,8 @@ def by_mitsuba(folder, parts, seeds, spp):
     }
     for name, (_, _, surface) in parts.items():
         shape = {"type": "ply", "filename": os.path.join(folder, f"{name}.ply"), "face_normals": True}
-        if surface == "glass":
-            shape["bsdf"] = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
-        elif surface == "mirror":
-            shape["bsdf"] = {"type": "conductor", "material": "none", "specular_reflectance": rgb(0.9)}
+        if isinstance(surface, str):
+            shape["bsdf"] = SURFACES[surface][0]
         else:
             shape["bsdf"] = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": rgb(surface)}}
         if name == "lamp":
@@ -105,10 +125,7 @@ def by_mitsuba(folder, parts, seeds, spp):
 def by_bilux(bilux, folder, parts, integrator, seeds, spp):
     lines = [f'[render]\nsize = "{SIZE}x{SIZE}"\n[camera]\nposition = {EYE}\nlook_at = {AT}\nfov = {FOV}']
     for name, (_, _, surface) in parts.items():
-        kind = {
-            "glass": 'kind = "dielectric"\neta = 1.5',
-            "mirror": 'kind = "mirror"\nreflectance = 0.9',
-        }.get(surface) if isinstance(surface, str) else f'kind = "diffuse"\nreflectance = {surface}'
+        kind = SURFACES[surface][1] if isinstance(surface, str) else f'kind = "diffuse"\nreflectance = {surface}'
         light = f"\nemission = {LAMP}" if name == "lamp" else ""
         lines.append(f'[[material]]\nname = "{name}"\n{kind}{light}')
         lines.append(f'[[model]]\nfile = "{name}.ply"\nmaterial = "{name}"')
