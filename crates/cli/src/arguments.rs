@@ -1,5 +1,6 @@
 //! Everything that can be typed. Help, completions and the man page are made from this one description.
 
+use crate::studio::StudioArguments;
 use crate::values::{
     parse_bytes, parse_crop, parse_frames, parse_replay, parse_rival, parse_samples, parse_vector,
 };
@@ -142,18 +143,8 @@ pub struct Render {
     /// Which camera
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
-    /// From where a studio's camera looks: degrees to the right of the model's front, and above it
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
-    pub orbit: Option<String>,
-    /// Focal length of the studio's camera, in mm for a picture 24 mm high [default: 45]
-    #[arg(long, value_name = "MM")]
-    pub focal: Option<f32>,
-    /// What a model stands on [default: a matt cove, where the file has neither camera nor light]
-    #[arg(long, value_name = "shadow|mirror|none")]
-    pub ground: Option<String>,
-    /// N pictures from all around, one by one; needs {frame} in OUT
-    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"])]
-    pub turntable: Option<u32>,
+    #[command(flatten)]
+    pub studio: StudioArguments,
     /// When, in moving scenes
     #[arg(long, value_name = "SECONDS")]
     pub at: Option<f32>,
@@ -175,9 +166,6 @@ pub struct Render {
     /// Bits per sample of PNG and PPM
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = ["8", "16"])]
     pub bits: String,
-    /// How a bare file is seen (`bilux list presets`)
-    #[arg(long, value_name = "NAME")]
-    pub preset: Option<String>,
     /// The highlight of `cast` and `whitted`: Eq. 1's halfway vector, or section 3.1's reflected one
     #[arg(long, value_name = "halfway|reflect")]
     pub specular: Option<String>,

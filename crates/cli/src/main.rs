@@ -10,6 +10,7 @@ mod interrupt;
 mod output;
 mod progress;
 mod settings_from;
+mod studio;
 mod usage;
 mod values;
 mod version;

@@ -2,7 +2,6 @@
 
 use crate::arguments::Render;
 use anyhow::{Context, bail};
-use bilux::presets::Studio;
 use bilux::scene::{Parameters, Span, Value};
 
 /// What the command line says about a render.
@@ -23,9 +22,9 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("threads", "--threads", whole(a.threads.map(u64::from))),
         ("max_depth", "--max-depth", whole(a.max_depth.map(u64::from))),
         ("camera", "--camera", text(&a.camera)),
-        ("orbit", "--orbit", text(&a.orbit)),
-        ("focal", "--focal", number(a.focal)),
-        ("ground", "--ground", text(&a.ground)),
+        ("orbit", "--orbit", text(&a.studio.orbit)),
+        ("focal", "--focal", number(a.studio.focal)),
+        ("ground", "--ground", text(&a.studio.ground)),
         ("time", "--at", number(a.at)),
         ("exposure", "--exposure", number(a.exposure)),
         ("tonemap", "--tonemap", text(&a.tonemap)),
@@ -57,19 +56,6 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         }
     }
     Ok(parameters)
-}
-
-/// The same from farther around the model, in turns to the right.
-pub fn turned(user: &Parameters, turns: f32) -> anyhow::Result<Parameters> {
-    let orbit = match user.find("orbit") {
-        Some((Value::Text(text), _)) => bilux::settings::parse_orbit(text)
-            .with_context(|| format!("'{text}' is no orbit: write AZ,EL in degrees, such as 30,15"))?,
-        _ => Studio::ORBIT,
-    };
-    let mut turned = user.clone();
-    let text = format!("{},{}", orbit[0] + 360.0 * turns, orbit[1]);
-    turned.set_at("orbit", Value::Text(text), from_flag("--turntable"));
-    Ok(turned)
 }
 
 /// `KEY=VALUE` with the value as scene files would have it: true, 3, 0.5, `1,2,3` or text.

@@ -82,7 +82,7 @@ fn read_scene(path: &Path, arguments: &Render, common: &Common) -> anyhow::Resul
     } else {
         bilux::load(path, &options)?
     };
-    if let Some(preset) = &arguments.preset {
+    if let Some(preset) = &arguments.studio.preset {
         bilux::presets::apply(preset, &mut scene).map_err(usage::wrong)?;
     }
     Ok(scene)
@@ -98,11 +98,11 @@ fn render_one(
 ) -> anyhow::Result<u8> {
     let scene = read_scene(path, arguments, common)?;
     tell_warnings(&scene.warnings, common)?;
-    let Some(count) = arguments.turntable else {
+    let Some(count) = arguments.studio.turntable else {
         return render_scene(&scene, path, output, user, arguments, common, interrupt);
     };
     for frame in 0..count {
-        let turned = settings_from::turned(user, frame as f32 / count as f32)?;
+        let turned = crate::studio::turned(user, frame as f32 / count as f32)?;
         let output = frame_path(output, frame);
         let status = render_scene(&scene, path, &output, &turned, arguments, common, interrupt)?;
         if status != DONE {

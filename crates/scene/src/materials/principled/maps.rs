@@ -1,0 +1,141 @@
+//! The parameters over a surface.
+
+use super::super::{Ingredients, colour_map, number_map};
+use super::point::Point;
+use crate::bsdf::Film;
+use crate::error::SceneError;
+use crate::parameters::Reader;
+use crate::texture::{ColourMap, NumberMap};
+use bilux_math::{Rgb, Vec2};
+
+/// The parameters, each a constant or a texture.
+pub(super) struct Maps {
+    pub(super) base_color: ColourMap,
+    pub(super) base_metalness: NumberMap,
+    pub(super) specular_weight: NumberMap,
+    pub(super) specular_color: ColourMap,
+    pub(super) specular_roughness: NumberMap,
+    pub(super) specular_ior: NumberMap,
+    pub(super) anisotropy: NumberMap,
+    pub(super) rotation: NumberMap,
+    pub(super) transmission_weight: NumberMap,
+    pub(super) transmission_color: ColourMap,
+    /// True where transmission_color is of the surface, and not of what is inside.
+    pub(super) tints_surface: bool,
+    pub(super) thin: bool,
+    pub(super) coat_weight: NumberMap,
+    pub(super) coat_color: ColourMap,
+    pub(super) coat_roughness: NumberMap,
+    pub(super) coat_ior: NumberMap,
+    pub(super) fuzz_weight: NumberMap,
+    pub(super) fuzz_color: ColourMap,
+    pub(super) fuzz_roughness: NumberMap,
+    pub(super) passing: NumberMap,
+    pub(super) passing_color: ColourMap,
+    pub(super) film_weight: NumberMap,
+    pub(super) film_thickness: NumberMap,
+    pub(super) film_ior: NumberMap,
+}
+
+impl Maps {
+    pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Maps, SceneError> {
+        let colour = |key| colour_map(reader, key, ingredients);
+        let number = |key| number_map(reader, key, ingredients);
+        Ok(Maps {
+            base_color: colour("base_color")?,
+            base_metalness: number("base_metalness")?,
+            specular_weight: number("specular_weight")?,
+            specular_color: colour("specular_color")?,
+            specular_roughness: number("specular_roughness")?,
+            specular_ior: number("specular_ior")?,
+            anisotropy: number("specular_roughness_anisotropy")?,
+            rotation: number("anisotropy_rotation")?,
+            transmission_weight: number("transmission_weight")?,
+            transmission_color: colour("transmission_color")?,
+            tints_surface: reader.number("transmission_depth") == 0.0 || reader.bool("thin_walled"),
+            thin: reader.bool("thin_walled"),
+            coat_weight: number("coat_weight")?,
+            coat_color: colour("coat_color")?,
+            coat_roughness: number("coat_roughness")?,
+            coat_ior: number("coat_ior")?,
+            fuzz_weight: number("fuzz_weight")?,
+            fuzz_color: colour("fuzz_color")?,
+            fuzz_roughness: number("fuzz_roughness")?,
+            passing: number("diffuse_transmission_weight")?,
+            passing_color: colour("diffuse_transmission_color")?,
+            film_weight: number("thin_film_weight")?,
+            film_thickness: number("thin_film_thickness")?,
+            film_ior: number("thin_film_ior")?,
+        })
+    }
+
+    /// True where no texture changes anything over the surface.
+    pub(super) fn are_even(&self) -> bool {
+        let colours = [
+            &self.base_color,
+            &self.specular_color,
+            &self.transmission_color,
+            &self.coat_color,
+            &self.fuzz_color,
+            &self.passing_color,
+        ];
+        let numbers = [
+            &self.base_metalness,
+            &self.specular_weight,
+            &self.specular_roughness,
+            &self.specular_ior,
+            &self.anisotropy,
+            &self.rotation,
+            &self.transmission_weight,
+            &self.coat_weight,
+            &self.coat_roughness,
+            &self.coat_ior,
+            &self.fuzz_weight,
+            &self.fuzz_roughness,
+            &self.passing,
+            &self.film_weight,
+            &self.film_thickness,
+            &self.film_ior,
+        ];
+        colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
+    }
+
+    pub(super) fn at(&self, uv: Vec2) -> Point {
+        Point {
+            base_color: self.base_color.at(uv).clamp(0.0, 1.0),
+            metalness: self.base_metalness.at(uv),
+            specular_weight: self.specular_weight.at(uv),
+            specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),
+            roughness: self.specular_roughness.at(uv),
+            ior: self.specular_ior.at(uv),
+            anisotropy: self.anisotropy.at(uv),
+            rotation: self.rotation.at(uv),
+            transmission: self.transmission_weight.at(uv),
+            passed: if self.tints_surface {
+                self.transmission_color.at(uv).clamp(0.0, 1.0)
+            } else {
+                Rgb::WHITE
+            },
+            thin: self.thin,
+            coat: self.coat_weight.at(uv),
+            coat_color: self.coat_color.at(uv).clamp(0.0, 1.0),
+            coat_roughness: self.coat_roughness.at(uv),
+            coat_ior: self.coat_ior.at(uv),
+            fuzz: self.fuzz_weight.at(uv),
+            fuzz_color: self.fuzz_color.at(uv).clamp(0.0, 1.0),
+            fuzz_roughness: self.fuzz_roughness.at(uv),
+            passing: self.passing.at(uv),
+            passing_color: self.passing_color.at(uv).clamp(0.0, 1.0),
+            film: Film {
+                weight: self.film_weight.at(uv),
+                thickness: self.film_thickness.at(uv) * 1e3,
+                eta: self.film_ior.at(uv),
+            },
+        }
+    }
+}
+
+/// True where a weight is above 0, or may be somewhere.
+pub(super) fn is_there(weight: &NumberMap) -> bool {
+    weight.texture.is_some() || weight.number > 0.0
+}

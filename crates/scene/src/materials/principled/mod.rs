@@ -1,0 +1,215 @@
+//! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: plastic, metal, glass, or
+//! a mixture, below a clear coat, below fuzz.
+//!
+//! Below is what scatters diffusely, or metal; at the surface, facets reflect by Fresnel's equations. What they reflect
+//! the diffuse part lacks, and no more: a white surface loses nothing. [OpenPBR 1.1; Kulla 2017]
+
+mod maps;
+mod point;
+
+use super::dielectric::PRIORITY;
+use super::{
+    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY,
+    THIN, reflectance,
+};
+use crate::bsdf::Bsdf;
+use crate::classic::ClassicMaterial;
+use crate::error::SceneError;
+use crate::surface::Surface;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::transcendental::{atan, ln};
+use bilux_math::{Rgb, Vec2};
+use maps::{Maps, is_there};
+use point::{Lobes, Point};
+use std::sync::Arc;
+
+pub(super) const ENTRY: MaterialEntry = MaterialEntry {
+    entry: Entry {
+        name: "principled",
+        summary: "plastic, metal, paint, glass: one surface for nearly everything",
+        source: "OpenPBR 1.1",
+        parameters: &[
+            reflectance("base_color", "what diffuse parts reflect, and metal straight on", "0.8"),
+            number("base_metalness", "how much of the surface is metal", 1.0, "0"),
+            number("specular_weight", "factor on what is reflected straight on at the surface", 1.0, "1"),
+            reflectance(
+                "specular_color",
+                "factor on what is reflected at the surface; of metal, near grazing",
+                "1",
+            ),
+            number("specular_roughness", ROUGHNESS, 1.0, "0.3"),
+            index("specular_ior", "refractive index of what is not metal", "1.5"),
+            number(
+                "specular_roughness_anisotropy",
+                "how much smoother it is along its brushing than across",
+                1.0,
+                "0",
+            ),
+            Parameter {
+                name: "anisotropy_rotation",
+                summary: "turns the brushing, which goes along u",
+                unit: "turns",
+                kind: ParameterKind::NumberTexture { min: -1.0, max: 1.0 },
+                default: "0",
+            },
+            number("transmission_weight", "how much of what is not metal is clear", 1.0, "0"),
+            reflectance(
+                "transmission_color",
+                "what is left of light that passes: at each surface, or after transmission_depth inside",
+                "1",
+            ),
+            Parameter {
+                name: "transmission_depth",
+                summary: "how far light goes inside until it has transmission_color; 0 tints at the surface",
+                unit: "m",
+                kind: ParameterKind::Number { min: 0.0, max: 1e6 },
+                default: "0",
+            },
+            Parameter { name: "thin_walled", ..THIN },
+            PRIORITY,
+            number("coat_weight", "how much of the surface has a clear coat", 1.0, "0"),
+            reflectance("coat_color", "what is left of light that passes the coat and comes back", "1"),
+            number("coat_roughness", ROUGHNESS, 1.0, "0"),
+            index("coat_ior", "refractive index of the coat", "1.6"),
+            number("fuzz_weight", "how much of the surface has fine fibres on top, as velvet has", 1.0, "0"),
+            reflectance("fuzz_color", "colour of the fibres", "1"),
+            number(
+                "fuzz_roughness",
+                "low for fibres that stand upright and are seen only along the surface",
+                1.0,
+                "0.5",
+            ),
+            number(
+                "diffuse_transmission_weight",
+                "how much of the diffuse part comes out behind, as in a leaf",
+                1.0,
+                "0",
+            ),
+            reflectance(
+                "diffuse_transmission_color",
+                "what comes out behind of light that scatters there",
+                "1",
+            ),
+            number(
+                "thin_film_weight",
+                "how much of the surface has a film as thin as light's waves",
+                1.0,
+                "0",
+            ),
+            Parameter {
+                name: "thin_film_thickness",
+                summary: "thickness of that film",
+                unit: "µm",
+                kind: ParameterKind::NumberTexture { min: 0.0, max: 10.0 },
+                default: "0.5",
+            },
+            index("thin_film_ior", "refractive index of that film", "1.4"),
+            EMISSION,
+            EMISSION_SCALE,
+            EMISSION_SIDES,
+            OPACITY,
+            NORMAL,
+            NORMAL_SCALE,
+        ],
+    },
+    build: |reader, ingredients| {
+        let maps = Maps::read(reader, ingredients)?;
+        let even = maps.are_even().then(|| maps.at(Vec2::ZERO).lobes());
+        let depth = reader.number("transmission_depth");
+        let is_deep = !maps.tints_surface;
+        if is_deep && maps.transmission_color.texture.is_some() {
+            let message =
+                "with a transmission_depth transmission_color is of the inside, which has no texture";
+            return Err(SceneError::invalid(message, reader.span("transmission_color")));
+        }
+        let sigma_a = if is_deep && is_there(&maps.transmission_weight) {
+            maps.transmission_color.colour.map(|c| -ln(c.clamp(DARKEST, 1.0)) / depth)
+        } else {
+            Rgb::BLACK
+        };
+        Ok(Arc::new(Principled { maps, even, sigma_a, priority: reader.integer("priority") as u32 }))
+    },
+};
+
+/// What is clear lets this much through at least, or no number would tell how much it absorbs.
+const DARKEST: f32 = 1e-6;
+
+const fn index(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    let kind = ParameterKind::NumberTexture { min: 1.0, max: 10.0 };
+    Parameter { name, summary, unit: "", kind, default }
+}
+
+const ROUGHNESS: &str = "0 is polished, 1 as rough as can be; the square root of GGX's alpha";
+
+const fn number(name: &'static str, summary: &'static str, max: f64, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::NumberTexture { min: 0.0, max }, default }
+}
+
+struct Principled {
+    maps: Maps,
+    /// What it comes to where it is the same everywhere.
+    even: Option<Lobes>,
+    sigma_a: Rgb,
+    priority: u32,
+}
+
+impl Principled {
+    fn point(&self, surface: &Surface) -> Point {
+        let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
+        let point = self.maps.at(surface.uv);
+        Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), ..point }
+    }
+}
+
+impl Material for Principled {
+    fn bsdf(&self, surface: &Surface) -> Bsdf {
+        let lobes = match self.even {
+            Some(lobes) if surface.vertex_kd.is_none() => lobes,
+            _ => self.point(surface).lobes(),
+        };
+        Bsdf::new(surface.n_shade, surface.n_geom, lobes).along(surface.tangent)
+    }
+
+    fn classic(&self, surface: &Surface) -> ClassicMaterial {
+        let point = self.point(surface);
+        let alpha = point.roughness * point.roughness;
+        let (kd, kt) = (point.base_color * point.opaque(), point.passed * point.clear());
+        let amplitude = (point.ior - 1.0) / (point.ior + 1.0);
+        let glass = point.specular_color * (amplitude * amplitude * (1.0 - point.metalness));
+        let ks = (point.base_color * point.metalness + glass) * point.specular_weight;
+        ClassicMaterial {
+            ka: kd,
+            kd,
+            ks: if kt.is_black() { ks } else { Rgb::WHITE },
+            kt,
+            exponent: (2.0 / (alpha * alpha) - 2.0).min(500.0),
+            reflectivity: 1.0,
+            eta: point.ior,
+            sigma_a: self.sigma_a,
+            thin: point.thin,
+            gloss: atan(alpha),
+            translucency: atan(alpha),
+            fresnel: !kt.is_black(),
+        }
+    }
+
+    fn needs_tangents(&self) -> bool {
+        is_there(&self.maps.anisotropy)
+    }
+
+    fn most_lobes(&self) -> usize {
+        2 + usize::from(is_there(&self.maps.transmission_weight))
+            + usize::from(is_there(&self.maps.coat_weight))
+            + usize::from(is_there(&self.maps.fuzz_weight))
+    }
+
+    fn nested(&self) -> Option<Nested> {
+        let is_solid = !self.maps.thin && is_there(&self.maps.transmission_weight);
+        (is_solid && self.priority > 0)
+            .then_some(Nested { priority: self.priority, eta: self.maps.specular_ior.number })
+    }
+
+    fn sigma_a(&self) -> Rgb {
+        self.sigma_a
+    }
+}

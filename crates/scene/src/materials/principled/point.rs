@@ -1,0 +1,118 @@
+//! The parameters at a point, and the lobes that they come to.
+
+use crate::bsdf::{Albedo, Clear, Cover, Film, Fresnel, Fuzz, FuzzAlbedo, Ggx, Gloss, Lambert, Lobe, Matt};
+use bilux_math::Rgb;
+use std::f32::consts::TAU;
+
+/// The parameters at a point.
+pub(super) struct Point {
+    pub(super) base_color: Rgb,
+    pub(super) metalness: f32,
+    pub(super) specular_weight: f32,
+    pub(super) specular_color: Rgb,
+    pub(super) roughness: f32,
+    pub(super) ior: f32,
+    pub(super) anisotropy: f32,
+    pub(super) rotation: f32,
+    pub(super) transmission: f32,
+    pub(super) passed: Rgb,
+    pub(super) thin: bool,
+    pub(super) coat: f32,
+    pub(super) coat_color: Rgb,
+    pub(super) coat_roughness: f32,
+    pub(super) coat_ior: f32,
+    pub(super) fuzz: f32,
+    pub(super) fuzz_color: Rgb,
+    pub(super) fuzz_roughness: f32,
+    /// How much of the diffuse part comes out behind.
+    pub(super) passing: f32,
+    pub(super) passing_color: Rgb,
+    pub(super) film: Film,
+}
+
+/// Fuzz, coat, boundary, base, clear part.
+pub(super) type Lobes = [Option<Lobe>; 5];
+
+impl Point {
+    pub(super) fn lobes(&self) -> Lobes {
+        let ggx = Ggx::from_roughness(self.roughness, self.anisotropy, self.rotation * TAU);
+        let (fuzz, bloom) = self.fuzz_and_cover();
+        let (coat, cover) = self.coat_and_cover(bloom);
+        let tint = Rgb::WHITE.lerp(self.coat_color, self.coat);
+        let (opaque, clear) = (tint * self.opaque(), tint * self.clear());
+        let eta = self.eta();
+        let glass = if eta > 1.0 { self.specular_color * opaque } else { Rgb::BLACK };
+        let metal = Fresnel::tinted(self.base_color * self.specular_weight, self.specular_color);
+        let metal_weight = tint * self.metalness;
+        let gloss = (!metal_weight.is_black() || !glass.is_black()).then(|| {
+            let gloss = Gloss::new(ggx, eta, glass, metal, metal_weight, cover);
+            Lobe::Gloss(if self.film.weight > 0.0 { gloss.below(self.film) } else { gloss })
+        });
+        let (albedo, passing) =
+            (self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing);
+        let is_bare = eta <= 1.0 && cover.is_none() && passing.is_black();
+        let base = (!albedo.is_black() || !passing.is_black()).then(|| {
+            if is_bare {
+                return Lobe::Lambert(Lambert { albedo });
+            }
+            // What a film reflects at its brightest colour does not get in at any.
+            let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
+            Lobe::Matt(Matt::sheet(albedo, passing, Albedo::new(&ggx, most), cover))
+        });
+        let clear = (!clear.is_black()).then(|| {
+            let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
+            Lobe::Clear(Clear::new(self.ior, ggx, self.thin, reflected, passed, cover))
+        });
+        [fuzz, coat, gloss, base, clear]
+    }
+
+    /// How much of the surface is neither metal nor clear.
+    pub(super) fn opaque(&self) -> f32 {
+        (1.0 - self.metalness) * (1.0 - self.transmission)
+    }
+
+    pub(super) fn clear(&self) -> f32 {
+        (1.0 - self.metalness) * self.transmission
+    }
+
+    /// The index of the boundary of what is neither metal nor clear. Below a coat it is over that of the coat; where
+    /// that is greater it is taken the other way round, or too much would be reflected totally. [OpenPBR 1.1]
+    fn eta(&self) -> f32 {
+        let ratio = self.ior / self.coat_ior;
+        let eta = self.ior + (ratio.max(1.0 / ratio) - self.ior) * self.coat;
+        weakened(eta, self.specular_weight)
+    }
+
+    /// Fibres, and what they cover.
+    fn fuzz_and_cover(&self) -> (Option<Lobe>, Cover) {
+        if self.fuzz == 0.0 {
+            return (None, Cover::NONE);
+        }
+        let albedo = FuzzAlbedo::new(self.fuzz_roughness);
+        let fuzz = Fuzz::new(self.fuzz_color * self.fuzz, albedo).from_below(self.outside());
+        (Some(Lobe::Fuzz(fuzz)), Cover::NONE.below(self.fuzz, albedo))
+    }
+
+    /// A coat below what covers that, and all of it together.
+    fn coat_and_cover(&self, above: Cover) -> (Option<Lobe>, Cover) {
+        if self.coat == 0.0 || self.coat_ior <= 1.0 {
+            return (None, above);
+        }
+        let ggx = Ggx::from_roughness(self.coat_roughness, 0.0, 0.0);
+        let none = Fresnel::tinted(Rgb::BLACK, Rgb::WHITE);
+        let coat = Gloss::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, above);
+        let cover = above.coated(self.coat, Albedo::new(&ggx, self.coat_ior));
+        (Some(Lobe::Gloss(coat.from_below(self.outside()))), cover)
+    }
+
+    /// Who is inside of what is clear sees neither coat nor fuzz: how much of them is seen from below.
+    fn outside(&self) -> f32 {
+        if self.thin { 1.0 } else { 1.0 - self.clear() }
+    }
+}
+
+/// The index of a boundary that reflects `weight` times what this one does, straight on. [OpenPBR 1.1, eq. 27]
+fn weakened(eta: f32, weight: f32) -> f32 {
+    let amplitude = weight.sqrt() * (eta - 1.0) / (eta + 1.0);
+    (1.0 + amplitude) / (1.0 - amplitude)
+}
