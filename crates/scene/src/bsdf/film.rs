@@ -134,6 +134,7 @@ fn sensitivity(nm: f32) -> Rgb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bilux_math::transcendental::sin_cos_f64;
 
     /// Airy's sum itself, wavelength by wavelength, and by complex amplitudes.
     fn by_wavelengths(film: &Film, cosine: f32, eta: f32) -> Rgb {
@@ -147,7 +148,7 @@ mod tests {
         let (mut sum, mut whole) = (Rgb::BLACK, Rgb::BLACK);
         for nm in 385..745 {
             let delta = 4.0 * std::f64::consts::PI * n2 * f64::from(film.thickness) * c2 / f64::from(nm);
-            let (re, im) = (delta.cos(), delta.sin());
+            let (im, re) = sin_cos_f64(delta);
             let reflected = pairs.map(|(a, b)| {
                 let (top, bottom) = ((a + b * re, b * im), (1.0 + a * b * re, a * b * im));
                 (top.0 * top.0 + top.1 * top.1) / (bottom.0 * bottom.0 + bottom.1 * bottom.1)
