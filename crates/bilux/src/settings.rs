@@ -326,6 +326,35 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
     Ok(choice)
 }
 
+/// What is asked of the studio, where anything is.
+fn studio(reader: &Reader) -> Result<Studio, Error> {
+    let orbit = match reader.is_given("orbit") {
+        true => {
+            let wrong = |text: &str| {
+                let message = format!(
+                    "'{text}' is no orbit: write AZ,EL in degrees, such as 30,15; EL is from -90 to 90"
+                );
+                SceneError::invalid(message, reader.span("orbit"))
+            };
+            let text = reader.text("orbit");
+            Some(parse_orbit(&text).ok_or_else(|| wrong(&text))?)
+        }
+        false => None,
+    };
+    Ok(Studio {
+        ground: Ground::named(&reader.text("ground")),
+        orbit,
+        focal: reader.is_given("focal").then(|| reader.number("focal")),
+    })
+}
+
+/// Azimuth and elevation, in degrees, of `AZ,EL`; `None` for what is none.
+pub fn parse_orbit(text: &str) -> Option<[f32; 2]> {
+    let (azimuth, elevation) = text.split_once(',')?;
+    let [azimuth, elevation]: [f32; 2] = [azimuth.trim().parse().ok()?, elevation.trim().parse().ok()?];
+    (azimuth.abs() <= 3600.0 && elevation.abs() <= 90.0).then_some([azimuth, elevation])
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Parameters, Quality, Settings};
@@ -359,33 +388,4 @@ mod tests {
         assert_eq!(told.len(), 1);
         assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
     }
-}
-
-/// What is asked of the studio, where anything is.
-fn studio(reader: &Reader) -> Result<Studio, Error> {
-    let orbit = match reader.is_given("orbit") {
-        true => {
-            let wrong = |text: &str| {
-                let message = format!(
-                    "'{text}' is no orbit: write AZ,EL in degrees, such as 30,15; EL is from -90 to 90"
-                );
-                SceneError::invalid(message, reader.span("orbit"))
-            };
-            let text = reader.text("orbit");
-            Some(parse_orbit(&text).ok_or_else(|| wrong(&text))?)
-        }
-        false => None,
-    };
-    Ok(Studio {
-        ground: Ground::named(&reader.text("ground")),
-        orbit,
-        focal: reader.is_given("focal").then(|| reader.number("focal")),
-    })
-}
-
-/// Azimuth and elevation, in degrees, of `AZ,EL`; `None` for what is none.
-pub fn parse_orbit(text: &str) -> Option<[f32; 2]> {
-    let (azimuth, elevation) = text.split_once(',')?;
-    let [azimuth, elevation]: [f32; 2] = [azimuth.trim().parse().ok()?, elevation.trim().parse().ok()?];
-    (azimuth.abs() <= 3600.0 && elevation.abs() <= 90.0).then_some([azimuth, elevation])
 }
