@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a command line program speaks to its user")]
 
+mod contact_sheet;
 mod cpu_levels;
 mod dist;
 mod docs;
@@ -27,6 +28,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "tidy", summary: "the repository's own rules", run: tidy::run },
     Chore { name: "licences", summary: "every package that we build on is permissive", run: licences::run },
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
+    Chore { name: "contact-sheet", summary: "models beside their screenshots", run: contact_sheet::run },
     Chore { name: "dist", summary: "what is released: the binary, its pages, a checksum", run: dist::run },
     Chore { name: "instructions", summary: "how many instructions a ray takes", run: instructions::run },
     Chore {
@@ -56,7 +58,7 @@ fn main() -> ExitCode {
 fn usage(trouble: &str) -> ExitCode {
     eprintln!("xtask: {trouble}\n\nusage: cargo xtask CHORE\n");
     for chore in CHORES {
-        eprintln!("  {:<12} {}", chore.name, chore.summary);
+        eprintln!("  {:<13} {}", chore.name, chore.summary);
     }
     ExitCode::from(2)
 }

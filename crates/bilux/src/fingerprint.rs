@@ -14,6 +14,11 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         points(&mut hash, &mesh.positions);
         points(&mut hash, &mesh.normals);
         floats(&mut hash, mesh.uvs.iter().flat_map(|v: &Vec2| v.to_array()));
+        // Few meshes have these: the films of all others keep their names.
+        if !mesh.uvs2.is_empty() || !mesh.tangents.is_empty() {
+            floats(&mut hash, mesh.uvs2.iter().flat_map(|v: &Vec2| v.to_array()));
+            floats(&mut hash, mesh.tangents.iter().flat_map(|t| t.to_array()));
+        }
         floats(&mut hash, mesh.vertex_kd.iter().chain(&mesh.vertex_ks).flat_map(|c: &Rgb| c.to_array()));
         hash.update((mesh.triangles.len() as u64).to_le_bytes());
         for index in mesh.triangles.iter().flatten() {
@@ -27,6 +32,9 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
             "{width} {height} {:?} {:?} {:?}",
             texture.wrap, texture.filter, texture.transform
         ));
+        if texture.second_uv {
+            hash.update("second");
+        }
         floats(&mut hash, texture.texels().flat_map(|c| c.to_array()));
     }
     for spec in scene.materials.iter().chain(&scene.lights) {

@@ -1,5 +1,7 @@
 //! Everything that can be typed. Help, completions and the man page are made from this one description.
 
+use crate::choices::{Choices, Posed};
+pub use crate::comparison::Compare;
 use crate::studio::StudioArguments;
 use crate::values::{
     parse_bytes, parse_crop, parse_frames, parse_replay, parse_rival, parse_samples, parse_vector,
@@ -96,6 +98,7 @@ pub enum Command {
     bilux render chair.glb -o chair.png --orbit 40,20 --ground mirror\n  \
     bilux render chair.glb -o 'chair-{frame}.png' --turntable 36\n  \
     bilux render walk.toml --frames 0-47 -o 'walk-{frame}.png'\n  \
+    bilux render fox.glb --animation Walk --at 0.5 -o fox.png\n  \
     bilux render scene.toml --samples 0..64 -o a.exr    one half here,\n  \
     bilux render scene.toml --samples 64..128 -o b.exr  the other there:\n  \
     bilux merge a.exr b.exr -o scene.png")]
@@ -109,6 +112,8 @@ pub struct Render {
     /// Format of a scene on standard input
     #[arg(long, value_name = "NAME")]
     pub input_format: Option<String>,
+    #[command(flatten)]
+    pub choices: Choices,
     /// How light is followed (`bilux list integrators`)
     #[arg(short, long, value_name = "NAME")]
     pub integrator: Option<String>,
@@ -201,6 +206,8 @@ pub struct Info {
     /// As JSON
     #[arg(long)]
     pub json: bool,
+    #[command(flatten)]
+    pub posed: Posed,
 }
 
 /// Turn a scene or a picture into another format.
@@ -215,41 +222,8 @@ pub struct Convert {
     /// Text in place of binary, where the format has both
     #[arg(long)]
     pub ascii: bool,
-}
-
-/// Say how far picture A is from the reference B.
-#[derive(Args)]
-#[command(after_help = "Exit status: 0 within the bounds, 1 beyond them, 2 trouble.\n\n\
-    Example:\n  bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png")]
-pub struct Compare {
-    /// The picture
-    pub picture: PathBuf,
-    /// The reference
-    pub reference: PathBuf,
-    /// As JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Most mean FLIP error
-    #[arg(long, value_name = "X")]
-    pub max_flip: Option<f64>,
-    /// Most root mean square error
-    #[arg(long, value_name = "X")]
-    pub max_rmse: Option<f64>,
-    /// Most relative mean square error
-    #[arg(long, value_name = "X")]
-    pub max_relmse: Option<f64>,
-    /// Most error of any sample
-    #[arg(long, value_name = "X")]
-    pub max_error: Option<f64>,
-    /// Least structural similarity
-    #[arg(long, value_name = "X")]
-    pub min_ssim: Option<f64>,
-    /// Least peak signal-to-noise ratio, in dB
-    #[arg(long, value_name = "X")]
-    pub min_psnr: Option<f64>,
-    /// Write a picture of where they differ
-    #[arg(long, value_name = "FILE")]
-    pub heat_map: Option<PathBuf>,
+    #[command(flatten)]
+    pub posed: Posed,
 }
 
 /// Make one of the scenes that we ship.

@@ -5,7 +5,9 @@
 #![allow(unreachable_pub)]
 
 mod arguments;
+mod choices;
 mod commands;
+mod comparison;
 mod interrupt;
 mod output;
 mod progress;

@@ -52,3 +52,9 @@ pub fn parse_replay(text: &str) -> Result<[u32; 3], String> {
 pub fn parse_vector(text: &str) -> Result<[f32; 3], String> {
     numbers(text, "X,Y,Z")
 }
+
+/// A length, 0 or more.
+pub fn parse_radius(text: &str) -> Result<f32, String> {
+    let radius = text.parse().ok().filter(|r: &f32| r.is_finite() && *r >= 0.0);
+    radius.ok_or_else(|| "a length in metres is wanted, as in 0.05".to_owned())
+}

@@ -28,6 +28,10 @@ pub(crate) fn transformed(mesh: &Mesh, transform: &Transform) -> Mesh {
     for n in &mut mesh.normals {
         *n = transform.normal(*n).normalize_or_zero();
     }
+    for t in &mut mesh.tangents {
+        let along = transform.vector(t.truncate()).normalize_or_zero();
+        *t = along.extend(if transform.mirrors() { -t.w } else { t.w });
+    }
     if transform.mirrors() {
         for triangle in &mut mesh.triangles {
             triangle.swap(1, 2);

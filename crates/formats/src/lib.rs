@@ -30,4 +30,4 @@ mod writing;
 pub use error::FormatError;
 pub use formats::{SCENE_FORMATS, SceneFormatEntry, format_named, format_of_path, read, read_bytes, write};
 pub use native::{SHAPES, ShapeEntry, toml_schema};
-pub use options::{ReadOptions, WriteOptions};
+pub use options::{Glass, ReadOptions, WriteOptions};

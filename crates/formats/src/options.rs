@@ -1,6 +1,6 @@
 //! What a reader may do and how a writer should.
 
-/// What reading a scene may take and open.
+/// What reading a scene may take and open, and what is chosen where a file leaves a choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {
     /// The most bytes that the files and what they decode to may take together.
@@ -12,13 +12,45 @@ pub struct ReadOptions {
     /// Faces of a mesh without normals look smooth where they meet at less than this angle, in degrees;
     /// at 0 nothing is added to the mesh, and its faces look flat.
     pub crease_angle: f32,
+    /// When, in seconds, in formats whose movements bend meshes (glTF): everything stands as it does then.
+    pub time: f32,
+    /// The animation to follow, by its name or counted from 0; else the first, and those that move other things.
+    pub animation: Option<String>,
+    /// The variant of materials to show, by its name or counted from 0; else the materials that meshes name.
+    pub variant: Option<String>,
+    /// What clear materials are that say nothing of a thickness.
+    pub glass: Glass,
+    /// Lights from points get this radius, in metres, where it is above 0.
+    pub light_radius: f32,
 }
 
 impl Default for ReadOptions {
-    /// 4 GiB, nothing outside, warnings, and creases at 40 degrees.
+    /// 4 GiB, nothing outside, warnings, creases at 40 degrees, time 0, and what files choose themselves.
     fn default() -> ReadOptions {
-        ReadOptions { max_memory: 4 << 30, allow_outside: false, strict: false, crease_angle: 40.0 }
+        ReadOptions {
+            max_memory: 4 << 30,
+            allow_outside: false,
+            strict: false,
+            crease_angle: 40.0,
+            time: 0.0,
+            animation: None,
+            variant: None,
+            glass: Glass::Auto,
+            light_radius: 0.0,
+        }
     }
+}
+
+/// What clear materials are that say nothing of a thickness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Glass {
+    /// Solid where the mesh is closed, else walls without thickness.
+    #[default]
+    Auto,
+    /// Walls without thickness.
+    Thin,
+    /// Solid.
+    Solid,
 }
 
 /// How a scene is written.

@@ -216,7 +216,8 @@ impl<'o> Reading<'o> {
 pub(crate) fn bytes_of(mesh: &Mesh) -> u64 {
     let triples = mesh.positions.len() + mesh.normals.len() + mesh.triangles.len();
     let colours = mesh.vertex_kd.len() + mesh.vertex_ks.len();
-    4 * (3 * (triples + colours) + 2 * mesh.uvs.len()) as u64
+    let uvs = mesh.uvs.len() + mesh.uvs2.len();
+    4 * (3 * (triples + colours) + 2 * uvs + 4 * mesh.tangents.len()) as u64
 }
 
 fn non_empty(folder: &Path) -> &Path {

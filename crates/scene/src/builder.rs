@@ -3,6 +3,7 @@
 use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
 use crate::geometry::{Geometry, Placed};
+use crate::inventory::Inventory;
 use crate::lights::{self, BuiltLight, Sides};
 use crate::materials::{self, Ingredients, Material};
 use crate::mesh::Mesh;
@@ -61,6 +62,8 @@ pub struct SceneBuilder {
     pub settings: Parameters,
     /// What was odd while reading.
     pub warnings: Vec<Warning>,
+    /// What else could be chosen from the file.
+    pub inventory: Inventory,
 }
 
 /// Which structure answers the rays.
@@ -191,6 +194,8 @@ fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
     let attributes = [
         ("normals", mesh.normals.len()),
         ("texture coordinates", mesh.uvs.len()),
+        ("second texture coordinates", mesh.uvs2.len()),
+        ("tangents", mesh.tangents.len()),
         ("vertex kd", mesh.vertex_kd.len()),
         ("vertex ks", mesh.vertex_ks.len()),
     ];

@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 use crate::parameters::Span;
 use crate::spheres::{PlacedSphere, Spheres};
 use crate::surface::{Surface, gamma};
+use crate::texture::UvPair;
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
@@ -282,11 +283,14 @@ impl Geometry {
             unit_or(to_world.normal(blend(indices.map(|i| mesh.normals[i]))), winding)
         };
         let n_geom = if n_shade.dot(winding) < 0.0 { -winding } else { winding };
-        let uv = {
-            let [a, b, c] = triangle_uvs(mesh, mesh.triangles[triangle as usize]);
-            a * weights[0] + b * weights[1] + c * weights[2]
-        };
-        let (tangent, handedness) = if placed.has_tangents {
+        let between = |[a, b, c]: [Vec2; 3]| a * weights[0] + b * weights[1] + c * weights[2];
+        let uv = between(triangle_uvs(mesh, mesh.triangles[triangle as usize]));
+        let uv2 = if mesh.uvs2.is_empty() { uv } else { between(indices.map(|i| mesh.uvs2[i])) };
+        let (tangent, handedness) = if placed.has_tangents && !mesh.tangents.is_empty() {
+            let given = indices.map(|i| mesh.tangents[i]);
+            let turn = if *mirrors { -1.0 } else { 1.0 };
+            (to_world.vector(blend(given.map(|t| t.truncate()))), turn * 1f32.copysign(given[0].w))
+        } else if placed.has_tangents {
             let corners = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
             tangents(corners, indices.map(|i| mesh.uvs.get(i).copied()))
                 .map(|(along_u, along_v)| (along_u, 1f32.copysign(n_shade.cross(along_u).dot(along_v))))
@@ -310,6 +314,7 @@ impl Geometry {
             tangent,
             handedness,
             uv,
+            uv2,
             vertex_kd: vertex_colour(&mesh.vertex_kd),
             vertex_ks: vertex_colour(&mesh.vertex_ks),
             primitive: hit.primitive(),
@@ -320,8 +325,18 @@ impl Geometry {
 }
 
 /// The texture coordinates of a triangle's corners: where a mesh has none, the weights of the second and the third.
-pub(crate) fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
+fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
     if mesh.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y] } else { triangle.map(|i| mesh.uvs[i as usize]) }
+}
+
+/// Where textures are looked up at every triangle's corners.
+pub(crate) fn corner_uvs(mesh: &Mesh) -> Vec<[UvPair; 3]> {
+    let corners = |t: &[u32; 3]| {
+        let first = triangle_uvs(mesh, *t);
+        let second = if mesh.uvs2.is_empty() { first } else { t.map(|i| mesh.uvs2[i as usize]) };
+        std::array::from_fn(|i| UvPair([first[i], second[i]]))
+    };
+    mesh.triangles.iter().map(corners).collect()
 }
 
 /// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say

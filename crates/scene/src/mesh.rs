@@ -1,5 +1,6 @@
 //! Triangles with what shading needs of them.
 
+use bilux_math::glam::Vec4;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 
 /// A triangle mesh in its own space. Attributes are per vertex and either absent (empty) or as many as
@@ -14,6 +15,11 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, v upwards.
     pub uvs: Vec<Vec2>,
+    /// A second set of these, for textures that ask for it.
+    pub uvs2: Vec<Vec2>,
+    /// Along the surface as u grows, with 1 where v grows along normal × tangent and -1 where it grows the other way;
+    /// where there are none, they follow from the texture coordinates of each triangle.
+    pub tangents: Vec<Vec4>,
     /// Diffuse reflectance per vertex (the paper's Kd).
     pub vertex_kd: Vec<Rgb>,
     /// Specular reflectance per vertex (the paper's Ks).

@@ -2,7 +2,7 @@
 
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
-use crate::geometry::{Geometry, triangle_uvs};
+use crate::geometry::{Geometry, corner_uvs};
 use crate::lights::{Light, MeshLight, Picture, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
@@ -61,7 +61,7 @@ impl SceneParts {
             let picture = varies.then(|| Picture {
                 map: material.emission_map().cloned().unwrap_or_else(even),
                 opacity: material.opacity().cloned(),
-                uvs: object.mesh.triangles.iter().map(|t| triangle_uvs(&object.mesh, *t)).collect(),
+                uvs: corner_uvs(&object.mesh),
             });
             let given = (material.emission(), picture, material.emission_sides());
             let mirrored = object.motion.at(0.0).mirrors();
@@ -206,7 +206,7 @@ impl Scene {
     pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
         let material = self.material(surface);
         let emission = match material.emission_map() {
-            Some(map) => map.at(surface.uv),
+            Some(map) => map.at(surface.uvs()),
             None => material.emission(),
         };
         let shines = || match self.light_index_of(surface.object) {

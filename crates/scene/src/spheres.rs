@@ -125,6 +125,7 @@ impl Spheres {
         let n = (from + wide(ray.direction) * t).try_normalize().unwrap_or(DVec3::Y);
         let (p, p_error) = sphere.point(n);
         let n = n.as_vec3();
+        let uv = Vec2::new(0.5 + atan2(n.x, n.z) / TAU, acos(n.y.clamp(-1.0, 1.0)) * FRAC_1_PI);
         Surface {
             t: hit.t,
             p,
@@ -133,7 +134,8 @@ impl Spheres {
             n_shade: n,
             tangent: Vec3::ZERO,
             handedness: 1.0,
-            uv: Vec2::new(0.5 + atan2(n.x, n.z) / TAU, acos(n.y.clamp(-1.0, 1.0)) * FRAC_1_PI),
+            uv,
+            uv2: uv,
             vertex_kd: None,
             vertex_ks: None,
             primitive: hit.primitive(),

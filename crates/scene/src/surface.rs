@@ -2,6 +2,7 @@
 
 use crate::classic::ClassicLight;
 use crate::lights::LightSample;
+use crate::texture::UvPair;
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -26,6 +27,8 @@ pub struct Surface {
     pub handedness: f32,
     /// Texture coordinates; the barycentric weights where the mesh has none.
     pub uv: Vec2,
+    /// The second set of these; the first where the mesh has no other.
+    pub uv2: Vec2,
     /// Diffuse reflectance of the vertices, if the mesh has one.
     pub vertex_kd: Option<Rgb>,
     /// Specular reflectance of the vertices, if the mesh has one.
@@ -39,6 +42,12 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Where textures are looked up.
+    #[inline]
+    pub fn uvs(&self) -> UvPair {
+        UvPair([self.uv, self.uv2])
+    }
+
     /// A ray that leaves this point and cannot meet it again through rounding: it starts beyond the error
     /// bound, on the side that it goes to, and leaves out the triangle itself.
     pub fn spawn(&self, direction: Vec3) -> Ray {

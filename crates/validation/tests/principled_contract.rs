@@ -16,6 +16,7 @@ fn surface(n_shade: Vec3) -> Surface {
         tangent: Vec3::X,
         handedness: 1.0,
         uv: Vec2::ZERO,
+        uv2: Vec2::ZERO,
         vertex_kd: None,
         vertex_ks: None,
         primitive: Primitive { instance: 0, index: 0 },

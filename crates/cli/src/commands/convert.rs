@@ -1,6 +1,6 @@
 //! `bilux convert`: between scene formats, and between picture formats.
 
-use super::{DONE, check_folder, read_options, tell_warnings};
+use super::{DONE, check_choices, check_folder, read_options_with, tell_warnings};
 use crate::arguments::{Common, Convert};
 use crate::usage;
 use anyhow::anyhow;
@@ -20,7 +20,9 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
         }
         (false, false) => {
             bilux::formats::format_of_path(output).map_err(usage::wrong)?;
-            let scene = bilux::load(input, &read_options(common))?;
+            let scene =
+                bilux::load(input, &read_options_with(common, &arguments.posed.choices, arguments.posed.at))?;
+            check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
             tell_warnings(&scene.warnings, common)?;
             let options = WriteOptions { ascii: arguments.ascii };
             let lost = bilux::formats::write(output, &scene, &options)?;

@@ -1,13 +1,16 @@
 //! `bilux info`: what is in a scene.
 
-use super::{DONE, read_options, tell_warnings};
+use super::{DONE, check_choices, read_options_with, tell_warnings};
 use crate::arguments::{Common, Info};
 use crate::output;
+use crate::usage;
 use bilux::scene::SceneBuilder;
 use serde_json::json;
 
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
-    let scene = bilux::load(&arguments.scene, &read_options(common))?;
+    let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
+    let scene = bilux::load(&arguments.scene, &options)?;
+    check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&as_json(&scene))?);
     } else {
@@ -55,6 +58,11 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         "cameras": scene.cameras.iter().map(|c| json!({
             "name": c.spec.name, "kind": c.spec.kind, "keyframes": c.keyframes.len(),
         })).collect::<Vec<_>>(),
+        "animations": scene.inventory.animations.iter().map(|a| json!({
+            "name": a.name, "seconds": a.seconds, "plays": a.plays,
+        })).collect::<Vec<_>>(),
+        "variants": scene.inventory.variants,
+        "skins": scene.inventory.skins,
         "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
@@ -73,7 +81,7 @@ fn as_text(scene: &SceneBuilder) -> String {
          materials  {}\n\
          textures   {}\n\
          lights     {}\n\
-         cameras    {}",
+         cameras    {}{}",
         scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
         scene.objects.len(),
         own.len(),
@@ -89,5 +97,24 @@ fn as_text(scene: &SceneBuilder) -> String {
         names(scene.textures.iter().map(|t| format!("{} ({}x{})", t.name, t.width(), t.height())).collect()),
         names(scene.lights.iter().map(spec).collect()),
         names(scene.cameras.iter().map(|c| spec(&c.spec)).collect()),
+        choices(scene),
     )
+}
+
+/// What could be chosen from the file, a line each; nothing where it leaves no choice.
+fn choices(scene: &SceneBuilder) -> String {
+    let named = |(i, name): (usize, &String)| if name.is_empty() { i.to_string() } else { name.clone() };
+    let all = |names: &[String]| names.iter().enumerate().map(named).collect::<Vec<_>>();
+    let inventory = &scene.inventory;
+    let animations = inventory.animations.iter().enumerate().map(|(i, a)| {
+        let name = named((i, &a.name));
+        format!("{name} ({} s{})", a.seconds, if a.plays { "" } else { ", not played" })
+    });
+    let rows = [
+        ("animations", animations.collect()),
+        ("variants  ", all(&inventory.variants)),
+        ("skins     ", all(&inventory.skins)),
+    ];
+    let line = |(what, names): (&str, Vec<String>)| format!("\n{what} {}", names.join(", "));
+    rows.into_iter().filter(|(_, names)| !names.is_empty()).map(line).collect()
 }

@@ -12,10 +12,11 @@ pub mod merge;
 pub mod render;
 
 use crate::arguments::Common;
+use crate::choices::{Choices, GlassArgument};
 use crate::output;
 use anyhow::bail;
-use bilux::formats::ReadOptions;
-use bilux::scene::Warning;
+use bilux::formats::{Glass, ReadOptions};
+use bilux::scene::{SceneBuilder, Warning};
 use std::path::Path;
 
 /// The work is done.
@@ -29,6 +30,33 @@ fn read_options(common: &Common) -> ReadOptions {
         strict: common.strict,
         ..ReadOptions::default()
     }
+}
+
+/// The same with what is chosen in a file, at a time in seconds.
+fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptions {
+    ReadOptions {
+        time,
+        animation: choices.animation.clone(),
+        variant: choices.variant.clone(),
+        glass: match choices.glass {
+            GlassArgument::Auto => Glass::Auto,
+            GlassArgument::Thin => Glass::Thin,
+            GlassArgument::Solid => Glass::Solid,
+        },
+        light_radius: choices.light_radius,
+        ..read_options(common)
+    }
+}
+
+/// Refuses a choice between things of which the file has none.
+fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> {
+    if choices.animation.is_some() && scene.inventory.animations.is_empty() {
+        bail!("--animation: there are no animations in this file");
+    }
+    if choices.variant.is_some() && scene.inventory.variants.is_empty() {
+        bail!("--variant: there are no variants of materials in this file");
+    }
+    Ok(())
 }
 
 /// Says each warning once; under `--strict` the first is an error.

@@ -1,6 +1,6 @@
 //! `bilux render`: pictures from scenes.
 
-use super::{DONE, aov, check_folder, read_options, tell_warnings};
+use super::{DONE, aov, check_choices, check_folder, read_options_with, tell_warnings};
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
@@ -68,24 +68,63 @@ fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-fn read_scene(path: &Path, arguments: &Render, common: &Common) -> anyhow::Result<SceneBuilder> {
-    let options = read_options(common);
-    let mut scene = if is_stdout(path) {
-        let format = arguments
-            .input_format
-            .as_deref()
-            .context("say what comes from standard input: --input-format toml (see `bilux list formats`)")
-            .map_err(usage::wrong)?;
-        let mut bytes = Vec::new();
-        std::io::stdin().take(common.max_memory).read_to_end(&mut bytes)?;
-        bilux::formats::read_bytes(&bytes, format, Some(Path::new(".")), "standard input", &options)?
-    } else {
-        bilux::load(path, &options)?
-    };
-    if let Some(preset) = &arguments.studio.preset {
-        bilux::presets::apply(preset, &mut scene).map_err(usage::wrong)?;
+/// A scene file, that may have to be read again for another time.
+struct Input<'a> {
+    path: &'a Path,
+    /// What came from standard input, which can be read but once, and its format.
+    piped: Option<(Vec<u8>, &'a str)>,
+    arguments: &'a Render,
+    common: &'a Common,
+}
+
+impl Input<'_> {
+    fn open<'a>(path: &'a Path, arguments: &'a Render, common: &'a Common) -> anyhow::Result<Input<'a>> {
+        let mut piped = None;
+        if is_stdout(path) {
+            let format = arguments
+                .input_format
+                .as_deref()
+                .context("say what comes from standard input: --input-format toml (see `bilux list formats`)")
+                .map_err(usage::wrong)?;
+            let mut bytes = Vec::new();
+            std::io::stdin().take(common.max_memory).read_to_end(&mut bytes)?;
+            piped = Some((bytes, format));
+        }
+        Ok(Input { path, piped, arguments, common })
     }
-    Ok(scene)
+
+    /// The scene as it is at a time in seconds.
+    fn read(&self, time: f32) -> anyhow::Result<SceneBuilder> {
+        let options = read_options_with(self.common, &self.arguments.choices, time);
+        let mut scene = match &self.piped {
+            Some((bytes, format)) => {
+                bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
+            }
+            None => bilux::load(self.path, &options)?,
+        };
+        check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
+        if let Some(preset) = &self.arguments.studio.preset {
+            bilux::presets::apply(preset, &mut scene).map_err(usage::wrong)?;
+        }
+        Ok(scene)
+    }
+
+    /// The job of a scene, with all that the command line says of it.
+    fn job(&self, scene: &SceneBuilder, user: &Parameters) -> anyhow::Result<Job> {
+        let arguments = self.arguments;
+        let mut job = Job::new(scene, user)?;
+        aov::prepare(arguments, &mut job)?;
+        if let Some((from, to)) = arguments.samples {
+            job.samples(from..to);
+        }
+        if let Some([x, y, width, height]) = arguments.crop {
+            job.crop(Window { x, y, width, height });
+        }
+        if arguments.stats.is_some() {
+            job.count_work();
+        }
+        Ok(job)
+    }
 }
 
 fn render_one(
@@ -96,15 +135,16 @@ fn render_one(
     common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
-    let scene = read_scene(path, arguments, common)?;
+    let input = Input::open(path, arguments, common)?;
+    let mut scene = input.read(arguments.at.unwrap_or(0.0))?;
     tell_warnings(&scene.warnings, common)?;
     let Some(count) = arguments.studio.turntable else {
-        return render_scene(&scene, path, output, user, arguments, common, interrupt);
+        return render_scene(&input, &mut scene, output, user, interrupt);
     };
     for frame in 0..count {
         let turned = crate::studio::turned(user, frame as f32 / count as f32)?;
         let output = frame_path(output, frame);
-        let status = render_scene(&scene, path, &output, &turned, arguments, common, interrupt)?;
+        let status = render_scene(&input, &mut scene, &output, &turned, interrupt)?;
         if status != DONE {
             return Ok(status);
         }
@@ -113,28 +153,22 @@ fn render_one(
 }
 
 fn render_scene(
-    scene: &SceneBuilder,
-    path: &Path,
+    input: &Input,
+    scene: &mut SceneBuilder,
     output: &Path,
     user: &Parameters,
-    arguments: &Render,
-    common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
+    let Input { path, arguments, common, .. } = *input;
     let begun = Instant::now();
-    let mut job = Job::new(scene, user)?;
+    let mut job = input.job(scene, user)?;
+    if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
+        // The time was said elsewhere than by --at.
+        *scene = input.read(job.settings().time)?;
+        job = input.job(scene, user)?;
+    }
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
-    aov::prepare(arguments, &mut job)?;
-    if let Some((from, to)) = arguments.samples {
-        job.samples(from..to);
-    }
-    if let Some([x, y, width, height]) = arguments.crop {
-        job.crop(Window { x, y, width, height });
-    }
-    if arguments.stats.is_some() {
-        job.count_work();
-    }
     if let Some([x, y, sample]) = arguments.replay {
         output::print(job.replay(x, y, sample)?);
         return Ok(DONE);
@@ -143,7 +177,11 @@ fn render_scene(
         return finish(&job, output, path, build_seconds, arguments, common, interrupt);
     };
     for frame in first..=last {
-        job.at_time(frame as f32 / job.settings().fps);
+        let time = frame as f32 / job.settings().fps;
+        if scene.inventory.moves() {
+            job = input.job(&input.read(time)?, user)?;
+        }
+        job.at_time(time);
         let output = frame_path(output, frame);
         let status = finish(&job, &output, path, build_seconds, arguments, common, interrupt)?;
         if status != DONE {

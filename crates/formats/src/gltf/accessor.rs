@@ -123,6 +123,23 @@ impl<'d> Accessor<'d> {
         Ok(all)
     }
 
+    /// All numbers of all elements, one after the other.
+    pub(super) fn numbers(&self, budget: &mut Budget) -> Result<Vec<f32>, FormatError> {
+        let width = self.width();
+        let total = self.count.saturating_mul(width);
+        budget.take_bytes((total as u64).saturating_mul(4), &self.node.at().file)?;
+        let mut all = vec![0.0; total];
+        if let Some(data) = self.data {
+            all.chunks_exact_mut(width).enumerate().for_each(|(i, element)| self.read(data, i, element));
+        }
+        if let Some(sparse) = &self.sparse {
+            for (i, &index) in sparse.indices.iter().enumerate() {
+                self.read(sparse.values, i, &mut all[index as usize * width..][..width]);
+            }
+        }
+        Ok(all)
+    }
+
     /// Whole numbers, as indices are.
     pub(super) fn indices(&self, budget: &mut Budget) -> Result<Vec<u32>, FormatError> {
         if self.width() != 1 || !matches!(self.component, Component::U8 | Component::U16 | Component::U32) {

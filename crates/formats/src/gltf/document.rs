@@ -2,15 +2,18 @@
 
 use super::container::Container;
 use super::json::Node;
-use super::uri;
+use super::{meshopt, uri};
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// JSON and buffers.
 pub(super) struct Document<'a> {
     pub(super) root: Node<'a>,
     buffers: Vec<Cow<'a, [u8]>>,
+    /// The bytes of views that are packed in the file, by their index.
+    unpacked: HashMap<usize, Vec<u8>>,
     /// Bytes of all buffers and of the file itself.
     size: usize,
 }
@@ -50,7 +53,19 @@ impl<'a> Document<'a> {
             oddities.note("the binary chunk is named by no buffer and not used", || root.at());
         }
         let size = buffers.iter().map(|b| b.len()).sum::<usize>() + source.bytes.len();
-        Ok(Document { root, buffers, size })
+        let mut document = Document { root, buffers, unpacked: HashMap::new(), size };
+        document.unpacked = document.unpack(reading)?;
+        Ok(document)
+    }
+
+    fn unpack(&self, reading: &mut Reading) -> Result<HashMap<usize, Vec<u8>>, FormatError> {
+        let mut unpacked = HashMap::new();
+        for (i, view) in self.root.list("bufferViews")?.into_iter().enumerate() {
+            let Some(extension) = view.extension(meshopt::NAME) else { continue };
+            let bytes = self.buffer(extension.need("buffer")?)?;
+            unpacked.insert(i, meshopt::unpacked(extension, bytes, &mut reading.budget)?);
+        }
+        Ok(unpacked)
     }
 
     /// Bytes of all that was read: a bound on what an honest file can describe without data.
@@ -67,13 +82,18 @@ impl<'a> Document<'a> {
         })
     }
 
+    fn buffer(&self, index: Node<'a>) -> Result<&[u8], FormatError> {
+        self.named("buffers", index)?;
+        Ok(&self.buffers[index.as_count()?])
+    }
+
     /// The bytes of the buffer view that `index` names.
     pub(super) fn view(&self, index: Node<'a>) -> Result<View<'_>, FormatError> {
         let node = self.named("bufferViews", index)?;
-        let buffer = node.need("buffer")?;
-        self.named("buffers", buffer)?;
-        let bytes = &self.buffers[buffer.as_count()?];
-        let offset = node.count("byteOffset")?.unwrap_or(0);
+        let buffer = self.buffer(node.need("buffer")?)?;
+        let unpacked = self.unpacked.get(&index.as_count()?);
+        let bytes = unpacked.map_or(buffer, |bytes| bytes);
+        let offset = if unpacked.is_some() { 0 } else { node.count("byteOffset")?.unwrap_or(0) };
         let length = node.need("byteLength")?.as_count()?;
         let end = offset.checked_add(length);
         let bytes = end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| {

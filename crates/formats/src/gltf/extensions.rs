@@ -7,7 +7,11 @@ use bilux_scene::error::nearest_name;
 
 /// Extensions that are read, in whole or with a warning that says what is not.
 const KNOWN: &[&str] = &[
+    "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_animation_pointer",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -15,17 +19,19 @@ const KNOWN: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
 
 /// Extensions that carry no part of the picture.
-const NOTHING_TO_SEE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld", "KHR_animation_pointer"];
+const NOTHING_TO_SEE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
 
 /// Refuses what a file cannot be drawn without, and warns of all else that is not understood.
 pub(super) fn check(root: Node, oddities: &mut Oddities) -> Result<(), FormatError> {

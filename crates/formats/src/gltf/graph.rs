@@ -10,6 +10,8 @@ use bilux_math::DMat4;
 #[derive(Clone, Copy)]
 pub(super) struct Placed<'d> {
     pub(super) node: Node<'d>,
+    /// Its number in the file.
+    pub(super) index: usize,
     /// From its space to the world.
     pub(super) world: DMat4,
 }
@@ -29,16 +31,17 @@ impl<'d> Gltf<'d, '_, '_> {
         let mut placed = Vec::new();
         while let Some((index, parent)) = waiting.pop() {
             let node = self.document.named("nodes", index)?;
-            let slot = &mut self.order[index.as_count()?];
+            let number = index.as_count()?;
+            let slot = &mut self.order[number];
             if slot.replace(placed.len()).is_some() {
                 let message = "this node stands below two others, or below itself: a node has one parent";
                 return Err(index.error(message));
             }
-            let world = parent * place::local(node)?;
+            let world = parent * place::local(node, number, &self.pose)?;
             if !world.is_finite() {
                 return Err(node.error("this node is scaled or moved beyond all numbers"));
             }
-            placed.push(Placed { node, world });
+            placed.push(Placed { node, index: number, world });
             let children = node.list("children")?;
             waiting.extend(children.into_iter().rev().map(|child| (child, world)));
         }

@@ -7,11 +7,12 @@ use crate::reading::Oddities;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::Spec;
 
-/// A light at its node; none, with a warning, where its node leaves it no direction.
+/// A light at its node, with a radius where that is above 0; none, with a warning, where its node leaves it no direction.
 pub(super) fn light<'d>(
     root: Node<'d>,
     user: Node<'d>,
     placed: &Placed<'d>,
+    radius: f32,
     oddities: &mut Oddities,
 ) -> Result<Option<Spec>, FormatError> {
     let index = user.need("light")?;
@@ -32,6 +33,10 @@ pub(super) fn light<'d>(
         "directional" => {
             Spec::new(name, "directional").with("direction", forward.as_vec3()).with("irradiance", power)
         }
+        "point" if radius > 0.0 && power != Rgb::BLACK => Spec::new(name, "sphere")
+            .with("position", position.as_vec3())
+            .with("radius", radius)
+            .with("intensity", power),
         "point" => Spec::new(name, "point").with("position", position.as_vec3()).with("intensity", power),
         "spot" => {
             let cone = light.need("spot")?;
@@ -49,6 +54,9 @@ pub(super) fn light<'d>(
             return Err(kind.error(format!("'{other}' is no light: directional, point and spot are")));
         }
     };
+    if radius > 0.0 && spec.kind != "sphere" {
+        oddities.note("only lights of type point are given a radius", || light.at());
+    }
     if light.get("range").is_some() {
         oddities.note("a light's range is not used: its light falls off as light does", || light.at());
     }

@@ -3,10 +3,11 @@
 use super::json::Node;
 use super::reader::Gltf;
 use super::textures::Taken;
-use crate::FormatError;
+use super::topology::is_closed;
+use crate::{FormatError, Glass};
 use bilux_math::Rgb;
 use bilux_scene::texture::Channel;
-use bilux_scene::{Span, Spec, Value};
+use bilux_scene::{Mesh, Span, Spec, Value};
 use std::f64::consts::TAU;
 
 /// A material as primitives use it.
@@ -14,20 +15,27 @@ use std::f64::consts::TAU;
 pub(super) struct UsedMaterial {
     /// Its index in the scene.
     pub(super) index: usize,
-    /// Which texture coordinates it is looked up by.
-    pub(super) uv_set: usize,
+    /// The sets of texture coordinates that it is looked up by.
+    pub(super) uv_sets: UvSets,
     /// Whether it matters which way these grow.
     pub(super) has_direction: bool,
+    /// Its normal map lies by the second of these sets.
+    pub(super) normal_by_second: bool,
 }
+
+/// The first and the second set of texture coordinates of a mesh here, by their number in the file.
+pub(super) type UvSets = [Option<usize>; 2];
 
 /// A material while it is read: parameters of `principled`, whether or not that has them all.
 pub(super) struct Draft {
     pub(super) spec: Spec,
-    uv_set: Option<usize>,
+    pub(super) uv_sets: UvSets,
+    /// Transmission that says nothing of a thickness is of a solid.
+    is_solid: bool,
 }
 
 impl Draft {
-    fn set(&mut self, key: &str, value: impl Into<Value>, at: Span) {
+    pub(super) fn set(&mut self, key: &str, value: impl Into<Value>, at: Span) {
         self.spec.parameters.set_at(key, value.into(), at);
     }
 
@@ -41,12 +49,16 @@ impl Draft {
 
 impl<'d> Gltf<'d, '_, '_> {
     /// The material that `index` names, or the default one.
-    pub(super) fn material(&mut self, index: Option<Node<'d>>) -> Result<UsedMaterial, FormatError> {
-        let key = index.map(|index| index.as_count()).transpose()?;
+    pub(super) fn material(
+        &mut self,
+        index: Option<Node<'d>>,
+        is_solid: bool,
+    ) -> Result<UsedMaterial, FormatError> {
+        let key = (index.map(|index| index.as_count()).transpose()?, is_solid);
         if let Some(material) = self.materials.get(&key) {
             return Ok(*material);
         }
-        let mut draft = Draft { spec: Spec::new("default", "principled"), uv_set: None };
+        let mut draft = Draft { spec: Spec::new("default", "principled"), uv_sets: [None; 2], is_solid };
         match index {
             Some(index) => self.draft(self.document.named("materials", index)?, &mut draft)?,
             None => {
@@ -57,18 +69,59 @@ impl<'d> Gltf<'d, '_, '_> {
         }
         let has = |key| draft.spec.parameters.find(key).is_some();
         let has_direction = has("normal") || has("specular_roughness_anisotropy");
-        let uv_set = draft.uv_set.unwrap_or(0);
-        let used = UsedMaterial { index: self.fitted(draft.spec), uv_set, has_direction };
+        let normal = draft.spec.parameters.find("normal").map(|(value, _)| value);
+        let is_second = |i: &usize| self.scene.textures.get(*i).is_some_and(|texture| texture.second_uv);
+        let normal_by_second = matches!(normal, Some(Value::Texture(i)) if is_second(i));
+        let uv_sets = draft.uv_sets;
+        let index = self.fitted(draft.spec);
+        let used = UsedMaterial { index, uv_sets, has_direction, normal_by_second };
         self.materials.insert(key, used);
         Ok(used)
     }
 
+    /// Whether a mesh is of glass that says nothing of a thickness, and that is solid here.
+    pub(super) fn is_solid_glass(
+        &mut self,
+        index: Option<Node<'d>>,
+        mesh: &Mesh,
+    ) -> Result<bool, FormatError> {
+        let Some(index) = index else { return Ok(false) };
+        let node = self.document.named("materials", index)?;
+        let Some(transmission) = node.extension("KHR_materials_transmission") else { return Ok(false) };
+        let weight = transmission.number("transmissionFactor")?.unwrap_or(0.0);
+        let volume = node.extension("KHR_materials_volume");
+        let thickness = volume.map_or(Ok(None), |volume| volume.number("thicknessFactor"))?.unwrap_or(0.0);
+        if weight <= 0.0 || thickness > 0.0 {
+            return Ok(false);
+        }
+        match self.reading.options.glass {
+            Glass::Solid => Ok(true),
+            Glass::Thin => Ok(false),
+            Glass::Auto => {
+                let edges = (mesh.triangles.len() * 3 * 24 + mesh.positions.len() * 24) as u64;
+                self.reading.budget.take_bytes(edges, &self.file)?;
+                let is_closed = is_closed(mesh);
+                self.reading.budget.give_back(edges);
+                let what = if is_closed {
+                    "clear without a thickness, on a closed mesh: solid glass; --glass thin makes it a wall"
+                } else {
+                    "clear without a thickness, on an open mesh: a thin wall; --glass solid makes it solid"
+                };
+                self.oddities.note(what, || node.at());
+                Ok(is_closed)
+            }
+        }
+    }
+
     fn draft(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         draft.spec = Spec { span: node.at(), ..Spec::new(node.name(), "principled") };
-        self.base(node, draft)?;
+        match node.extension("KHR_materials_pbrSpecularGlossiness") {
+            Some(extension) => self.glossy(node, extension, draft)?,
+            None => self.base(node, draft)?,
+        }
         self.emission(node, draft)?;
         if let Some(info) = node.get("normalTexture") {
-            let map = self.texture(info, Taken::VECTORS, &mut draft.uv_set)?;
+            let map = self.texture(info, Taken::VECTORS, &mut draft.uv_sets)?;
             draft.set("normal", map, info.at());
             let scale = info.number("scale")?.unwrap_or(1.0);
             draft.set("normal_scale", scale as f32, info.at());
@@ -104,6 +157,17 @@ impl<'d> Gltf<'d, '_, '_> {
         let picture_of = pbr.and_then(|pbr| pbr.get("metallicRoughnessTexture"));
         self.scalar(draft, "base_metalness", metal, picture_of, Channel::B, &at)?;
         self.scalar(draft, "specular_roughness", rough, picture_of, Channel::G, &at)?;
+        self.opacity(node, picture, alpha, draft)
+    }
+
+    /// How much of a surface is there, by the alpha of the picture of its colour.
+    pub(super) fn opacity(
+        &mut self,
+        node: Node<'d>,
+        picture: Option<Node<'d>>,
+        alpha: f32,
+        draft: &mut Draft,
+    ) -> Result<(), FormatError> {
         let mode = node.text("alphaMode")?.unwrap_or("OPAQUE");
         let threshold = match mode {
             "OPAQUE" => return Ok(()),
@@ -114,7 +178,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let opacity = match (picture, threshold) {
             (Some(info), _) => {
                 let taken = Taken { threshold, ..Taken::channel(Channel::A, f64::from(alpha)) };
-                self.texture(info, taken, &mut draft.uv_set)?
+                self.texture(info, taken, &mut draft.uv_sets)?
             }
             (None, Some(threshold)) => (if alpha < threshold { 0.0 } else { 1.0 }).into(),
             (None, None) => alpha.into(),
@@ -188,7 +252,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "transmission_weight", weight, picture, Channel::R, &at)?;
         let volume = node.extension("KHR_materials_volume");
         let thickness = volume.map_or(Ok(None), |volume| volume.number("thicknessFactor"))?.unwrap_or(0.0);
-        draft.set("thin_walled", thickness <= 0.0, at.clone());
+        draft.set("thin_walled", thickness <= 0.0 && !draft.is_solid, at.clone());
         let base = draft.spec.parameters.find("base_color").map(|(value, _)| value.clone());
         let depth = volume.map_or(Ok(None), |volume| volume.number("attenuationDistance"))?;
         let (Some(volume), Some(depth)) = (volume.filter(|_| thickness > 0.0), depth.filter(|d| *d > 0.0))
@@ -222,7 +286,12 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "coat_roughness", rough, picture, Channel::G, &at)?;
         draft.set("coat_ior", 1.5, at);
         if let Some(normals) = extension.get("clearcoatNormalTexture") {
-            self.oddities.note("a coat has the normals of what it covers, not its own", || normals.at());
+            if !self.knows("coat_normal") {
+                self.oddities.note("a coat has the normals of what it covers, not its own", || normals.at());
+                return Ok(());
+            }
+            let map = self.texture(normals, Taken::VECTORS, &mut draft.uv_sets)?;
+            draft.set("coat_normal", map, normals.at());
         }
         Ok(())
     }
@@ -305,7 +374,7 @@ impl<'d> Gltf<'d, '_, '_> {
         at: &Span,
     ) -> Result<(), FormatError> {
         let value = match picture {
-            Some(info) => self.texture(info, Taken::colours(factor), &mut draft.uv_set)?,
+            Some(info) => self.texture(info, Taken::colours(factor), &mut draft.uv_sets)?,
             None => factor.into(),
         };
         draft.set(key, value, picture.map_or_else(|| at.clone(), |info| info.at()));
@@ -323,7 +392,7 @@ impl<'d> Gltf<'d, '_, '_> {
     ) -> Result<(), FormatError> {
         let value = match picture {
             Some(info) if factor != 0.0 => {
-                self.texture(info, Taken::channel(channel, factor), &mut draft.uv_set)?
+                self.texture(info, Taken::channel(channel, factor), &mut draft.uv_sets)?
             }
             _ => Value::Number(factor),
         };

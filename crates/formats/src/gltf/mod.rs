@@ -1,21 +1,30 @@
 //! glTF 2.0, as JSON with files beside it and as GLB. See `docs/formats/gltf.md`.
 
 mod accessor;
+mod animation;
+mod area_lights;
 mod cameras;
 mod container;
 mod document;
 mod extensions;
 mod fitting;
+mod glossiness;
 mod graph;
 mod instances;
 mod json;
 mod lights;
 mod material;
+mod meshopt;
 mod place;
 mod primitive;
 mod reader;
+mod skin;
+mod tangents;
 mod textures;
+mod thin;
+mod topology;
 mod uri;
+mod variants;
 
 use crate::formats::SceneFormatEntry;
 use bilux_math::registry::Entry;
@@ -39,6 +48,8 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "textures",
         "cameras",
         "lights",
+        "animation",
+        "variants",
     ],
     sniff,
     read: Some(reader::read),

@@ -1,12 +1,13 @@
 //! Where nodes are: matrices, or translation, rotation and scale.
 
+use super::animation::{Moves, Pose};
 use super::json::Node;
 use crate::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
 use bilux_math::{DMat4, DVec3};
 
-/// From a node's space to its parent's.
-pub(super) fn local(node: Node) -> Result<DMat4, FormatError> {
+/// From the space of a node with this index to its parent's, as it is posed.
+pub(super) fn local(node: Node, index: usize, pose: &Pose) -> Result<DMat4, FormatError> {
     if let Some(columns) = node.numbers::<16>("matrix")? {
         let matrix = DMat4::from_cols_array(&columns);
         let last = matrix.row(3).to_array();
@@ -16,9 +17,11 @@ pub(super) fn local(node: Node) -> Result<DMat4, FormatError> {
         }
         return Ok(matrix);
     }
-    let translation = node.numbers::<3>("translation")?.unwrap_or([0.0; 3]);
-    let rotation = node.numbers::<4>("rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
-    let scale = node.numbers::<3>("scale")?.unwrap_or([1.0; 3]);
+    let (translation, rotation, scale) =
+        (node.numbers::<3>("translation")?, node.numbers::<4>("rotation")?, node.numbers::<3>("scale")?);
+    let translation = pose.numbers(index, Moves::Translation).or(translation).unwrap_or([0.0; 3]);
+    let rotation = pose.numbers(index, Moves::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
+    let scale = pose.numbers(index, Moves::Scale).or(scale).unwrap_or([1.0; 3]);
     compose(translation, rotation, scale).ok_or_else(|| {
         FormatError::malformed("this rotation is zero, and turns nothing", node.at_key("rotation"))
     })

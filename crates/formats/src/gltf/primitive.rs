@@ -4,7 +4,11 @@ use super::accessor::Accessor;
 use super::json::Node;
 use super::material::UsedMaterial;
 use super::reader::Gltf;
+use super::skin::Joints;
+use super::topology::Mode;
+use super::{tangents, thin};
 use crate::FormatError;
+use bilux_math::glam::Vec4;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Mesh;
 use std::sync::Arc;
@@ -17,54 +21,56 @@ pub(super) struct Part {
     pub(super) material: usize,
 }
 
-/// How a primitive's vertices make triangles.
-#[derive(Clone, Copy, PartialEq)]
-enum Mode {
-    Triangles,
-    Strip,
-    Fan,
+/// What a node makes of the mesh that it has.
+pub(super) struct Worn<'a> {
+    pub(super) name: &'a str,
+    /// Of morph targets.
+    pub(super) weights: &'a [f64],
+    pub(super) joints: Option<&'a Joints>,
+    /// By which lengths grow from the mesh to the world.
+    pub(super) scale: f64,
 }
 
 /// Attributes that are read, or told of elsewhere.
-const ATTRIBUTES: [&str; 3] = ["POSITION", "NORMAL", "COLOR_0"];
+const ATTRIBUTES: [&str; 4] = ["POSITION", "NORMAL", "TANGENT", "COLOR_0"];
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// A primitive of a mesh, with weights for its morph targets; none where there is nothing to draw.
-    pub(super) fn primitive(
-        &mut self,
-        node: Node<'d>,
-        name: &str,
-        weights: &[f64],
-    ) -> Result<Option<Part>, FormatError> {
-        let Some(mode) = self.mode(node)? else { return Ok(None) };
+    /// A primitive of a mesh; none where there is nothing to draw.
+    pub(super) fn primitive(&mut self, node: Node<'d>, worn: &Worn) -> Result<Option<Part>, FormatError> {
+        let mode = Mode::of(node)?;
         let attributes = node.need("attributes")?;
         let Some(position) = attributes.get("POSITION") else {
             self.oddities.note("a primitive has no positions and is left out", || node.at());
             return Ok(None);
         };
-        let vec3 = |v: Vec<[f32; 3]>| -> Vec<Vec3> { v.into_iter().map(Vec3::from).collect() };
-        let mut mesh = Mesh { name: name.to_owned(), ..Mesh::default() };
+        let mut mesh = Mesh { name: worn.name.to_owned(), ..Mesh::default() };
         mesh.positions = vec3(self.attribute::<3>(position, None)?);
         let count = mesh.positions.len();
-        if let Some(normal) = attributes.get("NORMAL") {
-            mesh.normals = vec3(self.attribute::<3>(normal, Some(count))?);
+        mesh.triangles = match mode {
+            Mode::Triangles | Mode::Strip | Mode::Fan => self.triangles(node, mode, count)?,
+            _ => Vec::new(),
+        };
+        let named = self.variant_of(node)?.or(node.get("material"));
+        let is_solid = self.is_solid_glass(named, &mesh)?;
+        let material = self.material(named, is_solid)?;
+        self.directions(attributes, material, &mut mesh)?;
+        self.morph(node, worn.weights, &mut mesh)?;
+        if let Some(joints) = worn.joints {
+            self.bend(node, joints, &mut mesh)?;
         }
-        self.morph(node, weights, &mut mesh)?;
         if mesh.positions.iter().any(|p| !p.is_finite()) {
             let what = "positions have numbers that are infinite or no numbers; they are kept";
             self.oddities.note(what, || position.at());
         }
-        let material = self.material(node.get("material"))?;
-        if let Some(uv) = attributes.get(if material.uv_set == 1 { "TEXCOORD_1" } else { "TEXCOORD_0" }) {
-            // Ours grow upwards.
-            let flipped = |[u, v]: [f32; 2]| Vec2::new(u, 1.0 - v);
-            mesh.uvs = self.attribute::<2>(uv, Some(count))?.into_iter().map(flipped).collect();
-        }
+        self.coordinates(attributes, material, &mut mesh)?;
         if let Some(colour) = attributes.get("COLOR_0") {
             mesh.vertex_kd = self.colours(colour, count)?;
         }
         self.note_unused(attributes, material);
-        mesh.triangles = self.triangles(node, mode, count)?;
+        match mode {
+            Mode::Triangles | Mode::Strip | Mode::Fan => self.add_tangents(material, &mut mesh)?,
+            thin => mesh = self.thickened(node, thin, &mesh, worn.scale)?,
+        }
         if mesh.triangles.is_empty() {
             self.oddities.note("a primitive has no triangle and is left out", || node.at());
             return Ok(None);
@@ -72,21 +78,74 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(Some(Part { mesh: Arc::new(mesh), material: material.index }))
     }
 
-    /// None, with a warning, for what has no surface.
-    fn mode(&mut self, node: Node<'d>) -> Result<Option<Mode>, FormatError> {
-        let thin = match node.count("mode")?.unwrap_or(4) {
-            4 => return Ok(Some(Mode::Triangles)),
-            5 => return Ok(Some(Mode::Strip)),
-            6 => return Ok(Some(Mode::Fan)),
-            0 => "points",
-            1..=3 => "lines",
-            other => {
-                return Err(node.error(format!("mode {other} is none; there are 0 to 6, and 4 is triangles")));
+    /// Normals, and tangents where the material tells directions apart.
+    fn directions(
+        &mut self,
+        attributes: Node<'d>,
+        material: UsedMaterial,
+        mesh: &mut Mesh,
+    ) -> Result<(), FormatError> {
+        let count = mesh.positions.len();
+        if let Some(normal) = attributes.get("NORMAL") {
+            mesh.normals = vec3(self.attribute::<3>(normal, Some(count))?);
+            if mesh.normals.iter().any(|n| (n.length_squared() - 1.0).abs() > 0.1) {
+                self.oddities.note("normals are not of length one: taken as directions", || normal.at());
             }
-        };
-        let what = format!("{thin} are not drawn: they have no surface");
-        self.oddities.note(&what, || node.at());
-        Ok(None)
+        }
+        if let Some(tangent) = attributes.get("TANGENT").filter(|_| material.has_direction) {
+            let tangents = self.attribute::<4>(tangent, Some(count))?;
+            if tangents.iter().any(|t| t[3].abs() != 1.0) {
+                let what = "the fourth number of a tangent has to be 1 or -1: its sign is used";
+                self.oddities.note(what, || tangent.at());
+            }
+            mesh.tangents = tangents.into_iter().map(Vec4::from).collect();
+        }
+        Ok(())
+    }
+
+    /// The sets of texture coordinates that the material asks for.
+    fn coordinates(
+        &mut self,
+        attributes: Node<'d>,
+        material: UsedMaterial,
+        mesh: &mut Mesh,
+    ) -> Result<(), FormatError> {
+        let count = mesh.positions.len();
+        // Where no texture asks, the first set is kept for what may be put on the mesh later.
+        let sets = [material.uv_sets[0].or(Some(0)), material.uv_sets[1]];
+        for (slot, set) in sets.into_iter().enumerate() {
+            let Some(set) = set else { continue };
+            let key = format!("TEXCOORD_{set}");
+            let found = attributes.entries().find(|(name, _)| *name == key);
+            let uvs = match found {
+                // Ours grow upwards.
+                Some((_, uv)) => self
+                    .attribute::<2>(uv, Some(count))?
+                    .into_iter()
+                    .map(|[u, v]| Vec2::new(u, 1.0 - v))
+                    .collect(),
+                None if material.uv_sets[slot].is_some() => {
+                    let what = "a material looks up textures by texture coordinates that its mesh has not: taken as 0";
+                    self.oddities.note(what, || attributes.at());
+                    self.reading.budget.take_bytes(count as u64 * 8, &self.file)?;
+                    vec![Vec2::Y; count]
+                }
+                None => Vec::new(),
+            };
+            if slot == 0 { mesh.uvs = uvs } else { mesh.uvs2 = uvs }
+        }
+        Ok(())
+    }
+
+    /// Tangents where they are needed and the file brings none.
+    fn add_tangents(&mut self, material: UsedMaterial, mesh: &mut Mesh) -> Result<(), FormatError> {
+        if !material.has_direction || !mesh.tangents.is_empty() || mesh.uvs.is_empty() {
+            return Ok(());
+        }
+        // Lists that the generator makes of every corner.
+        self.reading.budget.take_bytes(mesh.triangles.len() as u64 * 400, &self.file)?;
+        tangents::add(mesh, material.normal_by_second);
+        Ok(())
     }
 
     /// An attribute's elements, as many as there are vertices.
@@ -117,82 +176,78 @@ impl<'d> Gltf<'d, '_, '_> {
 
     /// Adds what the morph targets move. [glTF 2.0, 3.7.2.2]
     fn morph(&mut self, node: Node<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
-        for (target, &weight) in node.list("targets")?.into_iter().zip(weights) {
+        let targets = node.list("targets")?;
+        if targets.len() != weights.len() && !weights.is_empty() {
+            let what = "there are not as many weights as morph targets";
+            self.oddities.note(what, || node.at_key("targets"));
+        }
+        for (target, &weight) in targets.into_iter().zip(weights) {
+            for (key, used) in target.entries() {
+                if !matches!(key, "POSITION" | "NORMAL" | "TANGENT") && !key.starts_with('_') {
+                    let what =
+                        "a morph target moves what does not move here: positions, normals and tangents do";
+                    self.oddities.note(what, || used.at());
+                }
+            }
             if weight == 0.0 {
                 continue;
             }
-            let mut moved = |key: &'static str, values: &mut Vec<Vec3>| -> Result<(), FormatError> {
-                let Some(index) = target.get(key).filter(|_| !values.is_empty()) else { return Ok(()) };
-                let by = self.attribute::<3>(index, Some(values.len()))?;
-                values.iter_mut().zip(by).for_each(|(v, by)| *v += Vec3::from(by) * weight as f32);
-                Ok(())
+            let mut by = |key: &'static str, count: usize| -> Result<Vec<Vec3>, FormatError> {
+                let Some(index) = target.get(key).filter(|_| count > 0) else { return Ok(Vec::new()) };
+                let by = vec3(self.attribute::<3>(index, Some(count))?);
+                Ok(by.into_iter().map(|by| by * weight as f32).collect())
             };
-            moved("POSITION", &mut mesh.positions)?;
-            moved("NORMAL", &mut mesh.normals)?;
+            let [positions, normals, tangents] = [
+                by("POSITION", mesh.positions.len())?,
+                by("NORMAL", mesh.normals.len())?,
+                by("TANGENT", mesh.tangents.len())?,
+            ];
+            mesh.positions.iter_mut().zip(positions).for_each(|(v, by)| *v += by);
+            mesh.normals.iter_mut().zip(normals).for_each(|(v, by)| *v += by);
+            mesh.tangents.iter_mut().zip(tangents).for_each(|(v, by)| *v += by.extend(0.0));
         }
         Ok(())
     }
 
     fn note_unused(&mut self, attributes: Node<'d>, material: UsedMaterial) {
-        let used_uv = if material.uv_set == 1 { "TEXCOORD_1" } else { "TEXCOORD_0" };
+        let used_uv = |key: &str| {
+            let set = key.strip_prefix("TEXCOORD_").and_then(|set| set.parse().ok());
+            set.is_some_and(|set: usize| set == 0 || material.uv_sets.contains(&Some(set)))
+        };
         for (key, node) in attributes.entries() {
             let is_skin = key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_");
             // What programs keep for themselves begins with an underscore.
-            if ATTRIBUTES.contains(&key) || key == used_uv || is_skin || key.starts_with('_') {
-                continue;
+            let is_used = ATTRIBUTES.contains(&key) || used_uv(key) || is_skin || key.starts_with('_');
+            // Sets of texture coordinates that nothing looks up change nothing.
+            if !is_used && !key.starts_with("TEXCOORD_") {
+                self.oddities.note("an attribute of a mesh is not used", || node.at());
             }
-            let what = match key {
-                "TANGENT" if !material.has_direction => continue,
-                "TANGENT" => "tangents are made from texture coordinates, and those of the file not used",
-                _ if key.starts_with("TEXCOORD_") => {
-                    "a mesh has one set of texture coordinates here: others are not used"
-                }
-                _ => "an attribute of a mesh is not used",
-            };
-            self.oddities.note(what, || node.at());
         }
     }
 
-    fn triangles(
+    /// Points and lines with a body.
+    fn thickened(
         &mut self,
         node: Node<'d>,
         mode: Mode,
-        vertices: usize,
-    ) -> Result<Vec<[u32; 3]>, FormatError> {
-        let Ok(count) = u32::try_from(vertices) else {
-            return Err(node.error("there are more than 4 billion vertices: cut the mesh into several"));
-        };
-        let corners = match node.get("indices") {
-            Some(index) => {
-                let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
-                let corners = accessor.indices(&mut self.reading.budget)?;
-                if let Some(at) = corners.iter().position(|&corner| corner >= count) {
-                    let message = format!("index {at} is {}, but there are {count} vertices", corners[at]);
-                    return Err(accessor.node.error(message));
-                }
-                corners
-            }
-            None => {
-                self.reading.budget.take_bytes(u64::from(count) * 4, &self.file)?;
-                (0..count).collect()
-            }
-        };
-        let n = match mode {
-            Mode::Triangles => corners.len() / 3,
-            Mode::Strip | Mode::Fan => corners.len().saturating_sub(2),
-        };
-        if mode == Mode::Triangles && corners.len() % 3 != 0 {
-            self.oddities.note("the last corners of a list of triangles make none", || node.at());
-        }
-        self.reading.budget.take_bytes(n as u64 * 12, &self.file)?;
-        // The corners' order keeps all triangles of a strip on one side. [glTF 2.0, 3.7.2.1]
-        let corner = |t: usize| match mode {
-            Mode::Triangles => [3 * t, 3 * t + 1, 3 * t + 2],
-            Mode::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
-            Mode::Fan => [t + 1, t + 2, 0],
-        };
-        Ok((0..n).map(|t| corner(t).map(|i| corners[i])).collect())
+        bare: &Mesh,
+        scale: f64,
+    ) -> Result<Mesh, FormatError> {
+        let corners = self.corners(node, bare.positions.len())?;
+        let (balls, tubes) = mode.balls_and_tubes(&corners);
+        let size = self.size_of_scene()?;
+        let share = if tubes.is_empty() { 1.0 / 300.0 } else { 1.0 / 600.0 };
+        let what = if tubes.is_empty() { "points are balls" } else { "lines are tubes" };
+        let what =
+            format!("{what} with a radius of 1/{:.0} of the scene, since they have no surface", 1.0 / share);
+        self.oddities.note(&what, || node.at());
+        self.reading.budget.take_bytes(thin::bytes(balls.len(), tubes.len()), &self.file)?;
+        Ok(thin::solid(bare, &balls, &tubes, (size * share / scale) as f32))
     }
+}
+
+fn vec3(list: Vec<[f32; 3]>) -> Vec<Vec3> {
+    list.into_iter().map(Vec3::from).collect()
 }
 
 fn same_count(index: Node, accessor: &Accessor, count: Option<usize>) -> Result<(), FormatError> {

@@ -1,17 +1,19 @@
 //! From the document to a scene.
 
 use super::accessor::Accessor;
+use super::animation::Pose;
 use super::container;
 use super::document::Document;
 use super::graph::Placed;
 use super::json::Node;
 use super::material::UsedMaterial;
-use super::primitive::Part;
+use super::primitive::{Part, Worn};
 use super::{cameras, extensions, lights};
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
-use bilux_math::Transform;
 use bilux_math::motion::Motion;
+use bilux_math::transcendental::powf_f64;
+use bilux_math::{DMat4, DVec3, Transform};
 use bilux_scene::texture::Image;
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
@@ -31,20 +33,17 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     check_version(root)?;
     extensions::check(root, &mut oddities)?;
     let document = Document::load(root, &container, reading, source, &mut oddities)?;
-    let mut gltf = Gltf {
-        document: &document,
-        source,
-        file: source.name.clone(),
-        reading,
-        scene: SceneBuilder::default(),
-        oddities,
-        order: Vec::new(),
-        meshes: HashMap::new(),
-        materials: HashMap::new(),
-        images: HashMap::new(),
-    };
+    let time = reading.options.time;
+    let mut gltf = Gltf::new(&document, source, reading, oddities, time);
     gltf.scene()?;
-    let Gltf { mut scene, oddities, .. } = gltf;
+    let Gltf { mut scene, oddities, images, .. } = gltf;
+    if time != 0.0 && scene.inventory.moves() {
+        let mut gltf = Gltf::new(&document, source, reading, Oddities::default(), 0.0);
+        // Pictures do not move.
+        gltf.images = images;
+        gltf.scene()?;
+        scene.inventory.rest = Some(Arc::new(gltf.scene));
+    }
     oddities.into_warnings(&mut scene);
     Ok(scene)
 }
@@ -62,10 +61,18 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) oddities: Oddities,
     /// For each node of the file its number in the scene, once it is placed.
     pub(super) order: Vec<Option<usize>>,
-    /// The parts of each mesh, by its index and the weights of its morph targets.
-    meshes: HashMap<(usize, Vec<u64>), Arc<Vec<Part>>>,
-    /// By index in the file; the default one is none.
-    pub(super) materials: HashMap<Option<usize>, UsedMaterial>,
+    /// When, in seconds.
+    pub(super) time: f32,
+    /// What differs then from what the nodes say.
+    pub(super) pose: Pose,
+    /// The index of the variant that is shown.
+    pub(super) variant: Option<usize>,
+    /// All nodes of the scene, parents first.
+    pub(super) nodes: Vec<Placed<'d>>,
+    /// The parts of each mesh, by its index, the weights of its morph targets and its skin.
+    meshes: HashMap<(usize, Vec<u64>, Option<usize>), Arc<Vec<Part>>>,
+    /// By index in the file, none for the default one, and whether glass is solid.
+    pub(super) materials: HashMap<(Option<usize>, bool), UsedMaterial>,
     /// Pictures with their names, by index in the file and whether they are numbers; none where one cannot be had.
     pub(super) images: HashMap<(usize, bool), Option<Named>>,
 }
@@ -73,19 +80,45 @@ pub(super) struct Gltf<'d, 'o, 'r> {
 /// Meshes that stand in the scene several times are kept once where copies would have more triangles than this.
 const MOST_COPIED: usize = 1 << 18;
 
-impl<'d> Gltf<'d, '_, '_> {
+impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
+    fn new(
+        document: &'d Document<'d>,
+        source: &'r Source<'r>,
+        reading: &'r mut Reading<'o>,
+        oddities: Oddities,
+        time: f32,
+    ) -> Gltf<'d, 'o, 'r> {
+        Gltf {
+            document,
+            source,
+            file: source.name.clone(),
+            reading,
+            scene: SceneBuilder::default(),
+            oddities,
+            order: Vec::new(),
+            time,
+            pose: Pose::default(),
+            variant: None,
+            nodes: Vec::new(),
+            meshes: HashMap::new(),
+            materials: HashMap::new(),
+            images: HashMap::new(),
+        }
+    }
+
     fn scene(&mut self) -> Result<(), FormatError> {
-        let nodes = self.nodes()?;
-        for placed in &nodes {
-            self.place(placed)?;
+        self.variants()?;
+        self.pose()?;
+        self.nodes = self.nodes()?;
+        for i in 0..self.nodes.len() {
+            let placed = self.nodes[i];
+            self.place(&placed)?;
         }
         self.share_trees();
         self.check_accessors()?;
         let root = self.document.root;
-        if root.get("animations").is_some() {
-            let what = "animation is not applied: everything stands as its nodes say";
-            self.oddities.note(what, || root.at_key("animations"));
-        }
+        let skins = root.list("skins")?;
+        self.scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() {
             self.oddities.note("there is nothing to see in this file", || root.at());
         }
@@ -115,22 +148,28 @@ impl<'d> Gltf<'d, '_, '_> {
             self.scene.cameras.extend(spec);
         }
         if let Some(light) = node.extension("KHR_lights_punctual") {
-            let spec = lights::light(self.document.root, light, placed, &mut self.oddities)?;
+            let radius = self.reading.options.light_radius;
+            let spec = lights::light(self.document.root, light, placed, radius, &mut self.oddities)?;
             self.scene.lights.extend(spec);
+        }
+        if let Some(light) = node.extension("EXT_lights_area") {
+            self.area_light(light, placed)?;
         }
         Ok(())
     }
 
     fn place_mesh(&mut self, placed: &Placed<'d>, index: Node<'d>) -> Result<(), FormatError> {
         let node = placed.node;
-        let parts = self.mesh(index, node)?;
+        let parts = self.mesh(index, placed)?;
         let name =
             if node.name().is_empty() { parts.first().map(|p| &*p.mesh.name) } else { Some(node.name()) };
         let name = name.unwrap_or_default().to_owned();
-        if node.get("skin").is_some() {
-            self.oddities.note("skins are not applied: the mesh stands as it is", || node.at());
-        }
-        for world in self.instances(placed)? {
+        // What is bent by a skin stands in the world: the place of its own node says nothing. [glTF 2.0, 3.7.3.3]
+        let places = match node.get("skin") {
+            Some(_) => vec![DMat4::IDENTITY],
+            None => self.instances(placed)?,
+        };
+        for world in places {
             let Some(transform) = Transform::from_matrix(world) else {
                 self.oddities.note("a node is scaled to nothing and not drawn", || node.at());
                 continue;
@@ -146,23 +185,60 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// The parts of a mesh, made once for each choice of weights.
-    fn mesh(&mut self, index: Node<'d>, user: Node<'d>) -> Result<Arc<Vec<Part>>, FormatError> {
+    /// The parts of a mesh, made once for each choice of weights and skin.
+    fn mesh(&mut self, index: Node<'d>, user: &Placed<'d>) -> Result<Arc<Vec<Part>>, FormatError> {
         let mesh = self.document.named("meshes", index)?;
-        let holder = if user.get("weights").is_some() { user } else { mesh };
-        let weights: Vec<f64> =
-            holder.list("weights")?.iter().map(Node::as_number).collect::<Result<_, _>>()?;
-        let key = (index.as_count()?, weights.iter().map(|w| w.to_bits()).collect());
+        let holder = if user.node.get("weights").is_some() { user.node } else { mesh };
+        let weights: Vec<f64> = match self.pose.weights(user.index) {
+            Some(posed) => posed.to_vec(),
+            None => holder.list("weights")?.iter().map(Node::as_number).collect::<Result<_, _>>()?,
+        };
+        let skin = user.node.get("skin");
+        let bits = weights.iter().map(|w| w.to_bits()).collect();
+        let key = (index.as_count()?, bits, skin.map(|skin| skin.as_count()).transpose()?);
         if let Some(parts) = self.meshes.get(&key) {
             return Ok(parts.clone());
         }
+        let joints = skin.map(|skin| self.joints(skin)).transpose()?;
+        let scale = if joints.is_some() { 1.0 } else { powf_f64(user.world.determinant().abs(), 1.0 / 3.0) };
+        let worn = Worn {
+            name: mesh.name(),
+            weights: &weights,
+            joints: joints.as_ref(),
+            scale: if scale > 0.0 && scale.is_finite() { scale } else { 1.0 },
+        };
         let mut parts = Vec::new();
         for primitive in mesh.need("primitives")?.items()? {
-            parts.extend(self.primitive(primitive, mesh.name(), &weights)?);
+            parts.extend(self.primitive(primitive, &worn)?);
         }
         let parts = Arc::new(parts);
         self.meshes.insert(key, parts.clone());
         Ok(parts)
+    }
+
+    /// From corner to corner of the box around all that is placed, as its accessors say.
+    pub(super) fn size_of_scene(&self) -> Result<f64, FormatError> {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for placed in &self.nodes {
+            let Some(index) = placed.node.get("mesh") else { continue };
+            for primitive in self.document.named("meshes", index)?.list("primitives")? {
+                let Some(position) = primitive.get("attributes").and_then(|a| a.get("POSITION")) else {
+                    continue;
+                };
+                let accessor = self.document.named("accessors", position)?;
+                let (Some(min), Some(max)) = (accessor.numbers::<3>("min")?, accessor.numbers::<3>("max")?)
+                else {
+                    continue;
+                };
+                for corner in 0..8 {
+                    let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
+                    let p = placed.world.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
+                    (low, high) = (low.min(p), high.max(p));
+                }
+            }
+        }
+        let size = (high - low).length();
+        Ok(if size > 0.0 && size.is_finite() { size } else { 1.0 })
     }
 
     /// Keeps one tree for meshes that stand in the scene often.

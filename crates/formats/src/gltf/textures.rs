@@ -1,6 +1,7 @@
 //! Textures: a picture, how it is looked up, and where it lies.
 
 use super::json::Node;
+use super::material::UvSets;
 use super::reader::{Gltf, Named};
 use super::uri::{self, Resource};
 use crate::FormatError;
@@ -36,24 +37,45 @@ impl Taken {
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// The texture that a material names, put into the scene. `uv_set` is the set of texture coordinates of the
-    /// material, told by the first of its textures.
+    /// The texture that a material names, put into the scene. `uv_sets` are the sets of texture coordinates of the
+    /// material, told by the textures before.
     pub(super) fn texture(
         &mut self,
         info: Node<'d>,
         taken: Taken,
-        uv_set: &mut Option<usize>,
+        uv_sets: &mut UvSets,
     ) -> Result<Value, FormatError> {
+        let texture = self.looked_up(info, taken, uv_sets)?;
+        self.add_texture(texture)
+    }
+
+    /// A texture as one that is put into the scene.
+    pub(super) fn add_texture(&mut self, texture: Texture) -> Result<Value, FormatError> {
+        self.reading.budget.take_bytes(size_of::<[Texture; 2]>() as u64, &self.file)?;
+        self.scene.textures.push(Arc::new(texture));
+        Ok(Value::Texture(self.scene.textures.len() - 1))
+    }
+
+    /// The texture that a material names.
+    pub(super) fn looked_up(
+        &mut self,
+        info: Node<'d>,
+        taken: Taken,
+        uv_sets: &mut UvSets,
+    ) -> Result<Texture, FormatError> {
         let node = self.document.named("textures", info.need("index")?)?;
         let lies = info.extension("KHR_texture_transform");
         let set = match lies.and_then(|lies| lies.get("texCoord")) {
             Some(set) => set.as_count()?,
             None => info.count("texCoord")?.unwrap_or(0),
         };
-        if *uv_set.get_or_insert(set) != set {
-            let what =
-                "a material looks up textures by two sets of texture coordinates: the first is used for all";
-            self.oddities.note(what, || info.at());
+        let slot = uv_sets.iter().position(|slot| slot.is_none_or(|known| known == set));
+        match slot {
+            Some(slot) => uv_sets[slot] = Some(set),
+            None => {
+                let what = "a material looks up textures by three sets of texture coordinates, of which two are used";
+                self.oddities.note(what, || info.at());
+            }
         }
         let mut texture = match self.picture(node, taken.is_data)? {
             Some((name, image)) => {
@@ -62,6 +84,7 @@ impl<'d> Gltf<'d, '_, '_> {
             None => Texture::missing(node.name()),
         };
         (texture.channel, texture.threshold) = (taken.channel, taken.threshold);
+        texture.second_uv = slot == Some(1);
         if let Some(index) = node.get("sampler") {
             let sampler = self.document.named("samplers", index)?;
             texture.wrap = [wrap(sampler, "wrapS")?, wrap(sampler, "wrapT")?];
@@ -77,9 +100,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 pair(lies.numbers::<2>("scale")?.unwrap_or([1.0; 2])),
             ));
         }
-        self.reading.budget.take_bytes(size_of::<[Texture; 2]>() as u64, &self.file)?;
-        self.scene.textures.push(Arc::new(texture));
-        Ok(Value::Texture(self.scene.textures.len() - 1))
+        Ok(texture)
     }
 
     /// The picture of a texture and its name; none, with a warning, where it cannot be had.

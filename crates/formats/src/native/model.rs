@@ -137,6 +137,7 @@ impl Native<'_, '_> {
         self.reading.leave();
         self.reading.release(bytes);
         self.scene.warnings.append(&mut model.warnings);
+        self.scene.inventory.animations.extend(model.inventory.animations.iter().cloned());
         let model = Arc::new(model);
         self.reading.models.insert(path.to_owned(), model.clone());
         Ok(model)

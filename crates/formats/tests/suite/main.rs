@@ -4,7 +4,9 @@
 
 mod asc;
 mod gltf;
+mod gltf_choices;
 mod gltf_files;
+mod gltf_motion;
 mod hostile;
 mod native;
 mod obj;

@@ -11,6 +11,7 @@ mod png;
 mod pnm;
 mod primaries;
 mod tokens;
+mod webp;
 
 pub use disk::write_atomically;
 pub use guard::is_decoding;
@@ -24,7 +25,7 @@ use std::path::Path;
 
 /// Every format that there is.
 pub const PICTURE_FORMATS: &[PictureFormatEntry] =
-    &[png::ENTRY, exr::ENTRY, hdr::ENTRY, pfm::ENTRY, pnm::ENTRY, jpeg::ENTRY];
+    &[png::ENTRY, exr::ENTRY, hdr::ENTRY, pfm::ENTRY, pnm::ENTRY, jpeg::ENTRY, webp::ENTRY];
 
 /// One format.
 #[derive(Clone, Copy, Debug)]

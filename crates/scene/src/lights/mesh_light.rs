@@ -4,7 +4,7 @@ use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
 use crate::geometry::transform_with_error;
 use crate::surface::{Surface, gamma};
-use crate::texture::{ColourMap, NumberMap};
+use crate::texture::{ColourMap, NumberMap, UvPair};
 use bilux_accel::Primitive;
 use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
@@ -40,13 +40,12 @@ pub struct Picture {
     /// been let through in the other cases.
     pub opacity: Option<NumberMap>,
     /// Those of each triangle's corners.
-    pub uvs: Vec<[Vec2; 3]>,
+    pub uvs: Vec<[UvPair; 3]>,
 }
 
 impl Picture {
     fn at(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
-        let [a, b, c] = self.uvs[triangle];
-        let uv = a * weights[0] + b * weights[1] + c * weights[2];
+        let uv = UvPair::between(self.uvs[triangle], weights);
         self.map.at(uv) * self.opacity.as_ref().map_or(1.0, |opacity| opacity.at(uv))
     }
 

@@ -99,7 +99,7 @@ impl ConductorMaterial {
     fn fresnel(&self, surface: &Surface) -> Fresnel {
         match &self.colour {
             Colour::Metal(fresnel) => *fresnel,
-            Colour::Tinted { tint, edge } => Fresnel::tinted(tint.at(surface.uv), *edge),
+            Colour::Tinted { tint, edge } => Fresnel::tinted(tint.at(surface.uvs()), *edge),
         }
     }
 }

@@ -71,7 +71,7 @@ struct Glass {
 impl Material for Glass {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let Glass { eta, thin, .. } = *self;
-        let (tint, ggx) = (self.tint.at(surface.uv), self.roughness.at(surface));
+        let (tint, ggx) = (self.tint.at(surface.uvs()), self.roughness.at(surface));
         let glass = if RoughDielectric::is_rough(eta, thin, &ggx) {
             Lobe::RoughDielectric(RoughDielectric { eta, tint, thin, ggx })
         } else {
@@ -84,7 +84,7 @@ impl Material for Glass {
         let spread = self.roughness.spread(surface);
         ClassicMaterial {
             ks: Rgb::WHITE,
-            kt: self.tint.at(surface.uv),
+            kt: self.tint.at(surface.uvs()),
             exponent: 500.0,
             reflectivity: 1.0,
             eta: self.eta,

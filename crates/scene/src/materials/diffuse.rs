@@ -39,7 +39,7 @@ struct Diffuse {
 impl Diffuse {
     fn albedo(&self, surface: &Surface) -> Rgb {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
-        (self.reflectance.at(surface.uv) * vertex).clamp(0.0, 1.0)
+        (self.reflectance.at(surface.uvs()) * vertex).clamp(0.0, 1.0)
     }
 }
 

@@ -42,13 +42,13 @@ struct MirrorMaterial {
 
 impl Material for MirrorMaterial {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let mirror = Lobe::Mirror(Mirror { reflectance: self.reflectance.at(surface.uv) });
+        let mirror = Lobe::Mirror(Mirror { reflectance: self.reflectance.at(surface.uvs()) });
         Bsdf::of(surface.n_shade, surface.n_geom, mirror)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         ClassicMaterial {
-            ks: self.reflectance.at(surface.uv),
+            ks: self.reflectance.at(surface.uvs()),
             exponent: 500.0,
             reflectivity: 1.0,
             gloss: self.gloss,

@@ -77,7 +77,7 @@ struct Mix {
 impl Mix {
     /// The share of the second material.
     fn share(&self, surface: &Surface) -> f32 {
-        self.amount.at(surface.uv)
+        self.amount.at(surface.uvs())
     }
 }
 

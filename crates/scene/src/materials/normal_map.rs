@@ -42,7 +42,7 @@ pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<
 impl NormalMap {
     /// The shading normal at a point that has a tangent.
     pub(super) fn at(&self, surface: &Surface) -> Vec3 {
-        let texel = self.map.at(surface.uv);
+        let texel = self.map.at(surface.uvs());
         let lean = |c: f32| (2.0 * c - 1.0) * self.scale;
         let (x, y, z) = (lean(texel.r), lean(texel.g), 2.0 * texel.b - 1.0);
         let n = surface.n_shade;

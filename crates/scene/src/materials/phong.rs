@@ -107,12 +107,12 @@ impl Material for Phong {
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let vertex_kd = surface.vertex_kd.unwrap_or(Rgb::WHITE);
-        let kd = self.kd.at(surface.uv) * vertex_kd;
-        let kt = self.kt.at(surface.uv);
+        let kd = self.kd.at(surface.uvs()) * vertex_kd;
+        let kt = self.kt.at(surface.uvs());
         ClassicMaterial {
-            ka: if self.ambient_follows_kd { kd } else { self.ka.at(surface.uv) },
+            ka: if self.ambient_follows_kd { kd } else { self.ka.at(surface.uvs()) },
             kd,
-            ks: self.ks.at(surface.uv) * surface.vertex_ks.unwrap_or(Rgb::WHITE),
+            ks: self.ks.at(surface.uvs()) * surface.vertex_ks.unwrap_or(Rgb::WHITE),
             kt,
             fresnel: !kt.is_black(),
             ..self.constants

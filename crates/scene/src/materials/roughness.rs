@@ -33,7 +33,7 @@ impl Roughness {
     #[inline]
     pub(super) fn at(&self, surface: &Surface) -> Ggx {
         self.even.unwrap_or_else(|| {
-            let uv = surface.uv;
+            let uv = surface.uvs();
             Ggx::from_roughness(self.roughness.at(uv), self.anisotropy.at(uv), self.rotation)
         })
     }
@@ -46,7 +46,7 @@ impl Roughness {
 
     /// The square of the roughness.
     fn alpha(&self, surface: &Surface) -> f32 {
-        let roughness = self.roughness.at(surface.uv);
+        let roughness = self.roughness.at(surface.uvs());
         roughness * roughness
     }
 

@@ -30,6 +30,27 @@ pub struct Texture {
     pub channel: Option<Channel>,
     /// Where it is given, what is less becomes 0 and all else 1, once texels are blended.
     pub threshold: Option<f32>,
+    /// It lies as the second set of texture coordinates says.
+    pub second_uv: bool,
+}
+
+/// Where textures are looked up: texture coordinates, v upwards, and the second set of these. Meshes with one set have it
+/// in both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvPair(pub [Vec2; 2]);
+
+impl UvPair {
+    /// Between the corners of a triangle.
+    pub fn between(corners: [UvPair; 3], weights: [f32; 3]) -> UvPair {
+        let [a, b, c] = corners.map(|corner| corner.0);
+        UvPair([0, 1].map(|set| a[set] * weights[0] + b[set] * weights[1] + c[set] * weights[2]))
+    }
+}
+
+impl From<Vec2> for UvPair {
+    fn from(uv: Vec2) -> UvPair {
+        UvPair([uv; 2])
+    }
 }
 
 /// One of the numbers of a texel.
@@ -58,6 +79,7 @@ impl Texture {
             factor: Rgb::WHITE,
             channel: None,
             threshold: None,
+            second_uv: false,
         }
     }
 
@@ -101,7 +123,13 @@ impl Texture {
     }
 
     /// The colour at texture coordinates, v upwards; white where there is no picture.
-    pub fn at(&self, uv: Vec2) -> Rgb {
+    #[inline]
+    pub fn at(&self, uv: impl Into<UvPair>) -> Rgb {
+        self.at_one(uv.into().0[usize::from(self.second_uv)])
+    }
+
+    /// The same at coordinates of its own set.
+    pub fn at_one(&self, uv: Vec2) -> Rgb {
         if !self.image.is_whole() || !uv.is_finite() {
             return Rgb::WHITE;
         }
@@ -128,7 +156,7 @@ impl Texture {
 
     /// A number at texture coordinates: the channel that counts, else the luminance.
     #[inline]
-    pub fn number(&self, uv: Vec2) -> f32 {
+    pub fn number(&self, uv: impl Into<UvPair>) -> f32 {
         let colour = self.at(uv);
         if self.channel.is_some() { colour.r } else { colour.luminance() }
     }
@@ -163,7 +191,7 @@ pub struct NumberMap {
 impl NumberMap {
     /// The number at texture coordinates.
     #[inline]
-    pub fn at(&self, uv: Vec2) -> f32 {
+    pub fn at(&self, uv: impl Into<UvPair>) -> f32 {
         match &self.texture {
             // What is not a number becomes the least one.
             Some(texture) => texture.number(uv).max(self.range[0]).min(self.range[1]),
@@ -183,7 +211,7 @@ pub struct ColourMap {
 
 impl ColourMap {
     /// The colour at texture coordinates.
-    pub fn at(&self, uv: Vec2) -> Rgb {
+    pub fn at(&self, uv: impl Into<UvPair>) -> Rgb {
         match &self.texture {
             Some(texture) => self.colour * texture.at(uv),
             None => self.colour,

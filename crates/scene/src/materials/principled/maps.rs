@@ -5,8 +5,8 @@ use super::point::Point;
 use crate::bsdf::Film;
 use crate::error::SceneError;
 use crate::parameters::Reader;
-use crate::texture::{ColourMap, NumberMap};
-use bilux_math::{Rgb, Vec2};
+use crate::texture::{ColourMap, NumberMap, UvPair};
+use bilux_math::Rgb;
 
 /// The parameters, each a constant or a texture.
 pub(super) struct Maps {
@@ -100,7 +100,8 @@ impl Maps {
         colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
     }
 
-    pub(super) fn at(&self, uv: Vec2) -> Point {
+    pub(super) fn at(&self, uv: impl Into<UvPair>) -> Point {
+        let uv = uv.into();
         Point {
             base_color: self.base_color.at(uv).clamp(0.0, 1.0),
             metalness: self.base_metalness.at(uv),

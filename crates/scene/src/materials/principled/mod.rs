@@ -156,7 +156,7 @@ struct Principled {
 impl Principled {
     fn point(&self, surface: &Surface) -> Point {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
-        let point = self.maps.at(surface.uv);
+        let point = self.maps.at(surface.uvs());
         Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), ..point }
     }
 }

@@ -1,0 +1,292 @@
+//! Animation: where nodes are, and how morph targets weigh, at a moment. [glTF 2.0, 3.11 and appendix C]
+
+use super::accessor::Accessor;
+use super::json::Node;
+use super::reader::Gltf;
+use crate::FormatError;
+use bilux_math::glam::DQuat;
+use bilux_math::transcendental::{atan2_f64, sin_f64};
+use bilux_scene::error::nearest_name;
+use bilux_scene::{Animation, Span};
+use std::collections::{HashMap, HashSet};
+
+/// What of nodes differs from what the file says of them at rest.
+#[derive(Default)]
+pub(super) struct Pose {
+    moved: HashMap<(usize, Moves), Vec<f64>>,
+}
+
+/// What of a node a channel moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Moves {
+    Translation,
+    Rotation,
+    Scale,
+    Weights,
+}
+
+/// How one gets from key to key.
+#[derive(Clone, Copy, PartialEq)]
+enum Between {
+    Step,
+    Linear,
+    Cubic,
+}
+
+impl Pose {
+    /// Three or four numbers of a node, if they are moved.
+    pub(super) fn numbers<const N: usize>(&self, node: usize, moves: Moves) -> Option<[f64; N]> {
+        self.moved.get(&(node, moves))?.as_slice().try_into().ok()
+    }
+
+    /// The weights of a node's morph targets, if they are moved.
+    pub(super) fn weights(&self, node: usize) -> Option<&[f64]> {
+        self.moved.get(&(node, Moves::Weights)).map(Vec::as_slice)
+    }
+}
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// Every animation of the file, and the pose that those which play give at the time that was asked for.
+    pub(super) fn pose(&mut self) -> Result<(), FormatError> {
+        let list = self.document.root.list("animations")?;
+        let chosen = self.chosen_animation(&list)?;
+        let mut taken = HashSet::new();
+        for (i, node) in list.into_iter().enumerate() {
+            let targets: Vec<_> = node.list("channels")?.iter().filter_map(target).collect();
+            // The first plays, and with it all that move something else.
+            let plays = match chosen {
+                Some(chosen) => i == chosen,
+                None => !targets.is_empty() && targets.iter().all(|target| !taken.contains(target)),
+            };
+            let seconds = self.play(node, plays)?;
+            if plays {
+                taken.extend(targets);
+            } else if chosen.is_none() {
+                let what =
+                    "an animation is not played, since one before it moves the same; choose it by its name";
+                self.oddities.note(what, || node.at());
+            }
+            let name = node.name().to_owned();
+            self.scene.inventory.animations.push(Animation { name, seconds, plays });
+        }
+        Ok(())
+    }
+
+    /// The index of the animation that the options name.
+    fn chosen_animation(&self, list: &[Node<'d>]) -> Result<Option<usize>, FormatError> {
+        let Some(wanted) = &self.reading.options.animation else { return Ok(None) };
+        let names: Vec<String> = list.iter().map(|node| node.name().to_owned()).collect();
+        named_or_numbered("animation", wanted, &names, &self.document.root.at_key("animations")).map(Some)
+    }
+
+    /// Adds what an animation says to the pose, if it plays; gives when it ends.
+    fn play(&mut self, animation: Node<'d>, plays: bool) -> Result<f32, FormatError> {
+        let samplers = animation.list("samplers")?;
+        let mut end = 0f32;
+        for channel in animation.list("channels")? {
+            let Some((node, moves)) = target(&channel) else {
+                if channel.get("target").is_some_and(|target| {
+                    target.get("node").is_some() || target.extension("KHR_animation_pointer").is_some()
+                }) {
+                    let what = "an animation moves what does not move here: only nodes and weights do";
+                    self.oddities.note(what, || channel.at());
+                }
+                continue;
+            };
+            let index = channel.need("sampler")?;
+            let Some(&sampler) = samplers.get(index.as_count()?) else {
+                return Err(index.error(format!("there are {} samplers in this animation", samplers.len())));
+            };
+            match self.sample(sampler, node, moves) {
+                Ok((values, last)) => {
+                    end = end.max(last);
+                    if plays {
+                        self.pose.moved.insert((node, moves), values);
+                    }
+                }
+                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+                Err(error) => {
+                    let what = format!("a part of an animation is left out: {}", error.without_place());
+                    self.oddities.note(&what, || sampler.at());
+                }
+            }
+        }
+        Ok(end)
+    }
+
+    /// A sampler's value at the time that was asked for, and the time of its last key.
+    fn sample(
+        &mut self,
+        sampler: Node<'d>,
+        node: usize,
+        moves: Moves,
+    ) -> Result<(Vec<f64>, f32), FormatError> {
+        let budget = &mut self.reading.budget;
+        let spent = budget.spent();
+        let input = Accessor::named(self.document, sampler.need("input")?, budget)?;
+        let times = input.numbers(budget)?;
+        let output = Accessor::named(self.document, sampler.need("output")?, budget)?;
+        let values = output.numbers(budget)?;
+        let between = match sampler.text("interpolation")?.unwrap_or("LINEAR") {
+            "STEP" => Between::Step,
+            "LINEAR" => Between::Linear,
+            "CUBICSPLINE" => Between::Cubic,
+            other => {
+                return Err(
+                    sampler.error(format!("'{other}' is no interpolation: STEP, LINEAR and CUBICSPLINE are"))
+                );
+            }
+        };
+        let rises = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
+        let Some(&last) = times.last().filter(|_| input.width() == 1 && rises) else {
+            return Err(input.node.error("the times of an animation have to be numbers that rise"));
+        };
+        let parts = if between == Between::Cubic { 3 } else { 1 };
+        let width = match moves {
+            Moves::Rotation => 4,
+            Moves::Translation | Moves::Scale => 3,
+            Moves::Weights => values.len() / (parts * times.len()),
+        };
+        if width == 0 || values.len() != width * parts * times.len() {
+            let message = format!("{} numbers do not go with {} times", values.len(), times.len());
+            return Err(output.node.error(message));
+        }
+        if !values.iter().all(|x| x.is_finite()) {
+            return Err(output.node.error("an animation has numbers that are infinite or no numbers"));
+        }
+        let keys = Keys { times: &times, values: &values, width, between, turns: moves == Moves::Rotation };
+        let value = keys.at(f64::from(self.time));
+        self.reading.budget.give_back(self.reading.budget.spent() - spent);
+        if moves == Moves::Rotation && value.iter().all(|x| *x == 0.0) {
+            return Err(output.node.error(format!("the rotation of node {node} is zero, and turns nothing")));
+        }
+        Ok((value, last))
+    }
+}
+
+/// What a channel moves; none where that is nothing that moves here.
+fn target(channel: &Node) -> Option<(usize, Moves)> {
+    let target = channel.get("target")?;
+    let moves = match target.get("path")?.as_text().ok()? {
+        "translation" => Moves::Translation,
+        "rotation" => Moves::Rotation,
+        "scale" => Moves::Scale,
+        "weights" => Moves::Weights,
+        _ => return None,
+    };
+    Some((target.get("node")?.as_count().ok()?, moves))
+}
+
+/// The index of what a user has named, or counted from 0.
+pub(super) fn named_or_numbered(
+    what: &str,
+    wanted: &str,
+    names: &[String],
+    at: &Span,
+) -> Result<usize, FormatError> {
+    let numbered = || wanted.parse().ok().filter(|&i: &usize| i < names.len());
+    names.iter().position(|name| name == wanted).or_else(numbered).ok_or_else(|| {
+        let nearest =
+            nearest_name(wanted, names).map_or_else(String::new, |name| format!(" (did you mean {name}?)"));
+        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        FormatError::malformed(
+            format!("there is no {what} '{wanted}' in this file{nearest}; there are: {known}"),
+            at.clone(),
+        )
+    })
+}
+
+/// Keys in order of time: `width` numbers each, and for cubic ones the tangents before and behind them.
+struct Keys<'a> {
+    times: &'a [f32],
+    values: &'a [f32],
+    width: usize,
+    between: Between,
+    /// They are quaternions.
+    turns: bool,
+}
+
+impl Keys<'_> {
+    /// The value at a time; before the first and behind the last key it rests.
+    fn at(&self, time: f64) -> Vec<f64> {
+        let next = self.times.partition_point(|&t| f64::from(t) <= time);
+        let Some(key) = next.checked_sub(1) else { return self.value(0) };
+        if next == self.times.len() || self.between == Between::Step {
+            return self.value(key);
+        }
+        let (from, to) = (f64::from(self.times[key]), f64::from(self.times[next]));
+        let (span, t) = (to - from, (time - from) / (to - from));
+        if self.between == Between::Cubic {
+            return self.hermite(key, span, t);
+        }
+        let (a, b) = (self.value(key), self.value(next));
+        if self.turns { slerp(&a, &b, t) } else { a.iter().zip(b).map(|(a, b)| a + (b - a) * t).collect() }
+    }
+
+    /// Cubic Hermite between a key and the next. [glTF 2.0, C.5]
+    fn hermite(&self, key: usize, span: f64, t: f64) -> Vec<f64> {
+        let (t2, t3) = (t * t, t * t * t);
+        let weights =
+            [2.0 * t3 - 3.0 * t2 + 1.0, span * (t3 - 2.0 * t2 + t), -2.0 * t3 + 3.0 * t2, span * (t3 - t2)];
+        let parts = [self.part(key, 1), self.part(key, 2), self.part(key + 1, 1), self.part(key + 1, 0)];
+        let sum =
+            |i: usize| parts.iter().zip(weights).map(|(part, weight)| f64::from(part[i]) * weight).sum();
+        (0..self.width).map(sum).collect()
+    }
+
+    fn value(&self, key: usize) -> Vec<f64> {
+        self.part(key, 1).iter().map(|&x| f64::from(x)).collect()
+    }
+
+    /// Of a cubic key the tangent before it (0), its value (1) and the tangent behind it (2); of others the value.
+    fn part(&self, key: usize, part: usize) -> &[f32] {
+        let index = if self.between == Between::Cubic { 3 * key + part } else { key };
+        &self.values[index * self.width..][..self.width]
+    }
+}
+
+/// Along the shorter great arc at constant speed. [Shoemake 1985]
+fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
+    let quaternion = |q: &[f64]| DQuat::from_xyzw(q[0], q[1], q[2], q[3]).normalize();
+    let (a, mut b) = (quaternion(a), quaternion(b));
+    if a.dot(b) < 0.0 {
+        b = -b;
+    }
+    let half = 2.0 * atan2_f64((b - a).length(), (b + a).length());
+    let whole = sin_f64(half);
+    let part = |part: f64| if whole > 1e-9 { sin_f64(part * half) / whole } else { part };
+    let between = a * part(1.0 - t) + b * part(t);
+    between.to_array().to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys<'a>(times: &'a [f32], values: &'a [f32], width: usize, between: Between) -> Keys<'a> {
+        Keys { times, values, width, between, turns: false }
+    }
+
+    #[test]
+    fn steps_lines_and_splines_are_what_the_formulas_say() {
+        let times = [1.0, 3.0];
+        let step = keys(&times, &[5.0, 9.0], 1, Between::Step);
+        assert_eq!([0.0, 1.0, 2.9, 3.0, 7.0].map(|t| step.at(t)[0]), [5.0, 5.0, 5.0, 9.0, 9.0]);
+        let line = keys(&times, &[5.0, 9.0], 1, Between::Linear);
+        assert_eq!([0.0, 1.5, 2.0, 3.0].map(|t| line.at(t)[0]), [5.0, 6.0, 7.0, 9.0]);
+        // In tangent, value, out tangent of each key; at the middle of two seconds:
+        // (5 + 9) / 2 + 2 (1/8 · 3 - 1/8 · (-1)) = 8.
+        let cubic = keys(&times, &[0.0, 5.0, 3.0, -1.0, 9.0, 0.0], 1, Between::Cubic);
+        assert_eq!([0.0, 1.0, 2.0, 3.0].map(|t| cubic.at(t)[0]), [5.0, 5.0, 8.0, 9.0]);
+    }
+
+    #[test]
+    fn rotations_take_the_shorter_way() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        // A quarter turn about z, written as its negative.
+        let turned = slerp(&[0.0, 0.0, 0.0, 1.0], &[0.0, 0.0, -half, -half], 1.0 / 3.0);
+        let expected = 15f64.to_radians();
+        assert!((2.0 * atan2_f64(turned[2], turned[3]) - 2.0 * expected).abs() < 1e-12, "{turned:?}");
+        assert_eq!(slerp(&[0.0, 0.0, 0.0, 2.0], &[0.0, 0.0, 0.0, 1.0], 0.5), [0.0, 0.0, 0.0, 1.0]);
+    }
+}

@@ -1,0 +1,97 @@
+//! Elements whose bytes are near those of the element before.
+
+use super::{Broken, Bytes};
+
+const HEADER: u8 = 0xa0;
+/// Differences that are packed together.
+const GROUP: usize = 16;
+/// Elements of a block, at most.
+const LARGEST_BLOCK: usize = 256;
+/// Bytes of a block, at most.
+const BLOCK_BYTES: usize = 8192;
+/// Bytes that the end has at least.
+const LEAST_TAIL: usize = 32;
+
+/// Fills all elements of `stride` bytes.
+pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Result<(), Broken> {
+    let tail = stride.max(LEAST_TAIL);
+    let (&header, rest) = packed.split_first().ok_or(Broken)?;
+    let end = rest.len().checked_sub(tail).ok_or(Broken)?;
+    if header != HEADER {
+        return Err(Broken);
+    }
+    // The element before the first stands at the very end.
+    let mut last = rest[rest.len() - stride..].to_vec();
+    let mut bytes = Bytes(&rest[..end]);
+    let block = (BLOCK_BYTES / stride & !(GROUP - 1)).min(LARGEST_BLOCK);
+    for elements in elements.chunks_mut(block * stride) {
+        for k in 0..stride {
+            column(&mut bytes, elements, (k, stride), &mut last[k])?;
+        }
+    }
+    if bytes.0.is_empty() { Ok(()) } else { Err(Broken) }
+}
+
+/// One byte of every element of a block.
+fn column(
+    bytes: &mut Bytes,
+    elements: &mut [u8],
+    (k, stride): (usize, usize),
+    last: &mut u8,
+) -> Result<(), Broken> {
+    let count = elements.len() / stride;
+    let groups = count.div_ceil(GROUP);
+    let widths = bytes.take(groups.div_ceil(4))?;
+    for group in 0..groups {
+        let differences = differences(bytes, widths[group / 4] >> (group % 4 * 2) & 3)?;
+        let here = group * GROUP..count.min((group + 1) * GROUP);
+        for (i, difference) in here.zip(differences) {
+            *last = last.wrapping_add(difference >> 1 ^ (difference & 1).wrapping_neg());
+            elements[i * stride + k] = *last;
+        }
+    }
+    Ok(())
+}
+
+/// Sixteen differences of 0, 2, 4 or 8 bits. Of 2 and 4 bits the greatest number says that the byte stands behind all.
+fn differences(bytes: &mut Bytes, width: u8) -> Result<[u8; GROUP], Broken> {
+    let mut all = [0; GROUP];
+    match width {
+        0 => {}
+        3 => all.copy_from_slice(bytes.take(GROUP)?),
+        width => {
+            let bits = usize::from(width) * 2;
+            let (packed, mask) = (bytes.take(bits * GROUP / 8)?, (1u8 << bits) - 1);
+            for (i, difference) in all.iter_mut().enumerate() {
+                let at = i * bits;
+                // The first stands in the highest bits.
+                let short = packed[at / 8] >> (8 - bits - at % 8) & mask;
+                *difference = if short == mask { bytes.byte()? } else { short };
+            }
+        }
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_of_every_width_are_added_up() {
+        // Four bytes an element, three elements: first bytes of no difference, then 2 bits, then 4, then 8.
+        let mut packed = vec![HEADER, 0];
+        // 1, -1 and one of a whole byte, +100.
+        packed.extend([1, 0b10_01_11_00, 0, 0, 0, 200]);
+        packed.extend([2, 0x4f, 0xe0, 0, 0, 0, 0, 0, 0, 255]);
+        packed.extend([3, 2, 4, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        packed.extend([0; 28]);
+        packed.extend([10, 20, 30, 40]);
+        let mut elements = [0; 12];
+        assert!(unpack(&packed, 4, &mut elements).is_ok());
+        assert_eq!(elements, [10, 21, 32, 41, 10, 20, 160, 43, 10, 120, 167, 46]);
+        for cut in 0..packed.len() {
+            assert!(unpack(&packed[..cut], 4, &mut elements).is_err());
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! `EXT_meshopt_compression`: buffer views that are packed. Its bitstream is that of the extension's appendices. [Kapoulkine 2021]
+
+mod attributes;
+mod filters;
+mod indices;
+
+use super::json::Node;
+use crate::FormatError;
+use crate::budget::Budget;
+use filters::Filter;
+
+pub(super) const NAME: &str = "EXT_meshopt_compression";
+
+/// Where packed bytes end too early, are too many, or mean nothing.
+pub(super) struct Broken;
+
+/// How elements are packed.
+#[derive(Clone, Copy, PartialEq)]
+enum Mode {
+    Attributes,
+    Triangles,
+    Indices,
+}
+
+/// Bytes that are read from the front; none where there are no more.
+struct Bytes<'a>(&'a [u8]);
+
+impl<'a> Bytes<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], Broken> {
+        let (taken, left) = self.0.split_at_checked(count).ok_or(Broken)?;
+        self.0 = left;
+        Ok(taken)
+    }
+
+    fn byte(&mut self) -> Result<u8, Broken> {
+        Ok(self.take(1)?[0])
+    }
+}
+
+/// The elements of a packed view, of which `extension` says how it lies in a buffer of these bytes.
+pub(super) fn unpacked(extension: Node, bytes: &[u8], budget: &mut Budget) -> Result<Vec<u8>, FormatError> {
+    let number = |key: &'static str| Ok::<_, FormatError>(extension.need(key)?.as_count()?);
+    let (count, stride) = (number("count")?, number("byteStride")?);
+    let mode = match extension.need("mode")?.as_text()? {
+        "ATTRIBUTES" => Mode::Attributes,
+        "TRIANGLES" => Mode::Triangles,
+        "INDICES" => Mode::Indices,
+        other => {
+            return Err(
+                extension.error(format!("'{other}' is no mode: ATTRIBUTES, TRIANGLES and INDICES are"))
+            );
+        }
+    };
+    let filter = Filter::named(extension.text("filter")?.unwrap_or("NONE")).ok_or_else(|| {
+        extension.error("this filter is none: NONE, OCTAHEDRAL, QUATERNION and EXPONENTIAL are")
+    })?;
+    let strides_fit = match mode {
+        Mode::Attributes => stride % 4 == 0 && (4..=256).contains(&stride) && filter.takes(stride),
+        _ => matches!(stride, 2 | 4) && filter == Filter::None,
+    };
+    if !strides_fit || (mode == Mode::Triangles && count % 3 != 0) {
+        let message = format!("{count} elements of {stride} bytes cannot be packed in this way");
+        return Err(extension.error(message));
+    }
+    let (offset, length) = (extension.count("byteOffset")?.unwrap_or(0), number("byteLength")?);
+    let end = offset.checked_add(length).filter(|&end| end <= bytes.len());
+    let Some(bytes) = end.map(|end| &bytes[offset..end]) else {
+        let have = bytes.len();
+        let message = format!("{length} bytes from byte {offset} go beyond the buffer, which has {have}");
+        return Err(extension.error(message));
+    };
+    // Nothing is packed tighter than sixteen elements' bytes in two bits, or a triangle in a byte.
+    if count > length.saturating_mul(64) {
+        return Err(extension.error(format!("{count} elements cannot be in {length} bytes")));
+    }
+    let size = count.saturating_mul(stride);
+    budget.take_bytes(size as u64, &extension.at().file)?;
+    let mut elements = vec![0; size];
+    let done = match mode {
+        Mode::Attributes => attributes::unpack(bytes, stride, &mut elements),
+        Mode::Triangles => indices::unpack_triangles(bytes, stride, &mut elements),
+        Mode::Indices => indices::unpack_sequence(bytes, stride, &mut elements),
+    };
+    done.map_err(|Broken| {
+        extension.error("the packed bytes of this view are broken: export the file again")
+    })?;
+    filter.undo(stride, &mut elements);
+    Ok(elements)
+}

@@ -1,0 +1,123 @@
+//! Skins: vertices that follow several nodes. [glTF 2.0, 3.7.3]
+
+use super::accessor::Accessor;
+use super::json::Node;
+use super::place;
+use super::reader::Gltf;
+use crate::FormatError;
+use bilux_math::{DMat3, DMat4};
+use bilux_scene::Mesh;
+
+/// What a vertex is moved by: for each joint the matrix from the mesh at rest to the world.
+pub(super) struct Joints(Vec<DMat4>);
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// The joints of a skin as they are now; the place of the node that wears it does not matter.
+    pub(super) fn joints(&mut self, index: Node<'d>) -> Result<Joints, FormatError> {
+        let skin = self.document.named("skins", index)?;
+        let list = skin.need("joints")?.items()?;
+        let count = list.len();
+        self.reading.budget.take_bytes((count * size_of::<DMat4>()) as u64, &self.file)?;
+        let mut matrices = Vec::with_capacity(count);
+        for joint in list {
+            let node = self.document.named("nodes", joint)?;
+            matrices.push(match self.order[joint.as_count()?] {
+                Some(order) => self.nodes[order].world,
+                None => {
+                    self.oddities
+                        .note("a joint is in no scene that is shown, and stands by itself", || joint.at());
+                    place::local(node, joint.as_count()?, &self.pose)?
+                }
+            });
+        }
+        if let Some(index) = skin.get("inverseBindMatrices") {
+            let bind = self.attribute::<16>(index, None)?;
+            if bind.len() < count {
+                let message = format!("{} matrices are too few for {count} joints", bind.len());
+                return Err(index.error(message));
+            }
+            for (matrix, bind) in matrices.iter_mut().zip(bind) {
+                *matrix *= DMat4::from_cols_array(&bind.map(f64::from));
+            }
+        }
+        Ok(Joints(matrices))
+    }
+
+    /// Moves a mesh from its rest to where its joints are, in the world.
+    pub(super) fn bend(
+        &mut self,
+        primitive: Node<'d>,
+        joints: &Joints,
+        mesh: &mut Mesh,
+    ) -> Result<(), FormatError> {
+        let attributes = primitive.need("attributes")?;
+        let count = mesh.positions.len();
+        self.reading.budget.take_bytes((count * size_of::<DMat4>()) as u64, &self.file)?;
+        let (mut blends, mut sums) = (vec![DMat4::ZERO; count], vec![0f64; count]);
+        for (key, index) in attributes.entries() {
+            let Some(set) = key.strip_prefix("JOINTS_") else { continue };
+            let weights = attributes.entries().find(|(key, _)| key.strip_prefix("WEIGHTS_") == Some(set));
+            let Some((_, weights)) = weights else {
+                return Err(index.error(format!("WEIGHTS_{set} are missing for these joints")));
+            };
+            let weights = self.attribute::<4>(weights, Some(count))?;
+            let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
+            let indices = self.attribute::<4>(index, Some(count))?;
+            for (vertex, (indices, weights)) in indices.into_iter().zip(weights).enumerate() {
+                for (joint, weight) in indices.into_iter().zip(weights) {
+                    // NaN weights are told as those that sum up to nothing.
+                    if weight == 0.0 || !weight.is_finite() {
+                        continue;
+                    }
+                    let Some(matrix) = joints.0.get(joint as usize) else {
+                        let message = format!(
+                            "vertex {vertex} follows joint {joint}, but there are {}",
+                            joints.0.len()
+                        );
+                        return Err(accessor.node.error(message));
+                    };
+                    blends[vertex] += *matrix * f64::from(weight);
+                    sums[vertex] += f64::from(weight);
+                }
+            }
+        }
+        if sums.iter().any(|&sum| (sum - 1.0).abs() > 0.02) {
+            let what = "the weights of a skin do not add up to one: taken as parts of their sum";
+            self.oddities.note(what, || attributes.at());
+        }
+        if sums.contains(&0.0) {
+            self.oddities
+                .note("vertices of a skin follow no joint, and stay as they are", || attributes.at());
+        }
+        for (blend, sum) in blends.iter_mut().zip(sums) {
+            *blend = if sum == 0.0 { DMat4::IDENTITY } else { *blend * (1.0 / sum) };
+        }
+        moved(mesh, &blends);
+        Ok(())
+    }
+}
+
+/// Moves each vertex by its own matrix.
+fn moved(mesh: &mut Mesh, by: &[DMat4]) {
+    for (p, m) in mesh.positions.iter_mut().zip(by) {
+        *p = m.transform_point3(p.as_dvec3()).as_vec3();
+    }
+    for (n, m) in mesh.normals.iter_mut().zip(by) {
+        *n = (cofactors(m) * n.as_dvec3()).normalize_or_zero().as_vec3();
+    }
+    for (t, m) in mesh.tangents.iter_mut().zip(by) {
+        let along = m.transform_vector3(t.truncate().as_dvec3()).normalize_or_zero();
+        *t = along.as_vec3().extend(if m.determinant() < 0.0 { -t.w } else { t.w });
+    }
+    // What is turned inside out winds the other way. [glTF 2.0, 3.7.4]
+    if by.first().is_some_and(|m| m.determinant() < 0.0) {
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+}
+
+/// Moves normals: the inverse transpose, up to a positive factor, and finite where that is not.
+fn cofactors(m: &DMat4) -> DMat3 {
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.truncate());
+    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
+}

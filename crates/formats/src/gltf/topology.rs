@@ -1,0 +1,149 @@
+//! How vertices make triangles, lines and points.
+
+use super::accessor::Accessor;
+use super::json::Node;
+use super::reader::Gltf;
+use crate::FormatError;
+use bilux_scene::Mesh;
+use std::collections::HashMap;
+
+/// How a primitive's corners belong together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mode {
+    Points,
+    Lines,
+    LineLoop,
+    LineStrip,
+    Triangles,
+    Strip,
+    Fan,
+}
+
+impl Mode {
+    pub(super) fn of(node: Node) -> Result<Mode, FormatError> {
+        Ok(match node.count("mode")?.unwrap_or(4) {
+            0 => Mode::Points,
+            1 => Mode::Lines,
+            2 => Mode::LineLoop,
+            3 => Mode::LineStrip,
+            4 => Mode::Triangles,
+            5 => Mode::Strip,
+            6 => Mode::Fan,
+            other => {
+                return Err(node.error(format!("mode {other} is none; there are 0 to 6, and 4 is triangles")));
+            }
+        })
+    }
+
+    /// Where points and lines get balls and tubes: at every corner of a point or a line, and along every line.
+    pub(super) fn balls_and_tubes(self, corners: &[u32]) -> (Vec<u32>, Vec<[u32; 2]>) {
+        let pairs = |step: usize| corners.windows(2).step_by(step).map(|pair| [pair[0], pair[1]]);
+        let tubes: Vec<[u32; 2]> = match self {
+            Mode::Lines => pairs(2).collect(),
+            Mode::LineStrip => pairs(1).collect(),
+            Mode::LineLoop => pairs(1).chain(corners.last().map(|&last| [last, corners[0]])).collect(),
+            _ => Vec::new(),
+        };
+        let mut balls = match self {
+            Mode::Points => corners.to_vec(),
+            _ => tubes.iter().flatten().copied().collect(),
+        };
+        balls.sort_unstable();
+        balls.dedup();
+        (balls, tubes)
+    }
+}
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// The corners of a primitive: its indices, or all vertices in their order.
+    pub(super) fn corners(&mut self, node: Node<'d>, vertices: usize) -> Result<Vec<u32>, FormatError> {
+        let Ok(count) = u32::try_from(vertices) else {
+            return Err(node.error("there are more than 4 billion vertices: cut the mesh into several"));
+        };
+        let Some(index) = node.get("indices") else {
+            self.reading.budget.take_bytes(u64::from(count) * 4, &self.file)?;
+            return Ok((0..count).collect());
+        };
+        let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
+        let corners = accessor.indices(&mut self.reading.budget)?;
+        if let Some(at) = corners.iter().position(|&corner| corner >= count) {
+            let message = format!("index {at} is {}, but there are {count} vertices", corners[at]);
+            return Err(accessor.node.error(message));
+        }
+        Ok(corners)
+    }
+
+    pub(super) fn triangles(
+        &mut self,
+        node: Node<'d>,
+        mode: Mode,
+        vertices: usize,
+    ) -> Result<Vec<[u32; 3]>, FormatError> {
+        let corners = self.corners(node, vertices)?;
+        let n = match mode {
+            Mode::Triangles => corners.len() / 3,
+            _ => corners.len().saturating_sub(2),
+        };
+        if mode == Mode::Triangles && corners.len() % 3 != 0 {
+            self.oddities.note("the last corners of a list of triangles make none", || node.at());
+        }
+        self.reading.budget.take_bytes(n as u64 * 12, &self.file)?;
+        // The corners' order keeps all triangles of a strip on one side. [glTF 2.0, 3.7.2.1]
+        let corner = |t: usize| match mode {
+            Mode::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
+            Mode::Fan => [t + 1, t + 2, 0],
+            _ => [3 * t, 3 * t + 1, 3 * t + 2],
+        };
+        Ok((0..n).map(|t| corner(t).map(|i| corners[i])).collect())
+    }
+}
+
+/// True when a mesh has an inside: each of its edges is of two triangles, however many vertices stand in one place.
+pub(super) fn is_closed(mesh: &Mesh) -> bool {
+    let mut places = HashMap::new();
+    let place = |p: &bilux_math::Vec3| {
+        let next = places.len() as u32;
+        // -0 is where 0 is.
+        *places.entry(p.to_array().map(|c| (c + 0.0).to_bits())).or_insert(next)
+    };
+    let places: Vec<u32> = mesh.positions.iter().map(place).collect();
+    let mut edges: HashMap<[u32; 2], u32> = HashMap::new();
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|i| places[i as usize]);
+        if a == b || b == c || c == a {
+            continue;
+        }
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            *edges.entry([from.min(to), from.max(to)]).or_default() += 1;
+        }
+    }
+    !edges.is_empty() && edges.values().all(|&uses| uses == 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::{Aabb, Vec3};
+    use bilux_scene::generators::shapes;
+
+    #[test]
+    fn lines_are_pairs_chains_and_loops() {
+        let corners = [4, 5, 6, 7];
+        let tubes = |mode: Mode| mode.balls_and_tubes(&corners).1;
+        assert_eq!(tubes(Mode::Lines), [[4, 5], [6, 7]]);
+        assert_eq!(tubes(Mode::LineStrip), [[4, 5], [5, 6], [6, 7]]);
+        assert_eq!(tubes(Mode::LineLoop), [[4, 5], [5, 6], [6, 7], [7, 4]]);
+        assert_eq!(Mode::Points.balls_and_tubes(&[3, 1, 3]), (vec![1, 3], Vec::new()));
+        assert_eq!(Mode::LineLoop.balls_and_tubes(&[]), (Vec::new(), Vec::new()));
+        assert_eq!(Mode::Lines.balls_and_tubes(&corners[..3]).0, [4, 5], "the odd one makes no line");
+    }
+
+    #[test]
+    fn boxes_are_closed_and_sheets_are_not() {
+        let mut cuboid = shapes::cuboid(Aabb { min: Vec3::ZERO, max: Vec3::ONE });
+        assert!(is_closed(&cuboid));
+        cuboid.triangles.pop();
+        assert!(!is_closed(&cuboid));
+        assert!(!is_closed(&shapes::quad(Vec3::ZERO, Vec3::X, Vec3::Y)) && !is_closed(&Mesh::default()));
+    }
+}

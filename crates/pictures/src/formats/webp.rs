@@ -1,0 +1,47 @@
+//! WebP, read only: textures come in it.
+
+use super::guard::guarded;
+use super::{PictureFormatEntry, planes_of};
+use crate::limits::zeroed;
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use bilux_math::registry::Entry;
+use image_webp::WebPDecoder;
+use std::io::Cursor;
+
+/// The row of `webp`.
+pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
+    entry: Entry { name: "webp", summary: "8 bits, sRGB: read only", source: "WebP", parameters: &[] },
+    extensions: &["webp"],
+    for_display: true,
+    sniff: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    write: None,
+};
+
+const FORMAT: &str = "WebP";
+
+/// Decoded bytes, as many in the decoder's own planes, and four planes of ours.
+const BYTES_PER_PIXEL: u64 = 4 + 8 + 4 * 4;
+
+/// The first picture of one that moves.
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let explain = |error: image_webp::DecodingError| PictureError::invalid(FORMAT, error.to_string());
+    let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(explain)?;
+    decoder.set_memory_limit(usize::try_from(limits.max_bytes).unwrap_or(usize::MAX));
+    let (width, height) = decoder.dimensions();
+    let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
+    let names: &[&str] = if decoder.has_alpha() { &["R", "G", "B", "A"] } else { &["R", "G", "B"] };
+    let size = pixels.checked_mul(names.len()).filter(|&size| decoder.output_buffer_size() == Some(size));
+    let size = size.ok_or_else(|| PictureError::invalid(FORMAT, "its size is none"))?;
+    let mut samples = zeroed::<u8>(FORMAT, size)?;
+    decoder.read_image(&mut samples).map_err(explain)?;
+    let planes =
+        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
+    let mut picture = Picture::new(width as usize, height as usize)?;
+    picture.colour_space = ColourSpace::Srgb;
+    picture.alpha = Alpha::Straight;
+    for (name, plane) in names.iter().zip(planes) {
+        picture.push_channel(*name, plane)?;
+    }
+    Ok(picture)
+}
