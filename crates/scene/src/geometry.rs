@@ -226,15 +226,15 @@ impl Geometry {
     }
 
     /// The material that a hit belongs to, and the texture coordinates there; those of spheres are not told.
-    pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, Vec2) {
+    pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, UvPair) {
         let (object, triangle) = self.locate(hit);
         let material = self.material_of(object);
         match self.objects.get(object as usize) {
             Some(placed) => {
-                let [a, b, c] = triangle_uvs(&placed.mesh, placed.mesh.triangles[triangle as usize]);
-                (material, a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v)
+                let corners = uv_pairs(&placed.mesh, placed.mesh.triangles[triangle as usize]);
+                (material, UvPair::between(corners, [1.0 - hit.u - hit.v, hit.u, hit.v]))
             }
-            None => (material, Vec2::ZERO),
+            None => (material, Vec2::ZERO.into()),
         }
     }
 
@@ -331,12 +331,15 @@ fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
 
 /// Where textures are looked up at every triangle's corners.
 pub(crate) fn corner_uvs(mesh: &Mesh) -> Vec<[UvPair; 3]> {
-    let corners = |t: &[u32; 3]| {
-        let first = triangle_uvs(mesh, *t);
-        let second = if mesh.uvs2.is_empty() { first } else { t.map(|i| mesh.uvs2[i as usize]) };
-        std::array::from_fn(|i| UvPair([first[i], second[i]]))
-    };
-    mesh.triangles.iter().map(corners).collect()
+    mesh.triangles.iter().map(|t| uv_pairs(mesh, *t)).collect()
+}
+
+/// Where they are looked up at the corners of one.
+#[inline]
+fn uv_pairs(mesh: &Mesh, triangle: [u32; 3]) -> [UvPair; 3] {
+    let first = triangle_uvs(mesh, triangle);
+    let second = if mesh.uvs2.is_empty() { first } else { triangle.map(|i| mesh.uvs2[i as usize]) };
+    std::array::from_fn(|i| UvPair([first[i], second[i]]))
 }
 
 /// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say

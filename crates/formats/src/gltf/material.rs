@@ -3,11 +3,10 @@
 use super::json::Node;
 use super::reader::Gltf;
 use super::textures::Taken;
-use super::topology::is_closed;
-use crate::{FormatError, Glass};
+use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::texture::Channel;
-use bilux_scene::{Mesh, Span, Spec, Value};
+use bilux_scene::{Span, Spec, Value};
 use std::f64::consts::TAU;
 
 /// A material as primitives use it.
@@ -77,40 +76,6 @@ impl<'d> Gltf<'d, '_, '_> {
         let used = UsedMaterial { index, uv_sets, has_direction, normal_by_second };
         self.materials.insert(key, used);
         Ok(used)
-    }
-
-    /// Whether a mesh is of glass that says nothing of a thickness, and that is solid here.
-    pub(super) fn is_solid_glass(
-        &mut self,
-        index: Option<Node<'d>>,
-        mesh: &Mesh,
-    ) -> Result<bool, FormatError> {
-        let Some(index) = index else { return Ok(false) };
-        let node = self.document.named("materials", index)?;
-        let Some(transmission) = node.extension("KHR_materials_transmission") else { return Ok(false) };
-        let weight = transmission.number("transmissionFactor")?.unwrap_or(0.0);
-        let volume = node.extension("KHR_materials_volume");
-        let thickness = volume.map_or(Ok(None), |volume| volume.number("thicknessFactor"))?.unwrap_or(0.0);
-        if weight <= 0.0 || thickness > 0.0 {
-            return Ok(false);
-        }
-        match self.reading.options.glass {
-            Glass::Solid => Ok(true),
-            Glass::Thin => Ok(false),
-            Glass::Auto => {
-                let edges = (mesh.triangles.len() * 3 * 24 + mesh.positions.len() * 24) as u64;
-                self.reading.budget.take_bytes(edges, &self.file)?;
-                let is_closed = is_closed(mesh);
-                self.reading.budget.give_back(edges);
-                let what = if is_closed {
-                    "clear without a thickness, on a closed mesh: solid glass; --glass thin makes it a wall"
-                } else {
-                    "clear without a thickness, on an open mesh: a thin wall; --glass solid makes it solid"
-                };
-                self.oddities.note(what, || node.at());
-                Ok(is_closed)
-            }
-        }
     }
 
     fn draft(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {

@@ -8,6 +8,7 @@ mod container;
 mod document;
 mod extensions;
 mod fitting;
+mod glass;
 mod glossiness;
 mod graph;
 mod instances;
