@@ -157,7 +157,7 @@ impl SceneBuilder {
                     if let Some(colour) = classic {
                         built.panels.push((objects.len(), colour));
                     }
-                    objects.push(Object::new(&spec.name, Arc::new(mesh), material));
+                    objects.push(Object::new(&spec.name, mesh, material));
                 }
                 BuiltLight::Sphere { centre, radius, emission, classic } => {
                     let material = glowing(emission, Sides::Both)? as u32;

@@ -51,6 +51,9 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
 /// A picture with its name.
 pub(super) type Named = (String, Arc<Image>);
 
+/// A mesh with the bits of its weights and its skin.
+type PosedMesh = (usize, Vec<u64>, Option<usize>);
+
 /// A file on its way to a scene.
 pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) document: &'d Document<'d>,
@@ -70,7 +73,7 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     /// All nodes of the scene, parents first.
     pub(super) nodes: Vec<Placed<'d>>,
     /// The parts of each mesh, by its index, the weights of its morph targets and its skin.
-    meshes: HashMap<(usize, Vec<u64>, Option<usize>), Arc<Vec<Part>>>,
+    meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
     /// By index in the file, none for the default one, and whether glass is solid.
     pub(super) materials: HashMap<(Option<usize>, bool), UsedMaterial>,
     /// Pictures with their names, by index in the file and whether they are numbers; none where one cannot be had.

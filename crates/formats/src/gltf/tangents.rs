@@ -31,9 +31,9 @@ fn split(mesh: &mut Mesh, tangents: &[Option<[f32; 4]>]) {
     let unset = Vec4::ZERO;
     mesh.tangents = vec![unset; mesh.positions.len()];
     let mut copies: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
-    for i in 0..tangents.len() {
+    for (i, tangent) in tangents.iter().enumerate() {
         // Where nothing says anything any tangent does.
-        let tangent = Vec4::from(tangents[i].unwrap_or([1.0, 0.0, 0.0, 1.0]));
+        let tangent = Vec4::from(tangent.unwrap_or([1.0, 0.0, 0.0, 1.0]));
         let vertex = mesh.triangles[i / 3][i % 3];
         let own = &mut mesh.tangents[vertex as usize];
         if *own == unset {

@@ -236,7 +236,7 @@ pub enum BuiltLight {
     /// A surface that gives light; the builder makes it an object and its [`MeshLight`].
     Surface {
         /// The surface, in world space.
-        mesh: Mesh,
+        mesh: Arc<Mesh>,
         /// Radiance.
         emission: Rgb,
         /// On which sides.

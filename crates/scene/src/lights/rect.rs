@@ -5,6 +5,7 @@ use crate::error::SceneError;
 use crate::mesh::Mesh;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
+use std::sync::Arc;
 
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
@@ -52,6 +53,6 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             ..Mesh::default()
         };
         let sides = Sides::named(&reader.text("sides"));
-        Ok(BuiltLight::Surface { mesh, emission, sides, classic: given_classic(reader) })
+        Ok(BuiltLight::Surface { mesh: Arc::new(mesh), emission, sides, classic: given_classic(reader) })
     },
 };

@@ -23,10 +23,10 @@ pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Resul
     // The element before the first stands at the very end.
     let mut last = rest[rest.len() - stride..].to_vec();
     let mut bytes = Bytes(&rest[..end]);
-    let block = (BLOCK_BYTES / stride & !(GROUP - 1)).min(LARGEST_BLOCK);
+    let block = (BLOCK_BYTES / stride / GROUP * GROUP).min(LARGEST_BLOCK);
     for elements in elements.chunks_mut(block * stride) {
-        for k in 0..stride {
-            column(&mut bytes, elements, (k, stride), &mut last[k])?;
+        for (k, last) in last.iter_mut().enumerate() {
+            column(&mut bytes, elements, (k, stride), last)?;
         }
     }
     if bytes.0.is_empty() { Ok(()) } else { Err(Broken) }

@@ -39,7 +39,7 @@ impl<'a> Bytes<'a> {
 
 /// The elements of a packed view, of which `extension` says how it lies in a buffer of these bytes.
 pub(super) fn unpacked(extension: Node, bytes: &[u8], budget: &mut Budget) -> Result<Vec<u8>, FormatError> {
-    let number = |key: &'static str| Ok::<_, FormatError>(extension.need(key)?.as_count()?);
+    let number = |key: &'static str| extension.need(key)?.as_count();
     let (count, stride) = (number("count")?, number("byteStride")?);
     let mode = match extension.need("mode")?.as_text()? {
         "ATTRIBUTES" => Mode::Attributes,
