@@ -10,12 +10,16 @@ use bilux_scene::{
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Choice, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError, RenderSettings, Replay,
-    SamplePlace, Stop, Strategies, Window,
+    Choice, Features, Film, Filter, FirstHalf, Interval, PixelAnchor, Progress, Reached, RenderError,
+    RenderSettings, Replay, SamplePlace, Stop, Strategies, Window,
 };
 use std::ops::Range;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+/// Where time ends the picture, the first look at surfaces takes at most this part of it.
+const FEATURES_PART: u32 = 12;
 
 /// A picture to be rendered.
 pub struct Job {
@@ -23,9 +27,15 @@ pub struct Job {
     accel: AccelChoice,
     camera: Arc<dyn Camera>,
     integrator: Box<dyn PixelIntegrator>,
-    settings: Settings,
-    render: RenderSettings,
-    fingerprint: String,
+    pub(crate) settings: Settings,
+    pub(crate) render: RenderSettings,
+    /// Albedo and the like are wanted.
+    pub(crate) features: bool,
+    /// The time that is going to be spent on denoising.
+    pub(crate) denoising: Duration,
+    /// What it was made of; the fingerprint is of that, and takes long where textures are large.
+    source: SceneBuilder,
+    fingerprint: OnceLock<String>,
     warnings: Vec<Warning>,
 }
 
@@ -43,6 +53,10 @@ pub struct Outcome {
     pub reached: Option<Reached>,
     /// Between which bounds pixels lie, where it was asked for ([`Job::with_interval`]).
     pub interval: Option<Interval>,
+    /// What surfaces are like, where it was asked for ([`Job::with_layers`]).
+    pub features: Option<Features>,
+    /// What the first half of the samples says, where variance was asked for ([`Job::with_layers`]).
+    pub first_half: Option<FirstHalf>,
     linear_transfer: bool,
 }
 
@@ -78,7 +92,10 @@ impl Job {
             warnings: oddities(scene, &built, &*camera),
             camera,
             render: render_settings(&settings)?,
-            fingerprint: fingerprint(&completed, &settings),
+            features: false,
+            denoising: Duration::ZERO,
+            source: completed,
+            fingerprint: OnceLock::new(),
             accel,
             scene: built,
             integrator,
@@ -89,6 +106,7 @@ impl Job {
     /// The same picture at another time, in seconds. What stands still is not built again.
     pub fn at_time(&mut self, time: f32) {
         self.settings.time = time;
+        self.fingerprint = OnceLock::new();
         self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
     }
 
@@ -121,9 +139,8 @@ impl Job {
         if !self.integrator.is_random() {
             return Err(RenderError::IntervalOfPattern.into());
         }
-        if !std::mem::replace(&mut self.render.interval, true) {
-            self.fingerprint += "-replicates";
-        }
+        self.render.interval = true;
+        self.fingerprint = OnceLock::new();
         Ok(())
     }
 
@@ -142,10 +159,23 @@ impl Job {
     /// # Errors
     /// When the size or the crop makes no sense, or memory is short.
     pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
-        let rendered =
-            bilux_transport::render(&self.scene, &*self.camera, &*self.integrator, &self.render, progress)?;
+        let begun = Instant::now();
+        let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
+        let mut render = self.render.clone();
+        let mut features = None;
+        if self.features {
+            let part = render.stop.time_limit.map(|limit| limit / FEATURES_PART);
+            features = bilux_transport::features(scene, camera, integrator, &render, part, progress)?;
+        }
+        if let Some(limit) = &mut render.stop.time_limit {
+            let rest = limit.saturating_sub(self.denoising).max(*limit / 2);
+            *limit = rest.saturating_sub(begun.elapsed());
+        }
+        let rendered = bilux_transport::render(scene, camera, integrator, &render, progress)?;
         let mut film = rendered.film;
-        film.fingerprint.clone_from(&self.fingerprint);
+        if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
+            self.fingerprint().clone_into(&mut film.fingerprint);
+        }
         Ok(Outcome {
             film,
             counters: rendered.counters,
@@ -153,6 +183,8 @@ impl Job {
             choice: rendered.choice,
             reached: rendered.reached,
             interval: rendered.interval,
+            features,
+            first_half: rendered.first_half.filter(|_| !rendered.cancelled),
             linear_transfer: self.settings.linear_transfer,
         })
     }
@@ -193,10 +225,25 @@ impl Job {
 
     /// What identifies this picture: partial films join only where it agrees.
     pub fn fingerprint(&self) -> &str {
-        &self.fingerprint
+        self.fingerprint.get_or_init(|| {
+            let plain = fingerprint(&self.source, &self.settings);
+            if self.render.interval { plain + "-replicates" } else { plain }
+        })
     }
 
-    /// How pictures of this job are written.
+    /// How a picture of this job is written, exposed as it asks for where that is wanted.
+    ///
+    /// # Errors
+    /// When no tone curve has the name.
+    pub fn write_options_for(&self, picture: &Picture) -> Result<WriteOptions, Error> {
+        let mut options = self.write_options()?;
+        if self.settings.auto_exposure {
+            options.exposure += bilux_pictures::auto_exposure(picture);
+        }
+        Ok(options)
+    }
+
+    /// How pictures of this job are written, whatever they show.
     ///
     /// # Errors
     /// When no tone curve has the name.
@@ -210,7 +257,8 @@ impl Job {
     /// # Errors
     /// When the file cannot be written, or its format cannot hold a partial film.
     pub fn write(&self, outcome: &Outcome, path: &Path) -> Result<(), Error> {
-        Ok(bilux_pictures::write(path, &outcome.picture()?, &self.write_options()?)?)
+        let picture = outcome.picture()?;
+        Ok(bilux_pictures::write(path, &picture, &self.write_options_for(&picture)?)?)
     }
 
     /// The film with its exact sums, as a picture that `.exr` can hold and `merge` can join.
@@ -218,7 +266,9 @@ impl Job {
     /// # Errors
     /// When memory is short.
     pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
-        Ok(outcome.film.to_partial()?)
+        let mut picture = outcome.film.to_partial()?;
+        picture.metadata.insert("bilux.fingerprint".to_owned(), self.fingerprint().to_owned());
+        Ok(picture)
     }
 }
 
@@ -228,13 +278,23 @@ impl Outcome {
     /// # Errors
     /// When memory is short.
     pub fn picture(&self) -> Result<Picture, Error> {
+        Ok(self.encoded(self.light()?))
+    }
+
+    /// The light of the film's window.
+    pub(crate) fn light(&self) -> Result<Picture, Error> {
         let mut picture = self.film.window_to_picture()?;
         self.note_how_far(&mut picture);
+        Ok(picture)
+    }
+
+    /// As it is to be written.
+    pub(crate) fn encoded(&self, mut picture: Picture) -> Picture {
         if self.linear_transfer {
             // Said to be encoded already, its samples become bytes as they are.
             picture.colour_space = bilux_pictures::ColourSpace::Srgb;
         }
-        Ok(picture)
+        picture
     }
 
     /// Says in the picture what a rule that ended it has done to it.
@@ -267,6 +327,7 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         count_work: false,
         stop: settings.stop,
         interval: false,
+        halves: false,
     })
 }
 

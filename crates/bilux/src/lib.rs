@@ -15,9 +15,11 @@
 //! A scene is read or made ([`load`], [`generate`]), settings join what its file wishes with what the user
 //! says ([`settings`]), and a [`Job`] renders it.
 
+pub mod budget;
 pub mod error;
 pub mod fingerprint;
 pub mod job;
+mod layers;
 mod oddities;
 pub mod presets;
 pub mod settings;

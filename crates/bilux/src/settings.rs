@@ -55,7 +55,20 @@ pub const RENDER: Entry = Entry {
         text("filter", "how samples are spread over a pixel", "box"),
         choice("pixel_anchor", "where pixel (0, 0) is sampled", &["centre", "corner"], "centre"),
         number("exposure", "brightens by powers of two, in pictures for a display", "EV", -64.0, 64.0, "0"),
+        Parameter {
+            name: "auto_exposure",
+            summary: "also brighten or darken to the brightness of a photograph, in pictures for a display",
+            unit: "",
+            kind: ParameterKind::Bool,
+            default: "false",
+        },
         text("tonemap", "the curve for pictures for a display", "none"),
+        choice(
+            "denoise",
+            "what takes the noise away: display for the best, in pictures for a display that noise or time ends",
+            &["display", "auto", "oidn", "builtin", "off"],
+            "display",
+        ),
         choice("transfer", "how light becomes bytes", &["srgb", "linear"], "srgb"),
         choice("culling", "back faces of closed, opaque meshes", &["none", "back"], "none"),
         choice(
@@ -160,8 +173,12 @@ pub struct Settings {
     pub corner_anchor: bool,
     /// Stops by which display pictures are brightened.
     pub exposure: f32,
+    /// And those that the picture itself asks for.
+    pub auto_exposure: bool,
     /// Name of the tone curve.
     pub tonemap: String,
+    /// What takes the noise away.
+    pub denoise: String,
     /// Bytes are proportional to light.
     pub linear_transfer: bool,
 }
@@ -210,7 +227,9 @@ impl Settings {
             filter: reader.text("filter"),
             corner_anchor: reader.text("pixel_anchor") == "corner",
             exposure: reader.number("exposure"),
+            auto_exposure: reader.bool("auto_exposure"),
             tonemap: reader.text("tonemap"),
+            denoise: reader.text("denoise"),
             linear_transfer: reader.text("transfer") == "linear",
         })
     }
@@ -289,11 +308,16 @@ fn integrator_parameters(
 /// where it saves nothing, it then costs a fiftieth of the time of the rays.
 const WORTH_THE_BEST: u64 = 64;
 
+/// About as many as there is time for, where time ends the picture.
+const SAMPLES_A_SECOND: u64 = 1_000_000;
+
 impl Settings {
     /// The structure for a scene of so many triangles.
     pub(crate) fn accel_for(&self, triangles: usize) -> AccelChoice {
         let mut accel = self.accel.clone();
-        let samples = u64::from(self.width) * u64::from(self.height) * u64::from(self.spp);
+        let in_time =
+            self.stop.time_limit.map_or(u64::MAX, |limit| limit.as_secs_f64() as u64 * SAMPLES_A_SECOND);
+        let samples = (u64::from(self.width) * u64::from(self.height) * u64::from(self.spp)).min(in_time);
         let is_wide = matches!(accel.name.as_str(), "auto" | "bvh8");
         if self.build_by_size && is_wide && samples / WORTH_THE_BEST >= triangles as u64 {
             accel.options.quality = Quality::Best;

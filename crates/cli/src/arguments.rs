@@ -2,9 +2,12 @@
 
 use crate::choices::{Choices, Posed};
 pub use crate::comparison::Compare;
+pub use crate::denoising::Denoise;
+pub use crate::measuring::{Bench, BenchKind};
 use crate::studio::StudioArguments;
 use crate::values::{
-    parse_bytes, parse_crop, parse_frames, parse_replay, parse_rival, parse_samples, parse_vector,
+    Exposure, parse_bytes, parse_crop, parse_exposure, parse_frames, parse_replay, parse_samples,
+    parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -64,6 +67,8 @@ pub enum Command {
     Info(Info),
     /// Turn a scene or a picture into another format
     Convert(Convert),
+    /// Take the noise out of a picture
+    Denoise(Denoise),
     /// Say how far picture A is from the reference B
     Compare(Compare),
     /// Make one of the scenes that we ship
@@ -101,7 +106,9 @@ pub enum Command {
     bilux render fox.glb --animation Walk --at 0.5 -o fox.png\n  \
     bilux render scene.toml --samples 0..64 -o a.exr    one half here,\n  \
     bilux render scene.toml --samples 64..128 -o b.exr  the other there:\n  \
-    bilux merge a.exr b.exr -o scene.png")]
+    bilux merge a.exr b.exr -o scene.png\n  \
+    bilux render scene.toml --spp 64 --aov albedo,normal,depth,variance -o noisy.exr\n  \
+    bilux denoise noisy.exr -o smooth.exr")]
 pub struct Render {
     /// Scene files; `-` reads standard input (with --input-format)
     #[arg(required = true, value_name = "SCENE")]
@@ -162,12 +169,17 @@ pub struct Render {
     /// Only a window of the picture
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
     pub crop: Option<[u32; 4]>,
-    /// Brighten by powers of two
-    #[arg(long, value_name = "EV", allow_negative_numbers = true)]
-    pub exposure: Option<f32>,
+    /// Brighten by powers of two; or to the brightness of a photograph
+    #[arg(long, value_name = "EV|auto", allow_negative_numbers = true, value_parser = parse_exposure)]
+    pub exposure: Option<Exposure>,
     /// Tone curve (`bilux list tonemaps`)
     #[arg(long, value_name = "NAME")]
     pub tonemap: Option<String>,
+    /// Take the noise away, by the best that there is or by what is named (`bilux list denoisers`). Pictures for a display
+    /// that noise or time ends are denoised unless this is off
+    #[arg(long, value_name = "auto|oidn|builtin|off", num_args = 0..=1, default_missing_value = "auto",
+        require_equals = true)]
+    pub denoise: Option<String>,
     /// Bits per sample of PNG and PPM
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = ["8", "16"])]
     pub bits: String,
@@ -186,8 +198,9 @@ pub struct Render {
     /// Any other setting (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// What else to give beside the picture (`bilux list aovs`): with `strategies`, each strategy's picture in a folder
-    /// OUT.strategies; with `interval`, OUT.interval.exr: half of each pixel's 95% interval
+    /// What else to give (`bilux list aovs`): albedo, normal, depth, ids, variance as layers of an .exr (OUT.layers.exr where OUT is none);
+    /// with `strategies`, each strategy's picture in a folder OUT.strategies; with `interval`, OUT.interval.exr: half of each
+    /// pixel's 95% interval
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub aov: Vec<String>,
     /// Write what it took as JSON; counts every node and triangle test, which is slower
@@ -269,106 +282,4 @@ pub struct List {
     /// As JSON
     #[arg(long)]
     pub json: bool,
-}
-
-/// Measure.
-#[derive(Args)]
-#[command(after_help = "Examples:\n  \
-    bilux bench teapots --counts 2,3,4,5 --accel brute,bsp,bsp-sah,kd,bvh\n  \
-    bilux bench visibility --json\n  \
-    bilux bench paper -o figures.png\n  \
-    bilux bench rays                                  on our own scenes\n  \
-    bilux bench rays room.toml --accel bvh,kd --json\n  \
-    bilux bench rays --against embree=libembree4.so.4  beside Embree\n  \
-    bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
-    bilux bench rays teapots3 --dump batches           meshes and rays for other programs\n  \
-    bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
-    bilux bench render --report measured              ten minutes, and a page to look at\n  \
-    bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16")]
-pub struct Bench {
-    /// What to measure
-    #[arg(value_enum)]
-    pub kind: BenchKind,
-    /// `rays`: scene files, or teapots3, interior, scan, teapot1m, which are all four traced if none is given, or
-    /// teapot1k, teapot10k, teapot100k, teapots10m
-    #[arg(value_name = "SCENE")]
-    pub scenes: Vec<PathBuf>,
-    /// As JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Numbers of teapots
-    #[arg(long, value_name = "N,N,…", value_delimiter = ',')]
-    pub counts: Vec<u32>,
-    /// Accelerators
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    pub accel: Vec<String>,
-    /// Width and height
-    #[arg(long, value_name = "WxH")]
-    pub size: Option<String>,
-    /// Repeats, of which the median counts
-    #[arg(long, value_name = "N")]
-    pub repeats: Option<u32>,
-    /// The teapots' places: at the paper's fixed offset, or covering equally much of the picture
-    #[arg(long, value_name = "paper|coverage")]
-    pub layout: Option<String>,
-    /// A picture of what was rendered, where there is one
-    #[arg(short, long, value_name = "OUT")]
-    pub output: Option<PathBuf>,
-    /// `rays`: how many in each class (1048576), or with --mesh a file of rays
-    #[arg(long, value_name = "N|FILE")]
-    pub rays: Vec<String>,
-    /// `rays`: rounds, in each of which every engine has a turn; medians count (5)
-    #[arg(long, value_name = "N")]
-    pub rounds: Option<u32>,
-    /// `rays`: a rival in a shared library, such as embree=libembree4.so.4
-    #[arg(long, value_name = "NAME=PATH", value_parser = parse_rival)]
-    pub against: Vec<(String, PathBuf)>,
-    /// `rays`: write meshes and rays into this folder
-    #[arg(long, value_name = "DIR")]
-    pub dump: Option<PathBuf>,
-    /// `rays`: a mesh file in place of scenes
-    #[arg(long, value_name = "FILE")]
-    pub mesh: Option<PathBuf>,
-    /// `rays`: write the hits of the rays of --rays FILE
-    #[arg(long, value_name = "FILE")]
-    pub hits: Option<PathBuf>,
-    /// `render`: which of its scenes (all)
-    #[arg(long = "scenes", value_name = "NAME,…", value_delimiter = ',')]
-    pub gallery: Vec<String>,
-    /// `render`: which integrators (path, bdpt, vcm, sppm, auto)
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
-    pub integrators: Vec<String>,
-    /// `render`: CPU seconds a picture, all threads together (1,4)
-    #[arg(long, value_name = "S,S,…", value_delimiter = ',')]
-    pub seconds: Vec<f64>,
-    /// `render`: pictures of each kind, over which medians are taken (5)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
-    pub seeds: Option<u32>,
-    /// `render`: threads; 0 for all cores
-    #[arg(long, value_name = "N", default_value = "0")]
-    pub threads: u32,
-    /// `render`: write a page with pictures, maps of errors and curves into this folder
-    #[arg(long, value_name = "DIR")]
-    pub report: Option<PathBuf>,
-    /// `render`: make references of so many --seconds by each of two integrators, as files in this folder
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["report", "integrators", "seeds"])]
-    pub make_references: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum BenchKind {
-    /// The paper's Figure 1 and section 4.2 anew
-    Paper,
-    /// The paper's Figure 2 anew: teapots by accelerator
-    Teapots,
-    /// Moving scenes: what rebuilding only what moved saves
-    Frames,
-    /// Seeing without rays: painter's, Warnock's, z-buffer, BSP
-    Visibility,
-    /// How fast trees are built, and how large they are
-    Build,
-    /// Rays a second, beside other libraries
-    Rays,
-    /// Errors of integrators at equal time, on eight scenes
-    Render,
 }

@@ -8,7 +8,9 @@ mod arguments;
 mod choices;
 mod commands;
 mod comparison;
+mod denoising;
 mod interrupt;
+mod measuring;
 mod output;
 mod progress;
 mod settings_from;
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Command::Render(ref render) => commands::render::run(render, &arguments.common),
         Command::Info(ref info) => commands::info::run(info, &arguments.common),
         Command::Convert(ref convert) => commands::convert::run(convert, &arguments.common),
+        Command::Denoise(ref denoise) => commands::denoise::run(denoise, &arguments.common),
         Command::Compare(ref compare) => commands::compare::run(compare),
         Command::Generate(ref generate) => commands::generate::run(generate, &arguments.common),
         Command::Merge(ref merge) => commands::merge::run(merge, &arguments.common),

@@ -1,6 +1,7 @@
 //! Flags and `--set KEY=VALUE` as the parameters that scene files use too.
 
 use crate::arguments::Render;
+use crate::values::Exposure;
 use anyhow::{Context, bail};
 use bilux::scene::{Parameters, Span, Value};
 
@@ -10,6 +11,10 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
     let text = |t: &Option<String>| t.clone().map(Value::Text);
     let whole = |n: Option<u64>| n.map(|n| Value::Integer(i64::try_from(n).unwrap_or(i64::MAX)));
     let number = |n: Option<f32>| n.map(Value::from);
+    let stops = match a.exposure {
+        Some(Exposure::Stops(stops)) => Some(stops),
+        Some(Exposure::Auto) | None => None,
+    };
     let flags = [
         ("integrator", "--integrator", text(&a.integrator)),
         ("accel", "--accel", text(&a.accel)),
@@ -26,8 +31,10 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("focal", "--focal", number(a.studio.focal)),
         ("ground", "--ground", text(&a.studio.ground)),
         ("time", "--at", number(a.at)),
-        ("exposure", "--exposure", number(a.exposure)),
+        ("exposure", "--exposure", number(stops)),
+        ("auto_exposure", "--exposure", (a.exposure == Some(Exposure::Auto)).then_some(Value::Bool(true))),
         ("tonemap", "--tonemap", text(&a.tonemap)),
+        ("denoise", "--denoise", text(&a.denoise)),
         ("specular", "--specular", text(&a.specular)),
         ("shadow_rule", "--shadow-rule", text(&a.shadow_rule)),
         ("bsp_split", "--bsp-split", text(&a.bsp_split)),

@@ -58,3 +58,21 @@ pub fn parse_radius(text: &str) -> Result<f32, String> {
     let radius = text.parse().ok().filter(|r: &f32| r.is_finite() && *r >= 0.0);
     radius.ok_or_else(|| "a length in metres is wanted, as in 0.05".to_owned())
 }
+
+/// By how much a picture is brightened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// As much as it takes.
+    Auto,
+    /// Powers of two.
+    Stops(f32),
+}
+
+/// `auto`, or powers of two.
+pub fn parse_exposure(text: &str) -> Result<Exposure, String> {
+    match (text, text.parse::<f32>()) {
+        ("auto", _) => Ok(Exposure::Auto),
+        (_, Ok(stops)) if stops.is_finite() => Ok(Exposure::Stops(stops)),
+        _ => Err("it is a number of powers of two, such as -1 or 0.5, or auto".to_owned()),
+    }
+}

@@ -122,6 +122,12 @@ pub enum PictureError {
         /// What it has that the format cannot hold, or lacks that it needs, and what to do.
         what: String,
     },
+    /// The denoiser that was asked for is not to be had, or does not work.
+    #[error("cannot denoise: {what}")]
+    NoDenoiser {
+        /// What is missing, and how to get it; or what went wrong.
+        what: String,
+    },
     /// A picture was put together wrongly.
     #[error("{0}")]
     Malformed(String),

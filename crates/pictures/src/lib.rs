@@ -24,6 +24,7 @@
 //! light. Files come from strangers: readers allocate within [`Limits`] and answer any bytes with a
 //! picture or an error. The same picture and options always give the same bytes.
 
+pub mod denoise;
 mod error;
 mod font;
 pub mod formats;
@@ -33,6 +34,7 @@ mod panels;
 mod picture;
 pub mod tonemap;
 
+pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::PictureError;
 pub use formats::{
     BitDepth, PICTURE_FORMATS, PictureFormatEntry, WriteOptions, format_named, format_of_path, is_decoding,
@@ -42,4 +44,4 @@ pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};
 pub use panels::{downscaled, label, side_by_side, stacked};
 pub use picture::{Alpha, Channel, ColourSpace, IntegerPlane, NonFinite, Picture};
-pub use tonemap::{TONEMAPS, ToneMapEntry, to_display, tone_map};
+pub use tonemap::{TONEMAPS, ToneMapEntry, auto_exposure, to_display, tone_map};

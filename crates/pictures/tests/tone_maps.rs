@@ -50,3 +50,26 @@ fn misspelt_names_are_answered_with_the_nearest() {
     let error = tone_map("reinhart").unwrap_err().to_string();
     assert!(error.contains("did you mean 'reinhard'") && error.contains("aces"), "{error}");
 }
+
+/// What the published formulas give, worked out apart from this code in double precision.
+#[test]
+fn curves_are_those_that_were_published() {
+    let known = [
+        // Narkowicz: 0.18 (2.51 · 0.18 + 0.03) / (0.18 (2.43 · 0.18 + 0.59) + 0.14).
+        ("aces", [0.18, 0.18, 0.18], [0.266_899, 0.266_899, 0.266_899]),
+        // Up to 0.8 it takes 0.04 off; darker greys lie on a parabola; 1 becomes 1 - 0.24² / 0.44.
+        ("neutral", [0.5, 0.5, 0.5], [0.46, 0.46, 0.46]),
+        ("neutral", [0.04, 0.04, 0.04], [0.01, 0.01, 0.01]),
+        ("neutral", [0.8, 0.2, 0.0], [0.794_286, 0.199_082, 0.000_680]),
+        ("neutral", [1.0, 1.0, 1.0], [0.869_091, 0.869_091, 0.869_091]),
+        ("agx", [0.18, 0.18, 0.18], [0.214_519, 0.214_519, 0.214_519]),
+        ("agx", [1.0, 0.1, 0.02], [0.677_768, 0.160_326, 0.067_886]),
+        ("agx", [0.0, 0.0, 8.0], [0.445_630, 0.445_495, 1.0]),
+    ];
+    for (name, light, wanted) in known {
+        let shown = (tone_map(name).unwrap().map)(Rgb::from_array(light)).to_array();
+        for (a, b) in shown.into_iter().zip(wanted) {
+            assert!((a - b).abs() < 2e-4, "{name} of {light:?} is {shown:?}, not {wanted:?}");
+        }
+    }
+}

@@ -10,6 +10,38 @@ pub enum Aov {
     Strategies,
     /// [`crate::Interval`].
     Interval,
+    /// [`crate::Features::albedo`].
+    Albedo,
+    /// [`crate::Features::normal`].
+    Normal,
+    /// [`crate::Features::depth`].
+    Depth,
+    /// [`crate::Features::object`] and [`crate::Features::material`].
+    Ids,
+    /// [`crate::push_variance`].
+    Variance,
+}
+
+impl Aov {
+    /// Those that are layers of the picture.
+    pub const ALL_LAYERS: [Aov; 5] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids, Aov::Variance];
+
+    /// The name of its layer, where it is one.
+    pub fn layer(self) -> Option<&'static str> {
+        match self {
+            Aov::Strategies | Aov::Interval => None,
+            Aov::Albedo => Some("albedo"),
+            Aov::Normal => Some("normal"),
+            Aov::Depth => Some("depth"),
+            Aov::Ids => Some("id"),
+            Aov::Variance => Some("variance"),
+        }
+    }
+
+    /// True for what is told of surfaces, whatever light is on them.
+    pub fn is_feature(self) -> bool {
+        self.layer().is_some() && self != Aov::Variance
+    }
 }
 
 /// A row of [`AOVS`].
@@ -41,7 +73,21 @@ pub const AOVS: &[AovEntry] = &[
         },
         aov: Aov::Interval,
     },
+    layer(Aov::Albedo, "albedo", "the part of the light that surfaces send on, 0..=1: albedo.R, .G, .B"),
+    layer(Aov::Normal, "normal", "shading normals in the world, on the side that is seen: normal.X, .Y, .Z"),
+    layer(Aov::Depth, "depth", "metres from the camera along its rays, infinite where nothing is: depth.Z"),
+    layer(Aov::Ids, "ids", "which object and material: id.object, id.material, from 1 on; 0 for none"),
+    layer(
+        Aov::Variance,
+        "variance",
+        "of each pixel's mean, one estimate from two halves of the samples: variance.R, .G, .B; what light paths have left \
+         apart, as light and light_variance",
+    ),
 ];
+
+const fn layer(aov: Aov, name: &'static str, summary: &'static str) -> AovEntry {
+    AovEntry { entry: Entry { name, summary, source: "", parameters: &[] }, aov }
+}
 
 /// The row of this name, wanted at `at`.
 ///

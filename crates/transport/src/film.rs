@@ -298,6 +298,12 @@ impl Film {
         self.window.index(x, y).map_or(Rgb::BLACK, |index| self.mean(index))
     }
 
+    /// What light paths have left in a pixel.
+    pub fn splatted(&self, x: u32, y: u32) -> Rgb {
+        let step = exp2(-self.scale_exponent);
+        self.window.index(x, y).map_or(Rgb::BLACK, |index| self.splat_mean(index, step))
+    }
+
     fn mean(&self, index: usize) -> Rgb {
         let bad = self.trouble.get(index).is_some_and(|t| t.non_finite > 0);
         match self.counts[index] {

@@ -26,7 +26,7 @@ pub(crate) fn all_passes(
     progress: &dyn Progress,
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
-    let Rendered { film, mut counters, choice, reached, interval, .. } = before;
+    let Rendered { film, mut counters, choice, reached, interval, first_half, .. } = before;
     let work = Work {
         eye,
         progress,
@@ -43,7 +43,7 @@ pub(crate) fn all_passes(
         return Err(error.into());
     }
     let (film, cancelled) = work.finish();
-    Ok(Rendered { film, counters, cancelled, choice, reached, interval })
+    Ok(Rendered { film, counters, cancelled, choice, reached, interval, first_half })
 }
 
 /// Ranges of samples that double in length, so that the first picture is there soon.

@@ -5,6 +5,7 @@ use crate::error::RenderError;
 use crate::eye::Eye;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
+use crate::halves::{FirstHalf, Halves};
 use crate::integrators::PixelIntegrator;
 use crate::interval::Interval;
 use crate::passes::{all_passes, passes};
@@ -58,6 +59,8 @@ pub struct RenderSettings {
     /// Take samples in independent replicates, which tell how far their mean may be off ([`Rendered::interval`]). These are
     /// other samples, a little less evenly spread.
     pub interval: bool,
+    /// Keep what the first half of the samples says, by which denoisers tell noise ([`Rendered::first_half`]).
+    pub halves: bool,
 }
 
 /// Which point stands for a pixel.
@@ -87,6 +90,7 @@ impl RenderSettings {
             count_work: false,
             stop: Stop::default(),
             interval: false,
+            halves: false,
         }
     }
 
@@ -107,7 +111,14 @@ impl RenderSettings {
 
     /// As integrators that choose see them: the choice is the same with an interval and without.
     pub(crate) fn as_planned(&self) -> RenderSettings {
-        RenderSettings { interval: false, ..self.clone() }
+        RenderSettings { interval: false, halves: false, ..self.clone() }
+    }
+
+    /// The samples to be taken; the later half apart, if it is to be.
+    fn in_halves(&self) -> [Range<u32>; 2] {
+        let Range { start, end } = self.samples;
+        let middle = if self.halves && end - start > 1 { start + (end - start).div_ceil(2) } else { end };
+        [start..middle, middle..end]
     }
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {
@@ -163,6 +174,8 @@ pub struct Rendered {
     /// Between which bounds pixels lie, where it was asked for ([`RenderSettings::interval`]): of whole iterations, also
     /// where it was stopped.
     pub interval: Option<Interval>,
+    /// What the first half of the samples says, where it was asked for ([`RenderSettings::halves`]) and there are two.
+    pub first_half: Option<FirstHalf>,
 }
 
 /// Renders the samples asked for.
@@ -196,7 +209,16 @@ pub fn render(
         Some(interval) => run.take_each(samples, interval, rendered),
         None => run.take(samples, rendered),
     };
-    let mut rendered = Rendered { film, counters, cancelled: false, choice, reached: None, interval: None };
+    let mut rendered = Rendered {
+        film,
+        counters,
+        cancelled: false,
+        choice,
+        reached: None,
+        interval: None,
+        first_half: None,
+    };
+    let mut halves = Halves::default();
     if settings.stop.is_any() {
         let mut watch = Watch::new(settings);
         while !rendered.cancelled
@@ -205,12 +227,22 @@ pub fn render(
             rendered = take(&samples, rendered)?;
             if !rendered.cancelled {
                 watch.look(&rendered.film, &samples);
+                if settings.halves && watch.done.is_power_of_two() {
+                    halves.look(&rendered.film, watch.done);
+                }
                 progress.begin(settings.walked(integrator).pixels() as u64 * u64::from(watch.expected()));
             }
         }
         rendered.reached = watch.reached;
+        rendered.first_half = halves.before(watch.done);
     } else {
-        rendered = take(&settings.samples, rendered)?;
+        let [first, second] = settings.in_halves();
+        rendered = take(&first, rendered)?;
+        if !second.is_empty() && !rendered.cancelled {
+            let half = FirstHalf::of(&rendered.film, first.len() as u32);
+            rendered = take(&second, rendered)?;
+            rendered.first_half = Some(half);
+        }
     }
     Ok(Rendered { interval, ..rendered })
 }

@@ -52,7 +52,8 @@ pub(crate) struct Watch {
     stop: Stop,
     begun: Instant,
     samples: Range<u32>,
-    done: u32,
+    /// How many of them are in.
+    pub(crate) done: u32,
     /// Luminances of the film when it had so many samples, at the last two powers of 2: later samples are told from
     /// earlier ones by what they changed.
     snapshots: [Option<(u32, Vec<f32>)>; 2],

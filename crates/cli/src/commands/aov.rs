@@ -7,6 +7,7 @@ use crate::settings_from::from_flag;
 use crate::{output, usage};
 use anyhow::{Context, bail};
 use bilux::pictures::WriteOptions;
+use bilux::pictures::formats::format_of_path;
 use bilux::scene::SceneError;
 use bilux::strategies::{Light, picture, sheet};
 use bilux::transport::aovs::{self, AOVS, Aov};
@@ -25,6 +26,11 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Those that become layers of the picture.
+pub fn layers(arguments: &Render) -> Vec<Aov> {
+    Aov::ALL_LAYERS.into_iter().filter(|&aov| wants(arguments, aov)).collect()
+}
+
 /// True when this one is wanted.
 fn wants(arguments: &Render, aov: Aov) -> bool {
     arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
@@ -40,6 +46,7 @@ pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
     }
+    job.with_layers(&layers(arguments));
     if wants(arguments, Aov::Interval) {
         job.with_interval().map_err(usage::wrong)?;
     }
@@ -57,6 +64,11 @@ pub fn write(
 ) -> anyhow::Result<bool> {
     if let Some(interval) = &outcome.interval {
         write_interval(interval, output, common)?;
+    }
+    let layers = layers(arguments);
+    if !layers.is_empty() && !is_exr(output) {
+        let path = output.with_extension("layers.exr");
+        bilux::pictures::write(&path, &outcome.layered(&layers)?, &WriteOptions::default())?;
     }
     if !wants(arguments, Aov::Strategies) || outcome.cancelled {
         return Ok(!outcome.cancelled);
@@ -80,6 +92,11 @@ pub fn write(
         ));
     }
     Ok(true)
+}
+
+/// True for files that hold layers.
+pub fn is_exr(path: &Path) -> bool {
+    format_of_path(path).is_ok_and(|format| format.entry.name == "exr")
 }
 
 /// `OUT.interval.exr`.

@@ -67,6 +67,11 @@ const TABLES: &[Table] = &[
         rows: rows!(bilux::pictures::tonemap::TONEMAPS),
     },
     Table {
+        name: "denoisers",
+        summary: "what takes noise out of pictures, the best first",
+        rows: rows!(bilux::pictures::DENOISERS),
+    },
+    Table {
         name: "filters",
         summary: "how samples are spread over a pixel",
         rows: rows!(bilux::transport::filters::FILTERS),

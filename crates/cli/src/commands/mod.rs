@@ -4,6 +4,7 @@ mod aov;
 pub mod bench;
 pub mod compare;
 pub mod convert;
+pub mod denoise;
 pub mod generate;
 pub mod info;
 pub mod list;

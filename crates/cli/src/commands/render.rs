@@ -1,11 +1,13 @@
 //! `bilux render`: pictures from scenes.
 
-use super::{DONE, aov, check_choices, check_folder, read_options_with, tell_warnings};
+use super::{DONE, aov, check_choices, check_folder, denoise, read_options_with, tell_warnings};
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
 use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
+use bilux::budget::{DEFAULT_BUDGET, with_default_budget};
+use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder};
 use bilux::transport::{Choice, Reached, Window};
@@ -161,11 +163,14 @@ fn render_scene(
 ) -> anyhow::Result<u8> {
     let Input { path, arguments, common, .. } = *input;
     let begun = Instant::now();
-    let mut job = input.job(scene, user)?;
+    let mut user = user.clone();
+    let by_default =
+        !is_part(arguments) && arguments.replay.is_none() && with_default_budget(&scene.settings, &mut user);
+    let mut job = input.job(scene, &user)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was said elsewhere than by --at.
         *scene = input.read(job.settings().time)?;
-        job = input.job(scene, user)?;
+        job = input.job(scene, &user)?;
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
@@ -173,17 +178,25 @@ fn render_scene(
         output::print(job.replay(x, y, sample)?);
         return Ok(DONE);
     }
+    if by_default && !common.quiet {
+        let (noise, seconds) = DEFAULT_BUDGET;
+        output::say(format_args!(
+            "{}: until {}% noise or {seconds} s (--noise, --time-limit); the same on every machine with --spp",
+            output.display(),
+            noise * 100.0
+        ));
+    }
     let Some((first, last)) = arguments.frames else {
-        return finish(&job, output, path, build_seconds, arguments, common, interrupt);
+        return finish(&mut job, output, path, build_seconds, arguments, common, interrupt);
     };
     for frame in first..=last {
         let time = frame as f32 / job.settings().fps;
         if scene.inventory.moves() {
-            job = input.job(&input.read(time)?, user)?;
+            job = input.job(&input.read(time)?, &user)?;
         }
         job.at_time(time);
         let output = frame_path(output, frame);
-        let status = finish(&job, &output, path, build_seconds, arguments, common, interrupt)?;
+        let status = finish(&mut job, &output, path, build_seconds, arguments, common, interrupt)?;
         if status != DONE {
             return Ok(status);
         }
@@ -203,7 +216,7 @@ fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
 }
 
 fn finish(
-    job: &Job,
+    job: &mut Job,
     output: &Path,
     scene: &Path,
     build_seconds: f64,
@@ -213,9 +226,12 @@ fn finish(
 ) -> anyhow::Result<u8> {
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
     let report = Report::new(&label, common, interrupt.clone());
+    let for_display = is_stdout(output) || format_of_path(output)?.for_display;
+    let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
     let outcome = job.render(&report)?;
     let seconds = report.finish();
-    write(job, &outcome, output, arguments)?;
+    let denoiser = denoiser.filter(|_| !outcome.cancelled);
+    let denoised = write(job, &outcome, denoiser.as_ref(), output, arguments)?;
     tell_odd_samples(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     if let Some(path) = &arguments.stats {
@@ -235,6 +251,9 @@ fn finish(
         if let Some(reached) = &outcome.reached {
             output::say(format_args!("{}: {}", output.display(), how_far(reached)));
         }
+        if let Some(told) = denoised {
+            output::say(format_args!("{}: {told}", output.display()));
+        }
         output::say(format_args!(
             "{}: {}x{}, {} by {}, {:.2} s after {build_seconds:.2} s of building, {:.2} Mrays/s{}",
             output.display(),
@@ -250,20 +269,47 @@ fn finish(
     Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
 }
 
-/// A part of a picture goes into an `.exr` with its exact sums; anything else is the picture.
-fn write(job: &Job, outcome: &Outcome, output: &Path, arguments: &Render) -> anyhow::Result<()> {
-    let mut options = job.write_options()?;
+/// True for a part of a picture.
+fn is_part(arguments: &Render) -> bool {
+    arguments.samples.is_some() || arguments.crop.is_some()
+}
+
+/// A part of a picture goes into an `.exr` with its exact sums; anything else is the picture, denoised if it is to be. Gives what is to be
+/// told about that.
+fn write(
+    job: &Job,
+    outcome: &Outcome,
+    denoiser: Option<&Chosen>,
+    output: &Path,
+    arguments: &Render,
+) -> anyhow::Result<Option<String>> {
+    let is_exr = !is_stdout(output) && aov::is_exr(output);
+    let is_part = is_exr && (is_part(arguments) || outcome.cancelled);
+    let begun = Instant::now();
+    let (mut picture, told) = match denoiser.filter(|_| !is_part) {
+        Some(chosen) => {
+            let picture = outcome.denoised(chosen)?;
+            (picture, Some(denoise::told(chosen, begun.elapsed().as_secs_f64())))
+        }
+        None if is_part => (job.partial(outcome)?, None),
+        None => (outcome.picture()?, None),
+    };
+    if is_exr {
+        outcome.push_layers(&mut picture, &aov::layers(arguments))?;
+        if told.is_some() {
+            picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
+        }
+    }
+    let mut options = job.write_options_for(&picture)?;
     if arguments.bits == "16" {
         options.bit_depth = BitDepth::Sixteen;
     }
     if is_stdout(output) {
-        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &outcome.picture()?, &options)?);
-        return Ok(());
+        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?);
+    } else {
+        bilux::pictures::write(output, &picture, &options)?;
     }
-    let is_part = arguments.samples.is_some() || arguments.crop.is_some() || outcome.cancelled;
-    let is_exr = format_of_path(output)?.entry.name == "exr";
-    let picture = if is_part && is_exr { job.partial(outcome)? } else { outcome.picture()? };
-    Ok(bilux::pictures::write(output, &picture, &options)?)
+    Ok(told)
 }
 
 /// Samples that are no number are counted and located, never hidden.

@@ -2,8 +2,13 @@
 //! line in the table.
 
 mod aces;
+mod agx;
+mod exposure;
+mod neutral;
 mod none;
 mod reinhard;
+
+pub use exposure::auto_exposure;
 
 use crate::PictureError;
 use crate::error::nearest;
@@ -12,7 +17,8 @@ use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 
 /// Every curve that there is; the first is the one that does nothing.
-pub const TONEMAPS: &[ToneMapEntry] = &[none::ENTRY, reinhard::ENTRY, aces::ENTRY];
+pub const TONEMAPS: &[ToneMapEntry] =
+    &[none::ENTRY, agx::ENTRY, neutral::ENTRY, aces::ENTRY, reinhard::ENTRY];
 
 /// One curve.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,80 @@
+//! What a picture tells beside its light, and what is made of it: layers, and the picture without its noise.
+
+use crate::{Error, Job, Outcome};
+use bilux_pictures::Picture;
+use bilux_pictures::denoise::{Chosen, Task, denoise, denoiser};
+use bilux_transport::aovs::Aov;
+use bilux_transport::push_variance;
+
+/// The value of the setting `denoise` that leaves it to the picture.
+const FOR_DISPLAY: &str = "display";
+
+impl Job {
+    /// Keeps what is wanted of albedo, normals, depth, ids and variance ([`Outcome::layered`]). It changes no sample.
+    pub fn with_layers(&mut self, wanted: &[Aov]) {
+        self.features |= wanted.iter().any(|aov| aov.is_feature());
+        self.render.halves |= wanted.contains(&Aov::Variance);
+    }
+
+    /// What is to denoise the picture, if anything is: what the setting `denoise` names, or where that is left open, the best for pictures
+    /// for a display that noise or time ends. The same number of samples gives the same bytes, unless denoising is
+    /// asked for. The job then keeps what denoisers go by.
+    ///
+    /// # Errors
+    /// When the denoiser that was asked for is not to be had.
+    pub fn denoiser(&mut self, for_display: bool) -> Result<Option<Chosen>, Error> {
+        let name = match self.settings.denoise.as_str() {
+            "off" => return Ok(None),
+            FOR_DISPLAY if !for_display || !self.render.stop.is_any() => return Ok(None),
+            FOR_DISPLAY => "auto",
+            name => name,
+        };
+        let task = Task {
+            pixels: u64::from(self.render.width) * u64::from(self.render.height),
+            threads: self.settings.threads,
+            // More of it is better spent on samples.
+            time: self.render.stop.time_limit.map(|limit| limit / 4),
+        };
+        let chosen = denoiser(name, &task)?;
+        self.with_layers(&Aov::ALL_LAYERS);
+        self.denoising = chosen.time;
+        Ok(Some(chosen))
+    }
+}
+
+impl Outcome {
+    /// The picture with those layers that are wanted and were kept ([`Job::with_layers`]).
+    ///
+    /// # Errors
+    /// When memory is short.
+    pub fn layered(&self, wanted: &[Aov]) -> Result<Picture, Error> {
+        let mut picture = self.picture()?;
+        self.push_layers(&mut picture, wanted)?;
+        Ok(picture)
+    }
+
+    /// Adds layers to a picture of the film's window.
+    ///
+    /// # Errors
+    /// When memory is short, or there are such layers.
+    pub fn push_layers(&self, picture: &mut Picture, wanted: &[Aov]) -> Result<(), Error> {
+        if let Some(features) = &self.features {
+            let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
+            features.push_layers(picture, wants)?;
+        }
+        if let Some(first) = self.first_half.as_ref().filter(|_| wanted.contains(&Aov::Variance)) {
+            push_variance(picture, &self.film, first)?;
+        }
+        Ok(())
+    }
+
+    /// The picture without its noise, and without layers.
+    ///
+    /// # Errors
+    /// When memory is short, or what denoises fails.
+    pub fn denoised(&self, chosen: &Chosen) -> Result<Picture, Error> {
+        let mut noisy = self.light()?;
+        self.push_layers(&mut noisy, &Aov::ALL_LAYERS)?;
+        Ok(self.encoded(denoise(&noisy, &*chosen.denoiser)?.main()))
+    }
+}

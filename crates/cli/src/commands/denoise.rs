@@ -1,0 +1,39 @@
+//! `bilux denoise`: a noisy picture into a smooth one.
+
+use super::{DONE, check_folder};
+use crate::arguments::{Common, Denoise};
+use crate::values::Exposure;
+use crate::{output, usage};
+use bilux::pictures::denoise::{Chosen, Task, denoise, denoiser};
+use bilux::pictures::formats::format_of_path;
+use bilux::pictures::{Limits, WriteOptions, auto_exposure, tone_map};
+use std::time::Instant;
+
+pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
+    let (input, output) = (&arguments.input, &arguments.output);
+    check_folder(output).map_err(usage::wrong)?;
+    format_of_path(output).map_err(usage::wrong)?;
+    let tone_map = tone_map(&arguments.tonemap).map_err(usage::wrong)?;
+    let task = Task { threads: arguments.threads, ..Task::default() };
+    let chosen = denoiser(&arguments.by, &task).map_err(usage::wrong)?;
+    let noisy = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
+    let begun = Instant::now();
+    let smooth = denoise(&noisy, &*chosen.denoiser)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let exposure = match arguments.exposure {
+        Exposure::Stops(stops) => stops,
+        Exposure::Auto => auto_exposure(&smooth),
+    };
+    let options = WriteOptions { exposure, tone_map, ..WriteOptions::default() };
+    bilux::pictures::write(output, &smooth, &options)?;
+    if !common.quiet {
+        output::say(format_args!("{}: {}", output.display(), told(&chosen, seconds)));
+    }
+    Ok(DONE)
+}
+
+/// Which denoiser it was, and how to get a better one.
+pub fn told(chosen: &Chosen, seconds: f64) -> String {
+    let advice = chosen.advice.as_ref().map(|advice| format!("; {advice}")).unwrap_or_default();
+    format!("denoised by {} in {seconds:.2} s{advice}", chosen.denoiser.describe())
+}

@@ -1,0 +1,32 @@
+//! What `bilux denoise` is told.
+
+use crate::values::{Exposure, parse_exposure};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Take the noise out of a picture. The layers albedo, normal, depth and variance help much, where it has them: `bilux render
+/// --aov albedo,normal,depth,variance`.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  bilux denoise noisy.exr -o smooth.exr\n  \
+    bilux denoise noisy.exr -o smooth.png --tonemap agx\n  \
+    bilux denoise photo.png -o smooth.png --by builtin")]
+pub struct Denoise {
+    /// The noisy picture
+    pub input: PathBuf,
+    /// The smooth one
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// What takes the noise away (`bilux list denoisers`)
+    #[arg(long, value_name = "auto|oidn|builtin", default_value = "auto")]
+    pub by: String,
+    /// Threads; 0 for all cores
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub threads: usize,
+    /// Brighten by powers of two, in pictures for a display; or to the brightness of a photograph
+    #[arg(long, value_name = "EV|auto", allow_negative_numbers = true, default_value = "0",
+        value_parser = parse_exposure)]
+    pub exposure: Exposure,
+    /// Tone curve, in pictures for a display (`bilux list tonemaps`)
+    #[arg(long, value_name = "NAME", default_value = "none")]
+    pub tonemap: String,
+}

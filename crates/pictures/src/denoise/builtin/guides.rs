@@ -1,0 +1,72 @@
+//! What tells surfaces apart, whatever light is on them.
+
+use super::planes::Planes;
+use crate::PictureError;
+use crate::denoise::Noisy;
+
+/// Planes: 1 within the picture and 0 beyond; albedo, normals; depth, how it changes from column to column and from row to row, and one
+/// over what it may differ by from pixel to pixel.
+pub(super) struct Guides {
+    pub(super) planes: Planes,
+}
+
+/// Where each guide's planes begin.
+pub(super) const WITHIN: usize = 0;
+pub(super) const ALBEDO: usize = 1;
+pub(super) const NORMAL: usize = 4;
+pub(super) const DEPTH: usize = 7;
+pub(super) const SLOPE: usize = 8;
+pub(super) const TIGHTNESS: usize = 10;
+const COUNT: usize = 11;
+
+/// Surfaces this near to each other, as a part of their distance, may be one.
+const NEAR: f32 = 0.005;
+
+impl Guides {
+    /// What is not told is the same everywhere.
+    pub(super) fn of(noisy: &Noisy) -> Result<Guides, PictureError> {
+        let (width, height) = (noisy.width, noisy.height);
+        let depth = |i: usize| {
+            noisy.depth.as_ref().map_or(1.0, |depth| if depth[i].is_finite() { depth[i] } else { 0.0 })
+        };
+        let mut planes = Planes::filled((width, height), |i| {
+            let albedo = noisy.albedo.as_ref().map_or([1.0; 3], |albedo| albedo[i].to_array());
+            let [nx, ny, nz] = noisy.normal.as_ref().map_or([0.0; 3], |normal| normal[i]);
+            let (x, y) = (i % width, i / width);
+            let row = [x.checked_sub(1).map(|_| i - 1), (x + 1 < width).then_some(i + 1)];
+            let column = [y.checked_sub(1).map(|_| i - width), (y + 1 < height).then_some(i + width)];
+            let slope = |[before, after]: [Option<usize>; 2]| {
+                let z = depth(i);
+                gentler(before.map(|j| z - depth(j)), after.map(|j| depth(j) - z))
+            };
+            let (across, down) = (slope(row), slope(column));
+            let may_differ = NEAR * depth(i) + 0.5 * (across.abs() + down.abs()) + f32::MIN_POSITIVE;
+            let [r, g, b] = albedo;
+            [1.0, r, g, b, nx, ny, nz, depth(i), across, down, (1.0 / may_differ).min(1e9)]
+        })?;
+        debug_assert_eq!(planes.planes.len(), COUNT);
+        planes.planes[WITHIN] = {
+            let mut within = vec![0.0; planes.planes[WITHIN].len()];
+            for y in 0..height {
+                let first = planes.index(0, y);
+                within[first..first + width].fill(1.0);
+            }
+            within
+        };
+        Ok(Guides { planes })
+    }
+}
+
+/// Of two slopes the one that is nearer to none: the other may lead over an edge.
+fn gentler(a: Option<f32>, b: Option<f32>) -> f32 {
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            if a.abs() < b.abs() {
+                a
+            } else {
+                b
+            }
+        }
+        (one, other) => one.or(other).unwrap_or(0.0),
+    }
+}

@@ -1,0 +1,197 @@
+//! One pass over all pixels: each becomes a weighted mean of 5 × 5 pixels that stand some steps apart.
+
+use super::MARGIN;
+use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
+use super::planes::{Light, Planes};
+use crate::PictureError;
+use rayon::prelude::*;
+
+/// Rows that one thread works on at a time.
+const BAND: usize = 16;
+
+/// Weights of neighbours by how many steps away they are, along each axis.
+const NEAR: [f32; 5] = [0.7, 0.9, 1.0, 0.9, 0.7];
+/// Standard deviations of the noise by which light may be apart.
+const LIGHT: f32 = 1.0;
+/// By what albedo and normals may be apart.
+const ALBEDO_APART: f32 = 0.05;
+const NORMAL_APART: f32 = 0.2;
+/// Light that differs by this part of it, in the square, is the same where there is no noise at all.
+const SAME: f32 = 1e-5;
+
+/// A pixel itself that is apart by more than this many variances does not belong to the patch around it: so edges of shadows stay.
+const BEYOND: f32 = 3.0;
+
+/// What a pass makes of light.
+///
+/// # Errors
+/// When the machine has no room.
+pub(super) fn pass(light: &Light, guides: &Guides, step: usize) -> Result<Light, PictureError> {
+    let (width, height) = (light.planes.width, light.planes.height);
+    let mut smooth = Planes::new(width, height, 4)?;
+    let stride = smooth.stride();
+    let bands: Vec<usize> = (0..height).step_by(BAND).collect();
+    let done: Vec<[Vec<f32>; 4]> = bands
+        .par_iter()
+        .map(|&first| {
+            let mut band = Band::new(light, guides, step, first..(first + BAND).min(height));
+            band.take_all();
+            band.finish()
+        })
+        .collect();
+    for (first, band) in bands.iter().zip(&done) {
+        for (plane, rows) in smooth.planes.iter_mut().zip(band) {
+            for (row, samples) in rows.chunks_exact(width).enumerate() {
+                let at = (first + row + MARGIN) * stride + MARGIN;
+                plane[at..at + width].copy_from_slice(samples);
+            }
+        }
+    }
+    smooth.pad();
+    Ok(Light { planes: smooth })
+}
+
+/// Some rows while neighbours are added.
+struct Band<'a> {
+    light: &'a Planes,
+    guides: &'a Planes,
+    step: usize,
+    rows: std::ops::Range<usize>,
+    /// Sums of weight · light, for R, G and B, of weight² · variance, and of weights.
+    sums: [Vec<f32>; 5],
+    /// How far pixels are apart in their light, a row and a column more on each side.
+    apart: Vec<f32>,
+    weights: Vec<f32>,
+}
+
+impl<'a> Band<'a> {
+    fn new(light: &'a Light, guides: &'a Guides, step: usize, rows: std::ops::Range<usize>) -> Band<'a> {
+        let (width, count) = (light.planes.width, rows.len());
+        Band {
+            light: &light.planes,
+            guides: &guides.planes,
+            step,
+            sums: std::array::from_fn(|_| vec![0.0; width * count]),
+            apart: vec![0.0; (width + 2) * (count + 2)],
+            weights: vec![0.0; width],
+            rows,
+        }
+    }
+
+    fn take_all(&mut self) {
+        for (j, down) in NEAR.iter().enumerate() {
+            for (i, across) in NEAR.iter().enumerate() {
+                let [dx, dy] = [i, j].map(|k| (k as isize - 2) * self.step as isize);
+                if (dx, dy) == (0, 0) {
+                    self.take_itself();
+                } else {
+                    self.compare(dx, dy);
+                    self.take(dx, dy, down * across);
+                }
+            }
+        }
+    }
+
+    /// The pixels themselves, with a weight of 1.
+    fn take_itself(&mut self) {
+        let width = self.light.width;
+        for (row, y) in self.rows.clone().enumerate() {
+            let (to, from) = (row * width..(row + 1) * width, self.light.index(0, y));
+            for k in 0..4 {
+                let own = &self.light.planes[k][from..from + width];
+                self.sums[k][to.clone()].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            }
+            self.sums[4][to].iter_mut().for_each(|sum| *sum += 1.0);
+        }
+    }
+
+    /// How far pixels are apart from those at an offset, less what noise alone makes of it, in units of what it may make.
+    /// [Rousselle 2012, eq. 3]
+    fn compare(&mut self, dx: isize, dy: isize) {
+        let (width, stride) = (self.light.width + 2, self.light.stride());
+        let offset = dy * stride as isize + dx;
+        let tolerance = 3.0 * LIGHT * LIGHT;
+        for row in 0..self.rows.len() + 2 {
+            let p = (self.rows.start + row + MARGIN - 1) * stride + MARGIN - 1;
+            let q = (p as isize + offset) as usize;
+            let [r, g, b, v] = [0, 1, 2, 3].map(|k| {
+                let plane = &self.light.planes[k];
+                (&plane[p..p + width], &plane[q..q + width])
+            });
+            let to = &mut self.apart[row * width..(row + 1) * width];
+            for (x, to) in to.iter_mut().enumerate() {
+                let (dr, dg, db) = (r.0[x] - r.1[x], g.0[x] - g.1[x], b.0[x] - b.1[x]);
+                let (vp, vq) = (v.0[x], v.1[x]);
+                let squared = dr * dr + dg * dg + db * db;
+                let sum = (r.0[x] + g.0[x] + b.0[x]) * (r.1[x] + g.1[x] + b.1[x]);
+                let noise = 3.0 * (vp + if vp < vq { vp } else { vq });
+                *to = (squared - noise) / (tolerance * (vp + vq) + SAME * sum.abs() + 1e-12);
+            }
+        }
+    }
+
+    /// Adds the pixels at an offset.
+    fn take(&mut self, dx: isize, dy: isize, share: f32) {
+        let (width, stride) = (self.light.width, self.light.stride());
+        let offset = dy * stride as isize + dx;
+        let [by_albedo, by_normal] = [ALBEDO_APART, NORMAL_APART].map(|apart| 1.0 / (apart * apart));
+        let by_depth = 1.0 / (self.step * self.step) as f32;
+        for row in 0..self.rows.len() {
+            let p = self.light.index(0, self.rows.start + row);
+            let q = (p as isize + offset) as usize;
+            let pair = |plane: usize| {
+                let plane = &self.guides.planes[plane];
+                (&plane[p..p + width], &plane[q..q + width])
+            };
+            let patch = [0, 1, 2].map(|r| &self.apart[(row + r) * (width + 2)..(row + r + 1) * (width + 2)]);
+            let [ar, ag, ab] = [0, 1, 2].map(|c| pair(ALBEDO + c));
+            let [nx, ny, nz] = [0, 1, 2].map(|c| pair(NORMAL + c));
+            let (z, tight, within) = (pair(DEPTH), pair(TIGHTNESS).0, pair(WITHIN).1);
+            let slope = [pair(SLOPE).0, pair(SLOPE + 1).0];
+            let (fx, fy) = (dx as f32, dy as f32);
+            let weights = &mut self.weights[..width];
+            for x in 0..width {
+                let mut light = 0.0;
+                for patch in patch {
+                    light += patch[x] + patch[x + 1] + patch[x + 2];
+                }
+                let square = |(p, q): (&[f32], &[f32])| (p[x] - q[x]) * (p[x] - q[x]);
+                let albedo = square(ar) + square(ag) + square(ab);
+                let normal = square(nx) + square(ny) + square(nz);
+                let beside = (z.1[x] - z.0[x] - slope[0][x] * fx - slope[1][x] * fy) * tight[x];
+                let own = patch[1][x + 1] - BEYOND;
+                let apart = (if light > 0.0 { light } else { 0.0 }) * (1.0 / 9.0)
+                    + (if own > 0.0 { own } else { 0.0 }) * 0.5
+                    + albedo * by_albedo
+                    + normal * by_normal
+                    + beside * beside * by_depth;
+                // About e to the minus `apart`, and nothing from 4 on.
+                let near = 1.0 - 0.25 * apart;
+                let near = if near > 0.0 { near } else { 0.0 };
+                weights[x] = share * within[x] * (near * near) * (near * near);
+            }
+            let to = row * width..(row + 1) * width;
+            for k in 0..4 {
+                let plane = &self.light.planes[k][q..q + width];
+                let sums = &mut self.sums[k][to.clone()];
+                for x in 0..width {
+                    let weight = if k == 3 { weights[x] * weights[x] } else { weights[x] };
+                    sums[x] += weight * plane[x];
+                }
+            }
+            self.sums[4][to].iter_mut().zip(weights.iter()).for_each(|(sum, weight)| *sum += weight);
+        }
+    }
+
+    fn finish(self) -> [Vec<f32>; 4] {
+        let [mut r, mut g, mut b, mut v, weights] = self.sums;
+        for (i, weight) in weights.into_iter().enumerate() {
+            let one_over = 1.0 / weight;
+            r[i] *= one_over;
+            g[i] *= one_over;
+            b[i] *= one_over;
+            v[i] *= one_over * one_over;
+        }
+        [r, g, b, v]
+    }
+}

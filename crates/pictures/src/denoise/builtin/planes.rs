@@ -1,0 +1,148 @@
+//! Planes with a margin around them, so that no neighbour has to be looked for beyond the edge.
+
+use super::{MARGIN, outliers};
+use crate::PictureError;
+use crate::denoise::{Layer, Noisy};
+use crate::limits::zeroed;
+use bilux_math::Rgb;
+use rayon::prelude::*;
+
+/// Planes of a picture, each with a margin that repeats its edge.
+#[derive(Clone)]
+pub(super) struct Planes {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) planes: Vec<Vec<f32>>,
+}
+
+impl Planes {
+    /// Zeros.
+    pub(super) fn new(width: usize, height: usize, count: usize) -> Result<Planes, PictureError> {
+        let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN);
+        let planes = (0..count).map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
+        Ok(Planes { width, height, planes })
+    }
+
+    /// Each plane's samples by pixel.
+    pub(super) fn filled<const N: usize>(
+        (width, height): (usize, usize),
+        at: impl Fn(usize) -> [f32; N],
+    ) -> Result<Planes, PictureError> {
+        let mut all = Planes::new(width, height, N)?;
+        for y in 0..height {
+            for x in 0..width {
+                let to = all.index(x, y);
+                for (plane, value) in all.planes.iter_mut().zip(at(y * width + x)) {
+                    plane[to] = value;
+                }
+            }
+        }
+        all.pad();
+        Ok(all)
+    }
+
+    /// From one row to the next.
+    pub(super) fn stride(&self) -> usize {
+        self.width + 2 * MARGIN
+    }
+
+    /// Where a pixel's sample is.
+    pub(super) fn index(&self, x: usize, y: usize) -> usize {
+        (y + MARGIN) * self.stride() + x + MARGIN
+    }
+
+    /// The first three planes at a pixel.
+    pub(super) fn rgb(&self, pixel: usize) -> Rgb {
+        let i = self.index(pixel % self.width, pixel / self.width);
+        Rgb::new(self.planes[0][i], self.planes[1][i], self.planes[2][i])
+    }
+
+    /// Repeats the edges in the margins.
+    pub(super) fn pad(&mut self) {
+        let (stride, width, height) = (self.stride(), self.width, self.height);
+        self.planes.par_iter_mut().for_each(|plane| {
+            for row in plane.chunks_exact_mut(stride).skip(MARGIN).take(height) {
+                let (first, last) = (row[MARGIN], row[MARGIN + width - 1]);
+                row[..MARGIN].fill(first);
+                row[MARGIN + width..].fill(last);
+            }
+            let (top, bottom) = (MARGIN * stride, (MARGIN + height - 1) * stride);
+            for y in 0..MARGIN {
+                plane.copy_within(top..top + stride, y * stride);
+                plane.copy_within(bottom..bottom + stride, (MARGIN + height + y) * stride);
+            }
+        });
+    }
+}
+
+/// Light without the surfaces' own colours, and its variance: planes R, G, B and V, the mean over the channels.
+pub(super) struct Light {
+    pub(super) planes: Planes,
+}
+
+/// So much albedo is taken to be there at least: what is darker shows no noise.
+const LEAST_ALBEDO: f32 = 0.02;
+
+/// What light is divided by.
+pub(super) fn divisor(albedo: Rgb) -> Rgb {
+    // A surface that sends on next to nothing of one colour may show a reflection that has it.
+    let least = LEAST_ALBEDO.max(0.1 * albedo.max_channel());
+    albedo.map(|c| c.max(least))
+}
+
+impl Light {
+    pub(super) fn of(noisy: &Noisy, layer: &Layer) -> Result<Light, PictureError> {
+        let (width, size) = (noisy.width, (noisy.width, noisy.height));
+        let by = |i: usize| noisy.albedo.as_ref().map_or(Rgb::WHITE, |albedo| divisor(albedo[i]));
+        let colour = |i: usize| layer.colour[i] / by(i);
+        let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
+        let told = |i: usize| match &layer.variance {
+            Some(variance) => {
+                let (variance, by) = (variance[i], by(i));
+                mean(variance / (by * by))
+            }
+            None => guessed[i],
+        };
+        let pixels: Vec<(Rgb, f32)> = (0..noisy.pixels()).map(|i| (colour(i), told(i))).collect();
+        let pixels = outliers::without(size, &pixels);
+        // One estimate of a pixel tells little: those around it are asked too.
+        let raw: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();
+        let blurred = blur(&blur(&raw, width), width);
+        let planes = Planes::filled(size, |i| {
+            let Rgb { r, g, b } = pixels[i].0;
+            [r, g, b, blurred[i]]
+        })?;
+        Ok(Light { planes })
+    }
+}
+
+fn mean(c: Rgb) -> f32 {
+    (c.r + c.g + c.b) / 3.0
+}
+
+/// Where nobody tells the variance: by how much pixels differ from the mean of those around, which counts edges as noise.
+fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec<f32> {
+    let at = |x: usize, y: usize| colour(y.min(height - 1) * width + x.min(width - 1));
+    let one = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let around = at(x.saturating_sub(1), y) + at(x + 1, y) + at(x, y.saturating_sub(1)) + at(x, y + 1);
+        let apart = colour(i) - around * 0.25;
+        mean(apart * apart) * 0.8
+    };
+    (0..width * height).map(one).collect()
+}
+
+/// Means over 3 × 3 pixels.
+fn blur(plane: &[f32], width: usize) -> Vec<f32> {
+    let height = plane.len() / width;
+    let mut all = vec![0.0; plane.len()];
+    all.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        let rows =
+            [y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| &plane[y * width..(y + 1) * width]);
+        for (x, sum) in row.iter_mut().enumerate() {
+            let (left, right) = (x.saturating_sub(1), (x + 1).min(width - 1));
+            *sum = rows.iter().map(|row| row[left] + row[x] + row[right]).sum::<f32>() / 9.0;
+        }
+    });
+    all
+}

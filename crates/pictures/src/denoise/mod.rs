@@ -1,0 +1,112 @@
+//! From a noisy picture to a smooth one. To add a denoiser: a file with its `ENTRY`, and a line in the table.
+//!
+//! All that a denoiser goes by travels in the picture's layers, so that it may as well come from a file: `albedo`, `normal` and
+//! `depth` of what is seen, `variance` of each pixel, and `light`, a part of the picture with `light_variance` of its own: what was brought by paths from the
+//! lights, whose noise is of another kind. Each layer may be missing.
+
+mod builtin;
+mod noisy;
+mod oidn;
+
+use crate::error::nearest;
+use crate::{Picture, PictureError};
+use bilux_math::Rgb;
+use bilux_math::registry::Entry;
+pub use noisy::{Layer, Noisy};
+use std::time::Duration;
+
+/// Every denoiser that there is, the best first.
+pub const DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
+
+/// A row of [`DENOISERS`].
+#[derive(Clone, Copy, Debug)]
+pub struct DenoiserEntry {
+    /// Name, summary, source and parameters.
+    pub entry: Entry,
+    /// About how long it takes for so many pixels, on so many threads, at least 1.
+    pub time: fn(u64, usize) -> Duration,
+    /// Gets it ready, for so many threads (0 for one each core); else says what is missing, and how to get it.
+    pub find: fn(usize) -> Result<Box<dyn Denoiser>, String>,
+}
+
+/// One that is ready.
+pub trait Denoiser {
+    /// What it is and where it was found, for people.
+    fn describe(&self) -> String;
+
+    /// The picture without its noise, row by row. The same for any number of threads.
+    ///
+    /// # Errors
+    /// When the machine has no room, or what denoises fails.
+    fn denoise(&self, noisy: &Noisy) -> Result<Vec<Rgb>, PictureError>;
+}
+
+/// A denoiser that was chosen, and what there is to say about the choice.
+pub struct Chosen {
+    /// The denoiser.
+    pub denoiser: Box<dyn Denoiser>,
+    /// About how long it takes.
+    pub time: Duration,
+    /// How to get a better one, where there is one.
+    pub advice: Option<String>,
+}
+
+/// What is to be denoised, and how long that may take.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Task {
+    /// Pixels in all.
+    pub pixels: u64,
+    /// Threads; 0 for one each core.
+    pub threads: usize,
+    /// What the best denoiser may take at most, if that matters. One that was asked for by its name takes what it takes.
+    pub time: Option<Duration>,
+}
+
+/// The denoiser of this name, or for `auto` the best that can be had, and has the time.
+///
+/// # Errors
+/// When there is no such denoiser, or it is not to be had here.
+pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
+    let is_auto = name == "auto";
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = if task.threads == 0 { cores() } else { task.threads };
+    let mut advice = None;
+    for (i, row) in DENOISERS.iter().enumerate().filter(|(_, row)| is_auto || name == row.entry.name) {
+        let time = (row.time)(task.pixels, threads);
+        let is_last = i + 1 == DENOISERS.len();
+        if is_auto && !is_last && task.time.is_some_and(|most| time > most) {
+            continue;
+        }
+        match (row.find)(task.threads) {
+            Ok(denoiser) => return Ok(Chosen { denoiser, time, advice }),
+            Err(missing) if is_auto => advice = advice.or(Some(missing)),
+            Err(missing) => return Err(PictureError::NoDenoiser { what: missing }),
+        }
+    }
+    let names = || DENOISERS.iter().map(|row| row.entry.name).chain(["auto"]);
+    Err(PictureError::UnknownName {
+        kind: "denoiser",
+        name: name.to_owned(),
+        suggestion: nearest(name, names()),
+        known: names().collect::<Vec<_>>().join(", "),
+    })
+}
+
+/// The picture with its colours denoised; layers and texts stay as they are. Pixels that are not finite stay so.
+///
+/// # Errors
+/// When it has no colours, or as [`Denoiser::denoise`].
+pub fn denoise(picture: &Picture, denoiser: &dyn Denoiser) -> Result<Picture, PictureError> {
+    let mut picture = picture.clone().into_linear();
+    let before = picture.to_rgb();
+    let noisy = Noisy::of(&picture)?;
+    let smooth = denoiser.denoise(&noisy)?;
+    let finite = |i: usize| before.as_ref().is_none_or(|colours| colours[i].is_finite());
+    for (component, channel) in [("R", 0), ("G", 1), ("B", 2), ("Y", 1)] {
+        let samples = picture.channel_mut(component).unwrap_or_default();
+        for (i, sample) in samples.iter_mut().enumerate().filter(|(i, _)| finite(*i)) {
+            *sample = smooth[i][channel];
+        }
+    }
+    Ok(picture)
+}

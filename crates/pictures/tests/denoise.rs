@@ -1,0 +1,195 @@
+//! What every denoiser has to keep, on a picture whose truth is known: a chequered floor under light that changes slowly,
+//! with a sharp shadow on it, and noise of known variance.
+#![allow(clippy::print_stderr, reason = "tells what it skips")]
+
+use bilux_math::Rgb;
+use bilux_math::hash::{hash_words, unit_f32};
+use bilux_pictures::denoise::{Chosen, Task, denoise, denoiser};
+use bilux_pictures::{DENOISERS, Picture};
+
+const SIZE: usize = 96;
+/// Standard deviation of the noise, as a part of the light.
+const NOISE: f32 = 0.3;
+
+fn albedo(i: usize) -> Rgb {
+    let (x, y) = (i % SIZE, i / SIZE);
+    if (x / 3 + y / 3).is_multiple_of(2) { Rgb::new(0.8, 0.7, 0.6) } else { Rgb::new(0.15, 0.2, 0.4) }
+}
+
+fn light(i: usize) -> f32 {
+    let (x, y) = ((i % SIZE) as f32 / SIZE as f32, (i / SIZE) as f32 / SIZE as f32);
+    if x + 0.5 * y > 0.9 { 0.1 } else { 1.0 + 0.5 * x - 0.3 * y }
+}
+
+/// Even in ±√3, so that its variance is 1.
+fn number(i: usize, k: u64) -> f32 {
+    (unit_f32(hash_words([i as u64, k]) as u32) * 2.0 - 1.0) * 3f32.sqrt()
+}
+
+fn plane(of: impl Fn(usize) -> Rgb) -> Vec<Rgb> {
+    (0..SIZE * SIZE).map(of).collect()
+}
+
+fn truth() -> Vec<Rgb> {
+    plane(|i| albedo(i) * light(i))
+}
+
+/// The truth with noise, and the layers that a render gives beside it.
+fn noisy() -> Picture {
+    let seen = |i: usize| albedo(i) * light(i) * (1.0 + NOISE * number(i, 1));
+    let mut picture = Picture::from_rgb(SIZE, SIZE, plane(seen)).unwrap();
+    picture.push_rgb("albedo", &plane(albedo)).unwrap();
+    for (name, value) in [("normal.X", 0.0), ("normal.Y", 1.0), ("normal.Z", 0.0), ("depth.Z", 5.0)] {
+        picture.push_channel(name, vec![value; SIZE * SIZE]).unwrap();
+    }
+    // One estimate each, as two halves of the samples give it.
+    let variance = |i: usize| {
+        let error = albedo(i) * light(i) * (NOISE * number(i, 2));
+        error * error
+    };
+    picture.push_rgb("variance", &plane(variance)).unwrap();
+    picture
+}
+
+fn relative_error(picture: &[Rgb]) -> f64 {
+    let one = |(a, b): (&Rgb, Rgb)| {
+        let apart = (*a - b) / (b + Rgb::grey(0.01));
+        f64::from((apart * apart).luminance())
+    };
+    picture.iter().zip(truth()).map(one).sum::<f64>() / picture.len() as f64
+}
+
+fn task(threads: usize) -> Task {
+    Task { pixels: (SIZE * SIZE) as u64, threads, time: None }
+}
+
+/// All that can be had here; the others are told.
+fn each(check: impl Fn(&str, &Chosen)) {
+    for row in DENOISERS {
+        match denoiser(row.entry.name, &task(2)) {
+            Ok(chosen) => check(row.entry.name, &chosen),
+            Err(missing) => eprintln!("skipped: {missing}"),
+        }
+    }
+}
+
+/// By what the error falls. Networks have learned from renders, not from chequers of 3 pixels.
+fn at_least(name: &str) -> f64 {
+    if name == "builtin" { 8.0 } else { 3.0 }
+}
+
+#[test]
+fn noise_goes_and_textures_stay() {
+    let noisy = noisy();
+    let before = relative_error(&noisy.to_rgb().unwrap());
+    each(|name, chosen| {
+        let smooth = denoise(&noisy, &*chosen.denoiser).unwrap();
+        let after = relative_error(&smooth.to_rgb().unwrap());
+        assert!(after < before / at_least(name), "{name}: {before} to {after}");
+        // The layers are as they were.
+        assert_eq!(smooth.channel("variance.R"), noisy.channel("variance.R"));
+    });
+}
+
+/// The planted fault: with a layer that tells the wrong surface it must not do so well.
+#[test]
+fn albedo_is_what_keeps_textures() {
+    let mut blind = Picture::from_rgb(SIZE, SIZE, noisy().to_rgb().unwrap()).unwrap();
+    blind.push_rgb("albedo", &plane(|_| Rgb::grey(0.5))).unwrap();
+    let variance = noisy().layer("variance").unwrap().to_rgb().unwrap();
+    blind.push_rgb("variance", &variance).unwrap();
+    let builtin = denoiser("builtin", &task(1)).unwrap();
+    let error =
+        |picture: &Picture| relative_error(&denoise(picture, &*builtin.denoiser).unwrap().to_rgb().unwrap());
+    assert!(error(&blind) > 2.0 * error(&noisy()));
+}
+
+#[test]
+fn light_from_the_sources_is_smoothed_apart() {
+    // Half of the light comes by light paths, noisy too; the other half has no noise at all.
+    let splats = plane(|i| albedo(i) * light(i) * 0.5 * (1.0 + NOISE * number(i, 3)));
+    let sum = plane(|i| albedo(i) * light(i) * 0.5 + splats[i]);
+    let mut picture = Picture::from_rgb(SIZE, SIZE, sum).unwrap();
+    picture.push_rgb("albedo", &plane(albedo)).unwrap();
+    picture.push_rgb("variance", &plane(|_| Rgb::BLACK)).unwrap();
+    picture.push_rgb("light", &splats).unwrap();
+    let variance = plane(|i| albedo(i) * albedo(i) * (0.25 * NOISE * NOISE * light(i) * light(i)));
+    picture.push_rgb("light_variance", &variance).unwrap();
+    let before = relative_error(&picture.to_rgb().unwrap());
+    each(|name, chosen| {
+        let after = relative_error(&denoise(&picture, &*chosen.denoiser).unwrap().to_rgb().unwrap());
+        // Who is not told the variance smooths the noiseless half as well.
+        assert!(name != "builtin" || after < before / 5.0, "{name}: {before} to {after}");
+        assert!(after < before, "{name}: {before} to {after}");
+    });
+}
+
+#[test]
+fn threads_change_nothing() {
+    let noisy = noisy();
+    for row in DENOISERS {
+        let with = |threads| {
+            Some(denoise(&noisy, &*denoiser(row.entry.name, &task(threads)).ok()?.denoiser).unwrap())
+        };
+        assert_eq!(with(1), with(3), "{}", row.entry.name);
+    }
+}
+
+#[test]
+fn small_bare_and_broken_pictures_are_denoised_as_well() {
+    each(|name, chosen| {
+        for (width, height) in [(1, 1), (2, 1), (3, 40), (33, 2), (16, 16)] {
+            let pixels = (0..width * height).map(|i| Rgb::grey(1.0 + 0.1 * number(i, 7))).collect();
+            let picture = Picture::from_rgb(width, height, pixels).unwrap();
+            let smooth = denoise(&picture, &*chosen.denoiser).unwrap().to_rgb().unwrap();
+            assert!(smooth.iter().all(|c| (c.g - 1.0).abs() < 0.4), "{name}, {width} x {height}: {smooth:?}");
+        }
+        let mut broken = noisy();
+        broken.channel_mut("R").unwrap()[500] = f32::NAN;
+        broken.channel_mut("variance.G").unwrap()[700] = f32::INFINITY;
+        broken.channel_mut("albedo.B").unwrap()[900] = f32::NAN;
+        broken.channel_mut("depth.Z").unwrap()[1100] = f32::INFINITY;
+        let smooth = denoise(&broken, &*chosen.denoiser).unwrap().to_rgb().unwrap();
+        // Never turned black in silence, and nothing else harmed.
+        assert!(smooth[500].r.is_nan(), "{name}");
+        assert!(smooth.iter().enumerate().all(|(i, c)| i == 500 || c.is_finite()), "{name}");
+    });
+}
+
+#[test]
+fn misspelt_names_are_answered_with_the_nearest() {
+    let error = denoiser("biultin", &task(0)).err().unwrap().to_string();
+    assert!(error.contains("did you mean 'builtin'"), "{error}");
+}
+
+#[test]
+fn what_has_no_time_is_passed_over_unless_it_is_asked_for() {
+    let hurried = Task { time: Some(std::time::Duration::from_millis(1)), ..task(1) };
+    assert_eq!(denoiser("auto", &hurried).unwrap().denoiser.describe(), "the built-in filter");
+    // Asked for by its name it comes, or says why not.
+    if let Ok(chosen) = denoiser("oidn", &hurried) {
+        assert!(chosen.denoiser.describe().contains("Open Image Denoise"));
+    }
+}
+
+/// Rare paths: one sample in a few hundred pixels is hundreds of times as bright.
+#[test]
+fn fireflies_make_no_blots() {
+    let mut picture = noisy();
+    for i in (77..SIZE * SIZE).step_by(391) {
+        for (plane, value) in [("R", 60.0), ("G", 50.0), ("B", 40.0)] {
+            picture.channel_mut(plane).unwrap()[i] = value;
+            picture.channel_mut(&format!("variance.{plane}")).unwrap()[i] = value * value;
+        }
+    }
+    let chosen = denoiser("builtin", &task(1)).unwrap();
+    let with = relative_error(&denoise(&picture, &*chosen.denoiser).unwrap().to_rgb().unwrap());
+    let without = relative_error(&denoise(&noisy(), &*chosen.denoiser).unwrap().to_rgb().unwrap());
+    assert!(with < 1.5 * without, "{without} to {with}");
+    // What is as bright in both halves of the samples is there.
+    for plane in ["R", "G", "B"] {
+        picture.channel_mut(&format!("variance.{plane}")).unwrap().fill(1e-6);
+    }
+    let kept = denoise(&picture, &*chosen.denoiser).unwrap();
+    assert!(kept.channel("R").unwrap()[77] > 50.0);
+}

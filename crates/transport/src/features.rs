@@ -1,0 +1,202 @@
+//! What the camera sees of surfaces, whatever light is on them: albedo, normal, depth and ids, pixel by pixel. Denoisers tell
+//! edges and textures from noise by these, and compositors find things by them.
+//!
+//! A pass of its own over the film, with the camera rays of the picture's first samples. Through smooth mirrors and glass it
+//! goes on to what is seen in them, along the likelier of reflection and refraction, so that what they show has its edges
+//! too; depth and ids are those of the first surface itself. Pixels are added up by themselves, each in the order of its samples: the same
+//! bytes for any number of threads, any crop and any range of samples.
+
+use crate::error::{FilmError, RenderError};
+use crate::eye::Eye;
+use crate::film::zeroed;
+use crate::integrators::PixelIntegrator;
+use crate::media::Media;
+use crate::render::{Progress, RenderSettings, TILE, threads};
+use crate::window::Window;
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_pictures::Picture;
+use bilux_scene::{Camera, Ray, Scene, Surface, Tracer, TransportMode};
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// Camera rays of a pixel, where the picture has as many: more shows in no picture.
+pub const FEATURE_SAMPLES: u32 = 8;
+
+/// So many smooth surfaces are looked through or into.
+const MOST_SMOOTH: u32 = 12;
+
+/// Planes of a window of the film, in rows, the top one first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Features {
+    /// The pixels that they are of.
+    pub window: Window,
+    /// The part of the light that surfaces send on, 0..=1; of lights and sky, what they give, at most 1.
+    pub albedo: Vec<Rgb>,
+    /// The mean of the shading normals, in the world, on the side that is seen: shorter than 1 where they differ, zero where nothing is
+    /// seen.
+    pub normal: Vec<Vec3>,
+    /// Metres from the camera along its rays to the first surface, the mean of those that meet one; infinite where none does.
+    pub depth: Vec<f32>,
+    /// One more than the number of the object that a pixel's first sample meets; 0 for none.
+    pub object: Vec<u32>,
+    /// The same for its material.
+    pub material: Vec<u32>,
+}
+
+/// A pixel while samples are added.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    albedo: Rgb,
+    normal: Vec3,
+    depth: f32,
+    hits: u32,
+    object: u32,
+    material: u32,
+}
+
+/// Looks at the first samples of each pixel: at most [`FEATURE_SAMPLES`], and no more than fit into `time` if that is
+/// given. `None` when it was stopped.
+///
+/// # Errors
+/// When the size or the crop makes no sense, or the machine gives no room or threads.
+pub fn features(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    time: Option<Duration>,
+    progress: &dyn Progress,
+) -> Result<Option<Features>, RenderError> {
+    settings.check()?;
+    let (window, begun) = (settings.window(), Instant::now());
+    let eye = Eye::new(scene, camera, integrator, settings);
+    let empty = |tile: Window| Ok((tile, zeroed::<Sums>(tile.pixels())?));
+    let mut tiles = window.tiles(TILE).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
+    let pool = threads(settings)?;
+    let samples = settings.spp.min(FEATURE_SAMPLES);
+    let mut done = 0;
+    while done < samples {
+        pool.install(|| {
+            tiles.par_iter_mut().for_each(|(tile, sums)| {
+                if !progress.is_cancelled() {
+                    look(&eye, tile, sums, done);
+                }
+            });
+        });
+        done += 1;
+        if progress.is_cancelled() {
+            return Ok(None);
+        }
+        if time.is_some_and(|time| begun.elapsed() * (done + 1) > time * done) {
+            break;
+        }
+    }
+    Features::of(window, &tiles, done).map(Some)
+}
+
+/// One sample of each pixel of a tile.
+fn look(eye: &Eye, tile: &Window, sums: &mut [Sums], sample: u32) {
+    let mut tracer = Tracer::new(eye.scene, false);
+    for (i, sum) in sums.iter_mut().enumerate() {
+        let (x, y) = tile.position(i);
+        let (ray, _) = eye.sample(&mut tracer, x, y, sample);
+        sum.add(&mut tracer, &ray, sample);
+    }
+}
+
+impl Sums {
+    fn add(&mut self, tracer: &mut Tracer, ray: &Ray, sample: u32) {
+        let scene = tracer.scene;
+        let mut media = Media::at_start(tracer, ray);
+        let (mut ray, mut beta) = (*ray, Rgb::WHITE);
+        for event in 0..=MOST_SMOOTH {
+            let direction = Vec3::from(ray.direction);
+            let Some((surface, passed)) = media.closest(tracer, &ray) else {
+                self.albedo += beta * scene.background(direction).clamp(0.0, 1.0);
+                return;
+            };
+            beta *= passed;
+            if event == 0 {
+                self.meet(scene, &surface, sample);
+            }
+            let bsdf = media.bsdf(scene, &surface);
+            let smooth = (bsdf.is_delta() && event < MOST_SMOOTH)
+                .then(|| bsdf.sample(-direction, 0.5, Vec2::splat(0.5), TransportMode::Radiance))
+                .flatten();
+            let Some(next) = smooth else {
+                self.albedo += beta * albedo(scene, &surface, -direction);
+                let faces = surface.n_geom.dot(direction) < 0.0;
+                self.normal += if faces { surface.n_shade } else { -surface.n_shade };
+                return;
+            };
+            beta *= next.weight.clamp(0.0, 1.0);
+            media = media.towards(scene, &surface, -direction, next.wi);
+            ray = surface.spawn(next.wi);
+        }
+    }
+
+    /// The first surface itself.
+    fn meet(&mut self, scene: &Scene, surface: &Surface, sample: u32) {
+        self.depth += surface.t;
+        self.hits += 1;
+        if sample == 0 {
+            self.object = surface.object + 1;
+            self.material = scene.geometry().material_of(surface.object) + 1;
+        }
+    }
+}
+
+/// What a surface sends on of white light, by the colours of its material, or what it gives out itself if that is more.
+fn albedo(scene: &Scene, surface: &Surface, wo: Vec3) -> Rgb {
+    let classic = scene.material(surface).classic(surface);
+    let glows = scene.emission(surface, wo);
+    let channel = |c: usize| (classic.kd[c] + classic.ks[c].max(classic.kt[c])).max(glows[c]);
+    Rgb::from_array([0, 1, 2].map(channel)).clamp(0.0, 1.0)
+}
+
+impl Features {
+    fn of(window: Window, tiles: &[(Window, Vec<Sums>)], samples: u32) -> Result<Features, RenderError> {
+        let (pixels, share) = (window.pixels(), 1.0 / samples as f32);
+        let mut all = Features {
+            window,
+            albedo: zeroed(pixels)?,
+            normal: zeroed(pixels)?,
+            depth: zeroed(pixels)?,
+            object: zeroed(pixels)?,
+            material: zeroed(pixels)?,
+        };
+        for (tile, sums) in tiles {
+            for (i, sum) in sums.iter().enumerate() {
+                let (x, y) = tile.position(i);
+                let Some(at) = window.index(x, y) else { continue };
+                (all.albedo[at], all.normal[at]) = (sum.albedo * share, sum.normal * share);
+                all.depth[at] = if sum.hits > 0 { sum.depth / sum.hits as f32 } else { f32::INFINITY };
+                (all.object[at], all.material[at]) = (sum.object, sum.material);
+            }
+        }
+        Ok(all)
+    }
+
+    /// Adds the layers `albedo`, `normal`, `depth` and `id`, those of them that are wanted, to a picture of the window.
+    ///
+    /// # Errors
+    /// When the picture has another size, or such layers already.
+    pub fn push_layers(&self, picture: &mut Picture, wanted: impl Fn(&str) -> bool) -> Result<(), FilmError> {
+        if wanted("albedo") {
+            picture.push_rgb("albedo", &self.albedo)?;
+        }
+        if wanted("normal") {
+            for (axis, name) in ["normal.X", "normal.Y", "normal.Z"].into_iter().enumerate() {
+                picture.push_channel(name, self.normal.iter().map(|n| n[axis]).collect())?;
+            }
+        }
+        if wanted("depth") {
+            picture.push_channel("depth.Z", self.depth.clone())?;
+        }
+        if wanted("id") {
+            picture.push_integer_plane("id.object", self.object.clone())?;
+            picture.push_integer_plane("id.material", self.material.clone())?;
+        }
+        Ok(())
+    }
+}
