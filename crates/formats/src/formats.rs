@@ -3,7 +3,7 @@
 use crate::reading::{Reading, Source};
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
-use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, native, obj, off, ply, stl};
+use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, native, obj, off, pbrt, ply, stl};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, Warning};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Every format that there is.
 pub const SCENE_FORMATS: &[SceneFormatEntry] =
-    &[asc::ENTRY, gltf::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY, off::ENTRY, native::ENTRY];
+    &[asc::ENTRY, gltf::ENTRY, pbrt::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY, off::ENTRY, native::ENTRY];
 
 /// A row of [`SCENE_FORMATS`].
 #[derive(Clone, Copy, Debug)]

@@ -18,6 +18,7 @@ mod normals;
 mod obj;
 mod off;
 mod options;
+mod pbrt;
 mod ply;
 mod polygon;
 mod reading;

@@ -44,6 +44,8 @@ pub(crate) enum Texels {
 pub(crate) struct Reading<'o> {
     pub(crate) options: &'o ReadOptions,
     pub(crate) budget: Budget,
+    /// [`ReadOptions::crease_angle`], unless a scene has its own.
+    pub(crate) crease_angle: f32,
     /// Nothing outside this folder is opened.
     root: Option<PathBuf>,
     textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
@@ -65,6 +67,7 @@ impl<'o> Reading<'o> {
         Reading {
             options,
             budget: Budget::new(options.max_memory),
+            crease_angle: options.crease_angle,
             root,
             textures: HashMap::new(),
             texture_bytes: 0,

@@ -82,7 +82,7 @@ fn check_indices(soup: &mut Soup, places: &Places, oddities: &mut Oddities) -> R
 fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Result<(), FormatError> {
     let lacking = soup.corners.iter().any(|corner| corner[2] == NONE);
     let mixed = lacking && !soup.normals.is_empty();
-    let angle = reading.options.crease_angle;
+    let angle = reading.crease_angle;
     if !lacking || (angle <= 0.0 && !mixed) {
         return Ok(());
     }

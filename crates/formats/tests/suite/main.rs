@@ -12,6 +12,7 @@ mod native;
 mod obj;
 mod off;
 mod oracles;
+mod pbrt;
 mod ply;
 mod round_trips;
 mod shared_files;

@@ -1,6 +1,6 @@
 //! `orthographic`: parallel rays, as in a plan.
 
-use super::perspective::vector;
+use super::perspective::{MIRRORED, vector};
 use super::{Camera, CameraConnection, CameraEntry, CameraSample, around, look};
 use crate::error::SceneError;
 use bilux_accel::Ray;
@@ -24,9 +24,12 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 kind: ParameterKind::Number { min: 1e-9, max: 1e9 },
                 default: "2",
             },
+            MIRRORED,
         ],
     },
     build: |keys, aspect| {
+        let mirrored = keys.first().is_some_and(|(_, reader)| reader.bool("mirrored"));
+        let aspect = if mirrored { -aspect } else { aspect };
         let keys = keys
             .iter()
             .map(|(time, reader)| {
@@ -47,6 +50,7 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
 
 struct Orthographic {
     keys: Vec<(f32, Key)>,
+    /// Width over height; negative when mirrored.
     aspect: f32,
 }
 
@@ -69,7 +73,7 @@ impl Orthographic {
 
     /// Rays over area: the film's points are uniform, and the rays parallel.
     fn density_of(&self, key: &Key) -> f32 {
-        1.0 / (4.0 * key.half_height * key.half_height * self.aspect)
+        1.0 / (4.0 * key.half_height * key.half_height * self.aspect.abs())
     }
 }
 

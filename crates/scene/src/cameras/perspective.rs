@@ -39,13 +39,7 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 kind: ParameterKind::Number { min: 0.0, max: 1e9 },
                 default: "0",
             },
-            Parameter {
-                name: "mirrored",
-                summary: "left and right swapped, as left-handed cameras have it",
-                unit: "",
-                kind: ParameterKind::Bool,
-                default: "false",
-            },
+            MIRRORED,
         ],
     },
     build: |keys, aspect| {
@@ -66,6 +60,14 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
 pub(super) const fn vector(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
 }
+
+pub(super) const MIRRORED: Parameter = Parameter {
+    name: "mirrored",
+    summary: "left and right swapped, as left-handed cameras have it",
+    unit: "",
+    kind: ParameterKind::Bool,
+    default: "false",
+};
 
 struct Perspective {
     keys: Vec<(f32, Key)>,

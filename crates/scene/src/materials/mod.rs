@@ -142,6 +142,11 @@ impl<'a> Ingredients<'a> {
     }
 }
 
+/// The refractive index of a named metal, channel by channel: its real part, and the imaginary one.
+pub fn metal_indices(name: &str) -> Option<[Rgb; 2]> {
+    metals::METALS.iter().find(|metal| metal.name == name).map(|metal| [metal.eta, metal.k])
+}
+
 /// Every material that there is.
 pub const MATERIALS: &[MaterialEntry] = &[
     phong::ENTRY,

@@ -1,0 +1,161 @@
+//! Cameras, which look along their own +z with +x to the right: left-handed, unless their matrix mirrors.
+
+use super::parameters::ParameterList;
+use super::reader::{Entity, Pbrt};
+use super::state::half_tangent;
+use crate::FormatError;
+use bilux_math::transcendental::atan;
+use bilux_math::{DMat4, DVec3};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{Parameters, SceneError, Spec};
+
+/// All that is shown by one of ours.
+const CAMERAS: [&str; 4] = ["perspective", "orthographic", "realistic", "spherical"];
+
+impl Pbrt<'_, '_> {
+    /// The camera, if there is one.
+    pub(super) fn place_camera(&mut self) -> Result<(), FormatError> {
+        let Some((entity, matrices)) = self.options.camera.take() else { return Ok(()) };
+        let list = &entity.parameters;
+        let kind = match entity.kind.as_str() {
+            "orthographic" => "orthographic",
+            "perspective" => "perspective",
+            // The last is of version 3.
+            "realistic" | "spherical" | "environment" => {
+                let what = format!(
+                    "the camera '{}' is not there: a perspective one stands in its place",
+                    entity.kind
+                );
+                self.oddities.note(&what, || entity.at.clone());
+                for name in [
+                    "lensfile",
+                    "aperturediameter",
+                    "focusdistance",
+                    "aperture",
+                    "mapping",
+                    "simpleweighting",
+                ] {
+                    list.has(name);
+                }
+                "perspective"
+            }
+            other => return Err(SceneError::unknown("camera", other, CAMERAS, &entity.at).into()),
+        };
+        let half_height = self.half_height(list)?;
+        let to_world = matrices.map(|m| m.inverse());
+        let sound = |m: &DMat4| m.is_finite() && bilux_math::Mat3::from_mat4(m.as_mat4()).is_finite();
+        if !to_world.iter().all(sound) {
+            let message = "this camera is scaled to nothing: mend the transforms before it";
+            return Err(FormatError::malformed(message, entity.at.clone()));
+        }
+        let place = |m: &DMat4| place(m, &entity);
+        let mut spec = Spec { span: entity.at.clone(), ..Spec::new("", kind) };
+        spec.parameters = place(&to_world[0])?;
+        // Ours are right-handed.
+        if to_world[0].determinant() > 0.0 {
+            spec.parameters.set("mirrored", true);
+        }
+        let sizes = DVec3::new(
+            to_world[0].x_axis.truncate().length(),
+            to_world[0].y_axis.truncate().length(),
+            to_world[0].z_axis.truncate().length(),
+        );
+        self.lens(list, &mut spec, half_height, sizes)?;
+        let mut keyframes = Vec::new();
+        if to_world[0] != to_world[1] {
+            for (time, matrix) in self.options.times.iter().zip(&to_world) {
+                keyframes.push((*time as f32, place(matrix)?));
+            }
+        }
+        for name in ["shutteropen", "shutterclose"] {
+            list.has(name);
+        }
+        list.tell_unused(&mut self.oddities);
+        self.scene.cameras.push(CameraSpec { spec, keyframes });
+        Ok(())
+    }
+
+    fn lens(
+        &mut self,
+        list: &ParameterList,
+        spec: &mut Spec,
+        half_height: f64,
+        sizes: DVec3,
+    ) -> Result<(), FormatError> {
+        let (radius, focus) = (list.finite("lensradius", 0.0)?, list.finite("focaldistance", 1e6)?);
+        let fov = list.finite("fov", 90.0)?;
+        if spec.kind == "orthographic" {
+            if radius > 0.0 {
+                let what = "an orthographic camera has no lens: everything is sharp";
+                self.oddities.note(what, || list.place("lensradius"));
+            }
+            let height = (2.0 * half_height * sizes.y).clamp(1e-9, 1e9);
+            spec.parameters.set_at("height", (height as f32).into(), list.place("screenwindow"));
+            return Ok(());
+        }
+        if list.has("halffov") {
+            // Of version 2, and nowhere to be found any more.
+            self.oddities.note("'halffov' is not used: give 'fov'", || list.place("halffov"));
+        }
+        let half = half_height * half_tangent(fov.clamp(0.0, 179.9)) * sizes.y / sizes.z;
+        let vertical = 2.0 * atan(half as f32).to_degrees();
+        if !(0.01..=179.0).contains(&vertical) {
+            self.oddities
+                .note("a field of view is out of range: taken as 0.01 to 179 degrees", || list.place("fov"));
+        }
+        spec.parameters.set_at("fov", vertical.max(0.01).min(179.0).into(), list.place("fov"));
+        if radius > 0.0 {
+            let held = |x: f64| x.clamp(0.0, 1e9) as f32;
+            spec.parameters.set("aperture", held(f64::from(radius) * sizes.x).min(1e6));
+            spec.parameters.set("focus", held(f64::from(focus) * sizes.z));
+        }
+        Ok(())
+    }
+
+    /// Half the height of the screen, of which the shorter side goes from -1 to 1.
+    fn half_height(&mut self, list: &ParameterList) -> Result<f64, FormatError> {
+        let [width, height] = self.options.size.map(|n| f64::from(n.max(1)));
+        let film = width / height;
+        let frame = f64::from(list.finite("frameaspectratio", film as f32)?);
+        let frame = if list.has("frameaspectratio") && frame > 0.0 { frame } else { film };
+        let mut screen =
+            if frame > 1.0 { [-frame, frame, -1.0, 1.0] } else { [-1.0, 1.0, -1.0 / frame, 1.0 / frame] };
+        match list.numbers("screenwindow")? {
+            [] => {}
+            [a, b, c, d] => screen = [*a, *b, *c, *d].map(f64::from),
+            other => {
+                let message = format!("'screenwindow' has 4 numbers, and not {}", other.len());
+                return Err(FormatError::malformed(message, list.place("screenwindow")));
+            }
+        }
+        let [left, right, bottom, top] = screen;
+        let (half_width, half_height) = (0.5 * (right - left).abs(), 0.5 * (top - bottom).abs());
+        if !(half_width > 0.0 && half_height > 0.0) {
+            let message = "the screen has no size: mend 'screenwindow'";
+            return Err(FormatError::malformed(message, list.place("screenwindow")));
+        }
+        let shifted = (left + right).abs() > 1e-4 * half_width || (bottom + top).abs() > 1e-4 * half_height;
+        if shifted || (half_width / half_height / film - 1.0).abs() > 1e-3 {
+            let what = "a screen that is shifted or stretched is not shown: its height alone is kept";
+            self.oddities.note(what, || list.place("screenwindow"));
+        }
+        Ok(half_height)
+    }
+}
+
+/// Where a camera is.
+fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
+    let position = to_world.w_axis.truncate();
+    let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
+    let (Some(forward), Some(up)) = (axis(DVec3::Z), axis(DVec3::Y)) else {
+        let message = "this camera is scaled to nothing: mend the transforms before it";
+        return Err(FormatError::malformed(message, entity.at.clone()));
+    };
+    // Far from the origin one metre may be less than what 32 bits tell apart.
+    let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
+    let mut parameters = Parameters::default();
+    for (key, v) in [("position", position), ("look_at", ahead), ("up", up)] {
+        parameters.set(key, v.as_vec3());
+    }
+    Ok(parameters)
+}

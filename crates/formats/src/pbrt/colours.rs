@@ -1,0 +1,114 @@
+//! Spaces that colours are given in, taken to linear Rec. 709.
+
+use bilux_math::Rgb;
+use bilux_math::glam::{DMat3, DVec3};
+
+/// What the numbers of a colour mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum ColourSpace {
+    /// Rec. 709 primaries, linear.
+    #[default]
+    Srgb,
+    DciP3,
+    Rec2020,
+    Aces,
+}
+
+/// Names, as directives have them.
+pub(super) const SPACES: &[(&str, ColourSpace)] = &[
+    ("srgb", ColourSpace::Srgb),
+    ("rec709", ColourSpace::Srgb),
+    ("dci-p3", ColourSpace::DciP3),
+    ("rec2020", ColourSpace::Rec2020),
+    ("aces2065-1", ColourSpace::Aces),
+];
+
+/// Chromaticities of red, green, blue and white. [ITU BT.2020; SMPTE 2065]
+type Primaries = [[f64; 2]; 4];
+
+const D65: [f64; 2] = [0.3127, 0.3290];
+const REC709: Primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], D65];
+
+impl ColourSpace {
+    fn primaries(self) -> Primaries {
+        match self {
+            ColourSpace::Srgb => REC709,
+            ColourSpace::DciP3 => [[0.680, 0.320], [0.265, 0.690], [0.150, 0.060], D65],
+            ColourSpace::Rec2020 => [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046], D65],
+            ColourSpace::Aces => [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.0770], [0.32168, 0.33767]],
+        }
+    }
+
+    /// The colour of a light in Rec. 709: white is that of the space.
+    pub(super) fn light(self, colour: Rgb) -> Rgb {
+        if self == ColourSpace::Srgb {
+            return colour;
+        }
+        let c = from_xyz(to_xyz(self.primaries()) * DVec3::from(colour.to_array().map(f64::from)));
+        clipped(c)
+    }
+
+    /// The colour of a surface in Rec. 709: white stays white.
+    pub(super) fn surface(self, colour: Rgb) -> Rgb {
+        if self == ColourSpace::Srgb {
+            return colour;
+        }
+        let matrix = to_xyz(self.primaries());
+        let white = from_xyz(matrix * DVec3::ONE);
+        let c = from_xyz(matrix * DVec3::from(colour.to_array().map(f64::from)));
+        clipped(c / white)
+    }
+}
+
+/// What Rec. 709 cannot show has no negative light.
+fn clipped(c: DVec3) -> Rgb {
+    Rgb::from_array(c.max(DVec3::ZERO).as_vec3().to_array())
+}
+
+fn xyz([x, y]: [f64; 2]) -> DVec3 {
+    DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
+}
+
+/// From a space's colours to XYZ, where white has Y = 1.
+fn to_xyz([r, g, b, white]: Primaries) -> DMat3 {
+    let unit = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.0 - x - y);
+    let columns = DMat3::from_cols(unit(r), unit(g), unit(b));
+    let scales = columns.inverse() * xyz(white);
+    columns * DMat3::from_diagonal(scales)
+}
+
+/// From XYZ to linear Rec. 709; may be negative.
+pub(super) fn from_xyz(c: DVec3) -> DVec3 {
+    to_xyz(REC709).inverse() * c
+}
+
+/// The light of a chromaticity with luminance 1, in Rec. 709.
+pub(super) fn of_chromaticity(xy: [f64; 2]) -> Rgb {
+    clipped(from_xyz(xyz(xy)))
+}
+
+/// The light of an XYZ with luminance 1, in Rec. 709; black where it has none.
+pub(super) fn of_unit_luminance(c: DVec3) -> Rgb {
+    if c.y > 0.0 && c.is_finite() { clipped(from_xyz(c / c.y)) } else { Rgb::BLACK }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn white_of_every_space_is_white() {
+        for (name, space) in SPACES {
+            let white = space.surface(Rgb::WHITE);
+            assert!((0..3).all(|i| (white[i] - 1.0).abs() < 1e-4), "{name}: {white:?}");
+        }
+        let white = of_chromaticity(D65);
+        assert!((0..3).all(|i| (white[i] - 1.0).abs() < 1e-4), "{white:?}");
+    }
+
+    #[test]
+    fn red_of_a_wider_space_is_clipped() {
+        let red = ColourSpace::Rec2020.light(Rgb::new(1.0, 0.0, 0.0));
+        assert!(red.r > 1.5 && red.g == 0.0 && red.b == 0.0, "{red:?}");
+    }
+}

@@ -1,0 +1,356 @@
+//! Directives, one after another.
+
+use super::colours::SPACES;
+use super::lexer::{Lexer, Token, shown};
+use super::parameters::{self, ParameterList};
+use super::reader::{Entity, Opened, Pbrt, Use};
+use super::state::{MaterialKey, TARGETS};
+use crate::FormatError;
+use crate::text::name_of;
+use bilux_math::DMat4;
+use bilux_scene::{SceneError, Span};
+use std::sync::Arc;
+
+/// Every directive; those of version 3 among them.
+const DIRECTIVES: &[&str] = &[
+    "Accelerator",
+    "ActiveTransform",
+    "AreaLightSource",
+    "Attribute",
+    "AttributeBegin",
+    "AttributeEnd",
+    "Camera",
+    "ColorSpace",
+    "ConcatTransform",
+    "CoordSysTransform",
+    "CoordinateSystem",
+    "Film",
+    "Identity",
+    "Import",
+    "Include",
+    "Integrator",
+    "LightSource",
+    "LookAt",
+    "MakeNamedMaterial",
+    "MakeNamedMedium",
+    "Material",
+    "MediumInterface",
+    "NamedMaterial",
+    "ObjectBegin",
+    "ObjectEnd",
+    "ObjectInstance",
+    "Option",
+    "PixelFilter",
+    "ReverseOrientation",
+    "Rotate",
+    "Sampler",
+    "Scale",
+    "Shape",
+    "Texture",
+    "Transform",
+    "TransformBegin",
+    "TransformEnd",
+    "TransformTimes",
+    "Translate",
+    "WorldBegin",
+    "WorldEnd",
+];
+
+/// Deeper nests are refused: each level keeps a state.
+const DEEPEST: usize = 10_000;
+
+/// Reads a file to its end.
+pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError> {
+    while let Some((token, offset)) = lexer.next()? {
+        let at = lexer.place(offset);
+        let Token::Word(word) = token else {
+            let message = format!("here should be a directive, and not {}", shown(&token));
+            return Err(FormatError::malformed(message, at));
+        };
+        let mut directive = Directive { pbrt, lexer, at };
+        match word {
+            b"Include" => directive.include()?,
+            b"Import" => directive.import()?,
+            b"AttributeBegin" => directive.push(Opened::Attribute)?,
+            b"AttributeEnd" => directive.pop(Opened::Attribute)?,
+            b"TransformBegin" => directive.push(Opened::Transform)?,
+            b"TransformEnd" => directive.pop(Opened::Transform)?,
+            b"ObjectBegin" => directive.object_begin()?,
+            b"ObjectEnd" => directive.object_end()?,
+            b"ObjectInstance" => directive.object_instance()?,
+            b"WorldBegin" => directive.world_begin()?,
+            b"WorldEnd" => {}
+            b"ReverseOrientation" => pbrt.state.reverses = !pbrt.state.reverses,
+            b"Identity" | b"Translate" | b"Scale" | b"Rotate" | b"LookAt" | b"Transform"
+            | b"ConcatTransform" | b"CoordinateSystem" | b"CoordSysTransform" | b"ActiveTransform"
+            | b"TransformTimes" => directive.transform(word)?,
+            b"Camera" | b"Film" | b"PixelFilter" | b"Sampler" | b"Integrator" | b"Accelerator"
+            | b"ColorSpace" | b"Option" => directive.option(word)?,
+            b"Material" | b"MakeNamedMaterial" | b"NamedMaterial" | b"Texture" => directive.surface(word)?,
+            b"MakeNamedMedium" | b"MediumInterface" => directive.medium(word)?,
+            b"LightSource" | b"AreaLightSource" => directive.light(word)?,
+            b"Attribute" => directive.attribute()?,
+            b"Shape" => directive.shape()?,
+            _ => {
+                let names = DIRECTIVES.iter().copied();
+                return Err(SceneError::unknown("directive", &shortened(word), names, &directive.at).into());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn shortened(word: &[u8]) -> String {
+    name_of(word).chars().take(40).collect()
+}
+
+/// A directive that is being read.
+pub(super) struct Directive<'d, 'a, 'o, 'r> {
+    pub(super) pbrt: &'d mut Pbrt<'o, 'r>,
+    pub(super) lexer: &'d mut Lexer<'a>,
+    pub(super) at: Span,
+}
+
+impl Directive<'_, '_, '_, '_> {
+    pub(super) fn error<T>(&self, message: impl Into<String>) -> Result<T, FormatError> {
+        Err(FormatError::malformed(message, self.at.clone()))
+    }
+
+    /// A kind and parameters; `what` says what they are of, and attributes for that are minded.
+    fn entity(&mut self, what: &str, target: &str) -> Result<Entity, FormatError> {
+        let (kind, _) = self.lexer.text(&format!("the kind of the {what}"))?;
+        let list = self.parameters(format!("the {what} '{kind}'"), target)?;
+        Ok(Entity { kind, parameters: list, at: self.at.clone() })
+    }
+
+    fn parameters(&mut self, what: String, target: &str) -> Result<ParameterList, FormatError> {
+        let list = parameters::read(self.lexer, self.pbrt.state.space, &mut self.pbrt.reading.budget)?;
+        let attributes = self.pbrt.state.attributes_of(target);
+        self.pbrt.reading.budget.take::<Entity>(1, &self.at.file)?;
+        Ok(ParameterList::new(what, self.at.clone(), list, attributes))
+    }
+
+    fn include(&mut self) -> Result<(), FormatError> {
+        let (name, at) = self.lexer.text("the name of a file")?;
+        let at = self.lexer.place(at);
+        self.pbrt.include(&name, &at)
+    }
+
+    /// As an include, but the state stays as it is.
+    fn import(&mut self) -> Result<(), FormatError> {
+        let state = self.pbrt.state.clone();
+        self.include()?;
+        self.pbrt.state = state;
+        Ok(())
+    }
+
+    fn push(&mut self, opened: Opened) -> Result<(), FormatError> {
+        if self.pbrt.pushed.len() >= DEEPEST {
+            return self.error(format!("attributes are nested more than {DEEPEST} deep"));
+        }
+        self.pbrt.pushed.push((opened, self.at.clone(), self.pbrt.state.clone()));
+        Ok(())
+    }
+
+    fn pop(&mut self, opened: Opened) -> Result<(), FormatError> {
+        let Some((began, at, state)) = self.pbrt.pushed.pop() else {
+            return self.error("nothing is open here that this could end: take it out");
+        };
+        if (began == Opened::Object) != (opened == Opened::Object) {
+            return self
+                .error(format!("this does not end what began at {at}: ends belong to the last beginning"));
+        }
+        if began == Opened::Transform {
+            // Of version 3: all but transforms stays.
+            (self.pbrt.state.matrices, self.pbrt.state.is_active) = (state.matrices, state.is_active);
+        } else {
+            self.pbrt.state = state;
+        }
+        Ok(())
+    }
+
+    fn object_begin(&mut self) -> Result<(), FormatError> {
+        let (name, _) = self.lexer.text("the name of an object")?;
+        if let Some((open, _)) = &self.pbrt.definition {
+            return self.error(format!("objects are not made of objects: end '{open}' first"));
+        }
+        if self.pbrt.definitions.contains_key(&name) {
+            return self.error(format!("there is an object '{name}' already: give this one another name"));
+        }
+        self.push(Opened::Object)?;
+        self.pbrt.definition = Some((name, Vec::new()));
+        Ok(())
+    }
+
+    fn object_end(&mut self) -> Result<(), FormatError> {
+        let Some((name, pieces)) = self.pbrt.definition.take() else {
+            return self.error("no object is open here that this could end: take it out");
+        };
+        self.pbrt.definitions.insert(name, Arc::new(pieces));
+        self.pop(Opened::Object)
+    }
+
+    fn object_instance(&mut self) -> Result<(), FormatError> {
+        let (object, _) = self.lexer.text("the name of an object")?;
+        if self.pbrt.definition.is_some() {
+            return self.error("objects are not made of objects: put this one behind ObjectEnd");
+        }
+        self.pbrt.reading.budget.take::<Use>(1, &self.at.file)?;
+        let matrices = self.pbrt.state.matrices;
+        self.pbrt.uses.push(Use { object, matrices, at: self.at.clone() });
+        Ok(())
+    }
+
+    fn world_begin(&mut self) -> Result<(), FormatError> {
+        if std::mem::replace(&mut self.pbrt.in_world, true) {
+            return self.error("the world has begun already: take this out");
+        }
+        let state = &mut self.pbrt.state;
+        (state.matrices, state.is_active) = ([DMat4::IDENTITY; 2], [true; 2]);
+        self.pbrt.systems.insert("world".to_owned(), state.matrices);
+        Ok(())
+    }
+
+    fn attribute(&mut self) -> Result<(), FormatError> {
+        let (target, at) = self.lexer.text("what the attribute is for")?;
+        let list = parameters::read(self.lexer, self.pbrt.state.space, &mut self.pbrt.reading.budget)?;
+        let Some(index) = TARGETS.iter().position(|known| *known == target) else {
+            let at = self.lexer.place(at);
+            return Err(SceneError::unknown("target of attributes", &target, TARGETS, &at).into());
+        };
+        let all = Arc::make_mut(&mut self.pbrt.state.attributes[index]);
+        // What comes later is minded first.
+        all.splice(0..0, list);
+        Ok(())
+    }
+
+    fn option(&mut self, word: &[u8]) -> Result<(), FormatError> {
+        match word {
+            b"ColorSpace" => {
+                let (name, at) = self.lexer.text("the name of a colour space")?;
+                let Some((_, space)) = SPACES.iter().find(|(known, _)| *known == name.to_lowercase()) else {
+                    let names = SPACES.iter().map(|(name, _)| *name);
+                    return Err(
+                        SceneError::unknown("colour space", &name, names, &self.lexer.place(at)).into()
+                    );
+                };
+                self.pbrt.state.space = *space;
+            }
+            b"Option" => {
+                // How pbrt itself runs; some have the type before the name, as parameters do.
+                let (name, _) = self.lexer.text("the name of an option")?;
+                self.lexer.need("the value of an option")?;
+                let what = format!("the option '{name}' is pbrt's own and does nothing here");
+                let at = self.at.clone();
+                self.pbrt.oddities.note(&what, || at);
+            }
+            _ => {
+                let what = name_of(word).to_lowercase();
+                let entity = self.entity(&what, "")?;
+                if self.pbrt.in_world {
+                    let message = format!("'{}' belongs before WorldBegin: move it there", name_of(word));
+                    return self.error(message);
+                }
+                self.pbrt.option(&what, entity);
+            }
+        }
+        Ok(())
+    }
+
+    fn surface(&mut self, word: &[u8]) -> Result<(), FormatError> {
+        match word {
+            b"Material" => {
+                let entity = self.entity("material", "material")?;
+                self.pbrt.materials.push(entity);
+                self.pbrt.state.material = MaterialKey::Index(self.pbrt.materials.len() - 1);
+            }
+            b"NamedMaterial" => {
+                let (name, _) = self.lexer.text("the name of a material")?;
+                self.pbrt.state.material = MaterialKey::Named(name.into());
+            }
+            b"MakeNamedMaterial" => {
+                let (name, _) = self.lexer.text("the name of a material")?;
+                let parameters = self.parameters(format!("the material '{name}'"), "material")?;
+                let kind = match parameters.text("type")? {
+                    Some(kind) => kind.to_owned(),
+                    None => {
+                        let what = "type (of the material, as in \"string type\" \"diffuse\")".to_owned();
+                        return Err(SceneError::Missing { what, at: self.at.clone() }.into());
+                    }
+                };
+                if let Some((_, first)) = self.pbrt.named_materials.get(name.as_str()) {
+                    let what = format!("there is a material of this name at {first}: the later one holds");
+                    let at = self.at.clone();
+                    self.pbrt.oddities.note(&what, || at);
+                }
+                let index = self.pbrt.materials.len();
+                self.pbrt.materials.push(Entity { kind, parameters, at: self.at.clone() });
+                self.pbrt.named_materials.insert(name.into(), (index, self.at.clone()));
+            }
+            _ => self.texture()?,
+        }
+        Ok(())
+    }
+
+    fn texture(&mut self) -> Result<(), FormatError> {
+        let (name, _) = self.lexer.text("the name of a texture")?;
+        let (of, at) = self.lexer.text("what the texture is of: \"spectrum\" or \"float\"")?;
+        let entity = self.entity("texture", "texture")?;
+        let is_number = match of.as_str() {
+            "float" => true,
+            "spectrum" | "color" => false,
+            other => {
+                let at = self.lexer.place(at);
+                return Err(SceneError::unknown("type of textures", other, ["float", "spectrum"], &at).into());
+            }
+        };
+        self.pbrt.textures.define(name, is_number, entity, self.pbrt.state.matrices[0]);
+        Ok(())
+    }
+
+    fn medium(&mut self, word: &[u8]) -> Result<(), FormatError> {
+        if word == b"MakeNamedMedium" {
+            let (name, _) = self.lexer.text("the name of a medium")?;
+            let parameters = self.parameters(format!("the medium '{name}'"), "medium")?;
+            return self.pbrt.add_medium(name, &parameters);
+        }
+        let (inside, _) = self.lexer.text("the name of the medium inside")?;
+        let outside = match self.lexer.peek()? {
+            Some((Token::Quoted(_), _)) => self.lexer.text("the name of the medium outside")?.0,
+            _ => inside.clone(),
+        };
+        self.pbrt.state.media = [inside.into(), outside.into()];
+        Ok(())
+    }
+
+    fn light(&mut self, word: &[u8]) -> Result<(), FormatError> {
+        if word == b"AreaLightSource" {
+            let entity = self.entity("area light", "light")?;
+            self.pbrt.area_lights.push(entity);
+            self.pbrt.state.area_light = Some(self.pbrt.area_lights.len() - 1);
+            return Ok(());
+        }
+        let entity = self.entity("light", "light")?;
+        let matrices = self.pbrt.state.matrices;
+        if matrices[0] != matrices[1] {
+            let at = self.at.clone();
+            self.pbrt.oddities.note("lights do not move: this one stays where it is at the start", || at);
+        }
+        self.pbrt.lights.push((entity, matrices[0]));
+        Ok(())
+    }
+
+    fn shape(&mut self) -> Result<(), FormatError> {
+        let entity = self.entity("shape", "shape")?;
+        if !self.pbrt.in_world {
+            return self.error("'Shape' belongs behind WorldBegin: move it there");
+        }
+        let made = self.pbrt.shape(&entity)?;
+        entity.parameters.tell_unused(&mut self.pbrt.oddities);
+        match &mut self.pbrt.definition {
+            Some((_, pieces)) => pieces.extend(made),
+            None => self.pbrt.pieces.extend(made),
+        }
+        Ok(())
+    }
+}

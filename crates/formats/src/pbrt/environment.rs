@@ -1,0 +1,196 @@
+//! `infinite`: light from all around. Theirs lies on a square by an equal-area mapping, ours by longitude and latitude.
+
+use super::inks::Ink;
+use super::lights::picture_name;
+use super::parameters::ParameterList;
+use super::reader::Pbrt;
+use crate::FormatError;
+use crate::reading::Texels;
+use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};
+use bilux_math::{DMat4, DVec3, Rgb};
+use bilux_scene::{Spec, Texture, Value};
+use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, PI, TAU};
+use std::sync::Arc;
+
+pub(super) fn infinite(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+    matrix: &DMat4,
+) -> Result<Option<Spec>, FormatError> {
+    let file = picture_name(list)?;
+    if list.has("portal") {
+        let what = "light comes in from all sides, and not through a portal alone";
+        pbrt.oddities.note(what, || list.place("portal"));
+    }
+    for name in ["samples", "nsamples"] {
+        list.has(name);
+    }
+    let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0);
+    let Some((name, is_old)) = file else {
+        let radiance = pbrt.shine(list, "L")?;
+        // Of an even sky the illuminance is π times its luminance.
+        let radiance = illuminance.map_or(radiance, |lux| radiance * (lux * FRAC_1_PI as f32));
+        return Ok(Some(Spec::new("", "environment").with("radiance", radiance)));
+    };
+    let at = list.place(if is_old { "mapname" } else { "filename" });
+    if list.has("L") && !is_old {
+        let message = "'L' and 'filename' both say what this light gives: take one of them out";
+        return Err(FormatError::malformed(message, list.place("L")));
+    }
+    let picture = pbrt.file(&name, Texels::Colours, &at)?;
+    let is_square = picture.width() == picture.height();
+    if !is_square && !is_old {
+        let what = "the picture of an infinite light is no square: taken as one by longitude and latitude";
+        pbrt.oddities.note(what, || at.clone());
+    }
+    let mapping = if is_old || !is_square { Mapping::Latitudes } else { Mapping::Square };
+    let mut scale = if is_old { pbrt.shine(list, "L")? } else { pbrt.light_scale(list)? };
+    if let Some(lux) = illuminance {
+        scale = scale * (lux / illuminance_of(&picture, mapping).max(f32::MIN_POSITIVE));
+    }
+    let turned = pbrt.by_longitude(&name, &picture, mapping, matrix, list)?;
+    let value = pbrt.value(Ink::Picture(Arc::new(turned)));
+    let spec = Spec::new("", "environment").with("radiance", value);
+    Ok(Some(spec.with("scale", Value::from(scale))))
+}
+
+/// How directions lie in a picture; z is up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mapping {
+    /// The upper half of the sphere is the inner square, on its tip, and the lower half the four corners. [Clarberg 2008]
+    Square,
+    /// By longitude and latitude, as version 3 has it.
+    Latitudes,
+}
+
+impl Mapping {
+    /// Where a unit direction lies, 0..=1 from the left and from the top.
+    fn place(self, d: DVec3) -> [f64; 2] {
+        if self == Mapping::Latitudes {
+            let u = atan2_f64(d.y, d.x) / TAU;
+            return [u - u.floor(), acos_f64(d.z.clamp(-1.0, 1.0)) / PI];
+        }
+        let (x, y) = (d.x.abs(), d.y.abs());
+        let r = (1.0 - d.z.abs()).max(0.0).sqrt();
+        let phi = if x == 0.0 && y == 0.0 { 0.0 } else { atan2_f64(y, x) * FRAC_2_PI };
+        let (v, u) = (phi * r, r - phi * r);
+        let (u, v) = if d.z < 0.0 { (1.0 - v, 1.0 - u) } else { (u, v) };
+        [(u.copysign(d.x) + 1.0) * 0.5, (v.copysign(d.y) + 1.0) * 0.5]
+    }
+}
+
+/// What a level surface gets from above.
+fn illuminance_of(picture: &Texture, mapping: Mapping) -> f32 {
+    const SIDE: u32 = 256;
+    let mut sum = 0.0;
+    for (i, j) in (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j))) {
+        let z = (f64::from(i) + 0.5) / f64::from(SIDE);
+        let (sin, cos) = sin_cos_f64(TAU * (f64::from(j) + 0.5) / f64::from(SIDE));
+        let r = (1.0 - z * z).sqrt();
+        sum += f64::from(looked_up(picture, mapping, DVec3::new(r * cos, r * sin, z)).luminance()) * z;
+    }
+    (sum * TAU / f64::from(SIDE * SIDE)) as f32
+}
+
+/// The blend of the four texels around a direction.
+fn looked_up(picture: &Texture, mapping: Mapping, d: DVec3) -> Rgb {
+    let (width, height) = (picture.width() as i64, picture.height() as i64);
+    let [u, v] = mapping.place(d);
+    let (x, y) = (u * width as f64 - 0.5, v * height as f64 - 0.5);
+    let (x0, y0) = (x.floor(), y.floor());
+    let (fx, fy) = ((x - x0) as f32, (y - y0) as f32);
+    let texel = |dx: i64, dy: i64| {
+        let [x, y] = wrapped(mapping, [x0 as i64 + dx, y0 as i64 + dy], [width, height]);
+        picture.texel(x, y)
+    };
+    texel(0, 0).lerp(texel(1, 0), fx).lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
+}
+
+/// The texel that lies beyond an edge, at most one off.
+fn wrapped(mapping: Mapping, [x, y]: [i64; 2], [width, height]: [i64; 2]) -> [usize; 2] {
+    if mapping == Mapping::Latitudes {
+        return [x.rem_euclid(width) as usize, y.clamp(0, height - 1) as usize];
+    }
+    // Beyond an edge of the square lies the same edge, the other way round.
+    let (mut x, mut y) = (x, y);
+    if x < 0 || x >= width {
+        (x, y) = (x.clamp(0, width - 1), height - 1 - y);
+    }
+    if y < 0 || y >= height {
+        (x, y) = (width - 1 - x, y.clamp(0, height - 1));
+    }
+    [x.clamp(0, width - 1) as usize, y.clamp(0, height - 1) as usize]
+}
+
+impl Pbrt<'_, '_> {
+    /// The picture as ours lies, its middle towards -z and +y above, in the world.
+    fn by_longitude(
+        &mut self,
+        name: &str,
+        picture: &Texture,
+        mapping: Mapping,
+        matrix: &DMat4,
+        list: &ParameterList,
+    ) -> Result<Texture, FormatError> {
+        /// Rows at most.
+        const MOST: usize = 4096;
+        if !picture.image.is_whole() {
+            return Ok(picture.clone());
+        }
+        let to_light = matrix.inverse();
+        if !to_light.is_finite() {
+            return Err(FormatError::malformed("this light is scaled to nothing", list.at.clone()));
+        }
+        let height = picture.height().clamp(16, MOST);
+        let width = 2 * height;
+        let bytes = (width * height * size_of::<Rgb>()) as u64;
+        self.reading.budget.take_bytes(bytes, name)?;
+        let mut texels = Vec::with_capacity(width * height);
+        for row in 0..height {
+            let (r, y) = sin_cos_f64(PI * (row as f64 + 0.5) / height as f64);
+            for column in 0..width {
+                let (sin, cos) = sin_cos_f64(TAU * ((column as f64 + 0.5) / width as f64 - 0.5));
+                let direction = DVec3::new(r * sin, y, -r * cos);
+                let d = to_light.transform_vector3(direction).try_normalize().unwrap_or(DVec3::Z);
+                texels.push(looked_up(picture, mapping, d));
+            }
+        }
+        self.reading.budget.give_back(bytes);
+        self.picture(name, [width, height], texels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_square_is_of_equal_area_and_its_middle_is_up() {
+        let middle = Mapping::Square.place(DVec3::Z);
+        assert_eq!(middle, [0.5, 0.5]);
+        assert_eq!(Mapping::Square.place(DVec3::X), [1.0, 0.5]);
+        // Directions spread evenly over the sphere fill equal parts of the square alike.
+        let mut counts = [0u32; 16];
+        let (n, m) = (200, 200);
+        for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
+            let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(n);
+            let (sin, cos) = sin_cos_f64(TAU * (f64::from(j) + 0.5) / f64::from(m));
+            let r = (1.0 - z * z).sqrt();
+            let [u, v] = Mapping::Square.place(DVec3::new(r * cos, r * sin, z));
+            assert!((0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v));
+            counts[((v * 4.0) as usize).min(3) * 4 + ((u * 4.0) as usize).min(3)] += 1;
+        }
+        let mean = (n * m) as f64 / 16.0;
+        assert!(counts.iter().all(|&c| (f64::from(c) / mean - 1.0).abs() < 0.03), "{counts:?}");
+    }
+
+    #[test]
+    fn beyond_an_edge_of_the_square_lies_what_is_beside_it_on_the_sphere() {
+        for (d, beyond) in [(DVec3::new(1.0, 0.4, -1e-9), [8, 2]), (DVec3::new(-0.3, -1.0, -1e-9), [2, -1])] {
+            let _ = d;
+            let [x, y] = wrapped(Mapping::Square, beyond, [8, 8]);
+            // The neighbour across the edge mirrors the other coordinate.
+            assert!(x == 7 && y == 5 || x == 5 && y == 0, "{beyond:?} {x} {y}");
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! When all files are read: names are looked up, and everything is put into the scene.
+
+use super::inks::Ink;
+use super::lights::Glow;
+use super::reader::{Alpha, Dress, Form, Pbrt, Piece, Use};
+use super::state::Matrices;
+use crate::FormatError;
+use bilux_math::motion::{Motion, MotionKey};
+use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
+use bilux_scene::{MATERIALS, Mesh, Object, SceneError, Span, Spec, Value};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Meshes that stand in the scene several times are kept once where copies would have more triangles than this.
+const MOST_COPIED: usize = 1 << 18;
+
+/// What is made once for all pieces that share it.
+#[derive(Default)]
+pub(super) struct Dressed {
+    /// By what is on the surface, and the bits of a radiance that depends on the shape.
+    materials: HashMap<(Dress, [u32; 3]), Option<usize>>,
+    glows: HashMap<usize, Glow>,
+    /// Meshes, by where they lie, and the same seen from their front by their corners.
+    fronted: HashMap<*const Mesh, [Arc<Mesh>; 2]>,
+}
+
+impl Pbrt<'_, '_> {
+    pub(super) fn finish(&mut self) -> Result<(), FormatError> {
+        self.settings()?;
+        self.place_camera()?;
+        self.place_lights()?;
+        let mut dressed = Dressed::default();
+        for piece in std::mem::take(&mut self.pieces) {
+            self.place(&piece, None, &mut dressed)?;
+        }
+        for used in std::mem::take(&mut self.uses) {
+            let Some(pieces) = self.definitions.get(&used.object).cloned() else {
+                let names = self.definitions.keys().map(String::as_str);
+                return Err(SceneError::unknown("object", &used.object, names, &used.at).into());
+            };
+            for piece in &*pieces {
+                self.place(piece, Some(&used), &mut dressed)?;
+            }
+        }
+        self.share_trees();
+        self.open_the_shutter();
+        if self.scene.objects.is_empty() && self.scene.lights.is_empty() && self.in_world {
+            self.oddities.note("there is nothing to see in this file", Span::default);
+        }
+        Ok(())
+    }
+
+    fn place(&mut self, piece: &Piece, used: Option<&Use>, dressed: &mut Dressed) -> Result<(), FormatError> {
+        let matrices = match used {
+            Some(used) => [0, 1].map(|i| used.matrices[i] * piece.matrices[i]),
+            None => piece.matrices,
+        };
+        let (at, name) = match used {
+            Some(used) => (&used.at, used.object.as_str()),
+            None => (&piece.at, ""),
+        };
+        let glow = self.glow_of(piece, used, dressed)?;
+        if self.place_lamp(piece, glow.as_ref(), &matrices)? {
+            return Ok(());
+        }
+        let (mesh, matrices) = match &piece.form {
+            Form::Mesh(mesh) => (mesh.clone(), matrices),
+            Form::Sphere { radius, reversed } => {
+                let grown = DMat4::from_scale(DVec3::splat(f64::from(*radius)));
+                (self.unit_sphere(*reversed), matrices.map(|m| m * grown))
+            }
+        };
+        let radiance =
+            glow.as_ref().map(|glow| glow.radiance_of(area(&mesh, &matrices[0]) / f64::from(piece.shapes)));
+        let Some(material) = self.dressed_material(piece, glow.as_ref(), radiance, dressed)? else {
+            return Ok(());
+        };
+        let Some(motion) = self.motion(&matrices, at) else { return Ok(()) };
+        let mesh = if glow.is_some() {
+            let both = dressed.fronted.entry(Arc::as_ptr(&mesh));
+            both.or_insert_with(|| [mesh.clone(), fronted(&mesh)])[1].clone()
+        } else {
+            mesh
+        };
+        let bytes = size_of::<[Object; 2]>() + name.len();
+        self.reading.budget.take_bytes(bytes as u64, &at.file)?;
+        self.scene.objects.push(Object { motion, ..Object::new(name, mesh, material) });
+        Ok(())
+    }
+
+    /// What makes a piece give light; in objects nothing does.
+    fn glow_of(
+        &mut self,
+        piece: &Piece,
+        used: Option<&Use>,
+        dressed: &mut Dressed,
+    ) -> Result<Option<Glow>, FormatError> {
+        let Some(index) = piece.dress.area_light else { return Ok(None) };
+        if used.is_some() {
+            self.oddities.note("surfaces of objects give no light, as in pbrt", || piece.at.clone());
+            return Ok(None);
+        }
+        if let Some(glow) = dressed.glows.get(&index) {
+            return Ok(Some(glow.clone()));
+        }
+        let entity = self.area_lights[index].clone();
+        let glow = self.glow(&entity)?;
+        dressed.glows.insert(index, glow.clone());
+        Ok(Some(glow))
+    }
+
+    /// A sphere that gives light outwards and reflects nothing is a lamp, round at every size.
+    fn place_lamp(
+        &mut self,
+        piece: &Piece,
+        glow: Option<&Glow>,
+        matrices: &Matrices,
+    ) -> Result<bool, FormatError> {
+        let (Form::Sphere { radius, reversed: false }, Some(glow)) = (&piece.form, glow) else {
+            return Ok(false);
+        };
+        let Some(scale) = even_scale(&matrices[0]).filter(|_| matrices[0] == matrices[1]) else {
+            return Ok(false);
+        };
+        let radius = f64::from(*radius) * scale;
+        let area = 4.0 * std::f64::consts::PI * radius * radius;
+        let Ink::Colour(radiance) = glow.radiance_of(area) else { return Ok(false) };
+        if glow.both_sides || piece.dress.alpha != Alpha::Whole || radiance.is_black() {
+            return Ok(false);
+        }
+        let material = self.base_material(piece)?;
+        let is_black = material.is_some_and(|spec| {
+            let reflectance = spec.parameters.find("reflectance").map(|(value, _)| value.clone());
+            spec.kind == "diffuse" && reflectance == Some(Rgb::BLACK.into())
+        });
+        if !is_black || !(radius * radius).is_finite() || !((radius * radius) as f32).is_normal() {
+            return Ok(false);
+        }
+        let position = matrices[0].w_axis.truncate().as_vec3();
+        let spec = Spec::new("", "sphere").with("position", position).with("radius", radius as f32);
+        let spec = spec.with("radiance", radiance.clamp(0.0, 1e12));
+        self.scene.lights.push(Spec { span: piece.at.clone(), ..spec });
+        Ok(true)
+    }
+
+    /// The material alone, made once.
+    fn base_material(&mut self, piece: &Piece) -> Result<Option<Spec>, FormatError> {
+        if let Some(known) = self.made_materials.get(&piece.dress.material) {
+            return Ok(known.clone());
+        }
+        let made = self.material(&piece.dress.material, &piece.at)?;
+        self.made_materials.insert(piece.dress.material.clone(), made.clone());
+        Ok(made)
+    }
+
+    /// The index of what a piece is made of, with all that is on it; none for what is not there.
+    fn dressed_material(
+        &mut self,
+        piece: &Piece,
+        glow: Option<&Glow>,
+        radiance: Option<Ink>,
+        dressed: &mut Dressed,
+    ) -> Result<Option<usize>, FormatError> {
+        let dress = &piece.dress;
+        let bits = match &radiance {
+            Some(Ink::Colour(colour)) => colour.to_array().map(f32::to_bits),
+            Some(Ink::Picture(picture)) => picture.factor.to_array().map(f32::to_bits),
+            None => [0; 3],
+        };
+        // An object's light is none, so that it is another material there.
+        let key = (Dress { area_light: glow.and(dress.area_light), ..dress.clone() }, bits);
+        if let Some(known) = dressed.materials.get(&key) {
+            return Ok(*known);
+        }
+        let made = self.dress(piece, glow, radiance)?;
+        let index = made.map(|spec| self.scene.add_material(spec));
+        dressed.materials.insert(key, index);
+        Ok(index)
+    }
+
+    fn dress(
+        &mut self,
+        piece: &Piece,
+        glow: Option<&Glow>,
+        radiance: Option<Ink>,
+    ) -> Result<Option<Spec>, FormatError> {
+        let [inside, outside] = &piece.dress.media;
+        let absorption = self.absorption_of(inside, &piece.at)?;
+        if !self.absorption_of(outside, &piece.at)?.is_black() {
+            let what = "what a medium on the outside of shapes absorbs is not shown";
+            self.oddities.note(what, || piece.at.clone());
+        }
+        let base = self.base_material(piece)?;
+        if base.is_none() && radiance.is_some() {
+            self.oddities.note("an interface gives no light", || piece.at.clone());
+        }
+        let mut spec = match base {
+            Some(spec) => spec,
+            None if absorption.is_black() => return Ok(None),
+            None => Spec::new("interface", "dielectric").with("eta", 1.0f32),
+        };
+        if !absorption.is_black() {
+            if spec.kind == "dielectric" && spec.parameters.find("thin").is_none() {
+                spec.parameters.set("absorption", absorption.clamp(0.0, 1e6));
+            } else {
+                let what = "what is absorbed inside is shown in dielectrics alone";
+                self.oddities.note(what, || piece.at.clone());
+            }
+        }
+        if let (Some(glow), Some(radiance)) = (glow, radiance)
+            && spec.name != "interface"
+        {
+            spec = self.glowing(spec, glow, radiance, piece);
+        }
+        self.cut_out(spec, piece)
+    }
+
+    /// A material that gives light.
+    fn glowing(&mut self, spec: Spec, glow: &Glow, radiance: Ink, piece: &Piece) -> Spec {
+        let row = MATERIALS.iter().find(|row| row.entry.name == spec.kind);
+        let can = row.is_some_and(|row| row.entry.parameters.iter().any(|p| p.name == "emission"));
+        let mut spec = if can {
+            spec
+        } else {
+            let what = format!("a {} that gives light reflects none", spec.kind);
+            self.oddities.note(&what, || piece.at.clone());
+            let dark = Spec::new(&spec.name, "diffuse").with("reflectance", 0.0f32);
+            Spec { span: spec.span, ..dark }
+        };
+        match radiance {
+            Ink::Colour(colour) => spec.parameters.set("emission", colour.clamp(0.0, 1e12)),
+            Ink::Picture(picture) => {
+                let scale = picture.factor;
+                let plain = bilux_scene::Texture { factor: Rgb::WHITE, ..(*picture).clone() };
+                let value = self.value(Ink::Picture(Arc::new(plain)));
+                spec.parameters.set("emission", value);
+                spec.parameters.set("emission_scale", scale.clamp(0.0, 1e12));
+            }
+        }
+        let sides = if glow.both_sides { "both" } else { "front" };
+        spec.parameters.set("emission_sides", sides);
+        spec
+    }
+
+    /// A material with holes, where alpha says so.
+    fn cut_out(&mut self, spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
+        let share = match &piece.dress.alpha {
+            Alpha::Whole => return Ok(Some(spec)),
+            Alpha::Even(bits) => {
+                let alpha = f32::from_bits(*bits).clamp(0.0, 1.0);
+                if alpha == 0.0 && spec.parameters.find("emission").is_some() {
+                    let what = "a light that is not to be seen is seen";
+                    self.oddities.note(what, || piece.at.clone());
+                    return Ok(Some(spec));
+                }
+                if alpha == 0.0 {
+                    return Ok(None);
+                }
+                Value::from(alpha)
+            }
+            Alpha::Texture(name, line, column) => {
+                let at = Span { file: piece.at.file.clone(), line: *line, column: *column };
+                let ink = self.texture(name, super::inks::Meaning::Number, &at)?;
+                self.number_value(ink, [0.0, 1.0])
+            }
+        };
+        if spec.parameters.find("emission").is_some() {
+            self.oddities.note("alpha of what gives light is not shown", || piece.at.clone());
+            return Ok(Some(spec));
+        }
+        let clear = Spec::new("clear", "dielectric").with("eta", 1.0f32).with("thin", true);
+        Ok(Some(self.mixed(clear, spec, share, "alpha")))
+    }
+
+    /// From two matrices to a motion; none, with a warning, for what is scaled to nothing.
+    fn motion(&mut self, matrices: &Matrices, at: &Span) -> Option<Motion> {
+        let Some(start) = Transform::from_matrix(matrices[0]) else {
+            self.oddities.note("what is scaled to nothing is not drawn", || at.clone());
+            return None;
+        };
+        if matrices[0] == matrices[1] {
+            return Some(Motion::still(start));
+        }
+        let key = |i: usize| {
+            let (scale, rotation, translation) = matrices[i].to_scale_rotation_translation();
+            let again = DMat4::from_scale_rotation_translation(scale, rotation, translation);
+            let size = matrices[i].to_cols_array().iter().fold(0f64, |m, x| m.max(x.abs()));
+            again.abs_diff_eq(matrices[i], 1e-4 * size).then(|| MotionKey {
+                time_seconds: self.options.times[i] as f32,
+                translation: translation.as_vec3(),
+                rotation: rotation.as_quat(),
+                scale: scale.as_vec3(),
+            })
+        };
+        let motion = key(0).zip(key(1)).and_then(|(a, b)| Motion::from_keys(vec![a, b]));
+        if motion.is_none() {
+            let what = "a motion that is none of shifts, turns and scales is not shown: its start is";
+            self.oddities.note(what, || at.clone());
+        }
+        Some(motion.unwrap_or(Motion::still(start)))
+    }
+
+    /// Keeps one tree for meshes that stand in the scene often.
+    fn share_trees(&mut self) {
+        let mut uses: HashMap<*const Mesh, usize> = HashMap::new();
+        for object in &self.scene.objects {
+            *uses.entry(Arc::as_ptr(&object.mesh)).or_default() += 1;
+        }
+        for object in &mut self.scene.objects {
+            let copies = uses[&Arc::as_ptr(&object.mesh)] - 1;
+            object.instanced = copies * object.mesh.triangles.len() > MOST_COPIED;
+        }
+    }
+
+    /// Light is let in as long as the camera says, where anything moves.
+    fn open_the_shutter(&mut self) {
+        let moves = self.scene.objects.iter().any(|object| !object.motion.is_still())
+            || self.scene.cameras.iter().any(|camera| !camera.keyframes.is_empty());
+        if moves {
+            let [open, close] = self.options.shutter;
+            self.scene.settings.set("time", open);
+            self.scene.settings.set("shutter", (close - open).max(0.0));
+        }
+    }
+}
+
+/// By how much a matrix scales, if that is the same in all directions.
+fn even_scale(matrix: &DMat4) -> Option<f64> {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate());
+    let scale = x.length();
+    let off = [
+        x.dot(y),
+        y.dot(z),
+        z.dot(x),
+        x.length_squared() - y.length_squared(),
+        x.length_squared() - z.length_squared(),
+    ];
+    (scale > 0.0 && off.iter().all(|o| o.abs() < 1e-5 * scale * scale)).then_some(scale)
+}
+
+/// The area of a mesh in the world.
+fn area(mesh: &Mesh, matrix: &DMat4) -> f64 {
+    let corner = |i: u32| matrix.transform_point3(mesh.positions[i as usize].as_dvec3());
+    let one = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(corner);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    mesh.triangles.iter().map(one).filter(|area| area.is_finite()).sum()
+}
+
+/// The same with corners that run counter-clockwise where its normals point to whoever looks, since that is the side from
+/// which it gives light.
+fn fronted(mesh: &Arc<Mesh>) -> Arc<Mesh> {
+    if mesh.normals.is_empty() {
+        return mesh.clone();
+    }
+    let turned = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        let normal: Vec3 = t.iter().map(|i| mesh.normals[*i as usize]).sum();
+        (b - a).cross(c - a).dot(normal) < 0.0
+    };
+    if !mesh.triangles.iter().any(turned) {
+        return mesh.clone();
+    }
+    let mut front = (**mesh).clone();
+    for t in &mut front.triangles {
+        if turned(t) {
+            t.swap(1, 2);
+        }
+    }
+    Arc::new(front)
+}

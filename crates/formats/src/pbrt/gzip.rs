@@ -1,0 +1,31 @@
+//! Files that are packed, as `.gz` beside scenes often are.
+
+use crate::FormatError;
+use crate::reading::Reading;
+use bilux_scene::Span;
+use flate2::read::MultiGzDecoder;
+use std::io::Read;
+use std::path::Path;
+
+/// The bytes as they are, or unpacked where they begin as packed ones do, within what memory is left. They count as held
+/// until [`Reading::release`].
+pub(super) fn plain(
+    bytes: Vec<u8>,
+    reading: &mut Reading,
+    path: &Path,
+    at: &Span,
+) -> Result<Vec<u8>, FormatError> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok(bytes);
+    }
+    let name = path.display().to_string();
+    let limit = reading.budget.left();
+    let mut unpacked = Vec::new();
+    let mut decoder = MultiGzDecoder::new(bytes.as_slice()).take(limit.saturating_add(1));
+    decoder.read_to_end(&mut unpacked).map_err(|error| {
+        FormatError::malformed(format!("'{name}' cannot be unpacked: {error}; pack it again"), at.clone())
+    })?;
+    reading.budget.take_bytes(unpacked.len() as u64, &name)?;
+    reading.release(bytes);
+    Ok(unpacked)
+}

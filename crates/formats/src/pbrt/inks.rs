@@ -1,0 +1,314 @@
+//! Colours and numbers of surfaces: constants or pictures.
+
+use super::colours::ColourSpace;
+use super::parameters::{Kind, Parameter, ParameterList, Values};
+use super::reader::Pbrt;
+use super::spectra::{self, Named, Spectrum};
+use crate::FormatError;
+use bilux_math::{Rgb, Vec2};
+use bilux_scene::texture::{Filter, Image, Texels, Wrap};
+use bilux_scene::{SceneError, Texture, Value};
+use std::sync::Arc;
+
+/// What a spectrum is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// What a surface reflects.
+    Surface,
+    /// Numbers of any size.
+    Number,
+    /// What a light shines with: colours as they are, other spectra with a luminance of 1.
+    Light,
+}
+
+/// A constant or a picture.
+#[derive(Clone, Debug)]
+pub(super) enum Ink {
+    Colour(Rgb),
+    Picture(Arc<Texture>),
+}
+
+impl Ink {
+    /// Multiplied by a colour.
+    pub(super) fn scaled(self, by: Rgb) -> Ink {
+        match self {
+            Ink::Colour(colour) => Ink::Colour(colour * by),
+            Ink::Picture(picture) if by == Rgb::WHITE => Ink::Picture(picture),
+            Ink::Picture(picture) => {
+                Ink::Picture(Arc::new(Texture { factor: picture.factor * by, ..(*picture).clone() }))
+            }
+        }
+    }
+
+    /// The constant, or the mean of the picture.
+    pub(super) fn mean(&self) -> Rgb {
+        match self {
+            Ink::Colour(colour) => *colour,
+            Ink::Picture(picture) => {
+                let count = (picture.width() * picture.height()).max(1);
+                let sums = picture
+                    .texels()
+                    .fold([0f64; 3], |sums, texel| std::array::from_fn(|c| sums[c] + f64::from(texel[c])));
+                Rgb::from_array(sums.map(|sum| (sum / count as f64) as f32))
+            }
+        }
+    }
+
+    /// At texture coordinates.
+    pub(super) fn at(&self, uv: Vec2) -> Rgb {
+        match self {
+            Ink::Colour(colour) => *colour,
+            Ink::Picture(picture) => picture.at(uv),
+        }
+    }
+
+    pub(super) fn is_black(&self) -> bool {
+        matches!(self, Ink::Colour(colour) if colour.is_black())
+    }
+}
+
+impl Pbrt<'_, '_> {
+    /// Each texel, or the constant, by a rule.
+    pub(super) fn mapped(&mut self, ink: Ink, rule: impl Fn(Rgb) -> Rgb) -> Result<Ink, FormatError> {
+        match ink {
+            Ink::Colour(colour) => Ok(Ink::Colour(rule(colour))),
+            Ink::Picture(picture) => {
+                let texels = picture.texels().map(rule).collect();
+                let made = self.picture(&picture.name, [picture.width(), picture.height()], texels)?;
+                Ok(Ink::Picture(Arc::new(Texture {
+                    wrap: picture.wrap,
+                    filter: picture.filter,
+                    transform: picture.transform,
+                    ..made
+                })))
+            }
+        }
+    }
+
+    /// A picture of texels in rows, the top one first.
+    pub(super) fn picture(
+        &mut self,
+        name: &str,
+        [width, height]: [usize; 2],
+        colours: Vec<Rgb>,
+    ) -> Result<Texture, FormatError> {
+        let image = Image { width, height, texels: Texels::Floats { colours, alpha: Vec::new() } };
+        self.reading.hold_image(&image, name)?;
+        Ok(Texture::of(name, Arc::new(image), true))
+    }
+
+    /// Two inks as one picture over texture coordinates from 0 to 1.
+    pub(super) fn baked(
+        &mut self,
+        name: &str,
+        parts: &[&Ink],
+        rule: impl Fn(Vec2) -> Rgb,
+    ) -> Result<Ink, FormatError> {
+        /// Sides of what is baked.
+        const LEAST: usize = 256;
+        const MOST: usize = 2048;
+        let side = |of: fn(&Texture) -> usize| {
+            let sides = parts.iter().map(|ink| if let Ink::Picture(p) = ink { of(p) } else { 0 });
+            sides.max().unwrap_or(0).clamp(LEAST, MOST)
+        };
+        let (width, height) = (side(Texture::width), side(Texture::height));
+        self.reading.budget.take_bytes((width * height * size_of::<Rgb>()) as u64, name)?;
+        let at = |i: usize| {
+            let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
+            rule(Vec2::new(x / width as f32, 1.0 - y / height as f32))
+        };
+        let texels = (0..width * height).map(at).collect();
+        self.reading.budget.give_back((width * height * size_of::<Rgb>()) as u64);
+        Ok(Ink::Picture(Arc::new(self.picture(name, [width, height], texels)?)))
+    }
+
+    /// An ink as a parameter of ours.
+    pub(super) fn value(&mut self, ink: Ink) -> Value {
+        match ink {
+            Ink::Colour(colour) => colour.into(),
+            Ink::Picture(picture) => self.texture_value(picture),
+        }
+    }
+
+    /// The same for what is one number.
+    pub(super) fn number_value(&mut self, ink: Ink, [min, max]: [f32; 2]) -> Value {
+        match ink {
+            Ink::Colour(colour) => colour.r.clamp(min, max).into(),
+            Ink::Picture(picture) => self.texture_value(picture),
+        }
+    }
+
+    /// A picture, put into the scene once.
+    fn texture_value(&mut self, picture: Arc<Texture>) -> Value {
+        let known = self.scene.textures.iter().rposition(|known| Arc::ptr_eq(known, &picture));
+        Value::Texture(known.unwrap_or_else(|| {
+            self.scene.textures.push(picture);
+            self.scene.textures.len() - 1
+        }))
+    }
+
+    /// The colour under a name, where one is given that is no texture.
+    pub(super) fn spectrum(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+        meaning: Meaning,
+    ) -> Result<Option<Rgb>, FormatError> {
+        match list.find_where(name, |p| p.kind != Kind::Texture) {
+            Some(parameter) => self.colour_of(parameter, meaning).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// What a parameter of a spectrum looks like.
+    pub(super) fn colour_of(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
+        let at = &parameter.at;
+        let wrong = |wanted: &str| {
+            let message = format!("'{}' has to be {wanted}", parameter.name);
+            Err(FormatError::malformed(message, at.clone()))
+        };
+        let colour = match (parameter.kind, &parameter.values) {
+            (Kind::Rgb | Kind::Xyz, Values::Numbers(c)) if c.len() == 3 => {
+                self.of_space(parameter, Rgb::new(c[0], c[1], c[2]), meaning)
+            }
+            (Kind::Rgb | Kind::Xyz, _) => return wrong("three numbers"),
+            (Kind::Float, Values::Numbers(c)) if c.len() == 1 => Rgb::grey(c[0]),
+            (Kind::Blackbody, Values::Numbers(c)) => match c.as_slice() {
+                [kelvin] => spectra::blackbody(*kelvin),
+                // Version 3 has a factor behind it.
+                [kelvin, factor] => spectra::blackbody(*kelvin) * *factor,
+                _ => return wrong("a temperature in kelvin"),
+            },
+            (Kind::Spectrum, Values::Numbers(c)) => {
+                let spectrum = self.samples(c, parameter)?;
+                of_samples(&spectrum, meaning)
+            }
+            (Kind::Spectrum, Values::Texts(_)) => self.of_name(parameter, meaning)?,
+            _ => return wrong("a colour or a spectrum"),
+        };
+        if !colour.is_finite() || colour.to_array().iter().any(|c| *c < 0.0) {
+            let what = "colours have numbers that are negative or none: these are taken as 0";
+            self.oddities.note(what, || at.clone());
+        }
+        let held = colour.map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 });
+        if meaning == Meaning::Surface && held.max_channel() > 1.0 {
+            self.oddities.note("more is reflected than falls in: taken as all of it", || at.clone());
+        }
+        Ok(if meaning == Meaning::Surface { held.clamp(0.0, 1.0) } else { held })
+    }
+
+    fn of_space(&self, parameter: &Parameter, colour: Rgb, meaning: Meaning) -> Rgb {
+        if parameter.kind == Kind::Xyz {
+            let c = colour.to_array().map(f64::from);
+            return Rgb::from_array(super::colours::from_xyz(c.into()).as_vec3().to_array());
+        }
+        match (parameter.space, meaning) {
+            // What is out of range is told of by the caller.
+            (ColourSpace::Srgb, _) | (_, Meaning::Number) => colour,
+            (space, Meaning::Light) => space.light(colour),
+            (space, Meaning::Surface) => space.surface(colour),
+        }
+    }
+
+    /// A spectrum from pairs of wavelengths and numbers.
+    fn samples(&mut self, numbers: &[f32], parameter: &Parameter) -> Result<Spectrum, FormatError> {
+        let wrong = |message: String| Err(FormatError::malformed(message, parameter.at.clone()));
+        if !numbers.len().is_multiple_of(2) || numbers.is_empty() {
+            let message = format!(
+                "the spectrum '{}' has {} numbers: it takes pairs of a wavelength in nm and a value",
+                parameter.name,
+                numbers.len()
+            );
+            return wrong(message);
+        }
+        let pairs: Vec<[f64; 2]> =
+            numbers.chunks_exact(2).map(|pair| [f64::from(pair[0]), f64::from(pair[1])]).collect();
+        if !pairs.as_flattened().iter().all(|x| x.is_finite()) {
+            return wrong(format!("the spectrum '{}' has numbers that are not finite", parameter.name));
+        }
+        if let Some(pair) = pairs.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
+            let message = format!(
+                "the wavelengths of the spectrum '{}' have to rise, but behind {} comes {}",
+                parameter.name, pair[0][0], pair[1][0]
+            );
+            return wrong(message);
+        }
+        Ok(Spectrum(pairs))
+    }
+
+    /// A spectrum by its name, or from the file of that name.
+    fn of_name(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
+        let Some(name) = parameter.text() else {
+            let message = format!("'{}' has to be one spectrum", parameter.name);
+            return Err(FormatError::malformed(message, parameter.at.clone()));
+        };
+        Ok(match spectra::named(name) {
+            Some(Named::Light(colour)) => colour,
+            Some(Named::Glass(index)) => Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index }),
+            Some(Named::Even(index)) => Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index }),
+            Some(Named::Metal { metal, is_extinction }) => {
+                let [eta, k] = super::metals::indices(metal);
+                if is_extinction { k } else { eta }
+            }
+            None => of_samples(&self.spectrum_file(name, parameter)?, meaning),
+        })
+    }
+
+    /// A spectrum in a file of its own: pairs of numbers.
+    pub(super) fn spectrum_file(
+        &mut self,
+        name: &str,
+        parameter: &Parameter,
+    ) -> Result<Spectrum, FormatError> {
+        let unknown = || {
+            let names: Vec<String> = spectra::names().collect();
+            SceneError::unknown("spectrum or file", name, names.iter().map(String::as_str), &parameter.at)
+        };
+        let path = match self.reading.locate(self.folder.as_deref(), name, &parameter.at) {
+            Ok(path) => path,
+            Err(error @ FormatError::Outside { .. }) => return Err(error),
+            Err(_) => return Err(unknown().into()),
+        };
+        let bytes = self.reading.load(&path)?;
+        let file = path.display().to_string();
+        self.reading.budget.take::<f32>(bytes.len() / 2, &file)?;
+        let mut numbers = Vec::new();
+        for line in bytes.split(|b| matches!(b, b'\n' | b'\r')) {
+            let line = line.split(|b| *b == b'#').next().unwrap_or_default();
+            for word in line.split(|b| b.is_ascii_whitespace()).filter(|word| !word.is_empty()) {
+                match super::lexer::number_of(word) {
+                    Some(number) => numbers.push(number),
+                    None => {
+                        let message = format!("'{name}' is no spectrum: it takes pairs of numbers");
+                        return Err(FormatError::malformed(message, parameter.at.clone()));
+                    }
+                }
+            }
+        }
+        let spectrum = self.samples(&numbers, parameter)?;
+        self.reading.budget.give_back(2 * (bytes.len() / 2 * size_of::<f32>()) as u64);
+        self.reading.release(bytes);
+        Ok(spectrum)
+    }
+
+    /// The spectrum itself, where a parameter has one that is no colour.
+    pub(super) fn whole_spectrum(&mut self, parameter: &Parameter) -> Result<Option<Spectrum>, FormatError> {
+        match (parameter.kind, &parameter.values) {
+            (Kind::Spectrum, Values::Numbers(numbers)) => self.samples(numbers, parameter).map(Some),
+            (Kind::Spectrum, Values::Texts(_)) => match parameter.text() {
+                Some(name) if spectra::named(name).is_none() => self.spectrum_file(name, parameter).map(Some),
+                _ => Ok(None),
+            },
+            _ => Ok(None),
+        }
+    }
+}
+
+fn of_samples(spectrum: &Spectrum, meaning: Meaning) -> Rgb {
+    if meaning == Meaning::Light { spectrum.light() } else { spectrum.surface() }
+}
+
+/// A picture that is looked up without blending and repeated.
+pub(super) fn squares(texture: Texture) -> Texture {
+    Texture { filter: Filter::Nearest, wrap: [Wrap::Repeat; 2], ..texture }
+}

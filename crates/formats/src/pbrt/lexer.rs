@@ -1,0 +1,210 @@
+//! Words, quoted texts and brackets, with their places. `#` begins a comment.
+
+use crate::FormatError;
+use crate::float::parse_f32;
+use crate::text::{Places, quoted};
+use bilux_scene::Span;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// A piece of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Token<'a> {
+    /// A directive, a number, or `true` and `false`.
+    Word(&'a [u8]),
+    /// What stands between quotes.
+    Quoted(Cow<'a, [u8]>),
+    /// `[`
+    Open,
+    /// `]`
+    Close,
+}
+
+/// Walks through a file.
+pub(super) struct Lexer<'a> {
+    bytes: &'a [u8],
+    pos: usize,
+    places: Places<'a>,
+}
+
+const fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | b'\n' | b'\r' | 0x0b | 0x0c)
+}
+
+impl<'a> Lexer<'a> {
+    pub(super) fn new(file: &Arc<str>, bytes: &'a [u8]) -> Lexer<'a> {
+        let mark = b"\xef\xbb\xbf";
+        let pos = if bytes.starts_with(mark) { mark.len() } else { 0 };
+        Lexer { bytes, pos, places: Places::new(file, bytes) }
+    }
+
+    /// Where a byte stands.
+    pub(super) fn place(&self, offset: usize) -> Span {
+        self.places.at(offset)
+    }
+
+    /// Trouble at a byte.
+    pub(super) fn error(&self, message: impl Into<String>, offset: usize) -> FormatError {
+        FormatError::malformed(message, self.place(offset))
+    }
+
+    /// The next piece and where it begins; none at the end of the file.
+    pub(super) fn next(&mut self) -> Result<Option<(Token<'a>, usize)>, FormatError> {
+        self.skip_blanks();
+        let at = self.pos;
+        let Some(&byte) = self.bytes.get(at) else { return Ok(None) };
+        let token = match byte {
+            b'[' | b']' => {
+                self.pos += 1;
+                if byte == b'[' { Token::Open } else { Token::Close }
+            }
+            b'"' => self.quoted(at)?,
+            _ => {
+                let rest = &self.bytes[at..];
+                let ends = |b: &u8| is_blank(*b) || matches!(b, b'"' | b'[' | b']' | b'#');
+                let length = rest.iter().position(ends).unwrap_or(rest.len());
+                self.pos += length;
+                Token::Word(&rest[..length])
+            }
+        };
+        Ok(Some((token, at)))
+    }
+
+    /// The same without passing it.
+    pub(super) fn peek(&mut self) -> Result<Option<(Token<'a>, usize)>, FormatError> {
+        let pos = self.pos;
+        let next = self.next();
+        self.pos = pos;
+        next
+    }
+
+    /// A walk of its own from here on.
+    pub(super) fn ahead(&self) -> Lexer<'a> {
+        Lexer { bytes: self.bytes, pos: self.pos, places: self.places.clone() }
+    }
+
+    /// The next piece, which has to be there; `wanted` says what it is.
+    pub(super) fn need(&mut self, wanted: &str) -> Result<(Token<'a>, usize), FormatError> {
+        let end = self.bytes.len();
+        self.next()?.ok_or_else(|| self.error(format!("the file ends here, where {wanted} should be"), end))
+    }
+
+    /// A text in quotes.
+    pub(super) fn text(&mut self, wanted: &str) -> Result<(String, usize), FormatError> {
+        match self.need(wanted)? {
+            (Token::Quoted(text), at) => Ok((String::from_utf8_lossy(&text).into_owned(), at)),
+            (token, at) => {
+                Err(self.error(format!("here should be {wanted}, in quotes, and not {}", shown(&token)), at))
+            }
+        }
+    }
+
+    /// A number that is one.
+    pub(super) fn number(&mut self, wanted: &str) -> Result<f64, FormatError> {
+        let (token, at) = self.need(wanted)?;
+        let number = match &token {
+            // Matrices and angles take all digits that they have.
+            Token::Word(word) => std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()),
+            _ => None,
+        };
+        let number = number
+            .ok_or_else(|| self.error(format!("here should be {wanted}, and not {}", shown(&token)), at))?;
+        if !number.is_finite() {
+            return Err(self.error(format!("{wanted} has to be finite, and not {number}"), at));
+        }
+        Ok(number)
+    }
+
+    fn skip_blanks(&mut self) {
+        while let Some(&byte) = self.bytes.get(self.pos) {
+            if byte == b'#' {
+                let rest = &self.bytes[self.pos..];
+                self.pos += rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+            } else if is_blank(byte) {
+                self.pos += 1;
+            } else {
+                break;
+            }
+        }
+    }
+
+    fn quoted(&mut self, at: usize) -> Result<Token<'a>, FormatError> {
+        let inside = &self.bytes[at + 1..];
+        let mut escaped = false;
+        let mut length = 0;
+        loop {
+            match inside.get(length) {
+                Some(b'"') => break,
+                Some(b'\\') => (escaped, length) = (true, length + 2),
+                None | Some(b'\n' | b'\r') => {
+                    return Err(self.error("this quote is not closed on its line: put a \" behind it", at));
+                }
+                Some(_) => length += 1,
+            }
+        }
+        self.pos = at + 1 + length + 1;
+        let text = &inside[..length];
+        Ok(Token::Quoted(if escaped { Cow::Owned(unescaped(text)) } else { Cow::Borrowed(text) }))
+    }
+}
+
+fn unescaped(text: &[u8]) -> Vec<u8> {
+    let mut plain = Vec::with_capacity(text.len());
+    let mut bytes = text.iter();
+    while let Some(&byte) = bytes.next() {
+        plain.push(match byte {
+            b'\\' => match bytes.next() {
+                Some(b'n') => b'\n',
+                Some(b't') => b'\t',
+                Some(b'r') => b'\r',
+                Some(&other) => other,
+                None => b'\\',
+            },
+            other => other,
+        });
+    }
+    plain
+}
+
+/// A number of a list: infinite ones and those that are none are kept.
+pub(super) fn number_of(word: &[u8]) -> Option<f32> {
+    parse_f32(word)
+}
+
+/// A piece for a message.
+pub(super) fn shown(token: &Token) -> String {
+    match token {
+        Token::Word(word) => quoted(word),
+        Token::Quoted(text) => format!("\"{}\"", quoted(text).trim_matches('\'')),
+        Token::Open => "'['".to_owned(),
+        Token::Close => "']'".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tokens(text: &str) -> Result<Vec<String>, String> {
+        let file = "f".into();
+        let mut lexer = Lexer::new(&file, text.as_bytes());
+        let mut found = Vec::new();
+        while let Some((token, _)) = lexer.next().map_err(|e| e.to_string())? {
+            found.push(shown(&token));
+        }
+        Ok(found)
+    }
+
+    #[test]
+    fn words_texts_brackets_and_comments() {
+        let found = tokens("Shape\"a b\"[1 2.5]# no\r\n \"q\\\"\" [ ]").unwrap();
+        assert_eq!(found, ["'Shape'", "\"a b\"", "'['", "'1'", "'2.5'", "']'", "\"q\"\"", "'['", "']'"]);
+    }
+
+    #[test]
+    fn open_quotes_are_told_with_their_place() {
+        assert!(tokens("a\n  \"bc\n\"").unwrap_err().starts_with("f:2:3: this quote"));
+        assert!(tokens("\"bc").unwrap_err().starts_with("f:1:1"));
+        assert!(tokens("\"bc\\").unwrap_err().starts_with("f:1:1"));
+    }
+}

@@ -1,0 +1,234 @@
+//! Lights. Colours are radiance as they are written; other spectra shine with a luminance of 1, times their scale.
+//!
+//! Theirs are divided by the luminance that their spectrum has, which for a colour is that of white alone; and their
+//! sensor, as it is by default, counts a luminance of 1 as 1. So `rgb L` is the radiance in Rec. 709 that the picture shows.
+
+use super::environment;
+use super::inks::{Ink, Meaning};
+use super::parameters::ParameterList;
+use super::reader::{Entity, Pbrt};
+use super::state::half_tangent;
+use crate::FormatError;
+use crate::reading::Texels;
+use bilux_math::transcendental::cos_f64;
+use bilux_math::{DMat4, DVec3, Rgb, Vec3};
+use bilux_scene::{SceneError, Spec};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// What a light becomes; none, with a warning, for what is none.
+type Make = fn(&mut Pbrt, &ParameterList, &DMat4) -> Result<Option<Spec>, FormatError>;
+
+/// Every light that is shown.
+const LIGHTS: &[(&str, Make)] = &[
+    ("distant", distant),
+    ("goniometric", goniometric),
+    ("infinite", environment::infinite),
+    ("point", point),
+    ("projection", projection),
+    ("spot", spot),
+];
+
+/// Names of version 3.
+const OLD: &[(&str, Make)] = &[("exinfinite", environment::infinite)];
+
+/// What makes a surface give light.
+#[derive(Clone, Debug)]
+pub(super) struct Glow {
+    pub(super) radiance: Ink,
+    pub(super) both_sides: bool,
+    /// In all, per shape.
+    pub(super) power: Option<f32>,
+}
+
+impl Pbrt<'_, '_> {
+    /// All lights that are not surfaces.
+    pub(super) fn place_lights(&mut self) -> Result<(), FormatError> {
+        for (entity, matrix) in std::mem::take(&mut self.lights) {
+            let list = &entity.parameters;
+            let Some((_, make)) = LIGHTS.iter().chain(OLD).find(|(name, _)| *name == entity.kind) else {
+                let names = LIGHTS.iter().map(|(name, _)| *name);
+                return Err(SceneError::unknown("light", &entity.kind, names, &entity.at).into());
+            };
+            let made = make(self, list, &matrix)?;
+            list.tell_unused(&mut self.oddities);
+            self.scene.lights.extend(made.map(|spec| Spec { span: entity.at.clone(), ..spec }));
+        }
+        Ok(())
+    }
+
+    /// The colour under a name, white where there is none, times the factors of the light and of the film.
+    pub(super) fn shine(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
+        let colour = self.spectrum(list, name, Meaning::Light)?.unwrap_or(Rgb::WHITE);
+        Ok(colour * self.light_scale(list)?)
+    }
+
+    /// The factors of a light and of the film.
+    pub(super) fn light_scale(&mut self, list: &ParameterList) -> Result<Rgb, FormatError> {
+        // A colour in version 3.
+        let is_number = list.find("scale").is_none_or(|p| p.kind == super::parameters::Kind::Float);
+        let scale = if is_number {
+            Rgb::grey(list.finite("scale", 1.0)?)
+        } else {
+            self.spectrum(list, "scale", Meaning::Number)?.unwrap_or(Rgb::WHITE)
+        };
+        Ok(scale.map(|c| c.max(0.0)) * self.options.gain)
+    }
+
+    /// What makes a surface give light.
+    pub(super) fn glow(&mut self, entity: &Entity) -> Result<Glow, FormatError> {
+        let list = &entity.parameters;
+        if entity.kind != "diffuse" && entity.kind != "area" {
+            return Err(SceneError::unknown("area light", &entity.kind, ["diffuse"], &entity.at).into());
+        }
+        let radiance = match list.text("filename")? {
+            Some(name) => {
+                if list.has("L") {
+                    let message = "'L' and 'filename' both say what this light gives: take one of them out";
+                    return Err(FormatError::malformed(message, list.place("L")));
+                }
+                let at = list.place("filename");
+                let picture = self.file(name, Texels::Colours, &at)?;
+                Ink::Picture(Arc::new(picture)).scaled(self.light_scale(list)?)
+            }
+            None => Ink::Colour(self.shine(list, "L")?),
+        };
+        for name in ["samples", "nsamples"] {
+            list.has(name);
+        }
+        let power = list.number("power")?.filter(|power| *power > 0.0);
+        let both_sides = list.flag("twosided", false)?;
+        list.tell_unused(&mut self.oddities);
+        Ok(Glow { radiance, both_sides, power })
+    }
+}
+
+impl Glow {
+    /// The radiance of a shape of this area.
+    pub(super) fn radiance_of(&self, area: f64) -> Ink {
+        let Some(power) = self.power else { return self.radiance.clone() };
+        let mean = match &self.radiance {
+            Ink::Colour(_) => 1.0,
+            picture => f64::from(picture.mean().luminance()),
+        };
+        let sides = if self.both_sides { 2.0 } else { 1.0 };
+        let given = mean * sides * area * PI;
+        let factor = if given > 0.0 { f64::from(power) / given } else { 0.0 };
+        self.radiance.clone().scaled(Rgb::grey(factor as f32))
+    }
+}
+
+/// A point of a light in the world.
+fn from(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
+    Ok(matrix.transform_point3(list.triple("from", Vec3::ZERO)?.as_dvec3()))
+}
+
+/// Where a light looks, in the world.
+fn forward(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
+    let towards = list.triple("to", Vec3::Z)?.as_dvec3() - list.triple("from", Vec3::ZERO)?.as_dvec3();
+    let direction = matrix.transform_vector3(towards).try_normalize();
+    direction.ok_or_else(|| {
+        FormatError::malformed("a light must not look at the point where it stands", list.place("to"))
+    })
+}
+
+/// The factor that brings an intensity to a power, where one is asked for; `all` is that of intensity 1.
+fn power(list: &ParameterList, all: f64) -> Result<f32, FormatError> {
+    let power = list.number("power")?.filter(|power| *power > 0.0);
+    Ok(power.map_or(1.0, |power| if all > 0.0 { (f64::from(power) / all) as f32 } else { 0.0 }))
+}
+
+fn at_point(position: DVec3, intensity: Rgb) -> Spec {
+    Spec::new("", "point").with("position", position.as_vec3()).with("intensity", intensity)
+}
+
+fn cone(position: DVec3, forward: DVec3, intensity: Rgb, [outer, inner]: [f32; 2]) -> Spec {
+    // Far from the origin one metre may be less than what 32 bits tell apart.
+    let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
+    Spec::new("", "spot")
+        .with("position", position.as_vec3())
+        .with("look_at", ahead.as_vec3())
+        .with("intensity", intensity)
+        .with("angle", outer.clamp(0.0, 180.0))
+        .with("inner_angle", inner.clamp(0.0, 180.0))
+}
+
+fn point(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+    let intensity = pbrt.shine(list, "I")? * power(list, 4.0 * PI)?;
+    Ok(Some(at_point(from(list, matrix)?, intensity)))
+}
+
+fn distant(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+    let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0).unwrap_or(1.0);
+    let irradiance = pbrt.shine(list, "L")? * illuminance;
+    // Theirs goes from the one point to the other.
+    let to = list.triple("to", Vec3::Z)?.as_dvec3();
+    let from = list.triple("from", Vec3::ZERO)?.as_dvec3();
+    let direction = matrix.transform_vector3(to - from).try_normalize().ok_or_else(|| {
+        FormatError::malformed(
+            "a light's direction must not be zero: 'from' and 'to' are one point",
+            list.at.clone(),
+        )
+    })?;
+    let spec = Spec::new("", "directional").with("direction", direction.as_vec3());
+    Ok(Some(spec.with("irradiance", irradiance)))
+}
+
+fn spot(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+    let outer = list.finite("coneangle", 30.0)?;
+    let inner = outer - list.finite("conedeltaangle", 5.0)?;
+    let [cos_outer, cos_inner] = [outer, inner].map(|angle| cos_f64(f64::from(angle).to_radians()));
+    // The smooth edge has half of the light of its cosines' range.
+    let all = TAU * (1.0 - 0.5 * (cos_inner + cos_outer));
+    let intensity = pbrt.shine(list, "I")? * power(list, all)?;
+    Ok(Some(cone(from(list, matrix)?, forward(list, matrix)?, intensity, [outer, inner])))
+}
+
+/// The name of a light's picture; version 3 calls it otherwise.
+pub(super) fn picture_name(list: &ParameterList) -> Result<Option<(String, bool)>, FormatError> {
+    for (name, is_old) in [("filename", false), ("mapname", true)] {
+        if let Some(file) = list.text(name)? {
+            return Ok(Some((file.to_owned(), is_old)));
+        }
+    }
+    Ok(None)
+}
+
+/// Equally bright in all directions, by the mean of its picture, which is one over the sphere too.
+fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+    let mean = match picture_name(list)? {
+        None => 1.0,
+        Some((name, _)) => {
+            let what = "a goniometric light shines in all directions alike, by the mean of its picture";
+            pbrt.oddities.note(what, || list.at.clone());
+            let picture = pbrt.file(&name, Texels::Colours, &list.place("filename"))?;
+            let mean = Ink::Picture(Arc::new(picture)).mean();
+            (mean.r + mean.g + mean.b) / 3.0
+        }
+    };
+    let intensity = pbrt.shine(list, "I")? * mean * power(list, 4.0 * PI * f64::from(mean))?;
+    Ok(Some(at_point(from(list, matrix)?, intensity)))
+}
+
+/// A cone as wide as its picture is in the middle, with the picture's mean.
+fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
+    let what = "a projection light shines into a cone, by the mean of its picture";
+    pbrt.oddities.note(what, || list.at.clone());
+    let mean = match picture_name(list)? {
+        Some((name, _)) => {
+            Ink::Picture(Arc::new(pbrt.file(&name, Texels::Colours, &list.place("filename"))?)).mean()
+        }
+        None => {
+            let what = "filename (of the picture that is thrown)".to_owned();
+            return Err(SceneError::Missing { what, at: list.at.clone() }.into());
+        }
+    };
+    let half_angle = 0.5 * list.finite("fov", 90.0)?.clamp(0.1, 179.0);
+    let half = half_tangent(2.0 * half_angle);
+    // A square picture, seen from the point; see [pbrt 2023, 12.2.2].
+    let all = 4.0 * half * half * f64::from(mean.luminance()) / (1.0 + half * half);
+    let intensity = mean * pbrt.light_scale(list)? * power(list, all)?;
+    let position = matrix.transform_point3(DVec3::ZERO);
+    let Some(forward) = matrix.transform_vector3(DVec3::Z).try_normalize() else { return Ok(None) };
+    Ok(Some(cone(position, forward, intensity, [half_angle, half_angle])))
+}

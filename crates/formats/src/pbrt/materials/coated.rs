@@ -1,0 +1,160 @@
+//! Materials below a clear layer.
+
+use super::super::inks::{Ink, Meaning};
+use super::super::media::measured;
+use super::super::metals::straight_and_grazing;
+use super::super::parameters::ParameterList;
+use super::super::reader::Pbrt;
+use super::plain::{CONDUCTOR, INTERFACE, Metal, extinction_of};
+use super::roughness::{Keys, OWN, PRINCIPLED};
+use crate::FormatError;
+use bilux_math::Rgb;
+use bilux_scene::Spec;
+
+/// A matt base below a dielectric boundary: `principled`, with the base that is left when light has gone to and fro between
+/// the two.
+pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let reflectance = pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(Ink::Colour(Rgb::grey(0.5)));
+    let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
+    pbrt.mind_layers(list)?;
+    Ok(Some(pbrt.below_glass(list, reflectance, index, 0.0, false)?))
+}
+
+impl Pbrt<'_, '_> {
+    pub(super) fn below_glass(
+        &mut self,
+        list: &ParameterList,
+        reflectance: Ink,
+        index: f32,
+        roughness: f32,
+        is_old: bool,
+    ) -> Result<Spec, FormatError> {
+        let index = self.held_index(index, list).max(1.0);
+        let turned_back = reflected_inside(index);
+        let base =
+            self.mapped(reflectance, |c| c.map(|c| c * (1.0 - turned_back) / (1.0 - c * turned_back)))?;
+        let mut spec = Spec::new("", "principled").with("specular_ior", index);
+        self.set(&mut spec, "base_color", base, list.place("reflectance"));
+        self.set_roughness(&mut spec, list, OWN, roughness, is_old, PRINCIPLED)?;
+        Ok(spec)
+    }
+
+    /// What lies between layers.
+    fn mind_layers(&mut self, list: &ParameterList) -> Result<(), FormatError> {
+        for name in ["thickness", "maxdepth", "nsamples", "g"] {
+            list.has(name);
+        }
+        if let Some(albedo) = self.ink(list, "albedo", Meaning::Surface)?
+            && !albedo.is_black()
+        {
+            self.oddities.note("a medium between layers is not shown", || list.place("albedo"));
+        }
+        Ok(())
+    }
+}
+
+/// The part of light, coming evenly from below, that a boundary turns back: by reciprocity what it lets through from above,
+/// over the square of its index, is not.
+fn reflected_inside(index: f32) -> f32 {
+    const STEPS: u32 = 512;
+    let step = |i: u32| {
+        let cos = (i as f32 + 0.5) / STEPS as f32;
+        fresnel(cos, index) * 2.0 * cos / STEPS as f32
+    };
+    let above: f32 = (0..STEPS).map(step).sum();
+    1.0 - (1.0 - above) / (index * index)
+}
+
+/// The reflected fraction at a dielectric from outside. [Fresnel 1823]
+fn fresnel(cos: f32, index: f32) -> f32 {
+    let inside = (1.0 - (1.0 - cos * cos) / (index * index)).max(0.0).sqrt();
+    let across = (cos - index * inside) / (cos + index * inside);
+    let along = (index * cos - inside) / (index * cos + inside);
+    0.5 * (across * across + along * along)
+}
+
+/// Metal below a clear coat.
+pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    const COAT: Keys = (["coat_roughness", "", ""], 0.0);
+    let index = pbrt.index(list, "interface.eta")?.unwrap_or(1.5);
+    let index = pbrt.held_index(index, list).max(1.0);
+    pbrt.mind_layers(list)?;
+    let mut spec = Spec::new("", "principled").with("base_metalness", 1.0f32).with("coat_weight", 1.0f32);
+    spec.parameters.set("coat_ior", index);
+    let metal = match pbrt.metal(list, ["conductor.eta", "conductor.k"])? {
+        Metal::Reflectance(Ink::Picture(picture)) => {
+            pbrt.set(&mut spec, "base_color", Ink::Picture(picture), list.place("reflectance"));
+            None
+        }
+        Metal::Reflectance(Ink::Colour(colour)) => Some([Rgb::WHITE, extinction_of(colour)]),
+        Metal::Named(name) => Some(super::super::metals::indices(name)),
+        Metal::Indices(indices) => Some(indices),
+    };
+    if let Some(metal) = metal {
+        let [straight, grazing] = straight_and_grazing(metal, index);
+        // What Schlick's law would be there.
+        const RISE: f32 = 0.4726;
+        let edge = |c: usize| (grazing[c] / (straight[c] + (1.0 - straight[c]) * RISE)).clamp(0.0, 1.0);
+        spec.parameters.set("base_color", straight.clamp(0.0, 1.0));
+        spec.parameters.set("specular_color", Rgb::new(edge(0), edge(1), edge(2)));
+    }
+    pbrt.set_roughness(&mut spec, list, CONDUCTOR, 0.0, false, PRINCIPLED)?;
+    pbrt.set_roughness(&mut spec, list, INTERFACE, 0.0, false, COAT)?;
+    // Coats have no direction.
+    spec.parameters.0.retain(|(key, ..)| !key.is_empty());
+    Ok(Some(spec))
+}
+
+/// What light goes into and comes out of elsewhere, as a matt surface with the colour that it has from afar.
+pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let what = "light that comes out elsewhere than it went in is not shown: the surface is matt, of the same colour";
+    pbrt.oddities.note(what, || list.at.clone());
+    let asymmetry = list.finite("g", 0.0)?.clamp(-0.99, 0.99);
+    for name in ["mfp", "scale"] {
+        list.has(name);
+    }
+    let named = list.text("name")?.and_then(measured);
+    let scattering = pbrt.ink(list, "sigma_s", Meaning::Number)?.map(|ink| ink.mean());
+    let absorption = pbrt.ink(list, "sigma_a", Meaning::Number)?.map(|ink| ink.mean());
+    let from_afar = |[scattering, absorption]: [Rgb; 2], g: f32| {
+        let channel = |c: usize| {
+            let reduced = scattering[c] * (1.0 - g);
+            seen_from_afar(reduced / (reduced + absorption[c]).max(f32::MIN_POSITIVE))
+        };
+        Ink::Colour(Rgb::new(channel(0), channel(1), channel(2)))
+    };
+    let colour = match (named, scattering.zip(absorption), pbrt.ink(list, "reflectance", Meaning::Surface)?) {
+        (Some(known), ..) => from_afar(known, 0.0),
+        (None, Some((scattering, absorption)), _) => from_afar([scattering, absorption], asymmetry),
+        (None, None, Some(reflectance)) => reflectance,
+        _ => from_afar([Rgb::new(2.55, 3.21, 3.77), Rgb::new(0.0011, 0.0024, 0.014)], 0.0),
+    };
+    let index = pbrt.index(list, "eta")?.unwrap_or(1.33);
+    let mut spec = Spec::new("", "principled").with("specular_ior", pbrt.held_index(index, list).max(1.0));
+    pbrt.set(&mut spec, "base_color", colour, list.at.clone());
+    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PRINCIPLED)?;
+    Ok(Some(spec))
+}
+
+/// What a deep medium reflects whose particles reflect so much. [Hulst 1980; Kulla 2017]
+fn seen_from_afar(albedo: f32) -> f32 {
+    let s = (1.0 - albedo.clamp(0.0, 1.0)).sqrt();
+    ((1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_is_turned_back_below_glass_as_tables_say() {
+        // [Egan 1973]: 0.596 for an index of 1.5.
+        assert!((reflected_inside(1.5) - 0.596).abs() < 2e-3, "{}", reflected_inside(1.5));
+        assert!(reflected_inside(1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn from_afar_white_is_white_and_black_black() {
+        assert_eq!((seen_from_afar(1.0), seen_from_afar(0.0)), (1.0, 0.0));
+    }
+}

@@ -1,0 +1,212 @@
+//! Materials; the table is [`MATERIALS`].
+
+mod coated;
+mod plain;
+mod roughness;
+mod version_3;
+
+use super::inks::{Ink, Meaning};
+use super::parameters::{Kind, ParameterList};
+use super::reader::{Entity, Pbrt};
+use super::state::MaterialKey;
+use crate::FormatError;
+use crate::reading::Texels;
+use bilux_scene::materials::{self, Ingredients};
+use bilux_scene::{SceneError, Span, Spec, Value};
+use std::sync::Arc;
+
+/// What a material becomes; none for what is not there.
+type Make = fn(&mut Pbrt, &ParameterList) -> Result<Option<Spec>, FormatError>;
+
+/// Every material, those of version 3 behind.
+const MATERIALS: &[(&str, Make)] = &[
+    ("coatedconductor", coated::conductor),
+    ("coateddiffuse", coated::diffuse),
+    ("conductor", plain::conductor),
+    ("dielectric", plain::dielectric),
+    ("diffuse", plain::diffuse),
+    ("diffusetransmission", plain::diffuse_transmission),
+    ("hair", plain::hair),
+    ("interface", plain::interface),
+    ("measured", plain::measured),
+    ("mix", mix),
+    ("subsurface", coated::subsurface),
+    ("thindielectric", plain::thin_dielectric),
+    ("", plain::interface),
+    ("none", plain::interface),
+    ("matte", version_3::matte),
+    ("plastic", version_3::plastic),
+    ("substrate", version_3::plastic),
+    ("uber", version_3::plastic),
+    ("metal", version_3::metal),
+    ("mirror", version_3::mirror),
+    ("glass", version_3::glass),
+    ("translucent", version_3::translucent),
+    ("disney", version_3::disney),
+    ("kdsubsurface", version_3::plastic),
+    ("fourier", plain::measured),
+];
+
+impl Pbrt<'_, '_> {
+    /// The material of a key, and where it stands; none for what is not there.
+    pub(super) fn material(&mut self, key: &MaterialKey, user: &Span) -> Result<Option<Spec>, FormatError> {
+        let index = match key {
+            MaterialKey::Default => {
+                return Ok(Some(Spec::new("default", "diffuse").with("reflectance", 0.5f32)));
+            }
+            MaterialKey::Index(index) => *index,
+            MaterialKey::Named(name) => match self.named_materials.get(name) {
+                Some((index, _)) => *index,
+                None => {
+                    let names = self.named_materials.keys().map(|name| &**name);
+                    return Err(SceneError::unknown("material", name, names, user).into());
+                }
+            },
+        };
+        let Some(entity) = self.materials.get(index).cloned() else { return Ok(None) };
+        let spec = self.material_of(&entity)?;
+        Ok(spec.map(|mut spec| {
+            if let MaterialKey::Named(name) = key {
+                spec.name = name.to_string();
+            }
+            spec
+        }))
+    }
+
+    fn material_of(&mut self, entity: &Entity) -> Result<Option<Spec>, FormatError> {
+        let Some((_, make)) = MATERIALS.iter().find(|(name, _)| *name == entity.kind) else {
+            let names = MATERIALS.iter().map(|(name, _)| *name).filter(|name| !name.is_empty());
+            return Err(SceneError::unknown("material", &entity.kind, names, &entity.at).into());
+        };
+        let list = &entity.parameters;
+        let Some(mut spec) = make(self, list)? else { return Ok(None) };
+        spec.span = entity.at.clone();
+        for name in ["type", "bumpmap"] {
+            list.has(name);
+        }
+        if let Some(name) = ["displacement", "bumpmap"].into_iter().find(|name| list.has(name)) {
+            self.oddities.note("displacement of a material is not shown", || list.place(name));
+        }
+        if let Some(name) = list.text("normalmap")? {
+            let at = list.place("normalmap");
+            let map = Ink::Picture(Arc::new(self.file(name, Texels::Numbers(None), &at)?));
+            spec.parameters.set_at("normal", self.value(map), at);
+        }
+        list.tell_unused(&mut self.oddities);
+        Ok(Some(spec))
+    }
+
+    /// A refractive index, where one is given.
+    fn index(&mut self, list: &ParameterList, name: &'static str) -> Result<Option<f32>, FormatError> {
+        let Some(parameter) = list.find(name) else { return Ok(None) };
+        if parameter.kind == Kind::Float {
+            return list.finite(name, 1.5).map(Some);
+        }
+        let spectrum = self.whole_spectrum(parameter)?;
+        let varies = match &spectrum {
+            Some(spectrum) => spectrum.varies(),
+            None => parameter.text().is_some_and(|name| name.starts_with("glass-")),
+        };
+        if varies {
+            let what = "light of all colours is refracted alike, by the index at 587.6 nm";
+            self.oddities.note(what, || parameter.at.clone());
+        }
+        match spectrum {
+            Some(spectrum) => Ok(Some(spectrum.at_yellow())),
+            None => Ok(Some(self.colour_of(parameter, Meaning::Number)?.g)),
+        }
+    }
+
+    /// Sets a colour or a picture of one.
+    fn set(&mut self, spec: &mut Spec, key: &str, ink: Ink, at: Span) {
+        let value = self.value(ink);
+        spec.parameters.set_at(key, value, at);
+    }
+
+    /// One material seen through another by a share, which is that of `b`; the first alone, with a warning, where that
+    /// cannot be.
+    pub(super) fn mixed(&mut self, mut a: Spec, mut b: Spec, share: Value, what: &str) -> Spec {
+        match share {
+            Value::Number(share) if share <= 0.0 => return a,
+            Value::Number(share) if share >= 1.0 => return b,
+            _ => {}
+        }
+        let mut mix = Spec { span: b.span.clone(), ..Spec::new(&b.name, "mix") };
+        for part in [&mut a, &mut b] {
+            for key in ["normal", "normal_scale"] {
+                if let Some(value) = take(part, key) {
+                    mix.parameters.set(key, value);
+                }
+            }
+        }
+        let whole = b.clone();
+        let first = self.scene.materials.len();
+        self.scene.materials.extend([a, b]);
+        let mix =
+            mix.with("a", Value::Material(first)).with("b", Value::Material(first + 1)).with("amount", share);
+        if materials::build(&mix, &Ingredients::new(&self.scene.textures, &self.scene.materials)).is_ok() {
+            return mix;
+        }
+        self.scene.materials.truncate(first);
+        let note = format!("{what} of a material is not shown");
+        self.oddities.note(&note, || whole.span.clone());
+        whole
+    }
+}
+
+/// Takes a parameter out of a spec.
+pub(super) fn take(spec: &mut Spec, key: &str) -> Option<Value> {
+    let index = spec.parameters.0.iter().position(|(k, ..)| k == key)?;
+    Some(spec.parameters.0.remove(index).1)
+}
+
+/// Deeper mixes of mixes are refused.
+const DEEPEST: usize = 8;
+
+fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let amount =
+        pbrt.number_ink_or_colour(list, "amount")?.unwrap_or(Ink::Colour(bilux_math::Rgb::grey(0.5)));
+    let (names, is_old): (Vec<String>, bool) = match list.texts("materials")? {
+        [] => {
+            let name = |key| Ok::<_, FormatError>(list.text(key)?.map(str::to_owned));
+            ([name("namedmaterial1")?, name("namedmaterial2")?].into_iter().flatten().collect(), true)
+        }
+        names => (names.to_vec(), false),
+    };
+    let [a, b] = names.as_slice() else {
+        let message = format!("a mix is of two materials, and here are {}", names.len());
+        return Err(FormatError::malformed(message, list.at.clone()));
+    };
+    pbrt.mix_depth += 1;
+    if pbrt.mix_depth > DEEPEST {
+        let message = format!("materials are mixed more than {DEEPEST} deep, or one with itself");
+        return Err(FormatError::malformed(message, list.at.clone()));
+    }
+    let mut part = |name: &str| pbrt.material(&MaterialKey::Named(name.into()), &list.place("materials"));
+    // In version 3 the amount is that of the first.
+    let (first, second) = if is_old { (part(b)?, part(a)?) } else { (part(a)?, part(b)?) };
+    pbrt.mix_depth -= 1;
+    let (Some(first), Some(second)) = (first, second) else {
+        let what = "an interface cannot be mixed with a material: the material alone is shown";
+        pbrt.oddities.note(what, || list.at.clone());
+        return Ok(None);
+    };
+    let amount = pbrt.number_value(amount, [0.0, 1.0]);
+    Ok(Some(pbrt.mixed(first, second, amount, "a part")))
+}
+
+impl Pbrt<'_, '_> {
+    /// A number, or a colour in its place, as version 3 has it.
+    fn number_ink_or_colour(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+    ) -> Result<Option<Ink>, FormatError> {
+        if list.find(name).is_some_and(|p| matches!(p.kind, Kind::Rgb | Kind::Spectrum)) {
+            return Ok(self
+                .spectrum(list, name, Meaning::Number)?
+                .map(|c| Ink::Colour(bilux_math::Rgb::grey(c.luminance()))));
+        }
+        self.number_ink(list, name)
+    }
+}

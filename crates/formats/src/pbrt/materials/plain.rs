@@ -1,0 +1,202 @@
+//! Materials of one layer.
+
+use super::super::inks::{Ink, Meaning};
+use super::super::metals;
+use super::super::parameters::ParameterList;
+use super::super::reader::Pbrt;
+use super::super::spectra::{Named, named};
+use super::roughness::{Names, OWN, PLAIN};
+use crate::FormatError;
+use bilux_math::Rgb;
+use bilux_scene::Spec;
+
+pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let reflectance = pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(Ink::Colour(Rgb::grey(0.5)));
+    let mut spec = Spec::new("", "diffuse");
+    pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
+    Ok(Some(spec))
+}
+
+/// Nothing is there: only what is behind may differ.
+pub(super) fn interface(_: &mut Pbrt, _: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    Ok(None)
+}
+
+/// Where light only passes, what it reflects is shown alone.
+pub(super) fn diffuse_transmission(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+) -> Result<Option<Spec>, FormatError> {
+    let scale = Rgb::grey(list.finite("scale", 1.0)?);
+    let ink = |found: Option<Ink>| found.unwrap_or(Ink::Colour(Rgb::grey(0.25))).scaled(scale);
+    let reflectance = ink(pbrt.ink(list, "reflectance", Meaning::Surface)?);
+    let transmittance = ink(pbrt.ink(list, "transmittance", Meaning::Surface)?);
+    if !transmittance.is_black() {
+        let what = "light that passes a surface diffusely is not shown";
+        pbrt.oddities.note(what, || list.place("transmittance"));
+    }
+    let mut spec = Spec::new("", "diffuse");
+    pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
+    Ok(Some(spec))
+}
+
+pub(super) fn dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let mut spec = glass(pbrt, list)?;
+    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
+    Ok(Some(spec))
+}
+
+pub(super) fn thin_dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    Ok(Some(glass(pbrt, list)?.with("thin", true)))
+}
+
+fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
+    let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
+    Ok(Spec::new("", "dielectric").with("eta", pbrt.held_index(index, list)))
+}
+
+impl Pbrt<'_, '_> {
+    /// An index that glass can have.
+    pub(super) fn held_index(&mut self, index: f32, list: &ParameterList) -> f32 {
+        // What is no number becomes the least.
+        let held = index.max(0.1).min(10.0);
+        if held != index {
+            self.oddities
+                .note("a refractive index is out of range: taken as 0.1 to 10", || list.place("eta"));
+        }
+        held
+    }
+}
+
+pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let mut spec = Spec::new("", "conductor");
+    pbrt.set_metal(&mut spec, list, ["eta", "k"])?;
+    pbrt.set_roughness(&mut spec, list, OWN, 0.0, false, PLAIN)?;
+    Ok(Some(spec))
+}
+
+/// What metal it is.
+pub(super) enum Metal {
+    /// Reflects so much straight on.
+    Reflectance(Ink),
+    /// One of our table.
+    Named(&'static str),
+    /// By its refractive index and its extinction.
+    Indices([Rgb; 2]),
+}
+
+impl Pbrt<'_, '_> {
+    /// Reads a metal; `names` are those of its index and of its extinction.
+    pub(super) fn metal(
+        &mut self,
+        list: &ParameterList,
+        [eta_name, k_name]: [&'static str; 2],
+    ) -> Result<Metal, FormatError> {
+        let given = list.has(eta_name) || list.has(k_name);
+        if let Some(reflectance) = self.ink(list, "reflectance", Meaning::Surface)? {
+            if given {
+                let message =
+                    "'reflectance' and a refractive index both say what metal this is: take one out";
+                return Err(FormatError::malformed(message, list.place("reflectance")));
+            }
+            return Ok(Metal::Reflectance(reflectance));
+        }
+        if !given {
+            return Ok(Metal::Named("copper"));
+        }
+        let metal_of = |name: &'static str| match named(list.find(name)?.text()?)? {
+            Named::Metal { metal, .. } => Some(metal),
+            _ => None,
+        };
+        if let (Some(metal), Some(same)) = (metal_of(eta_name), metal_of(k_name))
+            && metal == same
+        {
+            return Ok(Metal::Named(metal));
+        }
+        let spectra = match (list.find(eta_name), list.find(k_name)) {
+            (Some(eta), Some(k)) => (self.whole_spectrum(eta)?, self.whole_spectrum(k)?),
+            _ => (None, None),
+        };
+        if let (Some(eta), Some(k)) = spectra {
+            return Ok(Metal::Indices(metals::from_spectra(&eta, &k)));
+        }
+        let [eta, k] = metals::indices("copper");
+        let mut part = |name, default| {
+            let ink = self.ink(list, name, Meaning::Number)?;
+            if let Some(Ink::Picture(_)) = &ink {
+                let what = "a refractive index from a picture is not shown: its mean is taken";
+                self.oddities.note(what, || list.place(name));
+            }
+            Ok::<_, FormatError>(ink.map_or(default, |ink| ink.mean()))
+        };
+        let (eta, k) = (part(eta_name, eta)?, part(k_name, k)?);
+        Ok(Metal::Indices([eta.map(|x| x.clamp(1e-3, 100.0)), k.map(|x| x.clamp(0.0, 100.0))]))
+    }
+
+    fn set_metal(
+        &mut self,
+        spec: &mut Spec,
+        list: &ParameterList,
+        names: [&'static str; 2],
+    ) -> Result<(), FormatError> {
+        let at = list.place(names[0]);
+        match self.metal(list, names)? {
+            Metal::Reflectance(ink) => self.set_reflectance(spec, ink, list),
+            Metal::Named(name) => spec.parameters.set_at("metal", name.into(), at),
+            Metal::Indices([eta, k]) => {
+                spec.parameters.set_at("eta", eta.into(), at.clone());
+                spec.parameters.set_at("k", k.into(), at);
+            }
+        }
+        Ok(())
+    }
+
+    /// A metal of index 1, as theirs is where only a reflectance is given; of a picture Schlick's law.
+    pub(super) fn set_reflectance(&mut self, spec: &mut Spec, ink: Ink, list: &ParameterList) {
+        let at = list.place("reflectance");
+        match ink {
+            Ink::Colour(colour) => {
+                spec.parameters.set_at("eta", Rgb::WHITE.into(), at.clone());
+                spec.parameters.set_at("k", extinction_of(colour).into(), at);
+            }
+            picture => self.set(spec, "reflectance", picture, at),
+        }
+    }
+}
+
+/// The extinction with which a metal of index 1 reflects so much straight on.
+pub(super) fn extinction_of(reflectance: Rgb) -> Rgb {
+    reflectance.map(|r| {
+        let r = r.clamp(0.0, 0.9999);
+        (2.0 * r.sqrt() / (1.0 - r).sqrt()).min(100.0)
+    })
+}
+
+pub(super) fn measured(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let what = "measured materials are not shown: a grey one stands in place";
+    pbrt.oddities.note(what, || list.at.clone());
+    for name in ["filename", "bsdffile"] {
+        list.has(name);
+    }
+    Ok(Some(Spec::new("", "diffuse").with("reflectance", 0.5f32)))
+}
+
+pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
+    let what = "hair is shown as glossy fibres, which no light passes";
+    pbrt.oddities.note(what, || list.at.clone());
+    let mut colour = None;
+    for name in ["reflectance", "color"] {
+        colour = colour.or(pbrt.ink(list, name, Meaning::Surface)?);
+    }
+    for name in ["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"] {
+        list.has(name);
+    }
+    // Brown, as theirs is where nothing is said.
+    let colour = colour.unwrap_or(Ink::Colour(Rgb::new(0.16, 0.08, 0.04)));
+    let mut spec = Spec::new("", "principled").with("specular_roughness", 0.4f32);
+    pbrt.set(&mut spec, "base_color", colour, list.at.clone());
+    Ok(Some(spec))
+}
+
+pub(super) const INTERFACE: Names = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
+pub(super) const CONDUCTOR: Names = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];

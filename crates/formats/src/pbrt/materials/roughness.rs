@@ -1,0 +1,93 @@
+//! Roughness: theirs is an alpha along u and one along v, or the square of each; ours a square root and what it lacks
+//! along its brushing.
+
+use super::super::inks::Ink;
+use super::super::parameters::ParameterList;
+use super::super::reader::Pbrt;
+use crate::FormatError;
+use bilux_math::Rgb;
+use bilux_math::transcendental::ln;
+use bilux_scene::Spec;
+
+/// What parameters are called: for both directions, along u, along v.
+pub(super) type Names = [&'static str; 3];
+pub(super) const OWN: Names = ["roughness", "uroughness", "vroughness"];
+
+/// What ours are called: roughness, anisotropy, rotation; and what a quarter of a turn is.
+pub(super) type Keys = ([&'static str; 3], f32);
+pub(super) const PLAIN: Keys = (["roughness", "anisotropy", "rotation"], 90.0);
+pub(super) const PRINCIPLED: Keys =
+    (["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"], 0.25);
+
+/// How numbers become alphas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Remap {
+    /// They are.
+    Never,
+    /// By the square root.
+    Root,
+    /// By the polynomial of version 3.
+    Polynomial,
+}
+
+impl Remap {
+    fn alpha(self, roughness: f32) -> f32 {
+        match self {
+            Remap::Never => roughness,
+            Remap::Root => roughness.max(0.0).sqrt(),
+            Remap::Polynomial => {
+                let x = ln(roughness.max(1e-3));
+                1.621_42 + x * (0.819_955 + x * (0.1734 + x * (0.017_120_1 + x * 0.000_640_711)))
+            }
+        }
+    }
+}
+
+impl Pbrt<'_, '_> {
+    /// Sets the roughness of a spec.
+    pub(super) fn set_roughness(
+        &mut self,
+        spec: &mut Spec,
+        list: &ParameterList,
+        [both, along, across]: Names,
+        default: f32,
+        is_old: bool,
+        keys: Keys,
+    ) -> Result<(), FormatError> {
+        let remap = match (list.flag("remaproughness", true)?, is_old) {
+            (false, _) => Remap::Never,
+            (true, false) => Remap::Root,
+            (true, true) => Remap::Polynomial,
+        };
+        let even = self.number_ink(list, both)?.unwrap_or(Ink::Colour(Rgb::grey(default)));
+        let u = self.number_ink(list, along)?.unwrap_or_else(|| even.clone());
+        let v = self.number_ink(list, across)?.unwrap_or(even);
+        let at = list.place(both);
+        let ([roughness, anisotropy, rotation], quarter) = keys;
+        if let (Ink::Colour(u), Ink::Colour(v)) = (&u, &v) {
+            let (u, v) = (remap.alpha(u.r).clamp(0.0, 1.0), remap.alpha(v.r).clamp(0.0, 1.0));
+            let ratio = if u == v { 1.0 } else { u.min(v) / u.max(v) };
+            let even = u.max(v) * ((1.0 + ratio * ratio) * 0.5).sqrt();
+            spec.parameters.set_at(roughness, even.sqrt().into(), at.clone());
+            if ratio < 1.0 {
+                spec.parameters.set_at(anisotropy, (1.0 - ratio).into(), at.clone());
+            }
+            if u > v {
+                spec.parameters.set_at(rotation, quarter.into(), at);
+            }
+            return Ok(());
+        }
+        let is_same = match (&u, &v) {
+            (Ink::Picture(u), Ink::Picture(v)) => std::sync::Arc::ptr_eq(u, v),
+            _ => false,
+        };
+        if !is_same {
+            let what =
+                "roughness that differs along u and v is shown where both are numbers: that along u is taken";
+            self.oddities.note(what, || at.clone());
+        }
+        let ink = self.mapped(u, |c| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt()))?;
+        self.set(spec, roughness, ink, at);
+        Ok(())
+    }
+}

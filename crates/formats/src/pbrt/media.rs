@@ -1,0 +1,100 @@
+//! What light goes through: only what it absorbs is used.
+
+use super::inks::Meaning;
+use super::parameters::ParameterList;
+use super::reader::Pbrt;
+use crate::FormatError;
+use bilux_math::Rgb;
+use std::sync::Arc;
+
+/// A medium, as far as it is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Medium {
+    /// Per unit of length.
+    pub(super) absorption: Rgb,
+}
+
+/// Measured media: scattering (reduced) and absorption per millimetre. [Jensen 2001, figure 5]
+const MEASURED: &[(&str, [f32; 3], [f32; 3])] = &[
+    ("Apple", [2.29, 2.39, 1.97], [0.0030, 0.0034, 0.046]),
+    ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),
+    ("Chicken2", [0.19, 0.25, 0.32], [0.018, 0.088, 0.20]),
+    ("Cream", [7.38, 5.47, 3.15], [0.0002, 0.0028, 0.0163]),
+    ("Ketchup", [0.18, 0.07, 0.03], [0.061, 0.97, 1.45]),
+    ("Marble", [2.19, 2.62, 3.00], [0.0021, 0.0041, 0.0071]),
+    ("Potato", [0.68, 0.70, 0.55], [0.0024, 0.0090, 0.12]),
+    ("Skimmilk", [0.70, 1.22, 1.90], [0.0014, 0.0025, 0.0142]),
+    ("Skin1", [0.74, 0.88, 1.01], [0.032, 0.17, 0.48]),
+    ("Skin2", [1.09, 1.59, 1.79], [0.013, 0.070, 0.145]),
+    ("Spectralon", [11.6, 20.4, 14.9], [0.0, 0.0, 0.0]),
+    ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
+];
+
+/// Scattering and absorption of a measured medium.
+pub(super) fn measured(name: &str) -> Option<[Rgb; 2]> {
+    let (_, scattering, absorption) = MEASURED.iter().find(|(known, ..)| *known == name)?;
+    Some([Rgb::from_array(*scattering), Rgb::from_array(*absorption)])
+}
+
+impl Pbrt<'_, '_> {
+    /// Takes note of a medium.
+    pub(super) fn add_medium(&mut self, name: String, list: &ParameterList) -> Result<(), FormatError> {
+        let kind = list.text("type")?.unwrap_or("homogeneous").to_owned();
+        if kind != "homogeneous" {
+            let what = format!("a medium of type '{kind}' is not shown");
+            self.oddities.note(&what, || list.at.clone());
+            self.media.insert(name.into(), Medium { absorption: Rgb::BLACK });
+            return Ok(());
+        }
+        let preset = list.text("preset")?;
+        let preset = match preset.map(|name| (name, measured(name))) {
+            Some((name, None)) => {
+                let what = format!("the measured medium '{name}' is not known: as if it were not named");
+                self.oddities.note(&what, || list.place("preset"));
+                None
+            }
+            Some((_, known)) => known,
+            None => None,
+        };
+        let [scattering, absorption] = preset.map_or([None; 2], |known| known.map(Some));
+        let absorption = match absorption {
+            Some(absorption) => absorption,
+            None => self.spectrum(list, "sigma_a", Meaning::Number)?.unwrap_or(Rgb::WHITE),
+        };
+        let scattering = match scattering {
+            Some(scattering) => scattering,
+            None => self.spectrum(list, "sigma_s", Meaning::Number)?.unwrap_or(Rgb::WHITE),
+        };
+        list.has("g");
+        if !scattering.is_black() {
+            let what = "scattering within a medium is not shown: only its absorption is";
+            self.oddities.note(what, || list.place("sigma_s"));
+        }
+        if list.has("Le") {
+            self.oddities.note("light given out by a medium is not shown", || list.place("Le"));
+            list.has("Lescale");
+        }
+        let scale = list.finite("scale", 1.0)?;
+        list.tell_unused(&mut self.oddities);
+        self.media.insert(name.into(), Medium { absorption: absorption * scale });
+        Ok(())
+    }
+
+    /// What is absorbed behind a surface; tells of media that are not there.
+    pub(super) fn absorption_of(
+        &mut self,
+        name: &Arc<str>,
+        at: &bilux_scene::Span,
+    ) -> Result<Rgb, FormatError> {
+        if name.is_empty() {
+            return Ok(Rgb::BLACK);
+        }
+        match self.media.get(name) {
+            Some(medium) => Ok(medium.absorption),
+            None => {
+                let names = self.media.keys().map(|name| &**name);
+                Err(bilux_scene::SceneError::unknown("medium", name, names, at).into())
+            }
+        }
+    }
+}

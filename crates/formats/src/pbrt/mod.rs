@@ -1,0 +1,58 @@
+//! Scenes of pbrt-v4, with those names of version 3 that can mean only one thing. See `docs/formats/pbrt.md`.
+
+mod cameras;
+mod colours;
+mod directives;
+mod environment;
+mod finish;
+mod gzip;
+mod inks;
+mod lexer;
+mod lights;
+mod materials;
+mod media;
+mod metals;
+mod options;
+mod parameters;
+mod reader;
+mod shapes;
+mod spectra;
+mod state;
+mod textures;
+mod transforms;
+
+use crate::formats::SceneFormatEntry;
+use bilux_math::registry::Entry;
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "pbrt",
+        summary: "scenes of pbrt-v4, with what they include",
+        source: "pbrt 2023",
+        parameters: &[],
+    },
+    extensions: &["pbrt"],
+    capabilities: &[
+        "triangles",
+        "normals",
+        "uv",
+        "objects",
+        "instances",
+        "transforms",
+        "motion",
+        "materials",
+        "textures",
+        "lights",
+        "cameras",
+        "settings",
+    ],
+    sniff,
+    read: Some(reader::read),
+    write: None,
+};
+
+/// A line that begins the world.
+fn sniff(bytes: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
+    start.lines().any(|line| line.trim() == "WorldBegin")
+}

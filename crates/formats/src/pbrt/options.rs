@@ -1,0 +1,206 @@
+//! What stands before the world: film, filter, sampler and integrator, as settings that a render may follow.
+
+use super::reader::{Entity, Pbrt};
+use super::state::Matrices;
+use crate::FormatError;
+use bilux_scene::{SceneError, Span, Value};
+
+/// All of it, the last of each kind.
+pub(super) struct Options {
+    pub(super) camera: Option<(Entity, Matrices)>,
+    film: Option<Entity>,
+    filter: Option<Entity>,
+    sampler: Option<Entity>,
+    integrator: Option<Entity>,
+    /// When the two matrices are, in seconds.
+    pub(super) times: [f64; 2],
+    /// When the shutter opens and closes, in seconds.
+    pub(super) shutter: [f32; 2],
+    /// By how much the film brightens light.
+    pub(super) gain: f32,
+    /// Columns and rows of the film.
+    pub(super) size: [i32; 2],
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            camera: None,
+            film: None,
+            filter: None,
+            sampler: None,
+            integrator: None,
+            times: [0.0, 1.0],
+            shutter: [0.0, 1.0],
+            gain: 1.0,
+            size: [1280, 720],
+        }
+    }
+}
+
+impl Pbrt<'_, '_> {
+    /// Takes note of one of them; how pbrt finds its triangles is nobody's business.
+    pub(super) fn option(&mut self, what: &str, entity: Entity) {
+        match what {
+            "camera" => {
+                let matrices = self.state.matrices;
+                self.systems.insert("camera".to_owned(), matrices.map(|m| m.inverse()));
+                self.options.camera = Some((entity, matrices));
+            }
+            "film" => self.options.film = Some(entity),
+            "pixelfilter" => self.options.filter = Some(entity),
+            "sampler" => self.options.sampler = Some(entity),
+            "integrator" => self.options.integrator = Some(entity),
+            _ => {}
+        }
+    }
+
+    fn set_option(&mut self, key: &str, value: Value, at: &Span) {
+        self.scene.settings.set_at(key, value, at.clone());
+    }
+
+    /// Settings from all but the camera.
+    pub(super) fn settings(&mut self) -> Result<(), FormatError> {
+        if let Some((camera, _)) = &self.options.camera {
+            let list = &camera.parameters;
+            self.options.shutter = [list.finite("shutteropen", 0.0)?, list.finite("shutterclose", 1.0)?];
+        }
+        let shutter = self.options.shutter;
+        if let Some(film) = self.options.film.take() {
+            self.film(&film, shutter[1] - shutter[0])?;
+        }
+        let [width, height] = self.options.size;
+        let at = self.scene.settings.find("size").map(|(_, at)| at.clone()).unwrap_or_default();
+        self.set_option("size", Value::Text(format!("{width}x{height}")), &at);
+        let filter = self.options.filter.take();
+        self.filter(filter.as_ref())?;
+        if let Some(sampler) = self.options.sampler.take() {
+            self.sampler(&sampler)?;
+        }
+        let depth = match self.options.integrator.take() {
+            Some(integrator) => self.integrator(&integrator)?,
+            None => (5, Span::default()),
+        };
+        self.set_option("max_depth", Value::Integer(i64::from(depth.0.clamp(0, 10_000))), &depth.1);
+        Ok(())
+    }
+
+    fn film(&mut self, film: &Entity, exposure: f32) -> Result<(), FormatError> {
+        let list = &film.parameters;
+        let known = ["rgb", "gbuffer", "spectral", "image"];
+        if !known.contains(&film.kind.as_str()) {
+            return Err(SceneError::unknown("film", &film.kind, known, &film.at).into());
+        }
+        let side = |name, default| list.integer(name).map(|side| side.unwrap_or(default));
+        self.options.size = [side("xresolution", 1280)?, side("yresolution", 720)?];
+        let at = list.place("xresolution");
+        self.set_option("size", Value::Text(String::new()), &at);
+        if film.kind == "image" {
+            // Of version 3, which knows no sensors.
+            self.options.gain = list.finite("scale", 1.0)?.max(0.0);
+        } else {
+            let speed = list.finite("iso", 100.0)?;
+            self.options.gain = (exposure * speed / 100.0).max(0.0);
+        }
+        if film.kind == "spectral" {
+            self.oddities
+                .note("a spectral film is not made: pictures are red, green and blue", || film.at.clone());
+        }
+        let sensor = list.text("sensor")?.unwrap_or("cie1931");
+        if sensor != "cie1931" || list.finite("whitebalance", 0.0)? != 0.0 {
+            list.has("whitebalance");
+            let what = "colours are those of the standard observer, and not of a sensor or a white balance";
+            self.oddities.note(what, || list.place("sensor"));
+        }
+        for name in ["cropwindow", "pixelbounds"] {
+            if list.has(name) {
+                let what = "the whole film is rendered, and not only a part of it; use --crop";
+                self.oddities.note(what, || list.place(name));
+            }
+        }
+        for name in ["maxcomponentvalue", "maxsampleluminance"] {
+            if list.has(name) {
+                self.oddities.note("bright samples are not clamped", || list.place(name));
+            }
+        }
+        for name in
+            ["filename", "diagonal", "savefp16", "coordinatesystem", "nbuckets", "lambdamin", "lambdamax"]
+        {
+            list.has(name);
+        }
+        list.tell_unused(&mut self.oddities);
+        Ok(())
+    }
+
+    fn filter(&mut self, filter: Option<&Entity>) -> Result<(), FormatError> {
+        let Some(filter) = filter else {
+            self.set_option("filter", "gaussian".into(), &Span::default());
+            return Ok(());
+        };
+        let list = &filter.parameters;
+        // Name, ours, and their default and our radius.
+        let filters = [
+            ("box", "box", 0.5, 0.5),
+            ("gaussian", "gaussian", 1.5, 1.5),
+            ("triangle", "tent", 2.0, 1.0),
+            ("mitchell", "gaussian", 2.0, 1.5),
+            ("sinc", "blackman-harris", 4.0, 1.5),
+        ];
+        let Some((name, ours, default, radius)) = filters.iter().find(|row| row.0 == filter.kind) else {
+            let names = filters.iter().map(|row| row.0);
+            return Err(SceneError::unknown("pixel filter", &filter.kind, names, &filter.at).into());
+        };
+        let mut is_same = !["mitchell", "sinc"].contains(name);
+        for (new, old) in [("xradius", "xwidth"), ("yradius", "ywidth")] {
+            let given = if list.has(old) { list.finite(old, *default)? } else { list.finite(new, *default)? };
+            is_same &= given == *radius;
+        }
+        if *name == "gaussian" {
+            // The alpha of version 3 is another way to say it.
+            is_same &= list.finite("sigma", 0.5)? == 0.5 && list.finite("alpha", 2.0)? == 2.0;
+        }
+        for name in ["B", "C", "tau"] {
+            list.has(name);
+        }
+        if !is_same {
+            let what = format!("the pixel filter is '{ours}' of radius {radius}, and not this one");
+            self.oddities.note(&what, || filter.at.clone());
+        }
+        list.tell_unused(&mut self.oddities);
+        self.set_option("filter", (*ours).into(), &filter.at);
+        Ok(())
+    }
+
+    /// How many samples there are. How they are spread changes no picture, only its noise.
+    fn sampler(&mut self, sampler: &Entity) -> Result<(), FormatError> {
+        let list = &sampler.parameters;
+        let side = |name| list.integer(name).map(|n| n.map(i64::from));
+        let samples = match side("pixelsamples")? {
+            Some(samples) => Some(samples),
+            None if sampler.kind == "stratified" => {
+                Some(side("xsamples")?.unwrap_or(4) * side("ysamples")?.unwrap_or(4))
+            }
+            None => None,
+        };
+        if let Some(samples) = samples {
+            self.set_option("spp", Value::Integer(samples.clamp(1, 1 << 31)), &list.at);
+        }
+        if let Some(seed) = side("seed")? {
+            self.set_option("seed", Value::Integer(seed.max(0)), &list.at);
+        }
+        Ok(())
+    }
+
+    /// How deep paths go, and where that stands. Which algorithm finds them is left to who renders.
+    fn integrator(&mut self, integrator: &Entity) -> Result<(i32, Span), FormatError> {
+        let list = &integrator.parameters;
+        if ["ao", "ambientocclusion", "function"].contains(&integrator.kind.as_str()) {
+            let what = format!("the integrator '{}' is not used: light is followed", integrator.kind);
+            self.oddities.note(&what, || integrator.at.clone());
+        }
+        if list.flag("regularize", false)? {
+            self.oddities.note("rough reflections are not regularised", || list.place("regularize"));
+        }
+        Ok((list.integer("maxdepth")?.unwrap_or(5), list.place("maxdepth")))
+    }
+}

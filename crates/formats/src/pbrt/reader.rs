@@ -1,0 +1,192 @@
+//! From files to a scene: first all directives are read and meshes made, then names are looked up.
+
+use super::directives;
+use super::lexer::Lexer;
+use super::media::Medium;
+use super::options::Options;
+use super::parameters::ParameterList;
+use super::shapes::ShapeCache;
+use super::state::{MaterialKey, Matrices, State};
+use super::textures::NamedTextures;
+use crate::FormatError;
+use crate::reading::{Oddities, Reading, Source};
+use bilux_math::DMat4;
+use bilux_scene::{Mesh, SceneBuilder, Span, Spec};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let mut pbrt = Pbrt {
+        reading,
+        scene: SceneBuilder::default(),
+        oddities: Oddities::default(),
+        folder: source.folder.map(Path::to_owned),
+        state: State::new(),
+        pushed: Vec::new(),
+        in_world: false,
+        systems: HashMap::new(),
+        options: Options::default(),
+        textures: NamedTextures::default(),
+        materials: Vec::new(),
+        named_materials: HashMap::new(),
+        made_materials: HashMap::new(),
+        mix_depth: 0,
+        media: HashMap::new(),
+        area_lights: Vec::new(),
+        lights: Vec::new(),
+        pieces: Vec::new(),
+        definition: None,
+        definitions: HashMap::new(),
+        uses: Vec::new(),
+        cache: ShapeCache::default(),
+        open: Vec::new(),
+    };
+    pbrt.whole(source)?;
+    let Pbrt { mut scene, oddities, .. } = pbrt;
+    oddities.into_warnings(&mut scene);
+    Ok(scene)
+}
+
+/// Something that a file asks for: which kind, and its parameters.
+#[derive(Clone, Debug)]
+pub(super) struct Entity {
+    pub(super) kind: String,
+    pub(super) parameters: ParameterList,
+    pub(super) at: Span,
+}
+
+/// A shape in the scene, before its material is known.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub(super) form: Form,
+    /// To the world, or to the object that it is a part of.
+    pub(super) matrices: Matrices,
+    pub(super) dress: Dress,
+    /// How many shapes it is for pbrt, each of which has the power of its light.
+    pub(super) shapes: u32,
+    pub(super) at: Span,
+}
+
+/// What a shape is made of.
+#[derive(Clone, Debug)]
+pub(super) enum Form {
+    /// Triangles.
+    Mesh(Arc<Mesh>),
+    /// A whole sphere around the origin; it may be seen from the inside instead.
+    Sphere { radius: f32, reversed: bool },
+}
+
+/// What is on a shape's surface and behind it.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct Dress {
+    pub(super) material: MaterialKey,
+    /// Index of what makes it give light.
+    pub(super) area_light: Option<usize>,
+    pub(super) alpha: Alpha,
+    pub(super) media: [Arc<str>; 2],
+}
+
+/// How much of a shape is there.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) enum Alpha {
+    #[default]
+    Whole,
+    /// The bits of a number.
+    Even(u32),
+    /// The name of a texture.
+    Texture(Arc<str>, u32, u32),
+}
+
+/// Where an object is put.
+pub(super) struct Use {
+    pub(super) object: String,
+    pub(super) matrices: Matrices,
+    pub(super) at: Span,
+}
+
+/// What a graphics state was pushed by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Opened {
+    Attribute,
+    Transform,
+    Object,
+}
+
+/// A scene on its way.
+pub(super) struct Pbrt<'o, 'r> {
+    pub(super) reading: &'r mut Reading<'o>,
+    pub(super) scene: SceneBuilder,
+    pub(super) oddities: Oddities,
+    /// That of the first file, which all names are relative to.
+    pub(super) folder: Option<PathBuf>,
+    pub(super) state: State,
+    pub(super) pushed: Vec<(Opened, Span, State)>,
+    pub(super) in_world: bool,
+    /// Named coordinate systems.
+    pub(super) systems: HashMap<String, Matrices>,
+    pub(super) options: Options,
+    pub(super) textures: NamedTextures,
+    pub(super) materials: Vec<Entity>,
+    pub(super) named_materials: HashMap<Arc<str>, (usize, Span)>,
+    /// Materials as they have been made.
+    pub(super) made_materials: HashMap<MaterialKey, Option<Spec>>,
+    /// How many mixes the material that is being made is a part of.
+    pub(super) mix_depth: usize,
+    pub(super) media: HashMap<Arc<str>, Medium>,
+    pub(super) area_lights: Vec<Entity>,
+    pub(super) lights: Vec<(Entity, DMat4)>,
+    pub(super) pieces: Vec<Piece>,
+    /// The object that is being made.
+    pub(super) definition: Option<(String, Vec<Piece>)>,
+    pub(super) definitions: HashMap<String, Arc<Vec<Piece>>>,
+    pub(super) uses: Vec<Use>,
+    pub(super) cache: ShapeCache,
+    /// The chain of files from the first to the one that is read.
+    open: Vec<PathBuf>,
+}
+
+/// Longer chains of files are refused: each takes a part of the stack.
+const LONGEST_CHAIN: usize = 32;
+
+impl Pbrt<'_, '_> {
+    fn whole(&mut self, source: &Source) -> Result<(), FormatError> {
+        let own = source.folder.zip(Path::new(&**source.name).file_name());
+        let own = own.and_then(|(folder, file)| std::fs::canonicalize(folder.join(file)).ok());
+        self.open.push(own.unwrap_or_default());
+        let mut lexer = Lexer::new(source.name, source.bytes);
+        directives::run(self, &mut lexer)?;
+        if let Some((_, at, _)) = self.pushed.last() {
+            let message =
+                "what begins here does not end in the file: close it with AttributeEnd or ObjectEnd";
+            return Err(FormatError::malformed(message, at.clone()));
+        }
+        if !self.in_world {
+            self.oddities.note("there is no WorldBegin in it, so that nothing can be seen", || {
+                crate::text::whole_file(source.name)
+            });
+        }
+        self.finish()
+    }
+
+    /// Reads another file as if it stood here.
+    pub(super) fn include(&mut self, name: &str, at: &Span) -> Result<(), FormatError> {
+        let path = self.reading.locate(self.folder.as_deref(), name, at)?;
+        if self.open.contains(&path) {
+            let message = format!("'{name}' includes itself, directly or through others: take it out here");
+            return Err(FormatError::malformed(message, at.clone()));
+        }
+        if self.open.len() >= LONGEST_CHAIN {
+            let message = format!("files include each other more than {LONGEST_CHAIN} deep");
+            return Err(FormatError::malformed(message, at.clone()));
+        }
+        let raw = self.reading.load(&path)?;
+        let bytes = super::gzip::plain(raw, self.reading, &path, at)?;
+        let shown = Path::new(&*at.file).with_file_name(name).display().to_string().into();
+        self.open.push(path);
+        directives::run(self, &mut Lexer::new(&shown, &bytes))?;
+        self.open.pop();
+        self.reading.release(bytes);
+        Ok(())
+    }
+}

@@ -1,0 +1,48 @@
+//! `plymesh`: triangles from a PLY file, packed or not.
+
+use super::super::gzip;
+use super::super::parameters::ParameterList;
+use super::super::reader::{Form, Pbrt};
+use crate::FormatError;
+use crate::formats::read_source;
+use crate::reading::Source;
+use bilux_scene::{Mesh, SceneError};
+use std::path::Path;
+use std::sync::Arc;
+
+pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+    let Some(name) = list.text("filename")? else {
+        let what = "filename (of the PLY file)".to_owned();
+        return Err(SceneError::Missing { what, at: list.at.clone() }.into());
+    };
+    let at = list.place("filename");
+    if list.has("displacement") {
+        pbrt.oddities.note("displacement of a mesh is not shown", || list.place("displacement"));
+        list.has("edgelength");
+    }
+    let path = pbrt.reading.locate(pbrt.folder.as_deref(), name, &at)?;
+    let key = (path.clone(), pbrt.state.reverses);
+    if let Some(mesh) = pbrt.cache.files.get(&key) {
+        return Ok(Some(Form::Mesh(mesh.clone())));
+    }
+    let raw = pbrt.reading.load(&path)?;
+    let bytes = gzip::plain(raw, pbrt.reading, &path, &at)?;
+    let shown: Arc<str> = Path::new(&*at.file).with_file_name(name).display().to_string().into();
+    let source = Source { bytes: &bytes, name: &shown, folder: path.parent() };
+    // Without normals a mesh is flat here.
+    let crease_angle = std::mem::replace(&mut pbrt.reading.crease_angle, 0.0);
+    let model = read_source(&crate::ply::ENTRY, pbrt.reading, &source);
+    pbrt.reading.crease_angle = crease_angle;
+    let mut model = model?;
+    pbrt.reading.release(bytes);
+    pbrt.scene.warnings.append(&mut model.warnings);
+    let mut meshes = model.objects.into_iter().map(|object| Arc::unwrap_or_clone(object.mesh));
+    let mesh = meshes.next().unwrap_or_default();
+    // Colours of vertices mean nothing here.
+    let mesh = Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), ..mesh };
+    let form = pbrt.finished(mesh, list)?;
+    if let Some(Form::Mesh(mesh)) = &form {
+        pbrt.cache.files.insert(key, mesh.clone());
+    }
+    Ok(form)
+}

@@ -1,0 +1,31 @@
+//! Curved surfaces as grids of triangles.
+
+use bilux_math::Vec2;
+use bilux_math::glam::DVec3;
+use bilux_scene::Mesh;
+
+/// A point of a surface and its normal, at two coordinates from 0 to 1.
+pub(super) type Surface<'s> = &'s dyn Fn(f64, f64) -> (DVec3, DVec3);
+
+/// Adds a surface in squares of two triangles, seen from where the change with the first coordinate crosses that with the
+/// second. Corners that coincide make one triangle of a square. `closes` makes the last column the first, to the bit.
+pub(super) fn add(mesh: &mut Mesh, columns: u32, rows: u32, closes: bool, at: Surface) {
+    let first = mesh.positions.len() as u32;
+    for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {
+        let (u, v) = (f64::from(i) / f64::from(columns), f64::from(j) / f64::from(rows));
+        let (position, normal) = at(if closes && i == columns { 0.0 } else { u }, v);
+        mesh.positions.push(position.as_vec3());
+        mesh.normals.push(normal.as_vec3());
+        mesh.uvs.push(Vec2::new(u as f32, v as f32));
+    }
+    for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
+        let corner = |di: u32, dj: u32| first + (j + dj) * (columns + 1) + i + di;
+        let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+        for triangle in [[a, b, c], [a, c, d]] {
+            let [p, q, r] = triangle.map(|k| mesh.positions[k as usize]);
+            if p != q && q != r && r != p {
+                mesh.triangles.push(triangle);
+            }
+        }
+    }
+}

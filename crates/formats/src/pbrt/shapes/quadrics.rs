@@ -1,0 +1,117 @@
+//! `sphere`, `disk` and `cylinder`, around the z axis.
+
+use super::super::parameters::ParameterList;
+use super::super::reader::{Form, Pbrt};
+use super::grid;
+use crate::FormatError;
+use bilux_math::glam::DVec3;
+use bilux_math::transcendental::{acos_f64, sin_cos_f64};
+use bilux_scene::Mesh;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Squares around a whole turn.
+const AROUND: u32 = 192;
+/// Squares from pole to pole.
+const ALONG: u32 = 96;
+
+/// How much of a whole turn a shape has, from 0 to 1, and squares for it.
+fn turn(list: &ParameterList) -> Result<(f64, u32), FormatError> {
+    let turn = f64::from(list.finite("phimax", 360.0)?.clamp(0.0, 360.0)) / 360.0;
+    Ok((turn, ((f64::from(AROUND) * turn).ceil() as u32).max(1)))
+}
+
+/// A radius above 0; none, with a warning, where it is not.
+fn radius(pbrt: &mut Pbrt, list: &ParameterList, name: &'static str) -> Result<Option<f32>, FormatError> {
+    let radius = list.finite(name, 1.0)?;
+    if radius.abs() > 0.0 {
+        return Ok(Some(radius.abs()));
+    }
+    pbrt.oddities.note("a shape without size is left out", || list.place(name));
+    Ok(None)
+}
+
+fn key(pbrt: &Pbrt, shape: u32, numbers: &[f64]) -> Vec<u32> {
+    let bits = numbers.iter().map(|n| (*n as f32).to_bits());
+    [shape, u32::from(pbrt.state.reverses)].into_iter().chain(bits).collect()
+}
+
+pub(super) fn sphere(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+    let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
+    let (bottom, top) = (list.finite("zmin", -radius)?, list.finite("zmax", radius)?);
+    let (bottom, top) = (bottom.min(top).max(-radius), bottom.max(top).min(radius));
+    let (turn, around) = turn(list)?;
+    if turn == 1.0 && bottom == -radius && top == radius {
+        return Ok(Some(Form::Sphere { radius, reversed: pbrt.state.reverses }));
+    }
+    let radius = f64::from(radius);
+    let angle = |z: f32| acos_f64((f64::from(z) / radius).clamp(-1.0, 1.0));
+    let (from, to) = (angle(bottom), angle(top));
+    pbrt.round(list, key(pbrt, 0, &[radius, from, to, turn]), || {
+        part_of_sphere(radius, [from, to], turn, around)
+    })
+}
+
+/// From one angle to the pole above to another.
+fn part_of_sphere(radius: f64, [from, to]: [f64; 2], turn: f64, around: u32) -> Mesh {
+    let mut mesh = Mesh { name: "sphere".to_owned(), ..Mesh::default() };
+    let rows = ((f64::from(ALONG) * (from - to).abs() / PI).ceil() as u32).max(1);
+    grid::add(&mut mesh, around, rows, turn == 1.0, &|u, v| {
+        let theta = from + (to - from) * v;
+        let (sin, cos) = match theta {
+            // Poles are one point, to the bit.
+            t if t == 0.0 => (0.0, 1.0),
+            t if t == PI => (0.0, -1.0),
+            t => sin_cos_f64(t),
+        };
+        let (sin_phi, cos_phi) = sin_cos_f64(2.0 * PI * turn * u);
+        let n = DVec3::new(sin * cos_phi, sin * sin_phi, cos);
+        (n * radius, n)
+    });
+    mesh
+}
+
+impl Pbrt<'_, '_> {
+    /// The sphere of radius 1.
+    pub(in super::super) fn unit_sphere(&mut self, is_reversed: bool) -> Arc<Mesh> {
+        let slot = &mut self.cache.unit_spheres[usize::from(is_reversed)];
+        let make = || {
+            let mesh = part_of_sphere(1.0, [PI, 0.0], 1.0, AROUND);
+            Arc::new(if is_reversed { super::reversed(mesh) } else { mesh })
+        };
+        slot.get_or_insert_with(make).clone()
+    }
+}
+
+pub(super) fn disk(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+    let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
+    let radius = f64::from(radius);
+    let inner = f64::from(list.finite("innerradius", 0.0)?).clamp(0.0, radius);
+    let height = f64::from(list.finite("height", 0.0)?);
+    let (turn, around) = turn(list)?;
+    pbrt.round(list, key(pbrt, 1, &[radius, inner, height, turn]), || {
+        let mut mesh = Mesh { name: "disk".to_owned(), ..Mesh::default() };
+        grid::add(&mut mesh, around, 1, turn == 1.0, &|u, v| {
+            let (sin, cos) = sin_cos_f64(2.0 * PI * turn * u);
+            let r = if v == 0.0 { radius } else { inner };
+            (DVec3::new(r * cos, r * sin, height), DVec3::Z)
+        });
+        mesh
+    })
+}
+
+pub(super) fn cylinder(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+    let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
+    let radius = f64::from(radius);
+    let (a, b) = (list.finite("zmin", -1.0)?, list.finite("zmax", 1.0)?);
+    let (bottom, top) = (f64::from(a.min(b)), f64::from(a.max(b)));
+    let (turn, around) = turn(list)?;
+    pbrt.round(list, key(pbrt, 2, &[radius, bottom, top, turn]), || {
+        let mut mesh = Mesh { name: "cylinder".to_owned(), ..Mesh::default() };
+        grid::add(&mut mesh, around, 1, turn == 1.0, &|u, v| {
+            let (sin, cos) = sin_cos_f64(2.0 * PI * turn * u);
+            (DVec3::new(radius * cos, radius * sin, bottom + (top - bottom) * v), DVec3::new(cos, sin, 0.0))
+        });
+        mesh
+    })
+}

@@ -1,0 +1,319 @@
+//! Named textures. Pictures stay pictures; what is made of others is worked out, and baked where it has to be.
+
+use super::inks::{Ink, Meaning, squares};
+use super::parameters::{Kind, ParameterList};
+use super::reader::{Entity, Pbrt};
+use crate::FormatError;
+use crate::reading::Texels;
+use bilux_math::transcendental::powf;
+use bilux_math::{DMat4, Rgb};
+use bilux_scene::texture::{Filter, UvTransform, Wrap};
+use bilux_scene::{SceneError, Span, Texture};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Textures by name: those of colours, and those of numbers.
+#[derive(Default)]
+pub(super) struct NamedTextures([HashMap<String, Slot>; 2]);
+
+#[derive(Clone)]
+enum Slot {
+    Defined(Arc<Entity>),
+    /// Being worked out.
+    Open,
+    Ready(Ink),
+}
+
+impl NamedTextures {
+    pub(super) fn define(&mut self, name: String, is_number: bool, entity: Entity, _matrix: DMat4) {
+        self.0[usize::from(is_number)].insert(name, Slot::Defined(Arc::new(entity)));
+    }
+}
+
+/// What a texture becomes.
+type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<Ink, FormatError>;
+
+/// Every texture that is shown.
+const TEXTURES: &[(&str, Make)] = &[
+    ("bilerp", bilerp),
+    ("checkerboard", checkerboard),
+    ("constant", constant),
+    ("directionmix", direction_mix),
+    ("imagemap", image_map),
+    ("mix", mix),
+    ("scale", scale),
+];
+
+/// Those in place of which one colour stands.
+const PLAIN: &[(&str, [f32; 3])] = &[
+    ("dots", [0.5; 3]),
+    ("fbm", [0.0; 3]),
+    ("wrinkled", [0.5; 3]),
+    ("windy", [0.5; 3]),
+    ("marble", [0.55, 0.55, 0.57]),
+    ("ptex", [0.5; 3]),
+    ("uv", [0.5, 0.5, 0.0]),
+];
+
+impl Pbrt<'_, '_> {
+    /// The colour or texture under a name of a list.
+    pub(super) fn ink(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+        meaning: Meaning,
+    ) -> Result<Option<Ink>, FormatError> {
+        let Some(parameter) = list.find(name) else { return Ok(None) };
+        match (parameter.kind, parameter.text()) {
+            (Kind::Texture, Some(texture)) => self.texture(texture, meaning, &parameter.at).map(Some),
+            _ => Ok(Some(Ink::Colour(self.colour_of(parameter, meaning)?))),
+        }
+    }
+
+    /// The number or texture under a name of a list, as a grey.
+    pub(super) fn number_ink(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+    ) -> Result<Option<Ink>, FormatError> {
+        match list.texture(name).map(|(texture, at)| (texture.to_owned(), at.clone())) {
+            Some((texture, at)) => self.texture(&texture, Meaning::Number, &at).map(Some),
+            None => Ok(list.number(name)?.map(|number| Ink::Colour(Rgb::grey(number)))),
+        }
+    }
+
+    /// A texture by its name; numbers and colours have names of their own.
+    pub(super) fn texture(&mut self, name: &str, meaning: Meaning, at: &Span) -> Result<Ink, FormatError> {
+        let wanted = usize::from(meaning == Meaning::Number);
+        // A colour that is wanted as a number, or the other way round, is better than none.
+        let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.0[*i].contains_key(name));
+        let Some(slot) = slot else {
+            let names = self.textures.0.iter().flat_map(|all| all.keys()).map(String::as_str);
+            return Err(SceneError::unknown("texture", name, names, at).into());
+        };
+        let entity = match self.textures.0[slot].get(name) {
+            Some(Slot::Ready(ink)) => return Ok(ink.clone()),
+            Some(Slot::Defined(entity)) => entity.clone(),
+            _ => {
+                let message = format!("the texture '{name}' is made of itself, directly or through others");
+                return Err(FormatError::malformed(message, at.clone()));
+            }
+        };
+        self.textures.0[slot].insert(name.to_owned(), Slot::Open);
+        let meaning = if slot == 1 { Meaning::Number } else { Meaning::Surface };
+        let ink = self.made(&entity, meaning)?;
+        self.textures.0[slot].insert(name.to_owned(), Slot::Ready(ink.clone()));
+        Ok(ink)
+    }
+
+    fn made(&mut self, entity: &Entity, meaning: Meaning) -> Result<Ink, FormatError> {
+        let list = &entity.parameters;
+        if let Some((_, make)) = TEXTURES.iter().find(|(name, _)| *name == entity.kind) {
+            let ink = make(self, list, meaning)?;
+            list.tell_unused(&mut self.oddities);
+            return Ok(ink);
+        }
+        let Some((_, plain)) = PLAIN.iter().find(|(name, _)| *name == entity.kind) else {
+            let names = TEXTURES.iter().map(|(name, _)| *name).chain(PLAIN.iter().map(|(name, _)| *name));
+            return Err(SceneError::unknown("texture", &entity.kind, names, &entity.at).into());
+        };
+        let what = format!("the texture '{}' is not shown: one colour stands in its place", entity.kind);
+        self.oddities.note(&what, || entity.at.clone());
+        Ok(Ink::Colour(Rgb::from_array(*plain)))
+    }
+
+    /// A part of a texture, or what it is where it is not given.
+    fn part(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+        meaning: Meaning,
+        default: f32,
+    ) -> Result<Ink, FormatError> {
+        let found = match meaning {
+            Meaning::Number => self.number_ink(list, name)?,
+            _ => self.ink(list, name, meaning)?,
+        };
+        Ok(found.unwrap_or(Ink::Colour(Rgb::grey(default))))
+    }
+
+    /// Factors and shifts of texture coordinates.
+    fn lies(&mut self, list: &ParameterList) -> Result<[f32; 4], FormatError> {
+        let mapping = list.text("mapping")?.unwrap_or("uv");
+        if mapping != "uv" {
+            let what =
+                format!("the mapping '{mapping}' is not shown: texture coordinates of meshes are used");
+            self.oddities.note(&what, || list.place("mapping"));
+            for name in ["v1", "v2", "udelta", "vdelta", "uscale", "vscale"] {
+                list.has(name);
+            }
+            return Ok([1.0, 1.0, 0.0, 0.0]);
+        }
+        Ok([
+            list.finite("uscale", 1.0)?,
+            list.finite("vscale", 1.0)?,
+            list.finite("udelta", 0.0)?,
+            list.finite("vdelta", 0.0)?,
+        ])
+    }
+
+    /// A picture from a file; a checker of magenta, with a warning, where it cannot be had.
+    pub(super) fn file(&mut self, name: &str, holds: Texels, at: &Span) -> Result<Texture, FormatError> {
+        match self.reading.texture(self.folder.as_deref(), name, holds, at) {
+            Ok(texture) => Ok((*texture).clone()),
+            Err(error @ FormatError::TooLarge { .. }) => Err(error),
+            Err(error) => {
+                let reason = error.without_place();
+                let what = format!("a checker of magenta stands in place of a texture: {reason}");
+                self.oddities.note(&what, || at.clone());
+                Ok(Texture::missing(name))
+            }
+        }
+    }
+}
+
+fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+    pbrt.part(list, "value", meaning, 1.0)
+}
+
+/// The product of two; in version 4 a texture and a number, in version 3 any two.
+fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+    let (a, b) = if list.has("tex1") || list.has("tex2") {
+        (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 1.0)?)
+    } else {
+        (pbrt.part(list, "tex", meaning, 1.0)?, pbrt.part(list, "scale", Meaning::Number, 1.0)?)
+    };
+    match (a, b) {
+        (Ink::Colour(colour), other) | (other, Ink::Colour(colour)) => Ok(other.scaled(colour)),
+        (a, b) => pbrt.baked("scale", &[&a, &b], |uv| a.at(uv) * b.at(uv)),
+    }
+}
+
+fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+    let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
+    let amount = pbrt.part(list, "amount", Meaning::Number, 0.5)?;
+    let blend = |a: Rgb, b: Rgb, t: Rgb| a + (b + a * -1.0) * t;
+    match (a, b, amount) {
+        (Ink::Colour(a), Ink::Colour(b), amount) => pbrt.mapped(amount, |t| blend(a, b, t)),
+        (a, b, amount) => pbrt.baked("mix", &[&a, &b, &amount], |uv| {
+            blend(a.at(uv), b.at(uv), Rgb::grey(amount.at(uv).luminance()))
+        }),
+    }
+}
+
+/// Between two by how a surface is turned: their mean.
+fn direction_mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+    let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
+    list.has("dir");
+    let what = "the texture 'directionmix' is not shown: the mean of its parts stands in its place";
+    pbrt.oddities.note(what, || list.at.clone());
+    Ok(Ink::Colour((a.mean() + b.mean()) * 0.5))
+}
+
+fn checkerboard(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+    let (a, b) = (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 0.0)?);
+    if list.integer("dimension")?.unwrap_or(2) == 3 {
+        let what =
+            "a checkerboard of three dimensions is not shown: the mean of its parts stands in its place";
+        pbrt.oddities.note(what, || list.at.clone());
+        return Ok(Ink::Colour((a.mean() + b.mean()) * 0.5));
+    }
+    list.has("aamode");
+    let [su, sv, du, dv] = pbrt.lies(list)?;
+    if let (Ink::Colour(a), Ink::Colour(b)) = (&a, &b) {
+        let board = squares(pbrt.picture("checkerboard", [2, 2], vec![*a, *b, *b, *a])?);
+        // Rows go downwards, and t upwards.
+        let transform = UvTransform::new([0.5 * du, 0.5 * (sv + dv)], 0.0, [0.5 * su, -0.5 * sv]);
+        return Ok(Ink::Picture(Arc::new(Texture { transform: Some(transform), ..board })));
+    }
+    pbrt.baked("checkerboard", &[&a, &b], |uv| {
+        let (s, t) = ((su * uv.x + du).floor(), (sv * uv.y + dv).floor());
+        if (s + t) % 2.0 == 0.0 { a.at(uv) } else { b.at(uv) }
+    })
+}
+
+fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+    let mut corner = |name, default| Ok::<_, FormatError>(pbrt.part(list, name, meaning, default)?.mean());
+    let (v00, v01, v10, v11) =
+        (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);
+    let [su, sv, du, dv] = pbrt.lies(list)?;
+    let ramp = pbrt.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
+    // The middles of the four texels are the corners.
+    let offset = [0.25 + 0.5 * du, 0.75 - 0.5 * (sv + dv)];
+    let transform = Some(UvTransform::new(offset, 0.0, [0.5 * su, 0.5 * sv]));
+    Ok(Ink::Picture(Arc::new(Texture { transform, wrap: [Wrap::Clamp; 2], ..ramp })))
+}
+
+fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<Ink, FormatError> {
+    let Some(name) = list.text("filename")? else {
+        let what = "filename (of the picture)".to_owned();
+        return Err(SceneError::Missing { what, at: list.at.clone() }.into());
+    };
+    let at = list.place("filename");
+    let encoding = list.text("encoding")?.unwrap_or("sRGB").to_owned();
+    let gamma = match encoding.split_once(' ') {
+        Some(("gamma", number)) => number.trim().parse::<f32>().ok().filter(|g| g.is_finite() && *g > 0.0),
+        _ => None,
+    };
+    // Of version 3.
+    let is_linear = encoding == "linear" || gamma.is_some() || !list.flag("gamma", true)?;
+    let holds = if is_linear { Texels::Numbers(None) } else { Texels::Colours };
+    let mut texture = pbrt.file(name, holds, &at)?;
+    texture.wrap = [wrap(pbrt, list)?; 2];
+    for name in ["maxanisotropy", "trilinear"] {
+        list.has(name);
+    }
+    if list.text("filter")? == Some("point") {
+        texture.filter = Filter::Nearest;
+    }
+    let [su, sv, du, dv] = pbrt.lies(list)?;
+    if [su, sv, du, dv] != [1.0, 1.0, 0.0, 0.0] {
+        // Rows go downwards, and t upwards.
+        texture.transform = Some(UvTransform::new([du, 1.0 - sv - dv], 0.0, [su, sv]));
+    }
+    let mut ink = Ink::Picture(Arc::new(texture));
+    if let Some(gamma) = gamma {
+        ink = pbrt.mapped(ink, |c| c.map(|c| powf(c.max(0.0), gamma)))?;
+    }
+    ink = ink.scaled(Rgb::grey(list.finite("scale", 1.0)?));
+    if list.flag("invert", false)? {
+        ink = pbrt.mapped(ink, |c| c.map(|c| (1.0 - c).max(0.0)))?;
+    }
+    Ok(ink)
+}
+
+fn wrap(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Wrap, FormatError> {
+    Ok(match list.text("wrap")?.unwrap_or("repeat") {
+        "repeat" => Wrap::Repeat,
+        "clamp" => Wrap::Clamp,
+        other @ ("black" | "octahedralsphere") => {
+            let what = format!("beyond the edges of a texture its edge is seen, and not '{other}'");
+            pbrt.oddities.note(&what, || list.place("wrap"));
+            Wrap::Clamp
+        }
+        other => {
+            let known = ["repeat", "clamp", "black", "octahedralsphere"];
+            return Err(SceneError::unknown("way to wrap", other, known, &list.place("wrap")).into());
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_math::Vec2;
+
+    #[test]
+    fn boards_have_their_squares_where_they_should() {
+        let [su, sv, du, dv] = [3.0f32, 2.0, 0.0, 0.25];
+        let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::BLACK, Rgb::WHITE];
+        let board = squares(Texture::new("", 2, 2, texels, true));
+        let transform = Some(UvTransform::new([0.5 * du, 0.5 * (sv + dv)], 0.0, [0.5 * su, -0.5 * sv]));
+        let board = Texture { transform, ..board };
+        for (i, k) in (0..40).flat_map(|i| (0..40).map(move |k| (i, k))) {
+            let uv = Vec2::new(i as f32 * 0.073 - 1.0, k as f32 * 0.0513 - 0.7);
+            let is_first = ((su * uv.x + du).floor() + (sv * uv.y + dv).floor()) % 2.0 == 0.0;
+            assert_eq!(board.at(uv), Rgb::grey(if is_first { 1.0 } else { 0.0 }), "{uv}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Directives that place what comes after them.
+
+use super::directives::Directive;
+use super::lexer::{Token, shown};
+use super::state::{look_at, rotation};
+use crate::FormatError;
+use bilux_math::{DMat4, DVec3};
+use bilux_scene::SceneError;
+
+impl Directive<'_, '_, '_, '_> {
+    pub(super) fn transform(&mut self, word: &[u8]) -> Result<(), FormatError> {
+        match word {
+            b"CoordinateSystem" => {
+                let (name, _) = self.lexer.text("the name of a coordinate system")?;
+                self.pbrt.systems.insert(name, self.pbrt.state.matrices);
+                return Ok(());
+            }
+            b"CoordSysTransform" => {
+                let (name, at) = self.lexer.text("the name of a coordinate system")?;
+                let Some(matrices) = self.pbrt.systems.get(&name) else {
+                    let names = self.pbrt.systems.keys().map(String::as_str);
+                    let at = self.lexer.place(at);
+                    return Err(SceneError::unknown("coordinate system", &name, names, &at).into());
+                };
+                self.pbrt.state.matrices = *matrices;
+                return Ok(());
+            }
+            b"ActiveTransform" => return self.active_transform(),
+            b"TransformTimes" => {
+                self.pbrt.options.times = [self.lexer.number("a time")?, self.lexer.number("a time")?];
+                return Ok(());
+            }
+            b"Identity" => self.pbrt.state.change(|_| DMat4::IDENTITY),
+            b"Transform" => {
+                let matrix = self.matrix()?;
+                self.pbrt.state.change(|_| matrix);
+            }
+            _ => {
+                let matrix = self.step(word)?;
+                self.pbrt.state.change(|before| before * matrix);
+            }
+        }
+        if self.pbrt.state.matrices.iter().all(DMat4::is_finite) {
+            return Ok(());
+        }
+        self.error("with this, things are scaled or moved beyond all numbers")
+    }
+
+    fn active_transform(&mut self) -> Result<(), FormatError> {
+        let (token, at) = self.lexer.need("All, StartTime or EndTime")?;
+        self.pbrt.state.is_active = match token {
+            Token::Word(b"All") => [true, true],
+            Token::Word(b"StartTime") => [true, false],
+            Token::Word(b"EndTime") => [false, true],
+            _ => {
+                let message = format!("here should be All, StartTime or EndTime, and not {}", shown(&token));
+                return Err(self.lexer.error(message, at));
+            }
+        };
+        Ok(())
+    }
+
+    /// What a transform is multiplied by.
+    fn step(&mut self, word: &[u8]) -> Result<DMat4, FormatError> {
+        let step = match word {
+            b"Translate" => Some(DMat4::from_translation(self.vector("a shift")?)),
+            b"Scale" => Some(DMat4::from_scale(self.vector("a scale")?)),
+            b"Rotate" => {
+                let degrees = self.lexer.number("an angle")?;
+                rotation(degrees, self.vector("the axis of a turn")?)
+            }
+            b"LookAt" => {
+                let [eye, at, up] =
+                    [self.vector("the eye")?, self.vector("what is looked at")?, self.vector("what is up")?];
+                look_at(eye, at, up)
+            }
+            _ => Some(self.matrix()?),
+        };
+        match step {
+            Some(step) => Ok(step),
+            None if word == b"Rotate" => self.error("this turn has no axis: it must not be 0 0 0"),
+            None => self.error("a camera must not look along its own up, nor at the point where it stands"),
+        }
+    }
+
+    fn vector(&mut self, what: &str) -> Result<DVec3, FormatError> {
+        let mut number = || self.lexer.number(what);
+        Ok(DVec3::new(number()?, number()?, number()?))
+    }
+
+    /// 16 numbers, column by column.
+    fn matrix(&mut self) -> Result<DMat4, FormatError> {
+        let mut numbers = [0.0; 16];
+        let bracket = matches!(self.lexer.peek()?, Some((Token::Open, _)));
+        if bracket {
+            self.lexer.next()?;
+        }
+        for number in &mut numbers {
+            *number = self.lexer.number("one of 16 numbers of a matrix")?;
+        }
+        if bracket {
+            let (token, at) = self.lexer.need("']', behind 16 numbers")?;
+            if token != Token::Close {
+                let message = format!("a matrix has 16 numbers; here is {} in place of ']'", shown(&token));
+                return Err(self.lexer.error(message, at));
+            }
+        }
+        let matrix = DMat4::from_cols_array(&numbers);
+        let last = matrix.row(3).to_array();
+        if last != [0.0, 0.0, 0.0, 1.0] {
+            return self.error(format!("this matrix ends in the row {last:?}, but has to in [0, 0, 0, 1]"));
+        }
+        Ok(matrix)
+    }
+}

@@ -1,0 +1,542 @@
+//! pbrt scenes: what is read of them, and what is said of what is not.
+
+use crate::{read_text, refusal, warnings};
+use bilux_formats::{FormatError, ReadOptions, read};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{SceneBuilder, Spec, Value};
+use std::io::Write;
+use std::path::Path;
+
+const TRIANGLE: &str = r#"Shape "trianglemesh" "point3 P" [0 0 0  1 0 0  0 1 0]"#;
+
+fn scene(text: &str) -> SceneBuilder {
+    let scene = read_text("pbrt", text).unwrap_or_else(|error| panic!("{text}: {error}"));
+    if let Err(error) = scene.build(&Default::default(), [0.0, 1.0], 1.0) {
+        panic!("{text}: {error}");
+    }
+    scene
+}
+
+fn world(text: &str) -> SceneBuilder {
+    scene(&format!("WorldBegin\n{text}"))
+}
+
+/// The material of the first object, after a line of a file.
+fn material(line: &str) -> Spec {
+    let scene = world(&format!("{line}\n{TRIANGLE}"));
+    assert_eq!(warnings(&scene), "", "{line}");
+    scene.materials[scene.objects[0].material].clone()
+}
+
+fn number(spec: &Spec, key: &str) -> f32 {
+    match spec.parameters.find(key) {
+        Some((Value::Number(x), _)) => *x as f32,
+        other => panic!("{key}: {other:?}"),
+    }
+}
+
+fn colour(spec: &Spec, key: &str) -> Rgb {
+    match spec.parameters.find(key) {
+        Some((Value::List(c), _)) => {
+            let channel = |i: usize| if let Value::Number(x) = c[i] { x as f32 } else { f32::NAN };
+            Rgb::new(channel(0), channel(1), channel(2))
+        }
+        other => panic!("{key}: {other:?}"),
+    }
+}
+
+#[track_caller]
+fn close(a: Rgb, b: [f32; 3]) {
+    assert!((0..3).all(|c| (a[c] - b[c]).abs() < 2e-3 * b[c].abs().max(1.0)), "{a:?} {b:?}");
+}
+
+#[test]
+fn settings_camera_and_film_are_read() {
+    let scene = scene(
+        r#"
+        LookAt 0 0 5  0 0 0  0 1 0
+        Camera "perspective" "float fov" [60]
+        Film "rgb" "integer xresolution" [100] "integer yresolution" [200] "float iso" [200]
+        PixelFilter "triangle" "float xradius" [1] "float yradius" [1]
+        Sampler "zsobol" "integer pixelsamples" [64]
+        Integrator "volpath" "integer maxdepth" [7]
+        WorldBegin
+        LightSource "point" "rgb I" [1 2 3] "point3 from" [0 0 2]"#,
+    );
+    let setting = |key: &str| scene.settings.find(key).unwrap().0.clone();
+    assert_eq!(setting("size"), "100x200".into());
+    assert_eq!(setting("filter"), "tent".into());
+    assert_eq!((setting("spp"), setting("max_depth")), (Value::Integer(64), Value::Integer(7)));
+    let camera = &scene.cameras[0].spec;
+    // 60 degrees is of the width, the shorter side.
+    assert!(
+        (number(camera, "fov") - 2.0 * (2.0 * 30f32.to_radians().tan()).atan().to_degrees()).abs() < 1e-3
+    );
+    assert_eq!(camera.parameters.find("mirrored").map(|(v, _)| v.clone()), Some(true.into()));
+    close(colour(camera, "position"), [0.0, 0.0, 5.0]);
+    // Twice the speed of the film brightens all light.
+    close(colour(&scene.lights[0], "intensity"), [2.0, 4.0, 6.0]);
+    assert_eq!(warnings(&scene), "");
+}
+
+#[test]
+fn pictures_are_not_mirrored() {
+    // Without any transform x goes to the right, y up, and the view along z.
+    let scene = scene(&format!("Camera \"perspective\"\nWorldBegin\n{TRIANGLE}"));
+    let built = scene.build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
+    let camera = &built.cameras()[0].1;
+    let seen = camera.connect(Vec3::new(0.5, 0.25, 2.0), bilux_math::Vec2::ZERO, 0.0).unwrap();
+    assert!(seen.film.x > 0.5 && seen.film.y < 0.5, "{seen:?}");
+    let scene = self::scene(&format!("Camera \"orthographic\"\nWorldBegin\n{TRIANGLE}"));
+    let built = scene.build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
+    let seen = built.cameras()[0].1.connect(Vec3::new(0.5, 0.25, 2.0), bilux_math::Vec2::ZERO, 0.0).unwrap();
+    assert!((seen.film.x - 0.75).abs() < 1e-5 && (seen.film.y - 0.375).abs() < 1e-5, "{seen:?}");
+}
+
+#[test]
+fn transforms_and_attributes_nest() {
+    let scene = world(&format!(
+        r#"
+        Translate 1 0 0
+        AttributeBegin
+            Scale 2 2 2
+            Rotate 90 0 0 1
+            {TRIANGLE}
+        AttributeEnd
+        {TRIANGLE}
+        CoordinateSystem "here"
+        Identity
+        {TRIANGLE}
+        CoordSysTransform "here"
+        {TRIANGLE}"#
+    ));
+    let corner = |i: usize| scene.objects[i].motion.at(0.0).point(Vec3::X);
+    assert!((corner(0) - Vec3::new(1.0, 2.0, 0.0)).length() < 1e-6);
+    assert_eq!(corner(1), Vec3::new(2.0, 0.0, 0.0));
+    assert_eq!(corner(2), Vec3::X);
+    assert_eq!(corner(3), corner(1));
+}
+
+#[test]
+fn what_moves_has_two_places() {
+    let scene = scene(&format!(
+        r#"Camera "perspective" "float shutterclose" [0.5]
+        TransformTimes 0 2
+        WorldBegin
+        ActiveTransform EndTime
+        Translate 4 0 0
+        ActiveTransform All
+        {TRIANGLE}"#
+    ));
+    let at = |time| scene.objects[0].motion.at(time).point(Vec3::ZERO);
+    assert_eq!((at(0.0), at(1.0), at(2.0)), (Vec3::ZERO, Vec3::X * 2.0, Vec3::X * 4.0));
+    assert_eq!(scene.settings.find("shutter").unwrap().0, &Value::from(0.5f32));
+}
+
+#[test]
+fn objects_are_put_where_they_are_used() {
+    let scene = world(&format!(
+        r#"
+        ObjectBegin "thing"
+            Translate 0 0 1
+            {TRIANGLE}
+            Shape "sphere"
+        ObjectEnd
+        Translate 1 0 0
+        ObjectInstance "thing"
+        Translate 1 0 0
+        ObjectInstance "thing""#
+    ));
+    assert_eq!(scene.objects.len(), 4);
+    assert!(std::sync::Arc::ptr_eq(&scene.objects[0].mesh, &scene.objects[2].mesh));
+    assert_eq!(scene.objects[2].motion.at(0.0).point(Vec3::ZERO), Vec3::new(2.0, 0.0, 1.0));
+    assert_eq!(scene.objects[2].name, "thing");
+}
+
+#[test]
+fn shapes_are_as_large_as_they_say_and_face_outwards() {
+    for (text, low, high) in [
+        (r#"Shape "sphere" "float radius" [2]"#, [-2.0; 3], [2.0; 3]),
+        (r#"Shape "sphere" "float zmin" [0]"#, [-1., -1., 0.], [1., 1., 1.]),
+        (r#"Shape "disk" "float height" [3]"#, [-1., -1., 3.], [1., 1., 3.]),
+        (r#"Shape "cylinder" "float zmax" [4] "float phimax" [90]"#, [0., 0., -1.], [1., 1., 4.]),
+        (r#"Shape "bilinearmesh" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 1]"#, [0.; 3], [1.; 3]),
+        (
+            r#"Shape "curve" "string type" "cylinder" "point3 P" [0 0 0 0 0 1 0 0 2 0 0 3] "float width" [.2]"#,
+            [-0.1, -0.1, 0.0],
+            [0.1, 0.1, 3.0],
+        ),
+    ] {
+        let scene = world(text);
+        let object = &scene.objects[0];
+        let bounds = scene.bounds(0.0);
+        assert!((bounds.min - Vec3::from(low)).abs().max_element() < 1e-3, "{text}: {bounds:?}");
+        assert!((bounds.max - Vec3::from(high)).abs().max_element() < 1e-3, "{text}: {bounds:?}");
+        for t in &object.mesh.triangles {
+            let [a, b, c] = t.map(|i| object.mesh.positions[i as usize]);
+            let normal: Vec3 = t.iter().map(|i| object.mesh.normals[*i as usize]).sum();
+            assert!((b - a).cross(c - a).dot(normal) > 0.0, "{text}: {t:?}");
+        }
+    }
+    let scene = world(&format!("ReverseOrientation\n{TRIANGLE}"));
+    assert_eq!(scene.objects[0].mesh.triangles, [[0, 2, 1]]);
+    let smooth = world(
+        r#"Shape "loopsubdiv" "integer levels" [2] "point3 P" [1 1 1 -1 -1 1 -1 1 -1 1 -1 -1]
+        "integer indices" [0 2 1 0 1 3 0 3 2 1 2 3]"#,
+    );
+    assert_eq!(smooth.objects[0].mesh.triangles.len(), 4 * 16);
+}
+
+#[test]
+fn materials_are_mapped() {
+    close(
+        colour(&material(r#"Material "diffuse" "rgb reflectance" [.1 .2 .3]"#), "reflectance"),
+        [0.1, 0.2, 0.3],
+    );
+    // Without a word it is half grey.
+    close(colour(&material(r#"Material "diffuse""#), "reflectance"), [0.5; 3]);
+    assert_eq!(number(&material(""), "reflectance"), 0.5);
+    let metal = material(r#"Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k""#);
+    assert_eq!(metal.parameters.find("metal").unwrap().0, &"silver".into());
+    let rough = material(r#"Material "conductor" "float roughness" [.0625] "bool remaproughness" false"#);
+    assert_eq!(rough.parameters.find("metal").unwrap().0, &"copper".into());
+    assert!((number(&rough, "roughness") - 0.25).abs() < 1e-6);
+    let rough = material(r#"Material "conductor" "float roughness" [.0625]"#);
+    assert!((number(&rough, "roughness") - 0.5).abs() < 1e-6);
+    let brushed = material(
+        r#"Material "conductor" "float uroughness" .4 "float vroughness" .1 "bool remaproughness" false"#,
+    );
+    assert!((number(&brushed, "anisotropy") - 0.75).abs() < 1e-6);
+    assert_eq!(number(&brushed, "rotation"), 90.0);
+    let glass = material(r#"Material "dielectric" "spectrum eta" [400 1.6 700 1.6]"#);
+    assert_eq!((glass.kind.as_str(), number(&glass, "eta")), ("dielectric", 1.6));
+    assert_eq!(material(r#"Material "thindielectric""#).parameters.find("thin").unwrap().0, &true.into());
+    // Half of the light that reaches the base, with what the boundary turns back.
+    let paint = material(r#"Material "coateddiffuse" "rgb reflectance" [.5 .5 .5] "float roughness" 0"#);
+    close(colour(&paint, "base_color"), [0.5 * 0.4036 / (1.0 - 0.5 * 0.5964); 3]);
+    assert_eq!(
+        material(r#"Material "coatedconductor""#).parameters.find("coat_weight").unwrap().0,
+        &1f32.into()
+    );
+    let mirror = material(r#"Material "conductor" "rgb reflectance" [.25 .25 .25]"#);
+    close(colour(&mirror, "k"), [(4f32 * 0.25 / 0.75).sqrt(); 3]);
+    let old = material(r#"Material "matte" "color Kd" [.3 .3 .3]"#);
+    close(colour(&old, "reflectance"), [0.3; 3]);
+}
+
+#[test]
+fn mixes_and_names_may_come_later() {
+    let scene = world(&format!(
+        r#"
+        MakeNamedMaterial "both" "string type" "mix" "string materials" ["a" "b"] "float amount" [.25]
+        NamedMaterial "both"
+        {TRIANGLE}
+        MakeNamedMaterial "a" "string type" "diffuse"
+        MakeNamedMaterial "b" "string type" "conductor""#
+    ));
+    let mix = &scene.materials[scene.objects[0].material];
+    assert_eq!((mix.kind.as_str(), mix.name.as_str(), number(mix, "amount")), ("mix", "both", 0.25));
+    assert_eq!(warnings(&scene), "");
+}
+
+#[test]
+fn lights_shine_as_much_as_they_say() {
+    let scene = world(
+        r#"
+        LightSource "point" "rgb I" [1 1 1] "float scale" [3]
+        LightSource "point" "float power" [12.566371]
+        LightSource "distant" "blackbody L" [6500] "point3 from" [0 5 0] "point3 to" [0 0 0]
+        LightSource "infinite" "rgb L" [.5 .6 .7]
+        LightSource "spot" "spectrum I" [300 7 900 7] "float coneangle" [40] "float conedeltaangle" [10]
+        LightSource "distant" "spectrum L" "stdillum-A" "float scale" [2]"#,
+    );
+    let light = |i: usize, key| colour(&scene.lights[i], key);
+    close(light(0, "intensity"), [3.0; 3]);
+    close(light(1, "intensity"), [1.0; 3]);
+    let warm = light(2, "irradiance");
+    assert!((warm.luminance() - 1.0).abs() < 2e-3 && warm.r > warm.b, "{warm:?}");
+    close(light(2, "direction"), [0.0, -1.0, 0.0]);
+    close(light(3, "radiance"), [0.5, 0.6, 0.7]);
+    let even = light(4, "intensity");
+    // A spectrum shines with a luminance of 1, whatever its numbers; this one is a little pinker than daylight.
+    assert!((even.luminance() - 1.0).abs() < 2e-3 && even.r > 1.0, "{even:?}");
+    assert_eq!((number(&scene.lights[4], "angle"), number(&scene.lights[4], "inner_angle")), (40.0, 30.0));
+    let tungsten = light(5, "irradiance");
+    assert!((tungsten.luminance() - 2.0).abs() < 4e-3 && tungsten.r > 3.0, "{tungsten:?}");
+    assert_eq!(warnings(&scene), "");
+}
+
+#[test]
+fn surfaces_give_light_on_their_side() {
+    let light = r#"AreaLightSource "diffuse" "rgb L" [1 2 3] "float scale" [2]"#;
+    let glowing = |text: &str| {
+        let scene = world(&format!("{light}\n{text}"));
+        scene.materials[scene.objects[0].material].clone()
+    };
+    let spec = glowing(TRIANGLE);
+    close(colour(&spec, "emission"), [2.0, 4.0, 6.0]);
+    assert_eq!(spec.parameters.find("emission_sides").unwrap().0, &"front".into());
+    // Normals say which side is in front.
+    let scene = world(&format!("{light}\n{TRIANGLE} \"normal N\" [0 0 -1 0 0 -1 0 0 -1]"));
+    assert_eq!(scene.objects[0].mesh.triangles, [[0, 2, 1]]);
+    // A ball that reflects nothing is a lamp, round at every size.
+    let black = r#"Material "diffuse" "rgb reflectance" [0 0 0]"#;
+    let scene = world(&format!("{light}\n{black}\nTranslate 0 3 0\nScale 2 2 2\nShape \"sphere\""));
+    assert_eq!((scene.objects.len(), scene.lights.len()), (0, 1));
+    assert_eq!((scene.lights[0].kind.as_str(), number(&scene.lights[0], "radius")), ("sphere", 2.0));
+    // One watt from a triangle of half a square unit.
+    let spec = world(&format!("AreaLightSource \"diffuse\" \"float power\" [1]\n{TRIANGLE}"));
+    let spec = &spec.materials[spec.objects[0].material];
+    close(colour(spec, "emission"), [2.0 / std::f32::consts::PI; 3]);
+}
+
+#[test]
+fn media_absorb() {
+    let scene = world(
+        r#"
+        MakeNamedMedium "ink" "string type" "homogeneous" "rgb sigma_a" [1 2 3] "rgb sigma_s" [0 0 0] "float scale" [10]
+        MediumInterface "ink" ""
+        Material "dielectric"
+        Shape "sphere"
+        Material "interface"
+        Shape "sphere"
+        MediumInterface "" ""
+        Shape "sphere""#,
+    );
+    assert_eq!(scene.objects.len(), 2, "an interface with nothing behind is nothing");
+    for object in &scene.objects {
+        close(colour(&scene.materials[object.material], "absorption"), [10.0, 20.0, 30.0]);
+    }
+    assert_eq!(warnings(&scene), "");
+    let fog = world("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nLightSource \"point\"");
+    assert!(
+        warnings(&fog).contains("scene.pbrt:2:1: scattering within a medium is not shown"),
+        "{}",
+        warnings(&fog)
+    );
+}
+
+#[test]
+fn colour_spaces_hold_until_they_change() {
+    let scene = world(&format!(
+        "ColorSpace \"rec2020\"\nMaterial \"diffuse\" \"rgb reflectance\" [.5 .5 .4]\n{TRIANGLE}\n\
+         LightSource \"point\" \"rgb I\" [0 1 0]"
+    ));
+    let c = colour(&scene.materials[scene.objects[0].material], "reflectance");
+    assert!((c.r - 0.5).abs() < 0.02 && c.b < 0.4, "{c:?}");
+    let green = colour(&scene.lights[0], "intensity");
+    assert!(green.g > 1.1 && green.r == 0.0, "what Rec. 709 cannot show is cut: {green:?}");
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_place() {
+    let mut missed = Vec::new();
+    for (text, wanted) in [
+        ("Shpae \"sphere\"", "scene.pbrt:1:1: there is no directive 'Shpae'; did you mean 'Shape'?"),
+        (
+            "WorldBegin\n  Shape \"sphrere\"",
+            "scene.pbrt:2:3: there is no shape 'sphrere'; did you mean 'sphere'?",
+        ),
+        (
+            "WorldBegin Shape \"disk\" \"flaot radius\" 1",
+            "scene.pbrt:1:25: there is no type 'flaot' of parameters; did you mean 'float'?",
+        ),
+        (
+            "WorldBegin Shape \"disk\" \"float radius\" [1 x]",
+            "scene.pbrt:1:43: 'radius' takes numbers, and not 'x'",
+        ),
+        (
+            "WorldBegin Shape \"disk\" \"float radius\" [1 2]",
+            "'radius' has to be one number, and here are 2 numbers",
+        ),
+        ("WorldBegin Shape \"disk\" \"float radius\" [1", "the file ends here, where ']'"),
+        ("WorldBegin Shape \"disk\" \"float\" [1]", "'float' declares no parameter"),
+        ("WorldBegin Shape \"trianglemesh\"", "P (points of the shape) has to be given"),
+        ("WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1]", "'P' has to be triples of numbers"),
+        (
+            "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1 1] \"integer indices\" [0 1 2]",
+            "scene.pbrt:1:58: 'indices' names vertex 2, but there are 2",
+        ),
+        ("WorldBegin\nTransform [1 0 0 0 0 nan 0 0 0 0 1 0 0 0 0 1]", "has to be finite, and not NaN"),
+        ("WorldBegin\nTransform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2]", "this matrix ends in the row"),
+        ("Scale 1e200 1 1 Scale 1e200 1 1", "beyond all numbers"),
+        ("LookAt 0 0 0 0 0 0 0 1 0", "scene.pbrt:1:1: a camera must not look along its own up"),
+        ("WorldBegin AttributeBegin", "scene.pbrt:1:12: what begins here does not end"),
+        ("WorldBegin AttributeEnd", "nothing is open here"),
+        ("WorldBegin ObjectBegin \"a\" AttributeEnd", "ends belong to the last beginning"),
+        ("WorldBegin ObjectInstance \"a\"", "there is no object 'a', nor any other"),
+        ("WorldBegin NamedMaterial \"gold\" Shape \"sphere\"", "there is no material 'gold', nor any other"),
+        ("WorldBegin Material \"difuse\" Shape \"sphere\"", "did you mean 'diffuse'?"),
+        (
+            "WorldBegin Material \"diffuse\" \"texture reflectance\" \"wood\" Shape \"sphere\"",
+            "there is no texture 'wood'",
+        ),
+        ("WorldBegin LightSource \"pint\"", "there is no light 'pint'; did you mean 'point'?"),
+        (
+            "WorldBegin LightSource \"point\" \"spectrum I\" [500 1 400 1]",
+            "have to rise, but behind 500 comes 400",
+        ),
+        (
+            "WorldBegin LightSource \"point\" \"spectrum I\" \"metal-Xu-k\"",
+            "there is no spectrum or file 'metal-Xu-k'; did you mean",
+        ),
+        ("Camera \"perspectiv\"", "did you mean 'perspective'?"),
+        ("WorldBegin Camera \"perspective\"", "belongs before WorldBegin"),
+        ("Include \"other.pbrt\"", "did not come from a folder"),
+        (
+            "WorldBegin Texture \"a\" \"spectrum\" \"mix\" \"texture tex1\" \"a\" Material \"diffuse\" \"texture reflectance\" \"a\" Shape \"sphere\"",
+            "the texture 'a' is made of itself",
+        ),
+        (
+            "WorldBegin MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"] NamedMaterial \"a\" Shape \"sphere\"",
+            "or one with itself",
+        ),
+        ("WorldBegin MediumInterface \"x\" Shape \"sphere\"", "there is no medium 'x', nor any other"),
+    ] {
+        let told = refusal("pbrt", text);
+        if !told.contains(wanted) || !told.contains("scene.pbrt") {
+            missed.push(format!("{text}\n{told}\n{wanted}"));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n\n"));
+}
+
+#[test]
+fn what_cannot_be_shown_is_told() {
+    for (text, wanted) in [
+        (
+            "Shape \"disk\" \"float raduis\" 2",
+            "scene.pbrt:2:14: 'raduis' of the shape 'disk' is not used; did you mean 'radius'?",
+        ),
+        ("Material \"hair\" Shape \"sphere\"", "hair is shown as glossy fibres"),
+        ("Material \"subsurface\" Shape \"sphere\"", "not shown: the surface is matt"),
+        ("Material \"diffusetransmission\" Shape \"sphere\"", "passes a surface diffusely is not shown"),
+        (
+            "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\"",
+            "refracted alike, by the index at 587.6 nm",
+        ),
+        (
+            "Texture \"n\" \"float\" \"fbm\" Material \"diffuse\" \"texture displacement\" \"n\" Shape \"sphere\"",
+            "displacement of a material is not shown",
+        ),
+        (
+            "Texture \"n\" \"spectrum\" \"marble\" Material \"diffuse\" \"texture reflectance\" \"n\" Shape \"sphere\"",
+            "the texture 'marble' is not shown",
+        ),
+        ("LightSource \"goniometric\" \"string filename\" \"a.exr\"", "shines in all directions alike"),
+        ("Scale 0 1 1 Shape \"sphere\"", "scaled to nothing is not drawn"),
+        ("Shape \"cone\" Shape \"sphere\"", "the shape 'cone' of version 3 is left out"),
+    ] {
+        let told = warnings(&world(text));
+        assert!(told.contains(wanted), "{text}\n{told}\n{wanted}");
+    }
+}
+
+#[test]
+fn textures_are_worked_out() {
+    let of = |lines: &str| {
+        let scene =
+            world(&format!("{lines}\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n{TRIANGLE}"));
+        assert_eq!(warnings(&scene), "", "{lines}");
+        let spec = &scene.materials[scene.objects[0].material];
+        match spec.parameters.find("reflectance").unwrap().0 {
+            Value::Texture(i) => {
+                let texture = scene.textures[*i].clone();
+                Box::new(move |u, v| texture.at(bilux_math::Vec2::new(u, v))) as Box<dyn Fn(f32, f32) -> Rgb>
+            }
+            _ => {
+                let c = colour(spec, "reflectance");
+                Box::new(move |_, _| c)
+            }
+        }
+    };
+    let board = of(
+        r#"Texture "t" "spectrum" "checkerboard" "float uscale" 4 "rgb tex1" [.8 .8 .8] "rgb tex2" [.1 .2 .3]"#,
+    );
+    close(board(0.1, 0.5), [0.8; 3]);
+    close(board(0.3, 0.5), [0.1, 0.2, 0.3]);
+    let scaled = of(r#"Texture "a" "spectrum" "constant" "rgb value" [.5 .5 1]
+        Texture "t" "spectrum" "scale" "texture tex" "a" "float scale" .5"#);
+    close(scaled(0.0, 0.0), [0.25, 0.25, 0.5]);
+    let mixed = of(r#"Texture "b" "float" "checkerboard"
+        Texture "t" "spectrum" "mix" "rgb tex1" [0 0 0] "rgb tex2" [1 .5 0] "texture amount" "b""#);
+    close(mixed(0.5, 0.5), [1.0, 0.5, 0.0]);
+    let ramp = of(
+        r#"Texture "t" "spectrum" "bilerp" "rgb v00" [0 0 0] "rgb v10" [1 0 0] "rgb v01" [0 1 0] "rgb v11" [1 1 0]"#,
+    );
+    close(ramp(0.25, 0.75), [0.25, 0.75, 0.0]);
+    let both = of(r#"Texture "a" "spectrum" "checkerboard" "float vscale" 2
+        Texture "b" "spectrum" "checkerboard" "float uscale" 2
+        Texture "t" "spectrum" "scale" "texture tex1" "a" "texture tex2" "b""#);
+    close(both(0.25, 0.25), [1.0; 3]);
+    close(both(0.75, 0.25), [0.0; 3]);
+}
+
+fn in_folder(files: &[(&str, &[u8])]) -> (tempfile::TempDir, Result<SceneBuilder, FormatError>) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    let path = folder.path().join(files[0].0);
+    let options = ReadOptions { max_memory: 32 << 20, ..ReadOptions::default() };
+    let result = read(&path, &options);
+    (folder, result)
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    packer.write_all(bytes).unwrap();
+    packer.finish().unwrap()
+}
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                   element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+#[test]
+fn files_are_included_and_unpacked() {
+    let main = b"WorldBegin\nTranslate 0 0 1\nImport \"parts/a.pbrt\"\nInclude \"parts/b.pbrt.gz\"\nShape \"sphere\"";
+    let (_folder, scene) = in_folder(&[
+        ("main.pbrt", main),
+        ("parts/a.pbrt", b"Translate 5 0 0 Shape \"plymesh\" \"string filename\" \"parts/t.ply.gz\""),
+        ("parts/b.pbrt.gz", &packed(b"Translate 0 7 0")),
+        ("parts/t.ply.gz", &packed(PLY.as_bytes())),
+        ("parts/t.ply", PLY.as_bytes()),
+    ]);
+    let scene = scene.unwrap();
+    let at = |i: usize| scene.objects[i].motion.at(0.0).point(Vec3::ZERO);
+    assert_eq!((at(0), at(1)), (Vec3::new(5.0, 0.0, 1.0), Vec3::new(0.0, 7.0, 1.0)));
+    assert!(scene.objects[0].mesh.normals.is_empty(), "flat without normals");
+}
+
+#[test]
+fn files_that_would_hurt_are_refused() {
+    let refused = |files: &[(&str, &[u8])]| in_folder(files).1.map(|_| ()).unwrap_err().to_string();
+    let told = refused(&[("a.pbrt", b"Include \"b.pbrt\""), ("b.pbrt", b"\nInclude \"a.pbrt\"")]);
+    assert!(told.contains("b.pbrt:2:9: 'a.pbrt' includes itself"), "{told}");
+    let told = refused(&[("a.pbrt", b"Include \"/etc/passwd\"")]);
+    assert!(told.contains("a.pbrt:1:9: '/etc/passwd' lies outside the scene's folder"), "{told}");
+    let told = refused(&[("a.pbrt", b"Include \"nowhere.pbrt\"")]);
+    assert!(told.contains("there is no file 'nowhere.pbrt'"), "{told}");
+    let bomb = packed(&vec![b' '; 200 << 20]);
+    assert!(bomb.len() < 1 << 20);
+    let told = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &bomb)]);
+    assert!(told.contains("takes more than the"), "{told}");
+    let told = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &packed(b"Shape")[..20])]);
+    assert!(told.contains("a.pbrt:1:20: ") && told.contains("cannot be unpacked"), "{told}");
+    // Each file names the next twice: 2^40 in all, were it not for the longest chain.
+    let names: Vec<String> = (0..41).map(|i| format!("{i}.pbrt")).collect();
+    let texts: Vec<String> = (1..42).map(|i| format!("Include \"{i}.pbrt\" Include \"{i}.pbrt\"")).collect();
+    let files: Vec<(&str, &[u8])> =
+        names.iter().zip(&texts).map(|(n, t)| (n.as_str(), t.as_bytes())).collect();
+    assert!(refused(&files).contains("more than 32 deep"));
+}
+
+#[test]
+fn the_first_bytes_tell_it() {
+    let text = format!("# a scene\nWorldBegin\n{TRIANGLE}");
+    assert_eq!(read_text("", text).unwrap().objects.len(), 1);
+    assert!(bilux_formats::format_named("pbrt").unwrap().extensions.contains(&"pbrt"));
+    assert_eq!(Path::new("x.pbrt").extension().unwrap(), "pbrt");
+}
