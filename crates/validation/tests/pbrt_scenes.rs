@@ -86,8 +86,9 @@ fn cornell_box(folder: &Path, change: impl Fn(&mut SceneBuilder)) -> Pixels {
 fn plates(folder: &Path, change: impl Fn(&mut SceneBuilder)) -> Pixels {
     let settings = [
         ("size", "160x90".into()),
-        ("spp", Value::Integer(36)),
+        ("spp", Value::Integer(64)),
         ("max_depth", Value::Integer(1)),
+        ("filter", "box".into()),
         ("integrator", "path".into()),
     ];
     ours(folder, &settings, change)
