@@ -103,7 +103,7 @@ impl Pbrt<'_, '_> {
             self.oddities
                 .note("a field of view is out of range: taken as 0.01 to 179 degrees", || list.place("fov"));
         }
-        spec.parameters.set_at("fov", vertical.max(0.01).min(179.0).into(), list.place("fov"));
+        spec.parameters.set_at("fov", vertical.clamp(0.01, 179.0).into(), list.place("fov"));
         if radius > 0.0 {
             let held = |x: f64| x.clamp(0.0, 1e9) as f32;
             spec.parameters.set("aperture", held(f64::from(radius) * sizes.x).min(1e6));

@@ -46,7 +46,8 @@ pub(super) fn infinite(
     let mapping = if is_old || !is_square { Mapping::Latitudes } else { Mapping::Square };
     let mut scale = if is_old { pbrt.shine(list, "L")? } else { pbrt.light_scale(list)? };
     if let Some(lux) = illuminance {
-        scale = scale * (lux / illuminance_of(&picture, mapping).max(f32::MIN_POSITIVE));
+        let ours = illuminance_of(&picture, mapping).max(f32::MIN_POSITIVE);
+        scale *= lux / ours;
     }
     let turned = pbrt.by_longitude(&name, &picture, mapping, matrix, list)?;
     let value = pbrt.value(Ink::Picture(Arc::new(turned)));

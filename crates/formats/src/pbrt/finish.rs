@@ -243,7 +243,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// A material with holes, where alpha says so.
-    fn cut_out(&mut self, spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
+    fn cut_out(&mut self, mut spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
         let share = match &piece.dress.alpha {
             Alpha::Whole => return Ok(Some(spec)),
             Alpha::Even(bits) => {
@@ -264,12 +264,8 @@ impl Pbrt<'_, '_> {
                 self.number_value(ink, [0.0, 1.0])
             }
         };
-        if spec.parameters.find("emission").is_some() {
-            self.oddities.note("alpha of what gives light is not shown", || piece.at.clone());
-            return Ok(Some(spec));
-        }
-        let clear = Spec::new("clear", "dielectric").with("eta", 1.0f32).with("thin", true);
-        Ok(Some(self.mixed(clear, spec, share, "alpha")))
+        spec.parameters.set("opacity", share);
+        Ok(Some(spec))
     }
 
     /// From two matrices to a motion; none, with a warning, for what is scaled to nothing.

@@ -52,7 +52,10 @@ fn fitted(straight: f64, grazing: f64) -> [f32; 2] {
         k2.max(0.0).sqrt()
     };
     const STEPS: u32 = 4096;
-    let at = |i: u32| least + (most - least) * (f64::from(i) / f64::from(STEPS)).powi(2);
+    let at = |i: u32| {
+        let part = f64::from(i) / f64::from(STEPS);
+        least + (most - least) * part * part
+    };
     let miss = |eta: f64| (reflectance(COS_82, eta, extinction(eta)) - grazing).abs();
     let eta = (0..=STEPS).map(at).min_by(|a, b| miss(*a).total_cmp(&miss(*b))).unwrap_or(least);
     [eta as f32, extinction(eta) as f32]

@@ -180,8 +180,13 @@ pub(super) fn blackbody(kelvin: f32) -> Rgb {
     }
     // hc/k in nm·K; constant factors do not change the colour.
     let second = 1.438_776_877e7;
-    let emitted = |w: f64| 1.0 / ((w / YELLOW).powi(5) * (exp_f64(second / (w * kelvin)) - 1.0));
+    let emitted = |w: f64| 1.0 / (fifth(w / YELLOW) * (exp_f64(second / (w * kelvin)) - 1.0));
     of_unit_luminance(observed(emitted))
+}
+
+fn fifth(x: f64) -> f64 {
+    let x2 = x * x;
+    x2 * x2 * x
 }
 
 /// XYZ of a spectrum, of any scale.

@@ -10,6 +10,7 @@ use bilux_math::{DMat4, Rgb};
 use bilux_scene::texture::{Filter, UvTransform, Wrap};
 use bilux_scene::{SceneError, Span, Texture};
 use std::collections::HashMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Textures by name: those of colours, and those of numbers.
@@ -18,7 +19,7 @@ pub(super) struct NamedTextures([HashMap<String, Slot>; 2]);
 
 #[derive(Clone)]
 enum Slot {
-    Defined(Arc<Entity>),
+    Defined(Rc<Entity>),
     /// Being worked out.
     Open,
     Ready(Ink),
@@ -26,7 +27,7 @@ enum Slot {
 
 impl NamedTextures {
     pub(super) fn define(&mut self, name: String, is_number: bool, entity: Entity, _matrix: DMat4) {
-        self.0[usize::from(is_number)].insert(name, Slot::Defined(Arc::new(entity)));
+        self.0[usize::from(is_number)].insert(name, Slot::Defined(Rc::new(entity)));
     }
 }
 

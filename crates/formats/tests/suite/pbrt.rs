@@ -2,6 +2,7 @@
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, read};
+use bilux_math::transcendental::{atan, tan};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::io::Write;
@@ -69,9 +70,7 @@ fn settings_camera_and_film_are_read() {
     assert_eq!((setting("spp"), setting("max_depth")), (Value::Integer(64), Value::Integer(7)));
     let camera = &scene.cameras[0].spec;
     // 60 degrees is of the width, the shorter side.
-    assert!(
-        (number(camera, "fov") - 2.0 * (2.0 * 30f32.to_radians().tan()).atan().to_degrees()).abs() < 1e-3
-    );
+    assert!((number(camera, "fov") - 2.0 * atan(2.0 * tan(30f32.to_radians())).to_degrees()).abs() < 1e-3);
     assert_eq!(camera.parameters.find("mirrored").map(|(v, _)| v.clone()), Some(true.into()));
     close(colour(camera, "position"), [0.0, 0.0, 5.0]);
     // Twice the speed of the film brightens all light.
@@ -220,6 +219,12 @@ fn materials_are_mapped() {
     );
     let mirror = material(r#"Material "conductor" "rgb reflectance" [.25 .25 .25]"#);
     close(colour(&mirror, "k"), [(4f32 * 0.25 / 0.75).sqrt(); 3]);
+    let leaf = material(
+        r#"Material "diffusetransmission" "rgb reflectance" [.1 .3 .1] "rgb transmittance" [.2 .6 .1]"#,
+    );
+    assert!((number(&leaf, "diffuse_transmission_weight") - 2.0 / 3.0).abs() < 1e-6);
+    close(colour(&leaf, "base_color"), [0.3, 0.9, 0.3]);
+    close(colour(&leaf, "diffuse_transmission_color"), [0.3, 0.9, 0.15]);
     let old = material(r#"Material "matte" "color Kd" [.3 .3 .3]"#);
     close(colour(&old, "reflectance"), [0.3; 3]);
 }
@@ -288,6 +293,19 @@ fn surfaces_give_light_on_their_side() {
     let spec = world(&format!("AreaLightSource \"diffuse\" \"float power\" [1]\n{TRIANGLE}"));
     let spec = &spec.materials[spec.objects[0].material];
     close(colour(spec, "emission"), [2.0 / std::f32::consts::PI; 3]);
+}
+
+#[test]
+fn alpha_is_opacity() {
+    let of = |alpha: &str| {
+        let scene = world(&format!("Texture \"t\" \"float\" \"checkerboard\"\n{TRIANGLE} {alpha}"));
+        assert_eq!(warnings(&scene).contains("nothing to see"), scene.objects.is_empty());
+        let object = scene.objects.first()?;
+        scene.materials[object.material].parameters.find("opacity").map(|(value, _)| value.clone())
+    };
+    assert_eq!(of(r#""float alpha" [.5]"#), Some(0.5f32.into()));
+    assert!(matches!(of(r#""texture alpha" "t""#), Some(Value::Texture(_))));
+    assert_eq!(of(r#""float alpha" [0]"#), None);
 }
 
 #[test]
@@ -410,7 +428,6 @@ fn what_cannot_be_shown_is_told() {
         ),
         ("Material \"hair\" Shape \"sphere\"", "hair is shown as glossy fibres"),
         ("Material \"subsurface\" Shape \"sphere\"", "not shown: the surface is matt"),
-        ("Material \"diffusetransmission\" Shape \"sphere\"", "passes a surface diffusely is not shown"),
         (
             "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\"",
             "refracted alike, by the index at 587.6 nm",

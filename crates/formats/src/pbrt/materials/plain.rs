@@ -22,7 +22,7 @@ pub(super) fn interface(_: &mut Pbrt, _: &ParameterList) -> Result<Option<Spec>,
     Ok(None)
 }
 
-/// Where light only passes, what it reflects is shown alone.
+/// A sheet without a boundary: a part of its scattered light comes out behind.
 pub(super) fn diffuse_transmission(
     pbrt: &mut Pbrt,
     list: &ParameterList,
@@ -31,13 +31,32 @@ pub(super) fn diffuse_transmission(
     let ink = |found: Option<Ink>| found.unwrap_or(Ink::Colour(Rgb::grey(0.25))).scaled(scale);
     let reflectance = ink(pbrt.ink(list, "reflectance", Meaning::Surface)?);
     let transmittance = ink(pbrt.ink(list, "transmittance", Meaning::Surface)?);
-    if !transmittance.is_black() {
-        let what = "light that passes a surface diffusely is not shown";
-        pbrt.oddities.note(what, || list.place("transmittance"));
+    let share = share_behind(&reflectance, &transmittance);
+    let mut spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
+    spec.parameters.set("diffuse_transmission_weight", share);
+    let part = |ink: Ink, share: f32| if share > 0.0 { ink.scaled(Rgb::grey(1.0 / share)) } else { ink };
+    let (front, behind) = (part(reflectance, 1.0 - share), part(transmittance, share));
+    for (key, ink, name) in
+        [("base_color", front, "reflectance"), ("diffuse_transmission_color", behind, "transmittance")]
+    {
+        let held = match ink {
+            Ink::Colour(colour) => Ink::Colour(colour.clamp(0.0, 1.0)),
+            picture => picture,
+        };
+        pbrt.set(&mut spec, key, held, list.place(name));
     }
-    let mut spec = Spec::new("", "diffuse");
-    pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
     Ok(Some(spec))
+}
+
+/// The share of the light that comes out behind, so that neither side's colour is above 1 unless both are together.
+fn share_behind(reflectance: &Ink, transmittance: &Ink) -> f32 {
+    match (reflectance, transmittance) {
+        (Ink::Colour(r), Ink::Colour(t)) => {
+            let (r, t) = (r.max_channel(), t.max_channel());
+            if r + t > 0.0 { t / (r + t) } else { 0.0 }
+        }
+        _ => 0.5,
+    }
 }
 
 pub(super) fn dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
@@ -58,8 +77,7 @@ fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
 impl Pbrt<'_, '_> {
     /// An index that glass can have.
     pub(super) fn held_index(&mut self, index: f32, list: &ParameterList) -> f32 {
-        // What is no number becomes the least.
-        let held = index.max(0.1).min(10.0);
+        let held = if index.is_finite() { index.clamp(0.1, 10.0) } else { 1.5 };
         if held != index {
             self.oddities
                 .note("a refractive index is out of range: taken as 0.1 to 10", || list.place("eta"));

@@ -38,7 +38,7 @@ pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
     let kd = pbrt.ink_or(list, "Kd", 0.25)?;
     let weight = pbrt.ink_or(list, "Ks", 0.25)?.mean().luminance();
     let index = pbrt.old_index(list)?.max(1.0);
-    for name in ["Kr", "Kt", "opacity", "mfp"] {
+    for name in ["Kr", "Kt", "mfp"] {
         if list.has(name) {
             let what = format!("'{name}' of a material of version 3 is not shown");
             pbrt.oddities.note(&what, || list.place(name));
@@ -47,6 +47,11 @@ pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
     let mut spec = Spec::new("", "principled").with("specular_ior", index);
     pbrt.set(&mut spec, "base_color", kd, list.place("Kd"));
     spec.parameters.set("specular_weight", weight.clamp(0.0, 1.0));
+    if let Some(opacity) = pbrt.ink(list, "opacity", Meaning::Surface)? {
+        let grey = pbrt.mapped(opacity, |c| Rgb::grey(c.luminance()))?;
+        let value = pbrt.number_value(grey, [0.0, 1.0]);
+        spec.parameters.set_at("opacity", value, list.place("opacity"));
+    }
     pbrt.set_roughness(&mut spec, list, OWN, 0.1, true, PRINCIPLED)?;
     Ok(Some(spec))
 }
@@ -125,7 +130,7 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
         spec.parameters.set_at(ours, value, list.place(theirs));
     }
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
-    spec.parameters.set("specular_ior", index.max(1.0).min(10.0));
+    spec.parameters.set("specular_ior", index.clamp(1.0, 10.0));
     let gloss = list.finite("clearcoatgloss", 1.0)?.clamp(0.0, 1.0);
     // Its alpha goes from a tenth to a thousandth.
     spec.parameters.set("coat_roughness", (0.1 + (0.001 - 0.1) * gloss).sqrt());

@@ -106,7 +106,7 @@ impl Cage {
         let edges = self.edges();
         let rings = self.rings(&edges);
         let moved = |(p, ring): (&DVec3, &Ring)| match ring.border_count {
-            b if b == 2.0 => *p * 0.75 + ring.border_sum * 0.125,
+            2.0 => *p * 0.75 + ring.border_sum * 0.125,
             b if b > 0.0 => *p,
             _ => blended(*p, ring, beta(ring.count)),
         };
@@ -139,7 +139,7 @@ impl Cage {
     fn limit(&self) -> Vec<DVec3> {
         let rings = self.rings(&self.edges());
         let settled = |(p, ring): (&DVec3, &Ring)| match ring.border_count {
-            b if b == 2.0 => *p * 0.6 + ring.border_sum * 0.2,
+            2.0 => *p * 0.6 + ring.border_sum * 0.2,
             b if b > 0.0 => *p,
             _ => blended(*p, ring, 1.0 / (ring.count + 3.0 / (8.0 * beta(ring.count)))),
         };

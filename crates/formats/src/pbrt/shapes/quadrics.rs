@@ -60,8 +60,8 @@ fn part_of_sphere(radius: f64, [from, to]: [f64; 2], turn: f64, around: u32) -> 
         let theta = from + (to - from) * v;
         let (sin, cos) = match theta {
             // Poles are one point, to the bit.
-            t if t == 0.0 => (0.0, 1.0),
-            t if t == PI => (0.0, -1.0),
+            0.0 => (0.0, 1.0),
+            PI => (0.0, -1.0),
             t => sin_cos_f64(t),
         };
         let (sin_phi, cos_phi) = sin_cos_f64(2.0 * PI * turn * u);
