@@ -1,6 +1,6 @@
 //! What the parameters of a spec say, for writers.
 
-use bilux_math::Rgb;
+use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Spec, Value};
 
 /// A number, if one is given.
@@ -17,6 +17,14 @@ pub(crate) fn colour(spec: &Spec, key: &str) -> Option<Rgb> {
         }
         Value::Texture(_) => Some(Rgb::WHITE),
         one => as_number(one).map(Rgb::grey),
+    }
+}
+
+/// A point or a direction, if one is given.
+pub(crate) fn vector(spec: &Spec, key: &str) -> Option<Vec3> {
+    match spec.parameters.find(key)?.0 {
+        Value::List(_) => colour(spec, key).map(|c| Vec3::from_array(c.to_array())),
+        _ => None,
     }
 }
 

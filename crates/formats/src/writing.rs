@@ -12,6 +12,8 @@ pub(crate) struct Writing<'o> {
     pub(crate) options: &'o WriteOptions,
     /// The main file's name without folder and extension.
     pub(crate) stem: String,
+    /// Its extension, in lower case.
+    pub(crate) extension: String,
     /// The main file.
     pub(crate) main: Vec<u8>,
     /// Files beside it, by name.
@@ -25,9 +27,11 @@ pub(crate) struct Writing<'o> {
 impl<'o> Writing<'o> {
     pub(crate) fn new(path: &Path, options: &'o WriteOptions) -> Writing<'o> {
         let stem = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
+        let extension = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
         Writing {
             options,
             stem,
+            extension,
             main: Vec::new(),
             beside: Vec::new(),
             textures: Vec::new(),

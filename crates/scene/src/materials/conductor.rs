@@ -6,7 +6,7 @@ use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, colour_map, 
 use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
-use crate::parameters::Reader;
+use crate::parameters::{Reader, Spec};
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
@@ -63,6 +63,20 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         Ok(Arc::new(ConductorMaterial { colour, roughness: Roughness::read(reader, ingredients)? }))
     },
 };
+
+/// What a metal that a spec describes reflects straight on; `None` where the spec is of none, or wrong.
+pub fn straight_on(spec: &Spec) -> Option<Rgb> {
+    let reader = Reader::new(spec, &ENTRY.entry).ok().filter(|_| spec.kind == ENTRY.entry.name)?;
+    if reader.is_given("reflectance") {
+        return Some(reader.colour("reflectance"));
+    }
+    let named = METALS.iter().find(|metal| metal.name == reader.text("metal"));
+    let metal = match named.filter(|_| !reader.is_given("eta")) {
+        Some(metal) => Fresnel::Complex { eta: metal.eta, k: metal.k },
+        None => Fresnel::Complex { eta: reader.colour("eta"), k: reader.colour("k") },
+    };
+    Some(metal.at(1.0))
+}
 
 const fn index(name: &'static str, summary: &'static str, min: f64) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Colour { min, max: 100.0 }, default: "1" }

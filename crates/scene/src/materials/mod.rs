@@ -38,6 +38,7 @@ use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap, Texture};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
+pub use conductor::straight_on;
 use glow::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 use normal_map::{NORMAL, NORMAL_SCALE};
 use opacity::OPACITY;

@@ -1,0 +1,180 @@
+//! Writing glTF: `.glb` in one file, `.gltf` with its binary beside it.
+//!
+//! Materials become metal and roughness with the extensions that say the rest; panels and spheres that give light become
+//! surfaces that do.
+
+mod buffer;
+mod material;
+mod nodes;
+mod pictures;
+
+use crate::FormatError;
+use crate::bake::name_of;
+use crate::writing::Writing;
+use bilux_scene::{Mesh, Object, SceneBuilder};
+use buffer::Buffer;
+use serde_json::{Map, Value as Json, json};
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+
+/// A document while it is put together.
+pub(super) struct Document<'s> {
+    pub(super) scene: &'s SceneBuilder,
+    pub(super) buffer: Buffer,
+    /// The lists of the document by their names, in the order of their indices.
+    lists: HashMap<&'static str, Vec<Json>>,
+    extensions: BTreeSet<&'static str>,
+    /// Samplers and pictures that are there already, by what they are made of.
+    pub(super) known: HashMap<String, usize>,
+    meshes: HashMap<(*const Mesh, usize), usize>,
+    /// The nodes of the scene.
+    roots: Vec<usize>,
+}
+
+pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+    if !scene.settings.0.is_empty() {
+        writing.warn("glTF files hold no render settings: left out");
+    }
+    let mut document = Document {
+        scene,
+        buffer: Buffer::default(),
+        lists: HashMap::new(),
+        extensions: BTreeSet::new(),
+        known: HashMap::new(),
+        meshes: HashMap::new(),
+        roots: Vec::new(),
+    };
+    for spec in &scene.materials {
+        let material = document.material(spec, writing)?;
+        document.push("materials", material);
+    }
+    for object in &scene.objects {
+        document.object(object, writing)?;
+    }
+    for camera in &scene.cameras {
+        document.camera(camera, writing);
+    }
+    for light in &scene.lights {
+        document.light(light, writing);
+    }
+    document.finish(writing);
+    Ok(())
+}
+
+impl Document<'_> {
+    /// Adds to a list of the document, and gives the index.
+    pub(super) fn push(&mut self, list: &'static str, item: Json) -> usize {
+        let list = self.lists.entry(list).or_default();
+        list.push(item);
+        list.len() - 1
+    }
+
+    /// Notes that an extension is used.
+    pub(super) fn uses(&mut self, extension: &'static str) -> &'static str {
+        self.extensions.insert(extension);
+        extension
+    }
+
+    /// A node at the top of the scene.
+    pub(super) fn root(&mut self, node: Json) -> usize {
+        let index = self.push("nodes", node);
+        self.roots.push(index);
+        index
+    }
+
+    fn object(&mut self, object: &Object, writing: &mut Writing) -> Result<(), FormatError> {
+        if object.mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        let mesh = self.mesh(&object.mesh, object.material, writing)?;
+        let mut node = Map::new();
+        let name = name_of(object);
+        if !name.is_empty() {
+            node.insert("name".into(), json!(name));
+        }
+        node.insert("mesh".into(), json!(mesh));
+        let place = object.motion.at(0.0);
+        let keys = object.motion.keys();
+        if keys.is_empty() && !place.is_identity() {
+            node.insert("matrix".into(), json!(place.matrix().to_cols_array()));
+        }
+        let index = self.root(Json::Object(node));
+        if !keys.is_empty() {
+            self.animate(index, &keys);
+        }
+        Ok(())
+    }
+
+    /// A mesh of one primitive; the same for all objects that share it and its material.
+    fn mesh(&mut self, mesh: &Arc<Mesh>, material: usize, writing: &mut Writing) -> Result<usize, FormatError> {
+        if let Some(known) = self.meshes.get(&(Arc::as_ptr(mesh), material)) {
+            return Ok(*known);
+        }
+        if !mesh.vertex_ks.is_empty() {
+            writing.warn("glTF files hold no ks of vertices: left out");
+        }
+        let mut attributes = Map::new();
+        let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
+        attributes.insert("POSITION".into(), json!(self.buffer.vectors(&positions, true)));
+        if !mesh.normals.is_empty() {
+            let normals: Vec<_> = mesh.normals.iter().map(|n| n.normalize_or(bilux_math::Vec3::Y).to_array()).collect();
+            attributes.insert("NORMAL".into(), json!(self.buffer.vectors(&normals, false)));
+        }
+        for (name, uvs) in [("TEXCOORD_0", &mesh.uvs), ("TEXCOORD_1", &mesh.uvs2)] {
+            if !uvs.is_empty() {
+                let downwards: Vec<_> = uvs.iter().map(|uv| [uv.x, 1.0 - uv.y]).collect();
+                attributes.insert(name.into(), json!(self.buffer.vectors(&downwards, false)));
+            }
+        }
+        if !mesh.tangents.is_empty() {
+            let tangents: Vec<_> = mesh.tangents.iter().map(|t| t.to_array()).collect();
+            attributes.insert("TANGENT".into(), json!(self.buffer.vectors(&tangents, false)));
+        }
+        if !mesh.vertex_kd.is_empty() {
+            let colours: Vec<_> = mesh.vertex_kd.iter().map(|c| c.to_array()).collect();
+            attributes.insert("COLOR_0".into(), json!(self.buffer.vectors(&colours, false)));
+        }
+        let indices = self.buffer.indices(&mesh.triangles);
+        let primitive = json!({ "attributes": attributes, "indices": indices, "material": material });
+        let named = if mesh.name.is_empty() { json!({}) } else { json!({ "name": mesh.name }) };
+        let mut whole = named;
+        whole["primitives"] = json!([primitive]);
+        let index = self.push("meshes", whole);
+        self.meshes.insert((Arc::as_ptr(mesh), material), index);
+        Ok(index)
+    }
+
+    fn finish(mut self, writing: &mut Writing) {
+        let mut root = Map::new();
+        root.insert("asset".into(), json!({ "version": "2.0", "generator": "Bilux" }));
+        root.insert("scene".into(), json!(0));
+        let scene = if self.roots.is_empty() { json!({}) } else { json!({ "nodes": self.roots }) };
+        root.insert("scenes".into(), json!([scene]));
+        let lights = self.lists.remove("lights");
+        if let Some(lights) = lights {
+            root.insert("extensions".into(), json!({ "KHR_lights_punctual": { "lights": lights } }));
+        }
+        for (list, items) in self.lists {
+            root.insert(list.into(), Json::Array(items));
+        }
+        if !self.extensions.is_empty() {
+            root.insert("extensionsUsed".into(), json!(self.extensions));
+        }
+        let (views, accessors, binary) = self.buffer.finish();
+        let is_glb = writing.extension != "gltf";
+        if !binary.is_empty() {
+            let mut buffer = json!({ "byteLength": binary.len() });
+            if !is_glb {
+                let name = format!("{}.bin", writing.stem);
+                buffer["uri"] = json!(name.replace('%', "%25").replace(' ', "%20"));
+                writing.beside.push((name, binary.clone()));
+            }
+            root.insert("buffers".into(), json!([buffer]));
+            root.insert("bufferViews".into(), Json::Array(views));
+            root.insert("accessors".into(), Json::Array(accessors));
+            root.retain(|_, value| value.as_array().is_none_or(|list| !list.is_empty()));
+        }
+        let text = Json::Object(root).to_string().into_bytes();
+        writing.main = if is_glb { buffer::container(text, binary) } else { text };
+    }
+}

@@ -1,0 +1,125 @@
+//! What stands in the scene beside meshes: cameras, lights, and how things move.
+
+use super::Document;
+use crate::values::{colour, number, vector};
+use crate::writing::Writing;
+use bilux_math::glam::{Mat3, Mat4, Quat};
+use bilux_math::{MotionKey, Rgb, Vec3};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::generators::shapes;
+use bilux_scene::{Mesh, Spec};
+use serde_json::{Value as Json, json};
+use std::sync::Arc;
+
+impl Document<'_> {
+    /// Keys of a node's place, in straight lines between them.
+    pub(super) fn animate(&mut self, node: usize, keys: &[MotionKey]) {
+        let times = self.buffer.keys(&keys.iter().map(|key| [key.time_seconds]).collect::<Vec<_>>());
+        let outputs = [
+            ("translation", self.buffer.keys(&keys.iter().map(|k| k.translation.to_array()).collect::<Vec<_>>())),
+            (
+                "rotation",
+                self.buffer.keys(&keys.iter().map(|k| k.rotation.normalize().to_array()).collect::<Vec<_>>()),
+            ),
+            ("scale", self.buffer.keys(&keys.iter().map(|k| k.scale.to_array()).collect::<Vec<_>>())),
+        ];
+        let channel =
+            |(i, (path, _)): (usize, &(&str, usize))| json!({ "sampler": i, "target": { "node": node, "path": path } });
+        let channels: Vec<Json> = outputs.iter().enumerate().map(channel).collect();
+        let samplers: Vec<Json> =
+            outputs.iter().map(|(_, output)| json!({ "input": times, "output": output })).collect();
+        self.push("animations", json!({ "channels": channels, "samplers": samplers }));
+    }
+
+    pub(super) fn camera(&mut self, camera: &CameraSpec, writing: &mut Writing) {
+        let spec = &camera.spec;
+        if !camera.keyframes.is_empty() {
+            writing.warn("cameras are written where they are at 0 seconds");
+        }
+        if number(spec, "aperture").is_some_and(|aperture| aperture > 0.0) {
+            writing.warn("glTF files hold no apertures of cameras: left out");
+        }
+        let point = |key, default: Vec3| vector(spec, key).unwrap_or(default);
+        let position = point("position", Vec3::new(0.0, 0.0, 5.0));
+        let forward = (point("look_at", Vec3::ZERO) - position).normalize_or(Vec3::NEG_Z);
+        let lens = if spec.kind == "orthographic" {
+            let half = number(spec, "height").unwrap_or(2.0) * 0.5;
+            json!({ "type": "orthographic", "orthographic": { "xmag": half, "ymag": half, "znear": 0.0, "zfar": 1e6 } })
+        } else {
+            let fov = number(spec, "fov").unwrap_or(40.0).to_radians();
+            json!({ "type": "perspective", "perspective": { "yfov": fov, "znear": 0.001 } })
+        };
+        let lens = self.push("cameras", lens);
+        self.root(json!({
+            "name": spec.name,
+            "camera": lens,
+            "matrix": looking(position, forward, point("up", Vec3::Y)),
+        }));
+    }
+
+    pub(super) fn light(&mut self, spec: &Spec, writing: &mut Writing) {
+        let position = vector(spec, "position").unwrap_or(Vec3::new(0.0, 5.0, 0.0));
+        let (kind, power, forward) = match spec.kind.as_str() {
+            "point" => ("point", colour(spec, "intensity").unwrap_or(Rgb::grey(100.0)), Vec3::NEG_Z),
+            "spot" => {
+                let at = vector(spec, "look_at").unwrap_or(Vec3::ZERO);
+                ("spot", colour(spec, "intensity").unwrap_or(Rgb::grey(100.0)), at - position)
+            }
+            "directional" => {
+                let direction = vector(spec, "direction").unwrap_or(Vec3::NEG_ONE);
+                ("directional", colour(spec, "irradiance").unwrap_or(Rgb::grey(3.0)), direction)
+            }
+            "rect" | "sphere" => return self.glowing(spec, position, writing),
+            other => return writing.warn(format!("glTF files hold no light of kind '{other}': left out")),
+        };
+        self.uses("KHR_lights_punctual");
+        let brightest = power.max_channel();
+        let shade = if brightest > 0.0 { power * (1.0 / brightest) } else { power };
+        let mut light = json!({ "type": kind, "color": shade.to_array(), "intensity": brightest });
+        if kind == "spot" {
+            let angle = |key, default: f32| number(spec, key).unwrap_or(default).to_radians();
+            let outer = angle("angle", 30.0).min(std::f32::consts::FRAC_PI_2);
+            let inner = angle("inner_angle", 25.0).min(outer * 0.999);
+            light["spot"] = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
+        }
+        let light = self.push("lights", light);
+        let matrix = looking(position, forward.normalize_or(Vec3::NEG_Z), Vec3::Y);
+        let extension = json!({ "KHR_lights_punctual": { "light": light } });
+        self.root(json!({ "name": spec.name, "matrix": matrix, "extensions": extension }));
+    }
+
+    /// A panel or a sphere as a black surface that gives the same light.
+    fn glowing(&mut self, spec: &Spec, position: Vec3, writing: &mut Writing) {
+        let edge = |key, default| vector(spec, key).unwrap_or(default);
+        let (u, v) = (edge("edge_u", Vec3::X), edge("edge_v", Vec3::Z));
+        let radius = number(spec, "radius").unwrap_or(0.5);
+        let is_panel = spec.kind == "rect";
+        let one_sided = matches!(spec.parameters.find("sides"), Some((bilux_scene::Value::Text(t), _)) if t == "front");
+        if is_panel && one_sided {
+            writing.warn("panels that give light in front alone are written to give it on both sides");
+        }
+        let area = if is_panel { u.cross(v).length() } else { std::f32::consts::PI * radius * radius };
+        let radiance = match colour(spec, "radiance").filter(|radiance| !radiance.is_black()) {
+            Some(radiance) => radiance,
+            None => colour(spec, "intensity").unwrap_or(Rgb::BLACK) * (1.0 / area.max(f32::MIN_POSITIVE)),
+        };
+        let mesh = if is_panel { shapes::quad(position, u, v) } else { shapes::icosphere(position, radius, 4) };
+        let (emission, mut material) = (super::material::emission(self, radiance), json!({ "name": spec.name }));
+        super::material::merge(&mut material, emission);
+        material["pbrMetallicRoughness"] = json!({ "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0 });
+        let material = self.push("materials", material);
+        let mesh: Arc<Mesh> = Arc::new(Mesh { name: String::new(), ..mesh });
+        if let Ok(mesh) = self.mesh(&mesh, material, writing) {
+            self.root(json!({ "name": spec.name, "mesh": mesh }));
+        }
+        // The mesh is gone after this; another may come to lie at its place in memory.
+        self.meshes.retain(|(at, _), _| *at != Arc::as_ptr(&mesh));
+    }
+}
+
+/// The place of what looks along its -z, as a matrix in columns.
+fn looking(position: Vec3, forward: Vec3, up: Vec3) -> [f32; 16] {
+    let right = forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+    let axes = Mat3::from_cols(right, right.cross(forward), -forward);
+    Mat4::from_rotation_translation(Quat::from_mat3(&axes), position).to_cols_array()
+}
