@@ -26,6 +26,7 @@ mod thin;
 mod topology;
 mod uri;
 mod variants;
+mod write;
 
 use crate::formats::SceneFormatEntry;
 use bilux_math::registry::Entry;
@@ -54,7 +55,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     ],
     sniff,
     read: Some(reader::read),
-    write: None,
+    write: Some(write::write),
 };
 
 /// The magic bytes, or a JSON object that speaks of its asset early on.

@@ -7,6 +7,7 @@ mod gltf;
 mod gltf_choices;
 mod gltf_files;
 mod gltf_motion;
+mod gltf_written;
 mod hostile;
 mod native;
 mod obj;

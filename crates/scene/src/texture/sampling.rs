@@ -1,7 +1,7 @@
 //! How a picture is looked up: beyond its edges, between its texels, and where it lies.
 
 use bilux_math::Vec2;
-use bilux_math::transcendental::{cos, sin};
+use bilux_math::transcendental::{atan2, cos, sin};
 
 /// What lies beyond an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -58,6 +58,13 @@ impl UvTransform {
         let (s, c) = (sin(radians), cos(radians));
         let [x, y] = scale;
         UvTransform { u: Vec2::new(c, -s) * x, v: Vec2::new(s, c) * y, offset: Vec2::from(offset) }
+    }
+
+    /// The shift, the turn in radians and the scale that it was made of.
+    pub fn parts(&self) -> ([f32; 2], f32, [f32; 2]) {
+        let turn = atan2(-self.u.y, self.u.x);
+        let sign = if self.u.perp_dot(self.v) < 0.0 { -1.0 } else { 1.0 };
+        (self.offset.to_array(), turn, [self.u.length(), self.v.length() * sign])
     }
 
     /// Moves coordinates.

@@ -62,8 +62,9 @@ impl Buffer {
         let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
         let count = triangles.len() * 3;
-        self.accessors
-            .push(json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }));
+        self.accessors.push(
+            json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }),
+        );
         self.accessors.len() - 1
     }
 

@@ -6,9 +6,10 @@ use crate::FormatError;
 use crate::values::{colour, number, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
-use bilux_math::transcendental::{exp, sqrt};
+use bilux_math::transcendental::exp;
 use bilux_scene::{Spec, Value};
 use serde_json::{Value as Json, json};
+use std::f32::consts::TAU;
 
 /// Our parameters of `principled` that are an extension's: extension, key there, its texture's key and channel.
 const NUMBERS: &[(&str, &str, &str, &str, usize)] = &[
@@ -43,6 +44,8 @@ const ELSEWHERE: &[&str] = &[
     "base_color",
     "base_metalness",
     "specular_roughness",
+    "specular_roughness_anisotropy",
+    "anisotropy_rotation",
     "specular_ior",
     "thin_walled",
     "transmission_color",
@@ -78,12 +81,16 @@ impl Document<'_> {
         self.base(&principled, &mut out, writing)?;
         self.extensions(&principled, &mut out, writing)?;
         self.volume(&principled, &mut out);
-        if let Some(index) = texture(&principled, "normal").and_then(|i| self.scene.textures.get(i)).cloned() {
+        self.brushing(&principled, &mut out, writing);
+        if let Some(index) = texture(&principled, "normal").and_then(|i| self.scene.textures.get(i)).cloned()
+        {
             let mut info = self.colours(&index, &Channel::Even(1.0), writing)?;
             info["scale"] = json!(number(&principled, "normal_scale").unwrap_or(1.0));
             out["normalTexture"] = info;
         }
-        if let Some(picture) = texture(&principled, "emission").and_then(|i| self.scene.textures.get(i)).cloned() {
+        if let Some(picture) =
+            texture(&principled, "emission").and_then(|i| self.scene.textures.get(i)).cloned()
+        {
             let emission = emission(self, colour(&principled, "emission_scale").unwrap_or(Rgb::WHITE));
             merge(&mut out, emission);
             out["emissiveTexture"] = self.colours(&picture, &Channel::Even(1.0), writing)?;
@@ -176,6 +183,28 @@ impl Document<'_> {
         Ok(())
     }
 
+    /// Theirs is smooth across and rougher along, ours of the mean and smoother across, by the same ratio.
+    fn brushing(&mut self, spec: &Spec, out: &mut Json, writing: &mut Writing) {
+        let Some(ours) = number(spec, "specular_roughness_anisotropy").filter(|ours| *ours > 0.0) else {
+            if texture(spec, "specular_roughness_anisotropy").is_some() {
+                writing.warn("anisotropy from a picture is not written");
+            }
+            return;
+        };
+        let ratio = 1.0 - ours;
+        let rough = number(spec, "specular_roughness").unwrap_or(0.3);
+        let along = rough * rough * (2.0 / (1.0 + ratio * ratio)).sqrt();
+        let across = ratio * along;
+        let strength = ((along - across) / (1.0 - across).max(1e-6)).clamp(0.0, 1.0).sqrt();
+        if texture(spec, "specular_roughness").is_none() {
+            out["pbrMetallicRoughness"]["roughnessFactor"] = json!(across.sqrt());
+        }
+        let turns = number(spec, "anisotropy_rotation").unwrap_or(0.0) - 0.25;
+        let of = &mut out["extensions"][self.uses("KHR_materials_anisotropy")];
+        of["anisotropyStrength"] = json!(strength);
+        of["anisotropyRotation"] = json!(turns * TAU);
+    }
+
     /// What is inside of what is clear; a thickness says that there is one.
     fn volume(&mut self, spec: &Spec, out: &mut Json) {
         let is_thin = matches!(spec.parameters.find("thin_walled"), Some((Value::Bool(true), _)));
@@ -200,17 +229,23 @@ fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spe
             out.parameters.set_at(key, value.clone(), at.clone());
         }
     }
-    let taken = |key: &str, default: Value| spec.parameters.find(key).map_or(default, |(value, _)| value.clone());
-    let out = match spec.kind.as_str() {
+    let taken =
+        |key: &str, default: Value| spec.parameters.find(key).map_or(default, |(value, _)| value.clone());
+    match spec.kind.as_str() {
         "principled" => {
             let mut same = spec.clone();
             // Light that goes through is tinted by the base there.
-            if number(spec, "transmission_depth").unwrap_or(0.0) == 0.0 && number(spec, "transmission_weight") == Some(1.0) {
+            if number(spec, "transmission_depth").unwrap_or(0.0) == 0.0
+                && number(spec, "transmission_weight") == Some(1.0)
+            {
                 same.parameters.set("base_color", taken("transmission_color", 1.0.into()));
             }
-            return same;
+            same
         }
-        "diffuse" => out.with("base_color", taken("reflectance", 0.7.into())).with("specular_weight", 0.0).with("specular_roughness", 1.0),
+        "diffuse" => out
+            .with("base_color", taken("reflectance", 0.7.into()))
+            .with("specular_weight", 0.0)
+            .with("specular_roughness", 1.0),
         "mirror" => out
             .with("base_color", taken("reflectance", 0.95.into()))
             .with("base_metalness", 1.0)
@@ -237,24 +272,26 @@ fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spe
         }
         "phong" => {
             let exponent = number(spec, "exponent").unwrap_or(10.0).max(0.0);
-            writing.warn("a phong material becomes one of metal and roughness, which reflects a little otherwise");
+            writing.warn(
+                "a phong material becomes one of metal and roughness, which reflects a little otherwise",
+            );
             out.with("base_color", taken("kd", 0.7.into()))
                 .with("specular_color", taken("ks", 0.2.into()))
-                .with("specular_roughness", sqrt(sqrt(2.0 / (exponent + 2.0))))
+                .with("specular_roughness", (2.0 / (exponent + 2.0)).sqrt().sqrt())
         }
         other => {
             let first = spec.parameters.find("a").and_then(|(value, _)| match value {
                 Value::Material(index) => document.scene.materials.get(*index),
                 _ => None,
             });
-            writing.warn(format!("glTF files hold no material '{other}': its first part stands in its place"));
+            writing
+                .warn(format!("glTF files hold no material '{other}': its first part stands in its place"));
             match first.filter(|first| first.kind != "mix") {
-                Some(first) => return Spec { name: spec.name.clone(), ..as_principled(first, document, writing) },
+                Some(first) => Spec { name: spec.name.clone(), ..as_principled(first, document, writing) },
                 None => out,
             }
         }
-    };
-    out
+    }
 }
 
 /// Light that a surface gives out: a factor of at most 1, and what is above it in an extension.

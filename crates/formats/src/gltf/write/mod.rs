@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// A document while it is put together.
 pub(super) struct Document<'s> {
     pub(super) scene: &'s SceneBuilder,
-    pub(super) buffer: Buffer,
+    buffer: Buffer,
     /// The lists of the document by their names, in the order of their indices.
     lists: HashMap<&'static str, Vec<Json>>,
     extensions: BTreeSet<&'static str>,
@@ -106,7 +106,12 @@ impl Document<'_> {
     }
 
     /// A mesh of one primitive; the same for all objects that share it and its material.
-    fn mesh(&mut self, mesh: &Arc<Mesh>, material: usize, writing: &mut Writing) -> Result<usize, FormatError> {
+    fn mesh(
+        &mut self,
+        mesh: &Arc<Mesh>,
+        material: usize,
+        writing: &mut Writing,
+    ) -> Result<usize, FormatError> {
         if let Some(known) = self.meshes.get(&(Arc::as_ptr(mesh), material)) {
             return Ok(*known);
         }
@@ -117,7 +122,8 @@ impl Document<'_> {
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
         attributes.insert("POSITION".into(), json!(self.buffer.vectors(&positions, true)));
         if !mesh.normals.is_empty() {
-            let normals: Vec<_> = mesh.normals.iter().map(|n| n.normalize_or(bilux_math::Vec3::Y).to_array()).collect();
+            let normals: Vec<_> =
+                mesh.normals.iter().map(|n| n.normalize_or(bilux_math::Vec3::Y).to_array()).collect();
             attributes.insert("NORMAL".into(), json!(self.buffer.vectors(&normals, false)));
         }
         for (name, uvs) in [("TEXCOORD_0", &mesh.uvs), ("TEXCOORD_1", &mesh.uvs2)] {

@@ -16,15 +16,17 @@ impl Document<'_> {
     pub(super) fn animate(&mut self, node: usize, keys: &[MotionKey]) {
         let times = self.buffer.keys(&keys.iter().map(|key| [key.time_seconds]).collect::<Vec<_>>());
         let outputs = [
-            ("translation", self.buffer.keys(&keys.iter().map(|k| k.translation.to_array()).collect::<Vec<_>>())),
+            (
+                "translation",
+                self.buffer.keys(&keys.iter().map(|k| k.translation.to_array()).collect::<Vec<_>>()),
+            ),
             (
                 "rotation",
                 self.buffer.keys(&keys.iter().map(|k| k.rotation.normalize().to_array()).collect::<Vec<_>>()),
             ),
             ("scale", self.buffer.keys(&keys.iter().map(|k| k.scale.to_array()).collect::<Vec<_>>())),
         ];
-        let channel =
-            |(i, (path, _)): (usize, &(&str, usize))| json!({ "sampler": i, "target": { "node": node, "path": path } });
+        let channel = |(i, (path, _)): (usize, &(&str, usize))| json!({ "sampler": i, "target": { "node": node, "path": path } });
         let channels: Vec<Json> = outputs.iter().enumerate().map(channel).collect();
         let samplers: Vec<Json> =
             outputs.iter().map(|(_, output)| json!({ "input": times, "output": output })).collect();
@@ -94,7 +96,8 @@ impl Document<'_> {
         let (u, v) = (edge("edge_u", Vec3::X), edge("edge_v", Vec3::Z));
         let radius = number(spec, "radius").unwrap_or(0.5);
         let is_panel = spec.kind == "rect";
-        let one_sided = matches!(spec.parameters.find("sides"), Some((bilux_scene::Value::Text(t), _)) if t == "front");
+        let one_sided =
+            matches!(spec.parameters.find("sides"), Some((bilux_scene::Value::Text(t), _)) if t == "front");
         if is_panel && one_sided {
             writing.warn("panels that give light in front alone are written to give it on both sides");
         }
@@ -103,8 +106,10 @@ impl Document<'_> {
             Some(radiance) => radiance,
             None => colour(spec, "intensity").unwrap_or(Rgb::BLACK) * (1.0 / area.max(f32::MIN_POSITIVE)),
         };
-        let mesh = if is_panel { shapes::quad(position, u, v) } else { shapes::icosphere(position, radius, 4) };
-        let (emission, mut material) = (super::material::emission(self, radiance), json!({ "name": spec.name }));
+        let mesh =
+            if is_panel { shapes::quad(position, u, v) } else { shapes::icosphere(position, radius, 4) };
+        let (emission, mut material) =
+            (super::material::emission(self, radiance), json!({ "name": spec.name }));
         super::material::merge(&mut material, emission);
         material["pbrMetallicRoughness"] = json!({ "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0 });
         let material = self.push("materials", material);

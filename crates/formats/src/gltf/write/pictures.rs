@@ -64,7 +64,8 @@ impl Document<'_> {
         if texture.texels().any(|texel| texel.max_channel() > 1.0) {
             writing.warn("what is brighter than white in a picture is written as white");
         }
-        let encode = |c: f32| if texture.is_data { c.clamp(0.0, 1.0) } else { srgb_encode(c.clamp(0.0, 1.0)) };
+        let encode =
+            |c: f32| if texture.is_data { c.clamp(0.0, 1.0) } else { srgb_encode(c.clamp(0.0, 1.0)) };
         let size = (texture.width(), texture.height());
         let opaque = matches!(opacity, Channel::Even(_));
         self.picture(texture, size, !opaque, |x, y| {
@@ -88,7 +89,8 @@ impl Document<'_> {
         let largest = |side: fn(&Texture) -> usize| textures.iter().map(|t| side(t)).max().unwrap_or(1);
         let size = (largest(Texture::width), largest(Texture::height));
         let has_alpha = channels[3].texture().is_some();
-        self.picture(first, size, has_alpha, |x, y| channels.map(|channel| channel.byte(x, y, size))).map(Some)
+        self.picture(first, size, has_alpha, |x, y| channels.map(|channel| channel.byte(x, y, size)))
+            .map(Some)
     }
 
     /// A picture with the sampler of a texture, as materials name it.
@@ -117,7 +119,8 @@ impl Document<'_> {
         if let Some(transform) = &like.transform {
             let (offset, rotation, scale) = transform.parts();
             let extension = self.uses("KHR_texture_transform");
-            info["extensions"] = json!({ extension: { "offset": offset, "rotation": rotation, "scale": scale } });
+            info["extensions"] =
+                json!({ extension: { "offset": offset, "rotation": rotation, "scale": scale } });
         }
         Ok(info)
     }

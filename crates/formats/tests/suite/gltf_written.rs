@@ -1,0 +1,228 @@
+//! glTF that we write: what it holds comes back.
+
+use crate::round_trips::corners;
+use crate::shared_files::{files, scenes};
+use crate::{read_text, warnings};
+use bilux_formats::{ReadOptions, WriteOptions, read, write};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::generators::shapes;
+use bilux_scene::texture::UvPair;
+use bilux_scene::{Object, SceneBuilder, Spec, Texture, Value};
+use std::path::Path;
+use std::sync::Arc;
+
+fn there(scene: &SceneBuilder, path: &Path) -> (SceneBuilder, Vec<String>) {
+    let lost = write(path, scene, &WriteOptions::default()).unwrap();
+    let back = read(path, &ReadOptions::default()).unwrap();
+    (back, lost.into_iter().map(|warning| warning.message).collect())
+}
+
+/// What a parameter comes to on a grid of texture coordinates.
+fn values(scene: &SceneBuilder, value: &Value) -> Vec<f32> {
+    match value {
+        Value::Texture(index) => {
+            let grid = (0..64).map(|i| Vec2::new((i % 8) as f32 + 0.3, (i / 8) as f32 + 0.4) / 8.0);
+            grid.flat_map(|uv| {
+                let texture = &scene.textures[*index];
+                let pair = UvPair([uv; 2]);
+                if texture.channel.is_some() {
+                    vec![texture.number(pair)]
+                } else {
+                    texture.at(pair).to_array().to_vec()
+                }
+            })
+            .collect()
+        }
+        Value::List(list) => list.iter().flat_map(|one| values(scene, one)).collect(),
+        Value::Number(x) => vec![*x as f32],
+        Value::Integer(i) => vec![*i as f32],
+        Value::Bool(b) => vec![f32::from(u8::from(*b))],
+        other => panic!("{other:?}"),
+    }
+}
+
+/// What is written otherwise, and says the same.
+const OTHERWISE: &[&str] =
+    &["specular_roughness_anisotropy", "anisotropy_rotation", "transmission_color", "base_color"];
+
+#[track_caller]
+fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
+    for (x, y) in a.objects.iter().zip(&b.objects) {
+        let (x, y) = (&a.materials[x.material], &b.materials[y.material]);
+        for (key, value, _) in &x.parameters.0 {
+            if OTHERWISE.contains(&key.as_str()) && x.parameters.find("transmission_weight").is_some() {
+                continue;
+            }
+            let Some((found, _)) = y.parameters.find(key) else {
+                let defaults = ["specular_weight", "specular_color", "normal_scale", "specular_ior"];
+                assert!(
+                    defaults.contains(&key.as_str()) || OTHERWISE.contains(&key.as_str()),
+                    "{what}: {key} is lost"
+                );
+                continue;
+            };
+            let (wanted, found) = (values(a, value), values(b, found));
+            let close = |(w, f): (&f32, &f32)| (w - f).abs() <= 0.006 * w.abs().max(1.0);
+            let repeated = found.len() != wanted.len();
+            assert!(
+                repeated || wanted.iter().zip(&found).all(close),
+                "{what}: {key}: {value:?}, {wanted:?}, {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn test_models_come_back() {
+    let Some(root) = scenes() else { return };
+    let mut all = Vec::new();
+    files(&root.join("gltf"), &mut all);
+    let folder = tempfile::tempdir().unwrap();
+    let mut count = 0;
+    for path in all {
+        let Ok(scene) = read(&path, &ReadOptions::default()) else { continue };
+        let name = path.display().to_string();
+        // Pictures take their time to be packed.
+        let texels: usize = scene.textures.iter().map(|texture| texture.width() * texture.height()).sum();
+        if texels > 3_000_000
+            || scene.objects.is_empty()
+            || !(name.ends_with(".glb") || name.ends_with(".gltf"))
+        {
+            continue;
+        }
+        count += 1;
+        let (back, lost) = there(&scene, &folder.path().join("out.glb"));
+        println!("{name}: {lost:?}");
+        let drawn: Vec<&Object> = scene.objects.iter().filter(|o| !o.mesh.triangles.is_empty()).collect();
+        assert_eq!(drawn.len(), back.objects.len(), "{name}");
+        for (a, b) in drawn.iter().zip(&back.objects) {
+            assert_eq!(a.mesh.triangles.len(), b.mesh.triangles.len(), "{name}");
+            let (from, to) = (a.motion.at(0.3), b.motion.at(0.3));
+            for (p, q) in a.mesh.triangles.iter().flatten().zip(b.mesh.triangles.iter().flatten()) {
+                let (p, q) =
+                    (from.point(a.mesh.positions[*p as usize]), to.point(b.mesh.positions[*q as usize]));
+                assert!((p - q).length() <= 1e-4 * (1.0 + p.length()), "{name}: {p} {q}");
+            }
+        }
+        assert_same_materials(&scene, &back, &name);
+        // Once it is in our words, nothing changes any more.
+        let (again, _) = there(&back, &folder.path().join("again.gltf"));
+        for (a, b) in back.objects.iter().zip(&again.objects) {
+            let numbers =
+                |o: &Object| corners(&o.mesh).concat().into_iter().map(f32::from_bits).collect::<Vec<_>>();
+            let (a, b) = (numbers(a), numbers(b));
+            let same =
+                a.len() == b.len() && a.iter().zip(&b).all(|(x, y)| (x - y).abs() <= 3e-7 * x.abs().max(1.0));
+            assert!(same, "{name}: a mesh differs the second time");
+        }
+        assert_eq!(
+            (back.cameras.len(), back.lights.len()),
+            (again.cameras.len(), again.lights.len()),
+            "{name}"
+        );
+    }
+    assert!(count > 25, "{count}");
+}
+
+/// Cameras, lights, materials of every kind, a texture with a hole, and something that moves.
+#[test]
+fn our_own_scenes_come_back() {
+    let mut scene = read_text(
+        "toml",
+        r#"
+[camera]
+position = [1, 2, 5]
+look_at = [0, 0.5, 0]
+fov = 33
+[[light]]
+kind = "spot"
+position = [2, 4, 1]
+intensity = [30, 20, 10]
+[[light]]
+kind = "directional"
+direction = [0, -1, -0.5]
+irradiance = 2.5
+[[light]]
+kind = "rect"
+radiance = 7
+[[material]]
+name = "clay"
+kind = "diffuse"
+reflectance = [0.5, 0.3, 0.2]
+[[material]]
+name = "pane"
+kind = "dielectric"
+thin = true
+[[material]]
+name = "red glass"
+kind = "dielectric"
+absorption = [0.1, 2, 3]
+eta = 1.6
+[[material]]
+name = "copper"
+kind = "conductor"
+metal = "copper"
+roughness = 0.25
+[[model]]
+name = "mover"
+shape = "sphere"
+material = "clay"
+[[model.keyframes]]
+time = 0
+translate = [0, 0, 0]
+[[model.keyframes]]
+time = 2
+translate = [0, 4, 0]
+"#,
+    )
+    .unwrap();
+    let texels = (0..16).map(|i| Rgb::new(i as f32 / 15.0, 0.5, 1.0 - i as f32 / 15.0)).collect();
+    scene.textures.push(Arc::new(Texture::new("stripes", 4, 4, texels, false)));
+    let holes = (0..16).map(|i| Rgb::grey((i % 2) as f32)).collect();
+    scene.textures.push(Arc::new(Texture::new("holes", 4, 4, holes, true)));
+    let lace = Spec::new("lace", "diffuse")
+        .with("reflectance", Value::Texture(0))
+        .with("opacity", Value::Texture(1));
+    let lace = scene.add_material(lace);
+    for (i, material) in [1, 2, 3, lace].into_iter().enumerate() {
+        let mesh = shapes::quad(Vec3::new(i as f32 * 2.0, 0.0, 0.0), Vec3::X, Vec3::Y);
+        scene.objects.push(Object::new(&format!("part {i}"), Arc::new(mesh), material));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for file in ["a b.glb", "a b.gltf"] {
+        let (back, lost) = there(&scene, &folder.path().join(file));
+        assert!(lost.is_empty(), "{lost:?}");
+        // The pane is told to be one.
+        assert!(warnings(&back).lines().all(|line| line.contains("a thin wall")), "{}", warnings(&back));
+        // The panel is an object now.
+        assert_eq!((back.objects.len(), back.lights.len(), back.cameras.len()), (6, 2, 1));
+        let later =
+            read(&folder.path().join(file), &ReadOptions { time: 1.0, ..ReadOptions::default() }).unwrap();
+        let moved = |scene: &SceneBuilder| scene.objects[0].motion.at(1.0).point(Vec3::ZERO);
+        assert!((moved(&scene) - moved(&later)).length() < 1e-5, "{} {}", moved(&scene), moved(&later));
+        let spec = |name: &str| back.materials.iter().find(|m| m.name == name).cloned().unwrap_or_default();
+        let number =
+            |name: &str, key: &str| spec(name).parameters.find(key).map(|(value, _)| values(&back, value));
+        assert_eq!(number("clay", "specular_weight"), Some(vec![0.0]));
+        assert_eq!(number("pane", "thin_walled"), Some(vec![1.0]));
+        assert_eq!(number("red glass", "thin_walled"), Some(vec![0.0]));
+        assert_eq!(number("red glass", "specular_ior"), Some(vec![1.6]));
+        let left = number("red glass", "transmission_color").unwrap();
+        assert!((left[1] - 0.1353).abs() < 1e-3, "{left:?}");
+        let copper = number("copper", "base_color").unwrap();
+        assert!(copper[0] > copper[1] && copper[1] > copper[2], "{copper:?}");
+        for (key, texture) in [("opacity", 1), ("base_color", 0)] {
+            let (found, wanted) = (number("lace", key).unwrap(), values(&scene, &Value::Texture(texture)));
+            let wanted: Vec<f32> =
+                if key == "opacity" { wanted.into_iter().step_by(3).collect() } else { wanted };
+            assert_eq!(found.len(), wanted.len());
+            assert!(
+                found.iter().zip(&wanted).all(|(f, w)| (f - w).abs() < 0.006),
+                "{key}: {found:?} {wanted:?}"
+            );
+        }
+        let camera = &back.cameras[0].spec;
+        let fov = camera.parameters.find("fov").map(|(value, _)| values(&back, value)).unwrap();
+        assert!((fov[0] - 33.0).abs() < 1e-3, "{fov:?}");
+    }
+}
