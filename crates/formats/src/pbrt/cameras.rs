@@ -3,11 +3,12 @@
 use super::parameters::ParameterList;
 use super::reader::{Entity, Pbrt};
 use super::state::half_tangent;
+use super::unknown;
 use crate::FormatError;
 use bilux_math::transcendental::atan;
 use bilux_math::{DMat4, DVec3};
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{Parameters, SceneError, Spec};
+use bilux_scene::{Parameters, Spec};
 
 /// All that is shown by one of ours.
 const CAMERAS: [&str; 4] = ["perspective", "orthographic", "realistic", "spherical"];
@@ -39,7 +40,7 @@ impl Pbrt<'_, '_> {
                 }
                 "perspective"
             }
-            other => return Err(SceneError::unknown("camera", other, CAMERAS, &entity.at).into()),
+            other => return Err(unknown("camera", other, CAMERAS, &entity.at)),
         };
         let half_height = self.half_height(list)?;
         let to_world = matrices.map(|m| m.inverse());

@@ -5,6 +5,7 @@ use super::lexer::{Lexer, Token, shown};
 use super::parameters::{self, ParameterList};
 use super::reader::{Entity, Opened, Pbrt, Use};
 use super::state::{MaterialKey, TARGETS};
+use super::unknown;
 use crate::FormatError;
 use crate::text::name_of;
 use bilux_math::DMat4;
@@ -59,6 +60,9 @@ const DIRECTIVES: &[&str] = &[
 /// Deeper nests are refused: each level keeps a state.
 const DEEPEST: usize = 10_000;
 
+/// More attributes of a kind than any shape or light has parameters are refused: each is looked through for all.
+const MOST_ATTRIBUTES: usize = 1000;
+
 /// Reads a file to its end.
 pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError> {
     while let Some((token, offset)) = lexer.next()? {
@@ -93,15 +97,11 @@ pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError>
             b"Shape" => directive.shape()?,
             _ => {
                 let names = DIRECTIVES.iter().copied();
-                return Err(SceneError::unknown("directive", &shortened(word), names, &directive.at).into());
+                return Err(unknown("directive", &name_of(word), names, &directive.at));
             }
         }
     }
     Ok(())
-}
-
-fn shortened(word: &[u8]) -> String {
-    name_of(word).chars().take(40).collect()
 }
 
 /// A directive that is being read.
@@ -216,9 +216,12 @@ impl Directive<'_, '_, '_, '_> {
         let list = parameters::read(self.lexer, self.pbrt.state.space, &mut self.pbrt.reading.budget)?;
         let Some(index) = TARGETS.iter().position(|known| *known == target) else {
             let at = self.lexer.place(at);
-            return Err(SceneError::unknown("target of attributes", &target, TARGETS, &at).into());
+            return Err(unknown("target of attributes", &target, TARGETS, &at));
         };
         let all = Arc::make_mut(&mut self.pbrt.state.attributes[index]);
+        if all.len() + list.len() > MOST_ATTRIBUTES {
+            return self.error(format!("there are more than {MOST_ATTRIBUTES} attributes of one kind"));
+        }
         // What comes later is minded first.
         all.splice(0..0, list);
         Ok(())
@@ -230,9 +233,7 @@ impl Directive<'_, '_, '_, '_> {
                 let (name, at) = self.lexer.text("the name of a colour space")?;
                 let Some((_, space)) = SPACES.iter().find(|(known, _)| *known == name.to_lowercase()) else {
                     let names = SPACES.iter().map(|(name, _)| *name);
-                    return Err(
-                        SceneError::unknown("colour space", &name, names, &self.lexer.place(at)).into()
-                    );
+                    return Err(unknown("colour space", &name, names, &self.lexer.place(at)));
                 };
                 self.pbrt.state.space = *space;
             }
@@ -301,7 +302,7 @@ impl Directive<'_, '_, '_, '_> {
             "spectrum" | "color" => false,
             other => {
                 let at = self.lexer.place(at);
-                return Err(SceneError::unknown("type of textures", other, ["float", "spectrum"], &at).into());
+                return Err(unknown("type of textures", other, ["float", "spectrum"], &at));
             }
         };
         self.pbrt.textures.define(name, is_number, entity, self.pbrt.state.matrices[0]);

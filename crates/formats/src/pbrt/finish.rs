@@ -4,10 +4,11 @@ use super::inks::Ink;
 use super::lights::Glow;
 use super::reader::{Alpha, Dress, Form, Pbrt, Piece, Use};
 use super::state::Matrices;
+use super::unknown;
 use crate::FormatError;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
-use bilux_scene::{MATERIALS, Mesh, Object, SceneError, Span, Spec, Value};
+use bilux_scene::{MATERIALS, Mesh, Object, Span, Spec, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -36,7 +37,7 @@ impl Pbrt<'_, '_> {
         for used in std::mem::take(&mut self.uses) {
             let Some(pieces) = self.definitions.get(&used.object).cloned() else {
                 let names = self.definitions.keys().map(String::as_str);
-                return Err(SceneError::unknown("object", &used.object, names, &used.at).into());
+                return Err(unknown("object", &used.object, names, &used.at));
             };
             for piece in &*pieces {
                 self.place(piece, Some(&used), &mut dressed)?;

@@ -4,10 +4,11 @@ use super::colours::ColourSpace;
 use super::parameters::{Kind, Parameter, ParameterList, Values};
 use super::reader::Pbrt;
 use super::spectra::{self, Named, Spectrum};
+use super::unknown;
 use crate::FormatError;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::texture::{Filter, Image, Texels, Wrap};
-use bilux_scene::{SceneError, Texture, Value};
+use bilux_scene::{Texture, Value};
 use std::sync::Arc;
 
 /// What a spectrum is of.
@@ -140,11 +141,11 @@ impl Pbrt<'_, '_> {
 
     /// A picture, put into the scene once.
     fn texture_value(&mut self, picture: Arc<Texture>) -> Value {
-        let known = self.scene.textures.iter().rposition(|known| Arc::ptr_eq(known, &picture));
-        Value::Texture(known.unwrap_or_else(|| {
+        let index = *self.placed_textures.entry(Arc::as_ptr(&picture)).or_insert_with(|| {
             self.scene.textures.push(picture);
             self.scene.textures.len() - 1
-        }))
+        });
+        Value::Texture(index)
     }
 
     /// The colour under a name, where one is given that is no texture.
@@ -262,13 +263,16 @@ impl Pbrt<'_, '_> {
     ) -> Result<Spectrum, FormatError> {
         let unknown = || {
             let names: Vec<String> = spectra::names().collect();
-            SceneError::unknown("spectrum or file", name, names.iter().map(String::as_str), &parameter.at)
+            unknown("spectrum or file", name, names.iter().map(String::as_str), &parameter.at)
         };
         let path = match self.reading.locate(self.folder.as_deref(), name, &parameter.at) {
             Ok(path) => path,
             Err(error @ FormatError::Outside { .. }) => return Err(error),
-            Err(_) => return Err(unknown().into()),
+            Err(_) => return Err(unknown()),
         };
+        if let Some(known) = self.spectra.get(&path) {
+            return Ok((**known).clone());
+        }
         let bytes = self.reading.load(&path)?;
         let file = path.display().to_string();
         self.reading.budget.take::<f32>(bytes.len() / 2, &file)?;
@@ -288,6 +292,7 @@ impl Pbrt<'_, '_> {
         let spectrum = self.samples(&numbers, parameter)?;
         self.reading.budget.give_back(2 * (bytes.len() / 2 * size_of::<f32>()) as u64);
         self.reading.release(bytes);
+        self.spectra.insert(path, Arc::new(spectrum.clone()));
         Ok(spectrum)
     }
 

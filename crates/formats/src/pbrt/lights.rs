@@ -8,6 +8,7 @@ use super::inks::{Ink, Meaning};
 use super::parameters::ParameterList;
 use super::reader::{Entity, Pbrt};
 use super::state::half_tangent;
+use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
 use bilux_math::transcendental::cos_f64;
@@ -32,6 +33,9 @@ const LIGHTS: &[(&str, Make)] = &[
 /// Names of version 3.
 const OLD: &[(&str, Make)] = &[("exinfinite", environment::infinite)];
 
+/// What lights can have.
+const BRIGHTEST: f32 = 1e11;
+
 /// What makes a surface give light.
 #[derive(Clone, Debug)]
 pub(super) struct Glow {
@@ -48,7 +52,7 @@ impl Pbrt<'_, '_> {
             let list = &entity.parameters;
             let Some((_, make)) = LIGHTS.iter().chain(OLD).find(|(name, _)| *name == entity.kind) else {
                 let names = LIGHTS.iter().map(|(name, _)| *name);
-                return Err(SceneError::unknown("light", &entity.kind, names, &entity.at).into());
+                return Err(unknown("light", &entity.kind, names, &entity.at));
             };
             let made = make(self, list, &matrix)?;
             list.tell_unused(&mut self.oddities);
@@ -60,7 +64,11 @@ impl Pbrt<'_, '_> {
     /// The colour under a name, white where there is none, times the factors of the light and of the film.
     pub(super) fn shine(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
         let colour = self.spectrum(list, name, Meaning::Light)?.unwrap_or(Rgb::WHITE);
-        Ok(colour * self.light_scale(list)?)
+        let shone = colour * self.light_scale(list)?;
+        if shone.max_channel() > BRIGHTEST {
+            self.oddities.note("a light is brighter than numbers can tell", || list.at.clone());
+        }
+        Ok(shone.clamp(0.0, BRIGHTEST))
     }
 
     /// The factors of a light and of the film.
@@ -79,7 +87,7 @@ impl Pbrt<'_, '_> {
     pub(super) fn glow(&mut self, entity: &Entity) -> Result<Glow, FormatError> {
         let list = &entity.parameters;
         if entity.kind != "diffuse" && entity.kind != "area" {
-            return Err(SceneError::unknown("area light", &entity.kind, ["diffuse"], &entity.at).into());
+            return Err(unknown("area light", &entity.kind, ["diffuse"], &entity.at));
         }
         let radiance = match list.text("filename")? {
             Some(name) => {

@@ -3,6 +3,7 @@
 use super::inks::Meaning;
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
+use super::unknown;
 use crate::FormatError;
 use bilux_math::Rgb;
 use std::sync::Arc;
@@ -93,7 +94,7 @@ impl Pbrt<'_, '_> {
             Some(medium) => Ok(medium.absorption),
             None => {
                 let names = self.media.keys().map(|name| &**name);
-                Err(bilux_scene::SceneError::unknown("medium", name, names, at).into())
+                Err(unknown("medium", name, names, at))
             }
         }
     }

@@ -21,8 +21,10 @@ mod state;
 mod textures;
 mod transforms;
 
+use crate::FormatError;
 use crate::formats::SceneFormatEntry;
 use bilux_math::registry::Entry;
+use bilux_scene::{SceneError, Span};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -55,4 +57,24 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
 fn sniff(bytes: &[u8]) -> bool {
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
     start.lines().any(|line| line.trim() == "WorldBegin")
+}
+
+/// The refusal of a name that nothing goes by. Names come from strangers: however many and long they are, few and short
+/// ones are compared.
+fn unknown<'n>(
+    what: impl Into<String>,
+    name: &str,
+    known: impl IntoIterator<Item = &'n str>,
+    at: &Span,
+) -> FormatError {
+    const MOST: usize = 100;
+    let mut known: Vec<&str> = known.into_iter().filter(|known| known.len() <= MOST).collect();
+    known.sort_unstable();
+    known.truncate(MOST);
+    SceneError::unknown(what, &shortened(name), known, at).into()
+}
+
+/// The beginning of a name.
+fn shortened(name: &str) -> String {
+    name.chars().take(60).collect()
 }

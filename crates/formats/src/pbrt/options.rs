@@ -2,8 +2,9 @@
 
 use super::reader::{Entity, Pbrt};
 use super::state::Matrices;
+use super::unknown;
 use crate::FormatError;
-use bilux_scene::{SceneError, Span, Value};
+use bilux_scene::{Span, Value};
 
 /// All of it, the last of each kind.
 pub(super) struct Options {
@@ -89,7 +90,7 @@ impl Pbrt<'_, '_> {
         let list = &film.parameters;
         let known = ["rgb", "gbuffer", "spectral", "image"];
         if !known.contains(&film.kind.as_str()) {
-            return Err(SceneError::unknown("film", &film.kind, known, &film.at).into());
+            return Err(unknown("film", &film.kind, known, &film.at));
         }
         let side = |name, default| list.integer(name).map(|side| side.unwrap_or(default));
         self.options.size = [side("xresolution", 1280)?, side("yresolution", 720)?];
@@ -148,7 +149,7 @@ impl Pbrt<'_, '_> {
         ];
         let Some((name, ours, default, radius)) = filters.iter().find(|row| row.0 == filter.kind) else {
             let names = filters.iter().map(|row| row.0);
-            return Err(SceneError::unknown("pixel filter", &filter.kind, names, &filter.at).into());
+            return Err(unknown("pixel filter", &filter.kind, names, &filter.at));
         };
         let mut is_same = !["mitchell", "sinc"].contains(name);
         for (new, old) in [("xradius", "xwidth"), ("yradius", "ywidth")] {

@@ -2,12 +2,13 @@
 
 use super::colours::ColourSpace;
 use super::lexer::{Lexer, Token, number_of, shown};
+use super::{shortened, unknown};
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::reading::Oddities;
 use bilux_math::{Vec2, Vec3};
+use bilux_scene::Span;
 use bilux_scene::error::nearest_name;
-use bilux_scene::{SceneError, Span};
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
@@ -140,7 +141,7 @@ pub(super) fn read(
         };
         let Some((_, kind)) = KINDS.iter().find(|(known, _)| *known == kind) else {
             let names = KINDS.iter().map(|(name, _)| *name);
-            return Err(SceneError::unknown("type of parameters", kind, names, &place).into());
+            return Err(unknown("type of parameters", kind, names, &place));
         };
         budget.take::<Parameter>(1, &place.file)?;
         let values = values(lexer, *kind, name, budget, &place)?;
@@ -389,9 +390,9 @@ impl ParameterList {
     pub(super) fn tell_unused(&self, oddities: &mut Oddities) {
         for parameter in self.list.iter().filter(|p| !p.used.get()) {
             let known: Vec<String> = self.asked.borrow().iter().map(|name| (*name).to_owned()).collect();
-            let meant = nearest_name(&parameter.name, &known);
+            let meant = nearest_name(&shortened(&parameter.name), &known);
             let meant = meant.map_or_else(String::new, |name| format!("; did you mean '{name}'?"));
-            let what = format!("'{}' of {} is not used{meant}", parameter.name, self.what);
+            let what = format!("'{}' of {} is not used{meant}", shortened(&parameter.name), self.what);
             oddities.note(&what, || parameter.at.clone());
         }
     }

@@ -6,12 +6,13 @@ use super::media::Medium;
 use super::options::Options;
 use super::parameters::ParameterList;
 use super::shapes::ShapeCache;
+use super::spectra::Spectrum;
 use super::state::{MaterialKey, Matrices, State};
 use super::textures::NamedTextures;
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
 use bilux_math::DMat4;
-use bilux_scene::{Mesh, SceneBuilder, Span, Spec};
+use bilux_scene::{Mesh, SceneBuilder, Span, Spec, Texture};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,6 +42,9 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         uses: Vec::new(),
         cache: ShapeCache::default(),
         open: Vec::new(),
+        included: 0,
+        spectra: HashMap::new(),
+        placed_textures: HashMap::new(),
     };
     pbrt.whole(source)?;
     let Pbrt { mut scene, oddities, .. } = pbrt;
@@ -144,7 +148,16 @@ pub(super) struct Pbrt<'o, 'r> {
     pub(super) cache: ShapeCache,
     /// The chain of files from the first to the one that is read.
     open: Vec<PathBuf>,
+    /// Bytes of all files that were included, each as often as it was.
+    included: u64,
+    /// Spectra from files.
+    pub(super) spectra: HashMap<PathBuf, Arc<Spectrum>>,
+    /// Where textures stand in the scene.
+    pub(super) placed_textures: HashMap<*const Texture, usize>,
 }
+
+/// What opening a file counts for, beside its bytes.
+const LEAST_FILE: u64 = 1 << 14;
 
 /// Longer chains of files are refused: each takes a part of the stack.
 const LONGEST_CHAIN: usize = 32;
@@ -182,6 +195,11 @@ impl Pbrt<'_, '_> {
         }
         let raw = self.reading.load(&path)?;
         let bytes = super::gzip::plain(raw, self.reading, &path, at)?;
+        self.included = self.included.saturating_add(bytes.len() as u64 + LEAST_FILE);
+        if self.included > self.reading.options.max_memory {
+            let message = "so much is included, over and over, that reading it would not end: take some out";
+            return Err(FormatError::malformed(message, at.clone()));
+        }
         let shown = Path::new(&*at.file).with_file_name(name).display().to_string().into();
         self.open.push(path);
         directives::run(self, &mut Lexer::new(&shown, &bytes))?;

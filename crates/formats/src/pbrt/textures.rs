@@ -3,6 +3,7 @@
 use super::inks::{Ink, Meaning, squares};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
+use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
 use bilux_math::transcendental::powf;
@@ -15,7 +16,11 @@ use std::sync::Arc;
 
 /// Textures by name: those of colours, and those of numbers.
 #[derive(Default)]
-pub(super) struct NamedTextures([HashMap<String, Slot>; 2]);
+pub(super) struct NamedTextures {
+    named: [HashMap<String, Slot>; 2],
+    /// How many textures the one that is worked out is a part of.
+    depth: usize,
+}
 
 #[derive(Clone)]
 enum Slot {
@@ -27,9 +32,12 @@ enum Slot {
 
 impl NamedTextures {
     pub(super) fn define(&mut self, name: String, is_number: bool, entity: Entity, _matrix: DMat4) {
-        self.0[usize::from(is_number)].insert(name, Slot::Defined(Rc::new(entity)));
+        self.named[usize::from(is_number)].insert(name, Slot::Defined(Rc::new(entity)));
     }
 }
+
+/// Deeper nests of textures are refused: each takes a part of the stack.
+const DEEPEST: usize = 32;
 
 /// What a texture becomes.
 type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<Ink, FormatError>;
@@ -79,7 +87,8 @@ impl Pbrt<'_, '_> {
     ) -> Result<Option<Ink>, FormatError> {
         match list.texture(name).map(|(texture, at)| (texture.to_owned(), at.clone())) {
             Some((texture, at)) => self.texture(&texture, Meaning::Number, &at).map(Some),
-            None => Ok(list.number(name)?.map(|number| Ink::Colour(Rgb::grey(number)))),
+            None if list.has(name) => Ok(Some(Ink::Colour(Rgb::grey(list.finite(name, 0.0)?)))),
+            None => Ok(None),
         }
     }
 
@@ -87,12 +96,12 @@ impl Pbrt<'_, '_> {
     pub(super) fn texture(&mut self, name: &str, meaning: Meaning, at: &Span) -> Result<Ink, FormatError> {
         let wanted = usize::from(meaning == Meaning::Number);
         // A colour that is wanted as a number, or the other way round, is better than none.
-        let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.0[*i].contains_key(name));
+        let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.named[*i].contains_key(name));
         let Some(slot) = slot else {
-            let names = self.textures.0.iter().flat_map(|all| all.keys()).map(String::as_str);
-            return Err(SceneError::unknown("texture", name, names, at).into());
+            let names = self.textures.named.iter().flat_map(|all| all.keys()).map(String::as_str);
+            return Err(unknown("texture", name, names, at));
         };
-        let entity = match self.textures.0[slot].get(name) {
+        let entity = match self.textures.named[slot].get(name) {
             Some(Slot::Ready(ink)) => return Ok(ink.clone()),
             Some(Slot::Defined(entity)) => entity.clone(),
             _ => {
@@ -100,10 +109,16 @@ impl Pbrt<'_, '_> {
                 return Err(FormatError::malformed(message, at.clone()));
             }
         };
-        self.textures.0[slot].insert(name.to_owned(), Slot::Open);
+        self.textures.named[slot].insert(name.to_owned(), Slot::Open);
         let meaning = if slot == 1 { Meaning::Number } else { Meaning::Surface };
+        self.textures.depth += 1;
+        if self.textures.depth > DEEPEST {
+            let message = format!("textures are made of each other more than {DEEPEST} deep");
+            return Err(FormatError::malformed(message, at.clone()));
+        }
         let ink = self.made(&entity, meaning)?;
-        self.textures.0[slot].insert(name.to_owned(), Slot::Ready(ink.clone()));
+        self.textures.depth -= 1;
+        self.textures.named[slot].insert(name.to_owned(), Slot::Ready(ink.clone()));
         Ok(ink)
     }
 
@@ -116,7 +131,7 @@ impl Pbrt<'_, '_> {
         }
         let Some((_, plain)) = PLAIN.iter().find(|(name, _)| *name == entity.kind) else {
             let names = TEXTURES.iter().map(|(name, _)| *name).chain(PLAIN.iter().map(|(name, _)| *name));
-            return Err(SceneError::unknown("texture", &entity.kind, names, &entity.at).into());
+            return Err(unknown("texture", &entity.kind, names, &entity.at));
         };
         let what = format!("the texture '{}' is not shown: one colour stands in its place", entity.kind);
         self.oddities.note(&what, || entity.at.clone());
@@ -294,7 +309,7 @@ fn wrap(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Wrap, FormatError> {
         }
         other => {
             let known = ["repeat", "clamp", "black", "octahedralsphere"];
-            return Err(SceneError::unknown("way to wrap", other, known, &list.place("wrap")).into());
+            return Err(unknown("way to wrap", other, known, &list.place("wrap")));
         }
     })
 }

@@ -3,9 +3,9 @@
 use super::directives::Directive;
 use super::lexer::{Token, shown};
 use super::state::{look_at, rotation};
+use super::unknown;
 use crate::FormatError;
 use bilux_math::{DMat4, DVec3};
-use bilux_scene::SceneError;
 
 impl Directive<'_, '_, '_, '_> {
     pub(super) fn transform(&mut self, word: &[u8]) -> Result<(), FormatError> {
@@ -20,7 +20,7 @@ impl Directive<'_, '_, '_, '_> {
                 let Some(matrices) = self.pbrt.systems.get(&name) else {
                     let names = self.pbrt.systems.keys().map(String::as_str);
                     let at = self.lexer.place(at);
-                    return Err(SceneError::unknown("coordinate system", &name, names, &at).into());
+                    return Err(unknown("coordinate system", &name, names, &at));
                 };
                 self.pbrt.state.matrices = *matrices;
                 return Ok(());

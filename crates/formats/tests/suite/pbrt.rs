@@ -548,6 +548,32 @@ fn files_that_would_hurt_are_refused() {
     let files: Vec<(&str, &[u8])> =
         names.iter().zip(&texts).map(|(n, t)| (n.as_str(), t.as_bytes())).collect();
     assert!(refused(&files).contains("more than 32 deep"));
+    let mut short = files[..30].to_vec();
+    short[29].1 = b"#";
+    assert!(refused(&short).contains("over and over"));
+}
+
+#[test]
+fn texts_that_would_take_for_ever_are_refused_soon() {
+    let chain: String = (0..20_000)
+        .map(|i| format!("Texture \"{}\" \"float\" \"scale\" \"texture tex\" \"{i}\"\n", i + 1))
+        .collect();
+    let user = "Material \"diffuse\" \"texture reflectance\" \"20000\" Shape \"disk\"";
+    let told = refusal("pbrt", format!("WorldBegin\n{chain}{user}"));
+    assert!(told.contains("more than 32 deep"), "{told}");
+    let many = "Attribute \"shape\" \"float radius\" 1\n".repeat(2000);
+    assert!(
+        refusal("pbrt", format!("WorldBegin\n{many}"))
+            .contains("scene.pbrt:1002:1: there are more than 1000")
+    );
+    let deep = "AttributeBegin\n".repeat(20_000);
+    assert!(refusal("pbrt", format!("WorldBegin\n{deep}")).contains("nested more than"));
+    let long = "x".repeat(1 << 20);
+    let materials: String = (0..2000)
+        .map(|i| format!("MakeNamedMaterial \"{i}{}\" \"string type\" \"diffuse\"\n", &long[..90]))
+        .collect();
+    let told = refusal("pbrt", format!("WorldBegin\n{materials}\nNamedMaterial \"{long}\" Shape \"disk\""));
+    assert!(told.len() < 20_000, "{}", told.len());
 }
 
 #[test]

@@ -9,10 +9,11 @@ use super::inks::{Ink, Meaning};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
 use super::state::MaterialKey;
+use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
 use bilux_scene::materials::{self, Ingredients};
-use bilux_scene::{SceneError, Span, Spec, Value};
+use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
 
 /// What a material becomes; none for what is not there.
@@ -59,7 +60,7 @@ impl Pbrt<'_, '_> {
                 Some((index, _)) => *index,
                 None => {
                     let names = self.named_materials.keys().map(|name| &**name);
-                    return Err(SceneError::unknown("material", name, names, user).into());
+                    return Err(unknown("material", name, names, user));
                 }
             },
         };
@@ -76,7 +77,7 @@ impl Pbrt<'_, '_> {
     fn material_of(&mut self, entity: &Entity) -> Result<Option<Spec>, FormatError> {
         let Some((_, make)) = MATERIALS.iter().find(|(name, _)| *name == entity.kind) else {
             let names = MATERIALS.iter().map(|(name, _)| *name).filter(|name| !name.is_empty());
-            return Err(SceneError::unknown("material", &entity.kind, names, &entity.at).into());
+            return Err(unknown("material", &entity.kind, names, &entity.at));
         };
         let list = &entity.parameters;
         let Some(mut spec) = make(self, list)? else { return Ok(None) };

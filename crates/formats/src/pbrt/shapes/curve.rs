@@ -2,12 +2,13 @@
 
 use super::super::parameters::ParameterList;
 use super::super::reader::{Form, Pbrt};
+use super::super::unknown;
 use super::needed_points;
 use crate::FormatError;
 use bilux_math::glam::DVec3;
 use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{Vec2, Vec3};
-use bilux_scene::{Mesh, SceneError};
+use bilux_scene::Mesh;
 use std::f64::consts::TAU;
 
 /// Pieces along a segment and around it, of curves that are few.
@@ -27,7 +28,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>
     let normals = list.triples("N")?;
     let kinds = ["flat", "cylinder", "ribbon"];
     if !kinds.contains(&kind) {
-        return Err(SceneError::unknown("type of curves", kind, kinds, &list.place("type")).into());
+        return Err(unknown("type of curves", kind, kinds, &list.place("type")));
     }
     let is_ribbon = kind == "ribbon" && normals.len() == segments.len() + 1;
     if kind == "ribbon" && !is_ribbon {
@@ -52,7 +53,7 @@ fn segments(list: &ParameterList, p: &[DVec3]) -> Result<Vec<[DVec3; 4]>, Format
     let basis = list.text("basis")?.unwrap_or("bezier");
     let bases = ["bezier", "bspline"];
     if !bases.contains(&basis) {
-        return Err(SceneError::unknown("basis of curves", basis, bases, &list.place("basis")).into());
+        return Err(unknown("basis of curves", basis, bases, &list.place("basis")));
     }
     let wrong = |wanted: String| Err(FormatError::malformed(wanted, list.place("P")));
     let step = match degree {

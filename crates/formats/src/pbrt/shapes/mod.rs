@@ -10,6 +10,7 @@ mod triangles;
 
 use super::parameters::ParameterList;
 use super::reader::{Alpha, Dress, Entity, Form, Pbrt, Piece};
+use super::unknown;
 use crate::FormatError;
 use crate::reading::bytes_of;
 use bilux_math::{Vec2, Vec3};
@@ -63,7 +64,7 @@ impl Pbrt<'_, '_> {
             }
             None => {
                 let names = SHAPES.iter().map(|(name, _)| *name);
-                return Err(SceneError::unknown("shape", &entity.kind, names, &entity.at).into());
+                return Err(unknown("shape", &entity.kind, names, &entity.at));
             }
         };
         self.reading.budget.take::<Piece>(1, &entity.at.file)?;
