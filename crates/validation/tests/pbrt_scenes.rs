@@ -195,3 +195,119 @@ fn veachs_plates_agree_with_their_picture_in_light_and_colour() {
     let off = ON_THE_PLATES.map(|part| apart(hue(wrong.mean(part)), hue(reference.mean(part))));
     assert!(off.iter().any(|off| *off > 0.02), "another metal would be seen: {off:?}");
 }
+
+/// A scene from a text, rendered.
+fn of_text(format: &str, text: &str, size: &str, spp: i64) -> Pixels {
+    let scene = bilux::formats::read_bytes(text.as_bytes(), format, None, "scene", &Default::default());
+    let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    let mut all = Parameters::default();
+    for (key, value) in [("size", size), ("integrator", "path"), ("filter", "box")] {
+        all.set(key, value);
+    }
+    all.set("spp", Value::Integer(spp));
+    Pixels::of(&Job::new(&scene, &all).unwrap().render(&Quiet).unwrap().picture().unwrap())
+}
+
+#[test]
+fn coated_diffuse_reflects_what_two_layers_do() {
+    let text = r#"
+        LookAt 0 0 -5 0 0 0 0 1 0
+        Camera "perspective" "float fov" 0.1
+        WorldBegin
+        LightSource "infinite" "rgb L" [1 1 1]
+        Material "coateddiffuse" "rgb reflectance" [.5 .8 .2] "float roughness" 0
+        Shape "sphere""#;
+    let seen = of_text("pbrt", text, "8x8", 512).mean(WHOLE);
+    // The boundary turns 0.04 back outside and 0.5964 of what comes evenly from below. [Egan 1973]
+    let of = |rho: f64| 0.04 + 0.96 * 0.4036 * rho / (1.0 - 0.5964 * rho);
+    assert!(apart(seen, [of(0.5), of(0.8), of(0.2)]) < 0.01, "{seen:?}");
+}
+
+#[test]
+fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
+    let theirs = r#"
+        Scale -1 1 1
+        LookAt 0 2 6  0 0.5 0  0 1 0
+        Camera "perspective" "float fov" 40
+        WorldBegin
+        LightSource "point" "rgb I" [20 15 10] "point3 from" [2 4 2]
+        LightSource "spot" "rgb I" [30 30 60] "point3 from" [-3 4 1] "point3 to" [0 0 0]
+            "float coneangle" 25 "float conedeltaangle" 5
+        LightSource "distant" "rgb L" [.3 .4 .3] "point3 from" [0 3 1] "point3 to" [0 0 0]
+        LightSource "infinite" "rgb L" [.1 .1 .2]
+        Material "diffuse" "rgb reflectance" [.6 .5 .4]
+        Shape "bilinearmesh" "point3 P" [-4 0 4  4 0 4  -4 0 -4  4 0 -4]
+        AttributeBegin
+            Translate -1 .75 0
+            Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" .0625
+            Shape "sphere" "float radius" .75
+        AttributeEnd
+        AttributeBegin
+            AreaLightSource "diffuse" "rgb L" [2 4 2]
+            Translate 1 1.5 -1
+            Shape "trianglemesh" "point3 P" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0] "integer indices" [0 1 2 0 2 3]
+        AttributeEnd"#;
+    let ours = r#"
+        [camera]
+        position = [0, 2, 6]
+        look_at = [0, 0.5, 0]
+        fov = 40
+        [[light]]
+        kind = "point"
+        position = [2, 4, 2]
+        intensity = [20, 15, 10]
+        [[light]]
+        kind = "spot"
+        position = [-3, 4, 1]
+        look_at = [0, 0, 0]
+        intensity = [30, 30, 60]
+        angle = 25
+        inner_angle = 20
+        [[light]]
+        kind = "directional"
+        direction = [0, -3, -1]
+        irradiance = [0.3, 0.4, 0.3]
+        [[light]]
+        kind = "environment"
+        radiance = [0.1, 0.1, 0.2]
+        [[material]]
+        name = "matt"
+        kind = "diffuse"
+        reflectance = [0.6, 0.5, 0.4]
+        [[material]]
+        name = "copper"
+        kind = "conductor"
+        metal = "copper"
+        roughness = 0.5
+        [[material]]
+        name = "panel"
+        kind = "diffuse"
+        reflectance = [0.6, 0.5, 0.4]
+        emission = [2, 4, 2]
+        emission_sides = "front"
+        [[model]]
+        shape = "quad"
+        u = [8, 0, 0]
+        v = [0, 0, -8]
+        material = "matt"
+        [[model]]
+        shape = "sphere"
+        radius = 0.75
+        around = 192
+        along = 96
+        translate = [-1, 0.75, 0]
+        material = "copper"
+        [[model]]
+        shape = "quad"
+        translate = [1, 1.5, -1]
+        material = "panel""#;
+    let (theirs, ours) = (of_text("pbrt", theirs, "48x48", 64), of_text("toml", ours, "48x48", 64));
+    let sixths = (0..36).map(|i| {
+        let (x, y) = (f64::from(i % 6) / 6.0, f64::from(i / 6) / 6.0);
+        [x, x + 1.0 / 6.0, y, y + 1.0 / 6.0]
+    });
+    let parts: Vec<[f64; 4]> = sixths.collect();
+    let off = greatest(&theirs, &ours, &parts);
+    assert!(off < MOST_OFF, "a part differs by {off}");
+}

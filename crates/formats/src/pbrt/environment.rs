@@ -185,13 +185,33 @@ mod tests {
         assert!(counts.iter().all(|&c| (f64::from(c) / mean - 1.0).abs() < 0.03), "{counts:?}");
     }
 
+    /// The direction of a place on the square. [Clarberg 2008]
+    fn on_the_sphere(u: f64, v: f64) -> DVec3 {
+        let (u, v) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+        let (x, y) = (u.abs(), v.abs());
+        let depth = 1.0 - (x + y);
+        let r = 1.0 - depth.abs();
+        let phi = if r == 0.0 { 1.0 } else { (y - x) / r + 1.0 } * PI / 4.0;
+        let (sin, cos) = sin_cos_f64(phi);
+        let (z, across) = (1.0 - r * r, r * (2.0 - r * r).sqrt());
+        DVec3::new(across * cos.copysign(u), across * sin.copysign(v), z.copysign(depth))
+    }
+
+    #[test]
+    fn there_and_back_it_is_the_same_place() {
+        for (i, j) in (0..32).flat_map(|i| (0..32).map(move |j| (i, j))) {
+            let [u, v] = [i, j].map(|k| (f64::from(k) + 0.4) / 32.0);
+            let [x, y] = Mapping::Square.place(on_the_sphere(u, v));
+            assert!((x - u).abs() + (y - v).abs() < 1e-9, "{u} {v} {x} {y}");
+        }
+    }
+
     #[test]
     fn beyond_an_edge_of_the_square_lies_what_is_beside_it_on_the_sphere() {
-        for (d, beyond) in [(DVec3::new(1.0, 0.4, -1e-9), [8, 2]), (DVec3::new(-0.3, -1.0, -1e-9), [2, -1])] {
-            let _ = d;
-            let [x, y] = wrapped(Mapping::Square, beyond, [8, 8]);
-            // The neighbour across the edge mirrors the other coordinate.
-            assert!(x == 7 && y == 5 || x == 5 && y == 0, "{beyond:?} {x} {y}");
-        }
+        // The ends of an edge meet, and so do all places that lie alike on its halves.
+        let (beside, across) = (on_the_sphere(1.0 - 1e-9, 2.5 / 8.0), on_the_sphere(1.0 - 1e-9, 5.5 / 8.0));
+        assert!((beside - across).length() < 1e-3, "{beside} {across}");
+        assert_eq!(wrapped(Mapping::Square, [8, 2], [8, 8]), [7, 5]);
+        assert_eq!(wrapped(Mapping::Square, [2, -1], [8, 8]), [5, 0]);
     }
 }

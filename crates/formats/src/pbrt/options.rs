@@ -45,6 +45,9 @@ impl Pbrt<'_, '_> {
         match what {
             "camera" => {
                 let matrices = self.state.matrices;
+                if !self.state.media[1].is_empty() {
+                    self.oddities.note("a medium around the camera is not shown", || entity.at.clone());
+                }
                 self.systems.insert("camera".to_owned(), matrices.map(|m| m.inverse()));
                 self.options.camera = Some((entity, matrices));
             }
@@ -101,7 +104,13 @@ impl Pbrt<'_, '_> {
             self.options.gain = list.finite("scale", 1.0)?.max(0.0);
         } else {
             let speed = list.finite("iso", 100.0)?;
-            self.options.gain = (exposure * speed / 100.0).max(0.0);
+            let gain = exposure * speed / 100.0;
+            if gain > 0.0 {
+                self.options.gain = gain;
+            } else {
+                let what = "a film that is exposed to no light would be black: as if it were, for one second";
+                self.oddities.note(what, || film.at.clone());
+            }
         }
         if film.kind == "spectral" {
             self.oddities
