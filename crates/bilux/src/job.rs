@@ -21,6 +21,9 @@ use std::time::{Duration, Instant};
 /// Where time ends the picture, the first look at surfaces takes at most this part of it.
 const FEATURES_PART: u32 = 12;
 
+/// The curve where the studio lights a model.
+const STUDIO_TONEMAP: &str = "neutral";
+
 /// A picture to be rendered.
 pub struct Job {
     scene: Scene,
@@ -29,6 +32,8 @@ pub struct Job {
     integrator: Box<dyn PixelIntegrator>,
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
+    /// The studio's lights are on.
+    studio_lit: bool,
     /// Albedo and the like are wanted.
     pub(crate) features: bool,
     /// The time that is going to be spent on denoising.
@@ -92,6 +97,7 @@ impl Job {
             warnings: oddities(scene, &built, &*camera),
             camera,
             render: render_settings(&settings)?,
+            studio_lit: completed.lights.len() > scene.lights.len() && !settings.integrator.classic,
             features: false,
             denoising: Duration::ZERO,
             source: completed,
@@ -248,7 +254,12 @@ impl Job {
     /// # Errors
     /// When no tone curve has the name.
     pub fn write_options(&self) -> Result<WriteOptions, Error> {
-        let tone_map = bilux_pictures::tonemap::tone_map(&self.settings.tonemap)?;
+        let name = match self.settings.tonemap.as_str() {
+            "auto" if self.studio_lit => STUDIO_TONEMAP,
+            "auto" => "none",
+            name => name,
+        };
+        let tone_map = bilux_pictures::tonemap::tone_map(name)?;
         Ok(WriteOptions { exposure: self.settings.exposure, tone_map, ..WriteOptions::default() })
     }
 

@@ -62,7 +62,11 @@ pub const RENDER: Entry = Entry {
             kind: ParameterKind::Bool,
             default: "false",
         },
-        text("tonemap", "the curve for pictures for a display", "none"),
+        text(
+            "tonemap",
+            "the curve for pictures for a display; auto is neutral where the studio lights a model, else none",
+            "auto",
+        ),
         choice(
             "denoise",
             "what takes the noise away: display for the best, in pictures for a display that noise or time ends",

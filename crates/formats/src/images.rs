@@ -1,12 +1,25 @@
 //! Decoded pictures as the texels of textures.
 
 use bilux_math::Rgb;
-use bilux_pictures::{ColourSpace, Picture};
+use bilux_pictures::{ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
+
+/// The texels of a picture file; `None` where it has no colours. `is_data` keeps numbers as they are.
+pub(crate) fn decoded(
+    bytes: &[u8],
+    hint: Option<&str>,
+    is_data: bool,
+    limits: &Limits,
+) -> Result<Option<Image>, PictureError> {
+    if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, limits)? {
+        return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
+    }
+    Ok(image_of(read_bytes(bytes, hint, limits)?, is_data))
+}
 
 /// The texels of a picture, in bytes where it came in bytes; `None` where it has no colours. `is_data` keeps
 /// numbers as they are.
-pub(crate) fn image_of(picture: Picture, is_data: bool) -> Option<Image> {
+fn image_of(picture: Picture, is_data: bool) -> Option<Image> {
     let (width, height) = (picture.width(), picture.height());
     let alpha = |picture: &Picture| picture.channel("A").map(<[f32]>::to_vec);
     if picture.colour_space == ColourSpace::Srgb || is_data {
@@ -42,4 +55,41 @@ fn bytes([r, g, b]: [&[f32]; 3], alpha: Option<&[f32]>) -> Vec<[u8; 4]> {
 /// True for what no picture in bytes can hold.
 pub(crate) fn is_bright(texel: Rgb) -> bool {
     !texel.is_finite() || texel.max_channel() > 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux_pictures::{BitDepth, WriteOptions, write_bytes};
+
+    /// Every form of PNG that is in bytes, and those that are not.
+    #[test]
+    fn bytes_decoded_at_once_are_those_by_way_of_planes() {
+        let plane =
+            |k: usize| (0..35).map(|i| ((i * 37 + k * 91) % 256) as f32 / 255.0).collect::<Vec<f32>>();
+        for channels in [&["Y"][..], &["Y", "A"], &["R", "G", "B"], &["R", "G", "B", "A"]] {
+            let mut picture = Picture::new(7, 5).unwrap();
+            picture.colour_space = ColourSpace::Srgb;
+            picture.alpha = bilux_pictures::Alpha::Straight;
+            for (k, name) in channels.iter().enumerate() {
+                picture.push_channel(*name, plane(k)).unwrap();
+            }
+            for bit_depth in [BitDepth::Eight, BitDepth::Sixteen] {
+                let options = WriteOptions { bit_depth, ..WriteOptions::default() };
+                let bytes = write_bytes("png", &picture, &options).unwrap();
+                let limits = Limits::default();
+                let is_bytes = read_rgba8(&bytes, &limits).unwrap().is_some();
+                assert_eq!(is_bytes, bit_depth == BitDepth::Eight);
+                for is_data in [false, true] {
+                    let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), is_data).unwrap();
+                    let at_once = decoded(&bytes, None, is_data, &limits).unwrap().unwrap();
+                    assert_eq!(
+                        format!("{at_once:?}"),
+                        format!("{by_planes:?}"),
+                        "{channels:?} {bit_depth:?}"
+                    );
+                }
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! One job of reading: what is allowed, what has been used, which files belong to it.
 
 use crate::budget::Budget;
-use crate::images::image_of;
+use crate::images::decoded;
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
 use bilux_pictures::Limits;
@@ -108,10 +108,10 @@ impl<'o> Reading<'o> {
     ) -> Result<Image, FormatError> {
         // The decoder's planes and the texels are held side by side for a moment.
         let limits = Limits::new(self.budget.left() / 2);
-        let picture = bilux_pictures::read_bytes(bytes, hint, &limits).map_err(|e| {
+        let image = decoded(bytes, hint, is_data, &limits).map_err(|e| {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
         })?;
-        let image = image_of(picture, is_data).ok_or_else(|| {
+        let image = image.ok_or_else(|| {
             FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
         })?;
         self.hold_image(&image, name)?;

@@ -37,8 +37,8 @@ pub mod tonemap;
 pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::PictureError;
 pub use formats::{
-    BitDepth, PICTURE_FORMATS, PictureFormatEntry, WriteOptions, format_named, format_of_path, is_decoding,
-    read, read_bytes, read_with, write, write_atomically, write_bytes,
+    BitDepth, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, format_named, format_of_path,
+    is_decoding, read, read_bytes, read_rgba8, read_with, write, write_atomically, write_bytes,
 };
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};

@@ -1,6 +1,7 @@
 //! glTF 2.0, as JSON with files beside it and as GLB. See `docs/formats/gltf.md`.
 
 mod accessor;
+mod ahead;
 mod animation;
 mod area_lights;
 mod cameras;

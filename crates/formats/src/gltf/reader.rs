@@ -35,6 +35,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let document = Document::load(root, &container, reading, source, &mut oddities)?;
     let time = reading.options.time;
     let mut gltf = Gltf::new(&document, source, reading, oddities, time);
+    gltf.decode_ahead()?;
     gltf.scene()?;
     let Gltf { mut scene, oddities, images, .. } = gltf;
     if time != 0.0 && scene.inventory.moves() {

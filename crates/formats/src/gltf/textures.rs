@@ -8,6 +8,7 @@ use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::texture::{Channel, Filter, UvTransform, Wrap};
 use bilux_scene::{Texture, Value};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -138,27 +139,38 @@ impl<'d> Gltf<'d, '_, '_> {
 
     fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
         let at = image.at();
+        let (name, bytes) = self.encoded(image)?;
+        let kind = image.text("mimeType")?.unwrap_or_default();
+        let extension = Path::new(&name).extension().and_then(|e| e.to_str());
+        let hint = kind.strip_prefix("image/").or(extension);
+        let decoded = self.reading.decode(&bytes, hint, is_data, (&name, &at))?;
+        self.let_go(bytes);
+        Ok((name, Arc::new(decoded)))
+    }
+
+    /// The name and the bytes of a picture, wherever they lie.
+    pub(super) fn encoded(&mut self, image: Node<'d>) -> Result<(String, Cow<'d, [u8]>), FormatError> {
         if let Some(view) = image.get("bufferView") {
             let view = self.document.view(view)?;
-            let kind = image.text("mimeType")?.unwrap_or_default();
             let name = if image.name().is_empty() { "a picture in the file" } else { image.name() };
-            let hint = kind.strip_prefix("image/");
-            let decoded = self.reading.decode(view.bytes, hint, is_data, (name, &at))?;
-            return Ok((name.to_owned(), Arc::new(decoded)));
+            return Ok((name.to_owned(), Cow::Borrowed(view.bytes)));
         }
         let place = image.need("uri")?;
-        let (name, bytes) = match uri::resolve(self.reading, place)? {
-            Resource::Data(bytes) => (image.name().to_owned(), bytes),
+        Ok(match uri::resolve(self.reading, place)? {
+            Resource::Data(bytes) => (image.name().to_owned(), Cow::Owned(bytes)),
             Resource::File(name) => {
                 let path = self.reading.locate(self.source.folder, &name, &place.at())?;
                 let bytes = self.reading.load(&path)?;
-                (name, bytes)
+                (name, Cow::Owned(bytes))
             }
-        };
-        let hint = Path::new(&name).extension().and_then(|e| e.to_str());
-        let decoded = self.reading.decode(&bytes, hint, is_data, (&name, &at))?;
-        self.reading.release(bytes);
-        Ok((name, Arc::new(decoded)))
+        })
+    }
+
+    /// Bytes of [`Gltf::encoded`] that are not needed any more.
+    pub(super) fn let_go(&mut self, bytes: Cow<'d, [u8]>) {
+        if let Cow::Owned(bytes) = bytes {
+            self.reading.release(bytes);
+        }
     }
 }
 

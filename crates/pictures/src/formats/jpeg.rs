@@ -1,7 +1,7 @@
 //! JPEG, read only: textures come in it, renderings should not leave in it.
 
 use super::guard::guarded;
-use super::{PictureFormatEntry, planes_of};
+use super::{PictureFormatEntry, Rgba8, planes_of};
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
 use zune_jpeg::JpegDecoder;
@@ -24,7 +24,8 @@ const FORMAT: &str = "JPEG";
 /// Decoded bytes, the coefficients of progressive files for up to four components, and three planes.
 const BYTES_PER_PIXEL: u64 = 4 + 4 * 2 + 3 * 4;
 
-fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+/// The width, the height and the bytes of one or three channels.
+fn decode(bytes: &[u8], limits: &Limits) -> Result<(usize, usize, Vec<u8>), PictureError> {
     let options =
         DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX));
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -36,16 +37,29 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
     let grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
-    let (names, space): (&[&str], _) =
-        if grey { (&["Y"], ColorSpace::Luma) } else { (&["R", "G", "B"], ColorSpace::RGB) };
+    let (channels, space) = if grey { (1, ColorSpace::Luma) } else { (3, ColorSpace::RGB) };
     decoder.set_options(options.jpeg_set_out_colorspace(space));
-    let samples = decoder.decode().map_err(explain)?;
-    if samples.len() < pixels.saturating_mul(names.len()) {
+    let mut samples = decoder.decode().map_err(explain)?;
+    if samples.len() < pixels.saturating_mul(channels) {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
+    samples.truncate(pixels * channels);
+    Ok((info.width.into(), info.height.into(), samples))
+}
+
+/// [`super::read_rgba8`].
+pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+    let (width, height, samples) = decode(bytes, limits)?;
+    Ok(Rgba8::of(width, height, &samples))
+}
+
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let (width, height, samples) = decode(bytes, limits)?;
+    let pixels = width * height;
+    let names: &[&str] = if samples.len() == pixels { &["Y"] } else { &["R", "G", "B"] };
     let planes =
         planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
-    let mut picture = Picture::new(info.width.into(), info.height.into())?;
+    let mut picture = Picture::new(width, height)?;
     picture.colour_space = ColourSpace::Srgb;
     picture.alpha = Alpha::Straight;
     for (name, plane) in names.iter().zip(planes) {

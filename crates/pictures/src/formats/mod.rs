@@ -10,11 +10,13 @@ mod pfm;
 mod png;
 mod pnm;
 mod primaries;
+mod rgba8;
 mod tokens;
 mod webp;
 
 pub use disk::write_atomically;
 pub use guard::is_decoding;
+pub use rgba8::{Rgba8, read_rgba8};
 
 use crate::error::nearest;
 use crate::picture::hold_within;

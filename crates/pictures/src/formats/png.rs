@@ -1,7 +1,7 @@
 //! PNG: all that it can hold comes in; 8 or 16 bits, sRGB, go out. [PNG]
 
 use super::guard::guarded;
-use super::{BitDepth, PictureFormatEntry, WriteOptions, display_planes, planes_of};
+use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes, planes_of};
 use crate::limits::zeroed;
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use ::png::{ColorType, Decoder, DecodingError, Encoder, Info, SrgbRenderingIntent, Transformations};
@@ -31,13 +31,17 @@ const BYTES_PER_PIXEL: u64 = 8 + 4 * 4;
 /// Texts longer than this are left out: they are not what a picture is read for.
 const LONGEST_TEXT: usize = 1 << 20;
 
-fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+/// A decoder that has given its pixels, and these.
+type Decoded<'b> = (::png::Reader<Cursor<&'b [u8]>>, ::png::OutputInfo, Vec<u8>);
+
+/// The samples as they are stored, palettes and few bits made bytes.
+fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<Decoded<'b>, PictureError> {
     let memory = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), ::png::Limits { bytes: memory });
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(explain)?;
     let (width, height) = (header.width, header.height);
-    let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
+    limits.check(FORMAT, width.into(), height.into(), bytes_per_pixel)?;
     let mut reader = decoder.read_info().map_err(explain)?;
     // The decoder takes the length of a palette on trust.
     if reader.info().palette.as_ref().is_some_and(|palette| palette.is_empty() || palette.len() % 3 != 0) {
@@ -50,6 +54,21 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     if (frame.width, frame.height) != (width, height) {
         return Err(PictureError::invalid(FORMAT, "its first frame is smaller than the picture"));
     }
+    Ok((reader, frame, samples))
+}
+
+/// [`super::read_rgba8`].
+pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+    let (reader, frame, samples) = decode(bytes, limits, 8 + 4)?;
+    let is_plain =
+        frame.bit_depth == ::png::BitDepth::Eight && colour_space(reader.info()) == ColourSpace::Srgb;
+    Ok(is_plain.then(|| Rgba8::of(frame.width as usize, frame.height as usize, &samples)).flatten())
+}
+
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let (mut reader, frame, samples) = decode(bytes, limits, BYTES_PER_PIXEL)?;
+    let (width, height) = (frame.width, frame.height);
+    let pixels = width as usize * height as usize;
     let names: &[&str] = match frame.color_type {
         ColorType::Grayscale => &["Y"],
         ColorType::GrayscaleAlpha => &["Y", "A"],

@@ -13,26 +13,45 @@ const NOISE: f32 = 0.4;
 
 /// Pixels without outliers, and their variances, each taken from the brightest that counts.
 pub(super) fn without((width, height): (usize, usize), pixels: &[(Rgb, f32)]) -> Vec<(Rgb, f32)> {
-    let one = |i: usize| {
-        let (colour, variance) = pixels[i];
-        let light = colour.luminance();
-        let (x, y) = (i % width, i / width);
-        let (left, right) = (x.saturating_sub(2), (x + 3).min(width));
-        let (top, bottom) = (y.saturating_sub(2), (y + 3).min(height));
-        // The brightest around, the brightest first.
-        let mut brightest = [(f32::MIN, 0); BRIGHT];
-        for j in (top..bottom).flat_map(|y| (left..right).map(move |x| y * width + x)).filter(|&j| j != i) {
-            let other = pixels[j].0.luminance();
-            if other > brightest[BRIGHT - 1].0 {
-                let place = brightest.iter().position(|(held, _)| other > *held).unwrap_or(BRIGHT - 1);
-                brightest[place..].rotate_right(1);
-                brightest[place] = (other, j);
+    let lights: Vec<f32> = pixels.iter().map(|(colour, _)| colour.luminance()).collect();
+    let row = |y: usize| {
+        let of = |x: usize| {
+            let (colour, variance) = pixels[y * width + x];
+            match brightest((width, height), &lights, x, y) {
+                Some(j) if variance.sqrt() > NOISE * (lights[y * width + x] - lights[j]) => {
+                    (colour * (lights[j] / lights[y * width + x]), pixels[j].1)
+                }
+                _ => (colour, variance),
             }
-        }
-        let (enough, j) = brightest[BRIGHT - 1];
-        let is_outlier =
-            enough >= 0.0 && light > TOO_BRIGHT * enough && variance.sqrt() > NOISE * (light - enough);
-        if is_outlier { (colour * (enough / light), pixels[j].1) } else { (colour, variance) }
+        };
+        (0..width).map(of).collect::<Vec<_>>()
     };
-    (0..pixels.len()).into_par_iter().map(one).collect()
+    (0..height).into_par_iter().flat_map_iter(row).collect()
+}
+
+/// The brightest pixel around that counts, beside a pixel that is far brighter than it. Most are not, which the first few
+/// around tell.
+fn brightest((width, height): (usize, usize), lights: &[f32], x: usize, y: usize) -> Option<usize> {
+    let light = lights[y * width + x];
+    let mut brightest = [(0.0, usize::MAX); BRIGHT];
+    let mut as_bright = 0;
+    for row in y.saturating_sub(2)..(y + 3).min(height) {
+        let first = row * width + x.saturating_sub(2);
+        let around = &lights[first..row * width + (x + 3).min(width)];
+        for (j, &other) in around.iter().enumerate().map(|(i, other)| (first + i, other)) {
+            if j == y * width + x || other < brightest[BRIGHT - 1].0 {
+                continue;
+            }
+            if TOO_BRIGHT * other >= light {
+                as_bright += 1;
+                if as_bright >= BRIGHT {
+                    return None;
+                }
+            }
+            let place = brightest.iter().position(|(held, _)| other >= *held).unwrap_or(BRIGHT - 1);
+            brightest[place..].rotate_right(1);
+            brightest[place] = (other, j);
+        }
+    }
+    Some(brightest[BRIGHT - 1].1).filter(|&j| j != usize::MAX)
 }
