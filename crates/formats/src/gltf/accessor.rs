@@ -159,6 +159,17 @@ impl<'d> Accessor<'d> {
         Ok(all)
     }
 
+    /// True when elements begin at multiples of what their numbers take, within the view and within the buffer.
+    pub(super) fn is_aligned(&self, document: &'d Document<'d>) -> Result<bool, FormatError> {
+        let Some(view) = self.node.get("bufferView") else { return Ok(true) };
+        let view = document.named("bufferViews", view)?;
+        let offset = |node: Node<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
+        let (inside, outside) = (offset(self.node)?, offset(view)?);
+        let size = self.component.size();
+        let is_matrix = self.shape.columns > 1;
+        Ok(inside % size == 0 && (inside + outside) % size == 0 && !(is_matrix && inside % 4 != 0))
+    }
+
     /// Numbers of an element.
     pub(super) fn width(&self) -> usize {
         self.shape.columns * self.shape.rows

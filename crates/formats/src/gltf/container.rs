@@ -71,6 +71,11 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
             }
             _ => container.warnings.push(format!("chunk {number} is of an unknown kind: not used")),
         }
+        if chunk.len() % 4 != 0 {
+            container
+                .warnings
+                .push(format!("chunk {number} has {size} bytes, but has to have a multiple of 4"));
+        }
         at += 8 + chunk.len();
     }
     if container.json.is_empty() {

@@ -16,6 +16,8 @@ pub(super) struct Document<'a> {
     unpacked: HashMap<usize, Vec<u8>>,
     /// Bytes of all buffers and of the file itself.
     size: usize,
+    /// The file brings a buffer of its own.
+    has_binary: bool,
 }
 
 /// A part of a buffer.
@@ -38,6 +40,11 @@ impl<'a> Document<'a> {
         let mut buffers = Vec::new();
         for (i, node) in root.list("buffers")?.into_iter().enumerate() {
             let wanted = node.need("byteLength")?.as_count()?;
+            if node.get("uri").is_some_and(|uri| uri.as_text().is_ok_and(uri::is_odd)) {
+                oddities.note("what stands before the comma of a data URI is broken: not looked at", || {
+                    node.at()
+                });
+            }
             let bytes: Cow<[u8]> = match (node.get("uri"), container.binary) {
                 (Some(uri), _) => Cow::Owned(uri::load(reading, source, uri)?),
                 (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
@@ -53,7 +60,13 @@ impl<'a> Document<'a> {
             oddities.note("the binary chunk is named by no buffer and not used", || root.at());
         }
         let size = buffers.iter().map(|b| b.len()).sum::<usize>() + source.bytes.len();
-        let mut document = Document { root, buffers, unpacked: HashMap::new(), size };
+        let mut document = Document {
+            root,
+            buffers,
+            unpacked: HashMap::new(),
+            size,
+            has_binary: container.binary.is_some(),
+        };
         document.unpacked = document.unpack(reading)?;
         Ok(document)
     }
@@ -71,6 +84,28 @@ impl<'a> Document<'a> {
     /// Bytes of all that was read: a bound on what an honest file can describe without data.
     pub(super) fn size(&self) -> usize {
         self.size
+    }
+
+    /// True where the file brings a buffer of its own, as GLB may.
+    pub(super) fn has_binary(&self) -> bool {
+        self.has_binary
+    }
+
+    /// What is odd about a buffer view that can be read.
+    ///
+    /// # Errors
+    /// What is wrong with one that cannot be.
+    pub(super) fn check_view(&self, view: Node<'a>) -> Result<Option<&'static str>, FormatError> {
+        if view.extension(meshopt::NAME).is_some() {
+            return Ok(None);
+        }
+        let found = self.part(view, self.buffer(view.need("buffer")?)?)?;
+        Ok(match found.stride {
+            Some(stride) if stride % 4 != 0 => Some("byteStride has to be a multiple of 4"),
+            Some(stride) if stride > found.bytes.len() => Some("byteStride is more than the view has bytes"),
+            _ if found.bytes.is_empty() => Some("a buffer view has no bytes, but has to have one"),
+            _ => None,
+        })
     }
 
     /// The item of a list of the document that `index` names.
@@ -91,13 +126,19 @@ impl<'a> Document<'a> {
     pub(super) fn view(&self, index: Node<'a>) -> Result<View<'_>, FormatError> {
         let node = self.named("bufferViews", index)?;
         let buffer = self.buffer(node.need("buffer")?)?;
-        let unpacked = self.unpacked.get(&index.as_count()?);
-        let bytes = unpacked.map_or(buffer, |bytes| bytes);
-        let offset = if unpacked.is_some() { 0 } else { node.count("byteOffset")?.unwrap_or(0) };
+        match self.unpacked.get(&index.as_count()?) {
+            Some(bytes) => Ok(View { bytes, stride: node.count("byteStride")? }),
+            None => self.part(node, buffer),
+        }
+    }
+
+    /// The part of a buffer that a view says.
+    fn part<'s>(&'s self, node: Node<'a>, buffer: &'s [u8]) -> Result<View<'s>, FormatError> {
+        let offset = node.count("byteOffset")?.unwrap_or(0);
         let length = node.need("byteLength")?.as_count()?;
         let end = offset.checked_add(length);
-        let bytes = end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| {
-            let have = bytes.len();
+        let bytes = end.and_then(|end| buffer.get(offset..end)).ok_or_else(|| {
+            let have = buffer.len();
             let message = format!("{length} bytes from byte {offset} go beyond the buffer, which has {have}");
             node.error(message)
         })?;

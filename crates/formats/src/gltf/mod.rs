@@ -21,6 +21,7 @@ mod place;
 mod primitive;
 mod reader;
 mod skin;
+mod soundness;
 mod tangents;
 mod textures;
 mod thin;

@@ -1,6 +1,5 @@
 //! From the document to a scene.
 
-use super::accessor::Accessor;
 use super::animation::Pose;
 use super::container;
 use super::document::Document;
@@ -119,24 +118,12 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             self.place(&placed)?;
         }
         self.share_trees();
-        self.check_accessors()?;
+        self.check_data()?;
         let root = self.document.root;
         let skins = root.list("skins")?;
         self.scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() {
             self.oddities.note("there is nothing to see in this file", || root.at());
-        }
-        Ok(())
-    }
-
-    /// Tells of what is broken, though nothing that is shown needs it.
-    fn check_accessors(&mut self) -> Result<(), FormatError> {
-        for node in self.document.root.list("accessors")? {
-            match Accessor::open(self.document, node, &mut self.reading.budget) {
-                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
-                Err(error) => self.oddities.note(&error.without_place(), || node.at()),
-                Ok(_) => {}
-            }
         }
         Ok(())
     }

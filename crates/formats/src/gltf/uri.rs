@@ -44,6 +44,12 @@ pub(super) fn resolve(reading: &mut Reading, node: Node) -> Result<Resource, For
     name.map(Resource::File).map_err(|_| node.error("this name is not in UTF-8: rename the file"))
 }
 
+/// Whether a data URI has a parameter without a name, as only broken programs write it.
+pub(super) fn is_odd(uri: &str) -> bool {
+    let kind = uri.strip_prefix("data:").and_then(|data| data.split_once(','));
+    kind.is_some_and(|(kind, _)| kind.contains(";;"))
+}
+
 /// The bytes of a URI.
 pub(super) fn load(reading: &mut Reading, source: &Source, node: Node) -> Result<Vec<u8>, FormatError> {
     match resolve(reading, node)? {

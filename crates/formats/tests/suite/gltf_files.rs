@@ -63,17 +63,42 @@ fn test_models_open_and_build() {
     assert!(count == 0 || count >= 35, "only {count} files were found");
 }
 
+/// Errors of the validator that change nothing that could be seen: lists without anything, a word about the kind of
+/// data, numbers that are floats already.
+const HARMLESS: [&str; 4] = [
+    "EMPTY_ENTITY",
+    "ACCESSOR_NORMALIZED_INVALID",
+    "BUFFER_DATA_URI_MIME_TYPE_INVALID",
+    // A stride where nothing has one: no picture depends on what a view is said to be for.
+    "BUFFER_VIEW_INVALID_BYTE_STRIDE",
+];
+
+/// The codes of a report's errors.
+fn errors(report: &serde_json::Value) -> Vec<String> {
+    let messages = report["issues"]["messages"].as_array().cloned().unwrap_or_default();
+    let errors = messages.iter().filter(|message| message["severity"] == 0);
+    errors.filter_map(|message| Some(message["code"].as_str()?.to_owned())).collect()
+}
+
 #[test]
 fn broken_files_are_refused_or_told_of() {
     let options = ReadOptions { max_memory: 64 << 20, ..ReadOptions::default() };
+    let (mut broken, mut count) = (0, 0);
     for path in found("broken") {
         let report = std::fs::read_to_string(format!("{}.report.json", path.display())).unwrap_or_default();
-        let is_broken = !report.is_empty() && !report.contains("\"numErrors\": 0");
-        let told = match read(&path, &options) {
-            Ok(scene) => warnings(&scene),
-            Err(error) => error.to_string(),
+        let report = serde_json::from_str(&report).unwrap_or_default();
+        let told: Vec<String> = match read(&path, &options) {
+            Ok(scene) => scene.warnings.iter().map(ToString::to_string).collect(),
+            Err(error) => vec![error.to_string()],
         };
-        println!("{}: {told}", path.display());
-        assert!(!is_broken || !told.is_empty(), "{}", path.display());
+        println!("{}: {told:?}", path.display());
+        let told = told.iter().any(|what| !what.contains("there is nothing to see"));
+        let seen = errors(&report).into_iter().find(|code| !HARMLESS.contains(&code.as_str()));
+        if let Some(code) = &seen {
+            assert!(told, "{}: {code} is not told", path.display());
+        }
+        count += 1;
+        broken += usize::from(seen.is_some());
     }
+    assert!(count == 0 || (count >= 80 && broken >= 45), "{broken} of {count}");
 }

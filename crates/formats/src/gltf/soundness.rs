@@ -1,0 +1,53 @@
+//! What is broken in a file though nothing that is shown needs it, or though one can make do: told, since what is meant
+//! may be another picture.
+
+use super::accessor::Accessor;
+use super::json::Node;
+use super::meshopt;
+use super::reader::Gltf;
+use crate::FormatError;
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// Tells of buffers, views and accessors that are not as the specification has them. [glTF 2.0, 3.6]
+    pub(super) fn check_data(&mut self) -> Result<(), FormatError> {
+        let root = self.document.root;
+        for buffer in root.list("buffers")? {
+            let wanted = buffer.count("byteLength")?;
+            let is_stand_in = buffer.extension(meshopt::NAME).is_some();
+            if wanted == Some(0) {
+                self.oddities
+                    .note("a buffer has no bytes, but has to have one", || buffer.at_key("byteLength"));
+            } else if buffer.get("uri").is_none() && !self.document.has_binary() && !is_stand_in {
+                self.oddities.note("a buffer says nothing of where its bytes are", || buffer.at());
+            }
+        }
+        for view in root.list("bufferViews")? {
+            match self.document.check_view(view) {
+                Ok(Some(what)) => self.oddities.note(what, || view.at()),
+                Ok(None) => {}
+                Err(error) => self.oddities.note(&error.without_place(), || view.at()),
+            }
+        }
+        for accessor in root.list("accessors")? {
+            self.check_accessor(accessor)?;
+        }
+        Ok(())
+    }
+
+    fn check_accessor(&mut self, node: Node<'d>) -> Result<(), FormatError> {
+        if node.get("byteOffset").is_some() && node.get("bufferView").is_none() {
+            let what = "a byteOffset without a bufferView says nothing";
+            self.oddities.note(what, || node.at_key("byteOffset"));
+        }
+        match Accessor::open(self.document, node, &mut self.reading.budget) {
+            Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+            Err(error) => self.oddities.note(&error.without_place(), || node.at()),
+            Ok(accessor) if !accessor.is_aligned(self.document)? => {
+                let what = "elements do not begin at multiples of their size: read as they are";
+                self.oddities.note(what, || node.at());
+            }
+            Ok(_) => {}
+        }
+        Ok(())
+    }
+}
