@@ -14,6 +14,8 @@ pub struct ReadOptions {
     pub crease_angle: f32,
     /// When, in seconds, in formats whose movements bend meshes (glTF): everything stands as it does then.
     pub time: f32,
+    /// Whether to look too where everything stands from the beginning to the end ([`bilux_scene::Inventory::movement`]).
+    pub whole_movement: bool,
     /// The animation to follow, by its name or counted from 0; else the first, and those that move other things.
     pub animation: Option<String>,
     /// The variant of materials to show, by its name or counted from 0; else the materials that meshes name.
@@ -33,6 +35,7 @@ impl Default for ReadOptions {
             strict: false,
             crease_angle: 40.0,
             time: 0.0,
+            whole_movement: false,
             animation: None,
             variant: None,
             glass: Glass::Auto,

@@ -12,9 +12,9 @@ pub struct Inventory {
     pub variants: Vec<String>,
     /// Skeletons that bend meshes.
     pub skins: Vec<String>,
-    /// The scene at time 0, where it was read as it is at another and something moves: cameras that are made up look
-    /// at this one, so that they rest while it moves.
-    pub rest: Option<Arc<SceneBuilder>>,
+    /// All objects at several moments of their movement, where that was asked for: cameras that are made up see these, so
+    /// that they rest while things move.
+    pub movement: Option<Arc<SceneBuilder>>,
 }
 
 /// A movement that is part of a file.
@@ -32,5 +32,10 @@ impl Inventory {
     /// True when reading the file at another time gives another scene.
     pub fn moves(&self) -> bool {
         self.animations.iter().any(|animation| animation.plays)
+    }
+
+    /// When the last of what it follows ends, in seconds.
+    pub fn seconds(&self) -> f32 {
+        self.animations.iter().filter(|animation| animation.plays).map(|a| a.seconds).fold(0.0, f32::max)
     }
 }

@@ -7,6 +7,7 @@ use crate::progress::Report;
 use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
 use bilux::budget::{DEFAULT_BUDGET, with_default_budget};
+use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder};
@@ -95,9 +96,10 @@ impl Input<'_> {
         Ok(Input { path, piped, arguments, common })
     }
 
-    /// The scene as it is at a time in seconds.
-    fn read(&self, time: f32) -> anyhow::Result<SceneBuilder> {
-        let options = read_options_with(self.common, &self.arguments.choices, time);
+    /// The scene as it is at a time in seconds, and for frames as it is at all times.
+    fn read(&self, time: f32, whole_movement: bool) -> anyhow::Result<SceneBuilder> {
+        let choices = &self.arguments.choices;
+        let options = ReadOptions { whole_movement, ..read_options_with(self.common, choices, time) };
         let mut scene = match &self.piped {
             Some((bytes, format)) => {
                 bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
@@ -138,7 +140,7 @@ fn render_one(
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
     let input = Input::open(path, arguments, common)?;
-    let mut scene = input.read(arguments.at.unwrap_or(0.0))?;
+    let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
     tell_warnings(&scene.warnings, common)?;
     let Some(count) = arguments.studio.turntable else {
         return render_scene(&input, &mut scene, output, user, interrupt);
@@ -169,7 +171,7 @@ fn render_scene(
     let mut job = input.job(scene, &user)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was said elsewhere than by --at.
-        *scene = input.read(job.settings().time)?;
+        *scene = input.read(job.settings().time, arguments.frames.is_some())?;
         job = input.job(scene, &user)?;
     }
     let build_seconds = begun.elapsed().as_secs_f64();
@@ -192,7 +194,9 @@ fn render_scene(
     for frame in first..=last {
         let time = frame as f32 / job.settings().fps;
         if scene.inventory.moves() {
-            job = input.job(&input.read(time)?, &user)?;
+            let mut posed = input.read(time, false)?;
+            posed.inventory.movement = scene.inventory.movement.clone();
+            job = input.job(&posed, &user)?;
         }
         job.at_time(time);
         let output = frame_path(output, frame);

@@ -112,7 +112,17 @@ impl<'d> Accessor<'d> {
         }
         budget.take_bytes((self.count as u64).saturating_mul(4 * N as u64), &self.node.at().file)?;
         let mut all = vec![[0.0; N]; self.count];
-        if let Some(data) = self.data {
+        if let Some(data) = self.data.filter(|_| self.component == Component::F32 && self.shape.columns == 1)
+        {
+            // By far the most, and no choice within the loop.
+            for (element, bytes) in all.iter_mut().zip(data.bytes.chunks(data.stride)) {
+                let numbers = bytes[..4 * N].chunks_exact(4);
+                element
+                    .iter_mut()
+                    .zip(numbers)
+                    .for_each(|(x, b)| *x = f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+            }
+        } else if let Some(data) = self.data {
             all.iter_mut().enumerate().for_each(|(i, element)| self.read(data, i, element));
         }
         if let Some(sparse) = &self.sparse {
@@ -148,7 +158,10 @@ impl<'d> Accessor<'d> {
         budget.take_bytes((self.count as u64).saturating_mul(4), &self.node.at().file)?;
         let mut all = vec![0; self.count];
         let read = |from: Strided, i: usize| self.component.whole(&from.bytes[i * from.stride..]);
-        if let Some(data) = self.data {
+        if let Some(data) = self.data.filter(|data| self.component == Component::U32 && data.stride == 4) {
+            let numbers = data.bytes.chunks_exact(4);
+            all.iter_mut().zip(numbers).for_each(|(x, b)| *x = u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        } else if let Some(data) = self.data {
             all.iter_mut().enumerate().for_each(|(i, slot)| *slot = read(data, i));
         }
         if let Some(sparse) = &self.sparse {

@@ -36,16 +36,47 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let mut gltf = Gltf::new(&document, source, reading, oddities, time);
     gltf.decode_ahead()?;
     gltf.scene()?;
-    let Gltf { mut scene, oddities, images, .. } = gltf;
-    if time != 0.0 && scene.inventory.moves() {
-        let mut gltf = Gltf::new(&document, source, reading, Oddities::default(), 0.0);
-        // Pictures do not move.
-        gltf.images = images;
-        gltf.scene()?;
-        scene.inventory.rest = Some(Arc::new(gltf.scene));
+    let Gltf { mut scene, oddities, meshes, materials, images, .. } = gltf;
+    if reading.options.whole_movement && scene.inventory.moves() {
+        let made = Made { meshes, materials, images };
+        let end = scene.inventory.seconds();
+        scene.inventory.movement = Some(Arc::new(movement(&document, source, reading, made, end)?));
     }
     oddities.into_warnings(&mut scene);
     Ok(scene)
+}
+
+/// What one reading of a file has made, for the next.
+struct Made {
+    meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
+    materials: HashMap<(Option<usize>, bool), UsedMaterial>,
+    images: HashMap<(usize, bool), Option<Named>>,
+}
+
+/// Moments at which one looks where things are, from the beginning to the end.
+const MOMENTS: u32 = 8;
+
+/// All objects at moments from 0 to `end`, in seconds; what does not bend is shared.
+fn movement<'r>(
+    document: &Document<'_>,
+    source: &'r Source<'r>,
+    reading: &'r mut Reading,
+    mut made: Made,
+    end: f32,
+) -> Result<SceneBuilder, FormatError> {
+    let mut all = SceneBuilder::default();
+    for moment in 0..=MOMENTS {
+        let time = end * moment as f32 / MOMENTS as f32;
+        let mut gltf = Gltf::new(document, source, &mut *reading, Oddities::default(), time);
+        (gltf.meshes, gltf.materials, gltf.images) = (made.meshes, made.materials, made.images);
+        // The keys of these do not tell when it was.
+        gltf.meshes.retain(|(_, _, skin), _| skin.is_none());
+        gltf.scene()?;
+        let Gltf { scene, meshes, materials, images, .. } = gltf;
+        all.objects.extend(scene.objects);
+        made = Made { meshes, materials, images };
+    }
+    Ok(all)
 }
 
 /// A picture with its name.

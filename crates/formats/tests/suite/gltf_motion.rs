@@ -91,9 +91,12 @@ fn nodes_stand_where_the_animation_has_them() {
     let animations = &scene.inventory.animations;
     assert_eq!((&*animations[0].name, animations[0].seconds, animations[0].plays), ("walk", 3.0, true));
     assert!(!animations[1].plays && warnings(&scene).contains("#/animations/1: an animation is not played"));
-    let rest = scene.inventory.rest.expect("cameras are made up by the scene at rest");
-    assert!(near(rest.objects[0].motion.at(0.0).point(Vec3::X), [1.0, 0.0, 7.0]));
-    assert!(at_time(&moving(), 0.0).inventory.rest.is_none());
+    assert!(scene.inventory.movement.is_none());
+    let options = ReadOptions { time: 2.0, whole_movement: true, ..ReadOptions::default() };
+    let movement =
+        at(&moving(), &options).inventory.movement.expect("cameras that are made up hold all of it");
+    let [first, last] = [0, 8].map(|i| movement.objects[i].motion.at(0.0).point(Vec3::X));
+    assert!(near(first, [1.0, 0.0, 7.0]) && near(last, [4.0, 3.0, 7.0]), "{first} {last}");
 }
 
 #[test]

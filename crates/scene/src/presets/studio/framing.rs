@@ -29,8 +29,8 @@ pub(super) struct Framing {
 
 impl Framing {
     pub(super) fn of(scene: &SceneBuilder, studio: &Studio) -> Framing {
-        // What moves is seen from where it is seen at rest.
-        let scene = scene.inventory.rest.as_deref().unwrap_or(scene);
+        // What moves is seen from where all of its movement is seen.
+        let scene = scene.inventory.movement.as_deref().unwrap_or(scene);
         let limit = |p: DVec3| p.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST));
         let bounds = scene.bounds(0.0);
         let (low, high) = match bounds.is_empty() {
