@@ -28,7 +28,8 @@ pub fn read_picture(format: &str, bytes: &[u8]) {
 /// Reads the bytes as this scene format, from no folder, so that no other file is opened; and builds what
 /// was read, which may be refused.
 pub fn read_scene(format: &str, bytes: &[u8]) {
-    let options = ReadOptions { max_memory: 64 << 20, ..ReadOptions::default() };
+    let options =
+        ReadOptions { max_memory: 64 << 20, time: 0.5, whole_movement: true, ..ReadOptions::default() };
     let scene = match bilux_formats::read_bytes(bytes, format, None, "scene", &options) {
         Ok(scene) => scene,
         Err(error) => {
