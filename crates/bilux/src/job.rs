@@ -38,6 +38,8 @@ pub struct Job {
     pub(crate) features: bool,
     /// The time that is going to be spent on denoising.
     pub(crate) denoising: Duration,
+    /// No library of others may be loaded.
+    pub(crate) sandboxed: bool,
     /// What it was made of; the fingerprint is of that, and takes long where textures are large.
     source: SceneBuilder,
     fingerprint: OnceLock<String>,
@@ -100,6 +102,7 @@ impl Job {
             studio_lit: completed.lights.len() > scene.lights.len() && !settings.integrator.classic,
             features: false,
             denoising: Duration::ZERO,
+            sandboxed: false,
             source: completed,
             fingerprint: OnceLock::new(),
             accel,

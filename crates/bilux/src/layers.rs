@@ -8,8 +8,15 @@ use bilux_transport::push_variance;
 
 /// The value of the setting `denoise` that leaves it to the picture.
 const FOR_DISPLAY: &str = "display";
+/// The denoiser that needs nothing beside this program.
+const OWN: &str = "builtin";
 
 impl Job {
+    /// From now on no library of others is loaded, and no file looked for that may be one.
+    pub fn sandbox(&mut self) {
+        self.sandboxed = true;
+    }
+
     /// Keeps what is wanted of albedo, normals, depth, ids and variance ([`Outcome::layered`]). It changes no sample.
     pub fn with_layers(&mut self, wanted: &[Aov]) {
         self.features |= wanted.iter().any(|aov| aov.is_feature());
@@ -27,6 +34,14 @@ impl Job {
             "off" => return Ok(None),
             FOR_DISPLAY if !for_display || !self.render.stop.is_any() => return Ok(None),
             FOR_DISPLAY => "auto",
+            name => name,
+        };
+        let name = match name {
+            "auto" if self.sandboxed => OWN,
+            "oidn" if self.sandboxed => {
+                let what = "in a sandbox no library is loaded: --denoise builtin".to_owned();
+                return Err(bilux_pictures::PictureError::NoDenoiser { what }.into());
+            }
             name => name,
         };
         let task = Task {

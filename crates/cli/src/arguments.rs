@@ -49,6 +49,9 @@ pub struct Common {
     /// Let scene files name files outside of their own folder
     #[arg(long, global = true)]
     pub allow_outside: bool,
+    /// For files of strangers: opens nothing outside of a scene's folder, loads no library, writes nothing but OUT
+    #[arg(long, global = true, conflicts_with = "allow_outside")]
+    pub sandbox: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

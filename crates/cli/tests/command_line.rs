@@ -1,4 +1,5 @@
 //! The command line as users meet it: exit statuses, messages, and the same bytes whatever is done to them.
+#![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
@@ -279,4 +280,63 @@ fn frames_are_numbered_and_differ_where_things_move() {
     let again = ["render", "move.toml", "--size", "32x32", "-i", "cast", "--at", "2", "-o", "at.pfm"];
     bilux(path).args(again).assert().success();
     assert!(std::fs::read(path.join("at.pfm")).unwrap() == frame(2));
+}
+
+#[test]
+fn of_many_scenes_one_that_is_broken_does_not_stop_the_others() {
+    let folder = folder();
+    std::fs::write(folder.path().join("broken.obj"), "v 1 2\nf 1 2 3\n").unwrap();
+    let both = ["render", "broken.obj", "pots.asc", "-o", "{stem}.png", "--size", "16x16", "--spp", "1"];
+    let output = bilux(folder.path()).args(both).assert().code(1).stdout("");
+    let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+    assert!(told.contains("broken.obj:1") && told.contains("1 of 2 scenes"), "{told}");
+    assert!(folder.path().join("pots.png").is_file() && !folder.path().join("broken.png").exists());
+}
+
+/// Every file that the program opens while it renders what a stranger sent.
+#[test]
+fn in_a_sandbox_nothing_outside_the_folder_is_opened() {
+    let folder = folder();
+    let inside = folder.path().join("inside");
+    std::fs::create_dir(&inside).unwrap();
+    let secret = "[[model]]\nfile = \"../pots.asc\"\n[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = \"/etc/passwd\"\n";
+    std::fs::write(inside.join("spy.toml"), secret).unwrap();
+    let harmless = "[[model]]\nshape = \"sphere\"\n";
+    std::fs::write(inside.join("harmless.toml"), harmless).unwrap();
+    let options = ["--size", "16x16", "--sandbox", "--time-limit", "0.2"];
+    for (scene, works) in [("harmless", true), ("spy", false)] {
+        let trace = folder.path().join("trace");
+        let binary = assert_cmd::cargo::cargo_bin("bilux");
+        // What cargo adds for its tests has the loader look in more places.
+        let strace = std::process::Command::new("strace")
+            .env_remove("LD_LIBRARY_PATH")
+            .args(["-f", "-qq", "-e", "trace=open,openat,creat,execve", "-o"])
+            .arg(&trace)
+            .arg(&binary)
+            .args(["render", &format!("{scene}.toml"), "-o", &format!("{scene}.png")])
+            .args(options)
+            .current_dir(&inside)
+            .output();
+        let Ok(run) = strace else {
+            eprintln!("skipped: strace is not installed");
+            return;
+        };
+        assert_eq!(run.status.success(), works, "{}", String::from_utf8_lossy(&run.stderr));
+        let trace = std::fs::read_to_string(&trace).unwrap();
+        // The system's own: libraries that the program was linked with, what tells cores and memory.
+        let systems = ["/lib/", "/lib64/", "/usr/lib", "/etc/ld.so", "/proc/", "/sys/", "/dev/"];
+        let name = |line: &str| line.split('"').nth(1).unwrap_or_default().to_owned();
+        let opened: Vec<String> =
+            trace.lines().filter(|l| l.contains("open") || l.contains("creat")).map(name).collect();
+        assert!(opened.iter().any(|path| path.ends_with(&format!("{scene}.toml"))), "{opened:?}");
+        let here = inside.canonicalize().unwrap();
+        let is_inside = |path: &str| {
+            !path.contains("..") && (!path.starts_with('/') || Path::new(path).starts_with(&here))
+        };
+        let outside: Vec<&String> = opened
+            .iter()
+            .filter(|path| !is_inside(path) && !systems.iter().any(|s| path.starts_with(s)))
+            .collect();
+        assert!(outside.is_empty(), "{scene}: {outside:?}");
+    }
 }

@@ -23,12 +23,24 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let user = settings_from::render(arguments).map_err(usage::wrong)?;
     let targets = targets(arguments).map_err(usage::wrong)?;
     aov::check(arguments).map_err(usage::wrong)?;
+    let mut failed = 0;
     for (scene, output) in &targets {
-        let status = render_one(scene, output, &user, arguments, common, &interrupt)
-            .map_err(|error| naming(scene, error))?;
-        if status != DONE {
-            return Ok(status);
+        match render_one(scene, output, &user, arguments, common, &interrupt) {
+            Ok(DONE) => {}
+            Ok(status) => return Ok(status),
+            Err(error) => {
+                let error = naming(scene, error);
+                // Of many the others are not to wait for one that is broken; what is wrong for all ends it.
+                if targets.len() == 1 || usage::is_command_line(&error) {
+                    return Err(error);
+                }
+                output::error(&error);
+                failed += 1;
+            }
         }
+    }
+    if failed > 0 {
+        bail!("{failed} of {} scenes could not be rendered", targets.len());
     }
     Ok(DONE)
 }
@@ -117,6 +129,9 @@ impl Input<'_> {
     fn job(&self, scene: &SceneBuilder, user: &Parameters) -> anyhow::Result<Job> {
         let arguments = self.arguments;
         let mut job = Job::new(scene, user)?;
+        if self.common.sandbox {
+            job.sandbox();
+        }
         aov::prepare(arguments, &mut job)?;
         if let Some((from, to)) = arguments.samples {
             job.samples(from..to);
