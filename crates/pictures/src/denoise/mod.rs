@@ -75,6 +75,10 @@ pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
         let time = (row.time)(task.pixels, threads);
         let is_last = i + 1 == DENOISERS.len();
         if is_auto && !is_last && task.time.is_some_and(|most| time > most) {
+            let (name, seconds) = (row.entry.name, time.as_secs_f64());
+            let longer =
+                format!("'{name}' does better, but takes about {seconds:.1} s: ask for it by its name");
+            advice = advice.or(Some(longer));
             continue;
         }
         match (row.find)(task.threads) {

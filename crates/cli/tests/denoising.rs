@@ -1,0 +1,96 @@
+//! When pictures are denoised, by what, and what is told of it; budgets where nothing is said; layers.
+
+use assert_cmd::Command;
+use bilux::pictures::formats::read;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// What it says, with no Open Image Denoise anywhere, so that every machine does the same.
+fn bilux(folder: &Path, arguments: &[&str]) -> String {
+    let mut command = Command::cargo_bin("bilux").expect("the binary is built with its tests");
+    command.current_dir(folder).env("OIDN_LIB", "nowhere").args(arguments);
+    let assert = command.assert().success().stdout("");
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    bilux(folder.path(), &["generate", "teapot", "--set", "tessellation=3", "-o", "pot.obj"]);
+    folder
+}
+
+fn render(folder: &Path, output: &str, more: &[&str]) -> String {
+    let always = ["render", "pot.obj", "-i", "path", "--size", "32x32", "-o", output];
+    bilux(folder, &[&always, more].concat())
+}
+
+#[test]
+fn what_noise_or_time_ends_is_denoised_for_a_display_and_counted_samples_are_not() {
+    let folder = folder();
+    let path = folder.path();
+    let said = render(path, "a.png", &["--noise", "0.3"]);
+    assert!(
+        said.contains("denoised by the built-in filter") && said.contains("pip install pyoidn"),
+        "{said}"
+    );
+    assert!(!render(path, "b.png", &["--noise", "0.3", "--denoise=off"]).contains("denoised"));
+    assert!(!render(path, "b.exr", &["--noise", "0.3"]).contains("denoised"));
+    assert!(!render(path, "c.png", &["--spp", "2"]).contains("denoised"));
+    let said = render(path, "d.png", &["--spp", "2", "--denoise"]);
+    assert!(said.contains("denoised by the built-in filter"), "{said}");
+    let bytes = |name: &str| std::fs::read(path.join(name)).unwrap();
+    assert_ne!(bytes("c.png"), bytes("d.png"));
+    // Asked for and counted, it is the same for any number of threads.
+    render(path, "e.png", &["--spp", "2", "--denoise=builtin", "--threads", "3"]);
+    assert_eq!(bytes("d.png"), bytes("e.png"));
+}
+
+#[test]
+fn with_nothing_said_there_is_a_budget() {
+    let folder = folder();
+    let said = render(folder.path(), "a.png", &[]);
+    assert!(said.contains("until 2% noise or 5 s") && said.contains("denoised by"), "{said}");
+    let said = bilux(folder.path(), &["render", "pot.obj", "-i", "whitted", "--size", "8x8", "-o", "b.png"]);
+    assert!(!said.contains("until") && !said.contains("denoised"), "{said}");
+    // A part is one of a counted picture.
+    let said = render(folder.path(), "c.exr", &["--crop", "0,0,8,8"]);
+    assert!(!said.contains("until"), "{said}");
+}
+
+#[test]
+fn layers_lie_in_the_exr_and_are_denoised_from_there() {
+    let folder = folder();
+    let path = folder.path();
+    let aovs = ["--spp", "4", "--aov", "albedo,normal,depth,ids,variance"];
+    render(path, "plain.exr", &["--spp", "4"]);
+    render(path, "noisy.exr", &aovs);
+    let (plain, noisy) = (read(path.join("plain.exr")).unwrap(), read(path.join("noisy.exr")).unwrap());
+    // They change no sample.
+    assert_eq!(plain.to_rgb(), noisy.to_rgb());
+    let mut layers = noisy.layers();
+    layers.sort_unstable();
+    assert_eq!(layers, ["albedo", "depth", "id", "normal", "variance"]);
+    render(path, "shown.png", &aovs);
+    assert_eq!(read(path.join("shown.layers.exr")).unwrap().to_rgb(), noisy.to_rgb());
+    let said = bilux(path, &["denoise", "noisy.exr", "-o", "smooth.exr"]);
+    assert!(said.contains("denoised by the built-in filter"), "{said}");
+    let smooth = read(path.join("smooth.exr")).unwrap();
+    assert_ne!(smooth.to_rgb(), noisy.to_rgb());
+    assert_eq!(smooth.channel("depth.Z"), noisy.channel("depth.Z"));
+    // The same as when it is done at once; what was noisy is kept beside it.
+    render(path, "at-once.exr", &["--spp", "4", "--denoise"]);
+    let at_once = read(path.join("at-once.exr")).unwrap();
+    assert_eq!(at_once.to_rgb(), smooth.to_rgb());
+    assert_eq!(at_once.layer("noisy").unwrap().to_rgb(), noisy.to_rgb());
+}
+
+#[test]
+fn a_denoiser_that_is_not_there_is_an_error_that_says_how_to_get_it() {
+    let folder = folder();
+    let mut command = Command::cargo_bin("bilux").unwrap();
+    let arguments = ["render", "pot.obj", "--spp", "1", "--denoise=oidn", "-o", "a.png"];
+    command.current_dir(folder.path()).env("OIDN_LIB", "nowhere").args(arguments);
+    let output = command.assert().code(2).stdout("").get_output().stderr.clone();
+    let said = String::from_utf8(output).unwrap();
+    assert!(said.contains("pip install pyoidn") && !folder.path().join("a.png").exists(), "{said}");
+}
