@@ -192,7 +192,8 @@ impl Pbrt<'_, '_> {
             }
             None => None,
         };
-        if let Some(samples) = samples {
+        // One is what exporters leave where nobody has chosen: no picture is meant to be that noisy.
+        if let Some(samples) = samples.filter(|samples| *samples > 1) {
             self.set_option("spp", Value::Integer(samples.clamp(1, 1 << 31)), &list.at);
         }
         if let Some(seed) = side("seed")? {

@@ -1,0 +1,153 @@
+//! One scene, whichever format it came in through: the same picture, by Welch's test over blocks of pixels and seeds.
+
+use bilux::formats::{WriteOptions, read, read_bytes, write};
+use bilux::prelude::*;
+use bilux_validation::statistics::{sidak, welch};
+use std::path::Path;
+
+/// Less likely than this by chance: a bug.
+const UNLIKELY: f64 = 1e-4;
+const SEEDS: i64 = 6;
+/// Blocks of the picture in each direction.
+const BLOCKS: usize = 8;
+
+/// A box and a ball of glass on a floor under lights of every kind that glTF has, and a panel.
+const SCENE: &str = r#"
+[camera]
+position = [0, 2, 6]
+look_at = [0, 0.5, 0]
+fov = 40
+[[light]]
+kind = "point"
+position = [2, 4, 2]
+intensity = [20, 15, 10]
+[[light]]
+kind = "spot"
+position = [-3, 4, 1]
+look_at = [0, 0, 0]
+intensity = [30, 30, 60]
+angle = 25
+inner_angle = 20
+[[light]]
+kind = "directional"
+direction = [0, -3, -1]
+irradiance = [0.3, 0.4, 0.3]
+[[material]]
+name = "matt"
+kind = "diffuse"
+reflectance = [0.6, 0.5, 0.4]
+[[material]]
+name = "plastic"
+kind = "principled"
+base_color = [0.2, 0.4, 0.7]
+specular_roughness = 0.4
+[[material]]
+name = "glass"
+kind = "dielectric"
+eta = 1.5
+absorption = [0.2, 0.1, 0.3]
+[[material]]
+name = "panel"
+kind = "diffuse"
+reflectance = 0
+emission = [2, 4, 2]
+[[model]]
+shape = "quad"
+u = [8, 0, 0]
+v = [0, 0, -8]
+material = "matt"
+[[model]]
+shape = "box"
+translate = [1, 0.5, 0.5]
+material = "plastic"
+[[model]]
+shape = "sphere"
+radius = 0.75
+translate = [-1, 0.75, 0]
+material = "glass"
+[[model]]
+shape = "quad"
+translate = [1, 2.5, -1]
+material = "panel"
+"#;
+
+fn scene() -> SceneBuilder {
+    let scene = read_bytes(SCENE.as_bytes(), "toml", None, "scene.toml", &Default::default()).unwrap();
+    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    scene
+}
+
+/// For each block and channel its mean by each seed.
+fn blocks(scene: &SceneBuilder, first_seed: i64) -> Vec<Vec<f64>> {
+    let mut blocks = vec![Vec::new(); BLOCKS * BLOCKS * 3];
+    for seed in 0..SEEDS {
+        let mut all = Parameters::default();
+        for (key, value) in [("size", "48x48"), ("integrator", "path")] {
+            all.set(key, value);
+        }
+        all.set("spp", Value::Integer(24));
+        all.set("seed", Value::Integer(first_seed + seed));
+        let picture = Job::new(scene, &all).unwrap().render(&Quiet).unwrap().picture().unwrap();
+        let side = picture.width() / BLOCKS;
+        let mut sums = vec![0.0; blocks.len()];
+        for (i, colour) in picture.to_rgb().unwrap().into_iter().enumerate() {
+            let (x, y) = (i % picture.width() / side, i / picture.width() / side);
+            (0..3).for_each(|c| sums[(y * BLOCKS + x) * 3 + c] += f64::from(colour[c]));
+        }
+        blocks.iter_mut().zip(sums).for_each(|(block, sum)| block.push(sum));
+    }
+    blocks
+}
+
+fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    let p: Vec<f64> = a.iter().zip(b).filter_map(|(a, b)| welch(a, b)).collect();
+    sidak(p.iter().copied().fold(1.0, f64::min), p.len())
+}
+
+fn there(scene: &SceneBuilder, folder: &Path, file: &str) -> SceneBuilder {
+    let path = folder.join(file);
+    write(&path, scene, &WriteOptions::default()).unwrap();
+    read(&path, &Default::default()).unwrap()
+}
+
+#[test]
+fn what_formats_hold_looks_the_same_in_all_of_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let original = scene();
+    let ours = blocks(&original, 0);
+    for (i, file) in ["scene.glb", "scene.gltf", "copy.toml"].into_iter().enumerate() {
+        let back = there(&original, folder.path(), file);
+        let p = agreement(&ours, &blocks(&back, 100 * (i as i64 + 1)));
+        assert!(p > UNLIKELY, "{file}: p = {p}");
+    }
+    // A planted bug: a panel brighter by a twentieth.
+    let mut brighter = original.clone();
+    for spec in &mut brighter.lights {
+        if spec.kind == "point" {
+            spec.parameters.set("intensity", Value::triple([21.0, 15.75, 10.5]));
+        }
+    }
+    let p = agreement(&ours, &blocks(&brighter, 900));
+    assert!(p < UNLIKELY, "a light brighter by a twentieth passes: p = {p}");
+}
+
+/// Formats of bare meshes, seen by the same camera under the same lights, all of one matt material.
+#[test]
+fn bare_meshes_look_the_same_in_every_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let dressed = |mut scene: SceneBuilder| {
+        let original = self::scene();
+        (scene.cameras, scene.lights) = (original.cameras, original.lights);
+        for material in &mut scene.materials {
+            *material = Spec::new(&material.name, "diffuse").with("reflectance", 0.6f32);
+        }
+        scene.warnings.clear();
+        scene
+    };
+    let ours = blocks(&dressed(scene()), 0);
+    for (i, file) in ["a.obj", "a.ply", "a.stl", "a.off", "a.asc", "a.glb"].into_iter().enumerate() {
+        let back = dressed(there(&scene(), folder.path(), file));
+        let p = agreement(&ours, &blocks(&back, 100 * (i as i64 + 1)));
+        assert!(p > UNLIKELY, "{file}: p = {p}");
+    }
+}
