@@ -1,7 +1,10 @@
 //! How bare files are seen: presets that the user asks for, and the studio for files that bring no camera or light.
 
-use bilux_scene::SceneBuilder;
+use crate::Error;
+use bilux_formats::ReadOptions;
 pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply};
+use bilux_scene::{SceneBuilder, Value};
+use std::path::Path;
 
 /// A copy of the scene in which a missing camera and missing light are made up for, and what is asked of the studio is
 /// there.
@@ -9,4 +12,34 @@ pub fn completed(scene: &SceneBuilder, studio: &Studio) -> SceneBuilder {
     let mut scene = scene.clone();
     bilux_scene::presets::complete(&mut scene, studio);
     scene
+}
+
+/// Lights a scene by a picture of its surroundings, in longitude and latitude, in place of an environment that it may have. Lamps
+/// stay.
+///
+/// # Errors
+/// When the picture cannot be read, or has no colours.
+pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
+    let name = picture.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    // As a scene file would say it, so that the picture is looked for, decoded and refused as those of scenes are.
+    let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
+    let text = format!(
+        "[[light]]\nname = \"surroundings\"\nkind = \"environment\"\nradiance = {{ texture = \"{quoted}\" }}\n"
+    );
+    let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    // Nobody who asks for it wants a checker in its place.
+    let options = ReadOptions { strict: true, ..options.clone() };
+    let read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options)?;
+    let before = scene.textures.len();
+    scene.textures.extend(read.textures);
+    scene.lights.retain(|light| light.kind != "environment");
+    for mut light in read.lights {
+        for (_, value, _) in &mut light.parameters.0 {
+            if let Value::Texture(index) = value {
+                *index += before;
+            }
+        }
+        scene.lights.push(light);
+    }
+    Ok(())
 }

@@ -104,6 +104,7 @@ pub enum Command {
     bilux render scene.toml -o scene.png\n  \
     bilux render *.obj -o '{stem}.png'\n  \
     bilux render chair.glb -o chair.png --orbit 40,20 --ground mirror\n  \
+    bilux render chair.glb -o chair.png --env sunset.hdr --ground shadow\n  \
     bilux render chair.glb -o 'chair-{frame}.png' --turntable 36\n  \
     bilux render walk.toml --frames 0-47 -o 'walk-{frame}.png'\n  \
     bilux render fox.glb --animation Walk --at 0.5 -o fox.png\n  \

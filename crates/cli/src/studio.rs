@@ -5,6 +5,7 @@ use anyhow::Context;
 use bilux::presets::Studio;
 use bilux::scene::{Parameters, Value};
 use clap::Args;
+use std::path::PathBuf;
 
 /// What is asked of the studio.
 #[derive(Args)]
@@ -21,6 +22,9 @@ pub struct StudioArguments {
     /// What a model stands on [default: a matt cove, where the file has neither camera nor light]
     #[arg(long, value_name = "shadow|mirror|none")]
     pub ground: Option<String>,
+    /// Light all of it by a picture of its surroundings, in longitude and latitude: .hdr, .exr or any other
+    #[arg(long, value_name = "FILE")]
+    pub env: Option<PathBuf>,
     /// N pictures from all around, one by one; needs {frame} in OUT
     #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"])]
     pub turntable: Option<u32>,

@@ -1,6 +1,7 @@
 //! Telling a wrong command line (exit status 2) from work that failed (1).
 
 use std::fmt;
+use std::path::Path;
 
 /// An error that the command line is to blame for.
 struct WrongCommandLine(anyhow::Error);
@@ -22,6 +23,12 @@ impl std::error::Error for WrongCommandLine {}
 /// Blames the command line for an error.
 pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
     anyhow::Error::new(WrongCommandLine(error.into()))
+}
+
+/// The error with the scene's name, unless it tells it already.
+pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
+    let name = scene.display().to_string();
+    if format!("{error:#}").contains(&name) { error } else { error.context(name) }
 }
 
 /// True for errors that the command line is to blame for: said so, or about a value that a flag gave.

@@ -52,7 +52,7 @@ fn files_that_are_no_scenes_are_refused_in_one_sentence() {
     refused("program.asc", &["no plain text"]);
     refused("program.obj", &["program.obj:1:1: this file is no plain text"]);
     refused("index.obj", &["index.obj:4:1: this face names vertex 9, but the file has only 3"]);
-    refused("picture.gif", &["picture.gif: this is no scene format", "known are asc, gltf, glb, obj"]);
+    refused("picture.gif", &["picture.gif: this is no scene format", "known are asc, gltf, glb, pbrt, obj"]);
     assert!(!path.join("out.png").exists());
 }
 
@@ -120,7 +120,7 @@ fn command_lines_that_ask_for_what_there_is_not() {
         let output = command.current_dir(path).args(arguments).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.gltf"]), 2, &["pot.gltf: this is no scene format"]);
+    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.pbrt"]), 2, &["pot.pbrt: this is no scene format"]);
     assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["that is what `bilux render` does"]);
     assert_told(bilux(&["generate", "teapts", "-o", "a.obj"]), 2, &["did you mean 'teapots'?"]);
     assert_told(bilux(&["generate", "teapots", "-o", "a.png"]), 2, &["no scene format that can be written"]);

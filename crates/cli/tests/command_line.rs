@@ -340,3 +340,22 @@ fn in_a_sandbox_nothing_outside_the_folder_is_opened() {
         assert!(outside.is_empty(), "{scene}: {outside:?}");
     }
 }
+
+#[test]
+fn a_picture_of_the_surroundings_lights_a_bare_model() {
+    let folder = folder();
+    let path = folder.path();
+    let always = ["--spp", "4", "-i", "path"];
+    render(path, "studio.pfm", &always);
+    // Red all around: no other light is left.
+    std::fs::write(path.join("red sky.ppm"), b"P6 2 1 255\n\xff\0\0\xff\0\0").unwrap();
+    let lit = render(path, "red.pfm", &[&always[..], &["--env", "red sky.ppm"]].concat());
+    let picture = bilux::pictures::read(path.join("red.pfm")).unwrap();
+    let pixels = picture.to_rgb().unwrap();
+    assert!(pixels.iter().all(|p| p.g == 0.0 && p.b == 0.0) && pixels.iter().any(|p| p.r > 0.5));
+    assert!(lit != std::fs::read(path.join("studio.pfm")).unwrap());
+    let missing = ["render", "pots.asc", "-o", "x.png", "--env", "nowhere.hdr"];
+    let told = bilux(path).args(missing).assert().code(1);
+    let told = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
+    assert!(told.contains("--env") && told.contains("nowhere.hdr"), "{told}");
+}

@@ -140,7 +140,9 @@ fn only_what_is_missing_is_added() {
     let mine = CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() };
     seen.cameras.push(mine.clone());
     complete(&mut seen, &Studio::default());
-    assert_eq!((seen.cameras, seen.lights.len()), (vec![mine], 3));
+    // The lamp behind the model would be in view.
+    let lights: Vec<_> = seen.lights.iter().map(|light| light.name.as_str()).collect();
+    assert_eq!((seen.cameras, lights), (vec![mine], vec!["key", "room"]));
 }
 
 #[test]
@@ -224,4 +226,22 @@ fn signs_are_no_lamps() {
         complete(&mut scene, &Studio::default());
         assert_eq!(scene.lights.len(), lights, "{emission}");
     }
+}
+
+#[test]
+fn a_camera_that_is_there_has_the_studios_lamp_behind_it() {
+    let mut seen = teapot();
+    let spec = Spec::new("mine", "perspective")
+        .with("position", Vec3::new(-6.0, 2.0, -5.0))
+        .with("look_at", Vec3::ZERO);
+    seen.cameras.push(CameraSpec { spec, keyframes: Vec::new() });
+    complete(&mut seen, &Studio::default());
+    let Some((Value::List(position), _)) = seen.lights[0].parameters.find("position") else { panic!() };
+    let number = |value: &Value| if let Value::Number(x) = value { *x as f32 } else { panic!() };
+    let lamp = Vec3::new(number(&position[0]), number(&position[1]), number(&position[2]));
+    let from = Vec3::new(-6.0, 2.0, -5.0).normalize();
+    // On the camera's side of the model, and outside of what it sees.
+    assert!(lamp.dot(from) > 0.0, "{lamp}");
+    let at = seen_at(&seen, lamp);
+    assert!(at.is_none_or(|at| at.abs().max_element() > 1.0), "{lamp}: {at:?}");
 }

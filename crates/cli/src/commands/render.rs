@@ -29,7 +29,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
             Ok(DONE) => {}
             Ok(status) => return Ok(status),
             Err(error) => {
-                let error = naming(scene, error);
+                let error = usage::naming(scene, error);
                 // Of many the others are not to wait for one that is broken; what is wrong for all ends it.
                 if targets.len() == 1 || usage::is_command_line(&error) {
                     return Err(error);
@@ -43,12 +43,6 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
         bail!("{failed} of {} scenes could not be rendered", targets.len());
     }
     Ok(DONE)
-}
-
-/// The error with the scene's name, unless it tells it already.
-fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
-    let name = scene.display().to_string();
-    if format!("{error:#}").contains(&name) { error } else { error.context(name) }
 }
 
 /// Every scene with its picture's name, found wrong before anything is rendered.
@@ -121,6 +115,9 @@ impl Input<'_> {
         check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
         if let Some(preset) = &self.arguments.studio.preset {
             bilux::presets::apply(preset, &mut scene).map_err(usage::wrong)?;
+        }
+        if let Some(picture) = &self.arguments.studio.env {
+            bilux::presets::surround(&mut scene, picture, &options).context("--env")?;
         }
         Ok(scene)
     }

@@ -5,10 +5,12 @@ mod framing;
 
 use super::PresetEntry;
 use crate::builder::{Object, SceneBuilder};
+use crate::cameras::{self, CameraSample};
 use crate::error::SceneError;
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
-use bilux_math::{DVec3, Rgb};
+use bilux_math::transcendental::{asin, atan2};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use framing::Framing;
 use std::sync::Arc;
 
@@ -62,6 +64,9 @@ impl Studio {
     pub const FOCAL: f32 = 45.0;
 }
 
+/// The light behind the model.
+const RIM: &str = "rim";
+
 /// What the ground's object and material are called.
 const GROUND: &str = "studio floor";
 
@@ -87,17 +92,31 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
     if lit && seen && !asked && ground == Ground::None {
         return;
     }
-    let framing = Framing::of(scene, studio);
+    // A camera that is there looks at the studio from in front.
+    let looks = Studio { orbit: studio.orbit.or_else(|| orbit_of(scene)), ..*studio };
+    let framing = Framing::of(scene, &looks);
     if !seen || asked {
         scene.cameras.insert(0, framing.camera());
     }
     if !lit {
-        scene.lights.extend(lights(&framing));
+        // It may be close, and have in view what stands behind the model.
+        let behind_model = |spec: &Spec| spec.name == RIM;
+        scene
+            .lights
+            .extend(lights(&framing).into_iter().filter(|spec| !seen || asked || !behind_model(spec)));
     }
     if !lit && !seen {
         of_clay(scene);
     }
     furnish(scene, &framing, ground);
+}
+
+/// From where a scene's own camera looks; `None` where it has none.
+fn orbit_of(scene: &SceneBuilder) -> Option<[f32; 2]> {
+    let camera = cameras::build(scene.cameras.first()?, 1.0).ok()?;
+    let middle = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 };
+    let towards = -Vec3::from(camera.ray(&middle).direction).try_normalize()?;
+    Some([atan2(towards.x, towards.z).to_degrees(), asin(towards.y.clamp(-1.0, 1.0)).to_degrees()])
 }
 
 /// Makes of clay what nobody has said a word about.
@@ -146,7 +165,7 @@ fn lights(framing: &Framing) -> [Spec; 3] {
     let warm = Rgb::new(1.0, 0.96, 0.90);
     let cool = Rgb::new(0.86, 0.93, 1.0);
     let key = Lamp { name: "key", towards: right * -0.75 + up * 0.95 - forward * 0.75, size: [0.7, 0.7] };
-    let rim = Lamp { name: "rim", towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
+    let rim = Lamp { name: RIM, towards: right * 0.9 + up * 0.75 + forward * 0.8, size: [0.6, 0.35] };
     [
         key.spec(framing, warm * 4.4).with("classic", warm * 0.72),
         rim.spec(framing, cool * 3.2).with("classic", cool * 0.28),
