@@ -53,6 +53,21 @@ fn what_has_holes_looks_the_same_from_both_ends() {
     }
 }
 
+/// A planted bug: a surface that stops a quarter more light than it says.
+#[test]
+fn what_stops_too_much_is_found_out() {
+    let gauze = |opacity: f32| {
+        let material = Spec::new("", "principled").with("opacity", opacity).with("base_color", 0.7f32);
+        built(&sheet_over_a_floor(material, 12.0))
+    };
+    let path = blocks(&gauze(0.4), &*integrator("path"), 0);
+    for (i, other) in ["bdpt", "vcm"].iter().enumerate() {
+        let found = blocks(&gauze(0.5), &*integrator(other), 100 * (i as u64 + 1));
+        let p = agreement(&path, &found);
+        assert!(p < UNLIKELY, "{other} passes: p = {p}");
+    }
+}
+
 /// A sheet before a sky lets the rest of it through, and glows by its share.
 #[test]
 fn a_share_of_the_surface_gives_that_share_of_the_light() {
