@@ -6,7 +6,7 @@ use crate::presets::{Ground, Studio};
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec, Warning};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec, Value, Warning};
 use bilux_transport::Stop;
 use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
@@ -195,6 +195,7 @@ impl Settings {
     pub fn resolve(all: &Parameters) -> Result<Settings, Error> {
         let is_render_key = |key: &str| RENDER.parameters.iter().any(|p| p.name == key);
         let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
+        let own = own.into_iter().map(|(key, value, at)| (key, as_orbit(value), at)).collect();
         let spec = Spec { parameters: Parameters(own), ..Spec::new("", "render") };
         let reader = Reader::new(&spec, &RENDER)?;
         let integrator = find_integrator(&reader)?;
@@ -352,6 +353,20 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         filter: None,
     };
     Ok(choice)
+}
+
+/// A pair of numbers as the text that an orbit is: `[30, 15]` in scene files, `--set orbit=30,15`.
+fn as_orbit(value: Value) -> Value {
+    let Value::List(pair) = &value else { return value };
+    let number = |value: &Value| match value {
+        Value::Integer(i) => Some(i.to_string()),
+        Value::Number(x) => Some(x.to_string()),
+        _ => None,
+    };
+    match pair.iter().map(number).collect::<Option<Vec<_>>>() {
+        Some(numbers) if numbers.len() == 2 => Value::Text(numbers.join(",")),
+        _ => value,
+    }
 }
 
 /// What is asked of the studio, where anything is.
