@@ -5,6 +5,7 @@ use crate::limits::MAX_SIDE;
 use bilux_math::Rgb;
 use bilux_math::colour::{srgb_decode, srgb_encode};
 use bilux_math::transcendental::powf;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A picture: named planes of `width * height` samples, row 0 on top.
@@ -311,10 +312,11 @@ impl Picture {
     }
 
     /// Applies a function to every sample of the main picture's colour and of every layer's.
-    fn map_colours(&mut self, f: impl Fn(f32) -> f32) {
+    fn map_colours(&mut self, f: impl Fn(f32) -> f32 + Sync) {
         let colours: Vec<bool> = self.channels.iter().map(|c| self.is_colour(&c.name)).collect();
         for (channel, _) in self.channels.iter_mut().zip(colours).filter(|&(_, colour)| colour) {
-            channel.samples.iter_mut().for_each(|sample| *sample = f(*sample));
+            let pieces = channel.samples.par_chunks_mut(PIECE);
+            pieces.for_each(|piece| piece.iter_mut().for_each(|sample| *sample = f(*sample)));
         }
     }
 
@@ -347,6 +349,9 @@ impl ColourSpace {
         }
     }
 }
+
+/// Samples that one thread changes at a time.
+const PIECE: usize = 1 << 14;
 
 /// The channels that are no layer's.
 const MAIN: [&str; 5] = ["R", "G", "B", "Y", "A"];

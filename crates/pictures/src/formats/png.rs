@@ -4,7 +4,9 @@ use super::guard::guarded;
 use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes, planes_of};
 use crate::limits::zeroed;
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
-use ::png::{ColorType, Decoder, DecodingError, Encoder, Info, SrgbRenderingIntent, Transformations};
+use ::png::{
+    ColorType, Compression, Decoder, DecodingError, Encoder, Info, SrgbRenderingIntent, Transformations,
+};
 use bilux_math::registry::Entry;
 use std::io::{Cursor, ErrorKind};
 
@@ -162,6 +164,8 @@ fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureEr
             planes.to_u16_be(&planes.names)
         }
     };
+    // A fifth larger than the best, in a fifth of its time.
+    encoder.set_compression(Compression::Fast);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     for (keyword, text) in &picture.metadata {
         let plain = text.chars().all(|letter| u32::from(letter) < 256);
