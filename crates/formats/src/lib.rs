@@ -22,6 +22,7 @@ mod pbrt;
 mod ply;
 mod polygon;
 mod reading;
+mod sharing;
 mod soup;
 mod stl;
 mod text;

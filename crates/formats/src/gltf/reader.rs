@@ -10,11 +10,12 @@ use super::primitive::{Part, Worn};
 use super::{cameras, extensions, lights};
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
+use crate::sharing::share_trees;
 use bilux_math::motion::Motion;
 use bilux_math::transcendental::powf_f64;
 use bilux_math::{DMat4, DVec3, Transform};
 use bilux_scene::texture::Image;
-use bilux_scene::{Mesh, Object, SceneBuilder, Span};
+use bilux_scene::{Object, SceneBuilder, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -111,9 +112,6 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) images: HashMap<(usize, bool), Option<Named>>,
 }
 
-/// Meshes that stand in the scene several times are kept once where copies would have more triangles than this.
-const MOST_COPIED: usize = 1 << 18;
-
 impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
     fn new(
         document: &'d Document<'d>,
@@ -148,7 +146,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             let placed = self.nodes[i];
             self.place(&placed)?;
         }
-        self.share_trees();
+        share_trees(&mut self.scene);
         self.check_data()?;
         let root = self.document.root;
         let skins = root.list("skins")?;
@@ -261,18 +259,6 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         }
         let size = (high - low).length();
         Ok(if size > 0.0 && size.is_finite() { size } else { 1.0 })
-    }
-
-    /// Keeps one tree for meshes that stand in the scene often.
-    fn share_trees(&mut self) {
-        let mut uses: HashMap<*const Mesh, usize> = HashMap::new();
-        for object in &self.scene.objects {
-            *uses.entry(Arc::as_ptr(&object.mesh)).or_default() += 1;
-        }
-        for object in &mut self.scene.objects {
-            let copies = uses[&Arc::as_ptr(&object.mesh)] - 1;
-            object.instanced = copies * object.mesh.triangles.len() > MOST_COPIED;
-        }
     }
 }
 

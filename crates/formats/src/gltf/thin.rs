@@ -3,59 +3,13 @@
 use bilux_math::transcendental::{cos, sin};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Mesh;
+use bilux_scene::generators::shapes;
 use std::f32::consts::TAU;
 
 /// Sides of a tube.
 const SIDES: u32 = 8;
 /// Up to so many balls they have twenty triangles, and beyond eight.
 const FEW_BALLS: usize = 20_000;
-/// The golden section.
-const G: f32 = 1.618_034;
-
-const ICOSAHEDRON: ([[f32; 3]; 12], [[u32; 3]; 20]) = (
-    [
-        [-1., G, 0.],
-        [1., G, 0.],
-        [-1., -G, 0.],
-        [1., -G, 0.],
-        [0., -1., G],
-        [0., 1., G],
-        [0., -1., -G],
-        [0., 1., -G],
-        [G, 0., -1.],
-        [G, 0., 1.],
-        [-G, 0., -1.],
-        [-G, 0., 1.],
-    ],
-    [
-        [0, 11, 5],
-        [0, 5, 1],
-        [0, 1, 7],
-        [0, 7, 10],
-        [0, 10, 11],
-        [1, 5, 9],
-        [5, 11, 4],
-        [11, 10, 2],
-        [10, 7, 6],
-        [7, 1, 8],
-        [3, 9, 4],
-        [3, 4, 2],
-        [3, 2, 6],
-        [3, 6, 8],
-        [3, 8, 9],
-        [4, 9, 5],
-        [2, 4, 11],
-        [6, 2, 10],
-        [8, 6, 7],
-        [9, 8, 1],
-    ],
-);
-
-const OCTAHEDRON: ([[f32; 3]; 6], [[u32; 3]; 8]) = (
-    [[1., 0., 0.], [-1., 0., 0.], [0., 1., 0.], [0., -1., 0.], [0., 0., 1.], [0., 0., -1.]],
-    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
-);
-
 /// Bytes that balls and tubes take, each with its vertices' attributes.
 pub(super) fn bytes(balls: usize, tubes: usize) -> u64 {
     let ball = if balls > FEW_BALLS { 6 * 52 + 8 * 12 } else { 12 * 52 + 20 * 12 };
@@ -67,17 +21,32 @@ pub(super) fn bytes(balls: usize, tubes: usize) -> u64 {
 /// Balls at the vertices that are named, and tubes between pairs of them, with what `bare` says of its vertices.
 pub(super) fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
     let mut made = Made { bare, mesh: Mesh { name: bare.name.clone(), ..Mesh::default() }, radius };
-    let many = balls.len() > FEW_BALLS;
+    let ball = if balls.len() > FEW_BALLS { octahedron() } else { shapes::icosphere(Vec3::ZERO, 1.0, 0) };
     for &vertex in balls {
-        match many {
-            true => made.ball(vertex, &OCTAHEDRON.0, &OCTAHEDRON.1),
-            false => made.ball(vertex, &ICOSAHEDRON.0, &ICOSAHEDRON.1),
-        }
+        made.ball(vertex, &ball);
     }
     for &ends in tubes {
         made.tube(ends);
     }
     made.mesh
+}
+
+/// The coarsest of balls.
+fn octahedron() -> Mesh {
+    Mesh {
+        positions: [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]).collect(),
+        triangles: vec![
+            [0, 2, 4],
+            [2, 1, 4],
+            [1, 3, 4],
+            [3, 0, 4],
+            [2, 0, 5],
+            [1, 2, 5],
+            [3, 1, 5],
+            [0, 3, 5],
+        ],
+        ..Mesh::default()
+    }
 }
 
 struct Made<'m> {
@@ -99,12 +68,12 @@ impl Made<'_> {
         again(&self.bare.vertex_kd, &mut self.mesh.vertex_kd, vertex);
     }
 
-    fn ball(&mut self, vertex: u32, corners: &[[f32; 3]], faces: &[[u32; 3]]) {
+    fn ball(&mut self, vertex: u32, unit: &Mesh) {
         let first = self.mesh.positions.len() as u32;
-        for corner in corners {
-            self.push(vertex, Vec3::from(*corner).normalize());
+        for direction in &unit.positions {
+            self.push(vertex, *direction);
         }
-        self.mesh.triangles.extend(faces.iter().map(|face| face.map(|i| first + i)));
+        self.mesh.triangles.extend(unit.triangles.iter().map(|face| face.map(|i| first + i)));
     }
 
     fn tube(&mut self, [a, b]: [u32; 2]) {

@@ -6,14 +6,12 @@ use super::reader::{Alpha, Dress, Form, Pbrt, Piece, Use};
 use super::state::Matrices;
 use super::unknown;
 use crate::FormatError;
+use crate::sharing::share_trees;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec3};
 use bilux_scene::{MATERIALS, Mesh, Object, Span, Spec, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// Meshes that stand in the scene several times are kept once where copies would have more triangles than this.
-const MOST_COPIED: usize = 1 << 18;
 
 /// What is made once for all pieces that share it.
 #[derive(Default)]
@@ -43,7 +41,7 @@ impl Pbrt<'_, '_> {
                 self.place(piece, Some(&used), &mut dressed)?;
             }
         }
-        self.share_trees();
+        share_trees(&mut self.scene);
         self.open_the_shutter();
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() && self.in_world {
             self.oddities.note("there is nothing to see in this file", Span::default);
@@ -295,18 +293,6 @@ impl Pbrt<'_, '_> {
             self.oddities.note(what, || at.clone());
         }
         Some(motion.unwrap_or(Motion::still(start)))
-    }
-
-    /// Keeps one tree for meshes that stand in the scene often.
-    fn share_trees(&mut self) {
-        let mut uses: HashMap<*const Mesh, usize> = HashMap::new();
-        for object in &self.scene.objects {
-            *uses.entry(Arc::as_ptr(&object.mesh)).or_default() += 1;
-        }
-        for object in &mut self.scene.objects {
-            let copies = uses[&Arc::as_ptr(&object.mesh)] - 1;
-            object.instanced = copies * object.mesh.triangles.len() > MOST_COPIED;
-        }
     }
 
     /// Light is let in as long as the camera says, where anything moves.

@@ -1,0 +1,20 @@
+//! What stands in a scene many times is kept once.
+
+use bilux_scene::{Mesh, SceneBuilder};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Meshes whose copies would have more triangles than this keep one tree for all of them.
+const MOST_COPIED: usize = 1 << 18;
+
+/// Keeps one tree for meshes that stand in the scene often.
+pub(crate) fn share_trees(scene: &mut SceneBuilder) {
+    let mut uses: HashMap<*const Mesh, usize> = HashMap::new();
+    for object in &scene.objects {
+        *uses.entry(Arc::as_ptr(&object.mesh)).or_default() += 1;
+    }
+    for object in &mut scene.objects {
+        let copies = uses[&Arc::as_ptr(&object.mesh)] - 1;
+        object.instanced = copies * object.mesh.triangles.len() > MOST_COPIED;
+    }
+}
