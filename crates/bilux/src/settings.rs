@@ -195,7 +195,11 @@ impl Settings {
     pub fn resolve(all: &Parameters) -> Result<Settings, Error> {
         let is_render_key = |key: &str| RENDER.parameters.iter().any(|p| p.name == key);
         let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
-        let own = own.into_iter().map(|(key, value, at)| (key, as_orbit(value), at)).collect();
+        let own = own.into_iter().map(|(key, value, at)| match key.as_str() {
+            "orbit" => (key, as_orbit(value), at),
+            _ => (key, value, at),
+        });
+        let own = own.collect();
         let spec = Spec { parameters: Parameters(own), ..Spec::new("", "render") };
         let reader = Reader::new(&spec, &RENDER)?;
         let integrator = find_integrator(&reader)?;
@@ -430,5 +434,27 @@ mod tests {
         let told = Settings::resolve(&user).unwrap().without_use(&user);
         assert_eq!(told.len(), 1);
         assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
+    }
+
+    #[test]
+    fn an_orbit_is_a_pair_however_it_is_written() {
+        let orbit = |value: Value| {
+            let mut parameters = Parameters::default();
+            parameters.set("orbit", value);
+            Settings::resolve(&parameters).map(|settings| settings.studio.orbit)
+        };
+        let list = |of: &[f64]| Value::List(of.iter().map(|x| Value::Number(*x)).collect());
+        assert_eq!(orbit(Value::Text("30, 15".to_owned())).unwrap(), Some([30.0, 15.0]));
+        assert_eq!(orbit(list(&[30.0, 15.0])).unwrap(), Some([30.0, 15.0]));
+        assert_eq!(
+            orbit(Value::List(vec![Value::Integer(-30), Value::Number(7.5)])).unwrap(),
+            Some([-30.0, 7.5])
+        );
+        assert!(orbit(list(&[30.0, 15.0, 2.0])).is_err());
+        assert!(orbit(list(&[30.0, 95.0])).is_err());
+        // A pair is no size.
+        let mut parameters = Parameters::default();
+        parameters.set("size", list(&[30.0, 15.0]));
+        assert!(Settings::resolve(&parameters).is_err());
     }
 }

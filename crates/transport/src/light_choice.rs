@@ -25,10 +25,10 @@ impl LightChoice {
     /// For the lights of a scene, in their order.
     pub fn new(scene: &Scene) -> LightChoice {
         let places = places(scene);
-        LightChoice::by(scene.lights().iter().map(|l| irradiance(&*l.light, &places, scene)))
+        LightChoice::weighted(scene.lights().iter().map(|l| irradiance(&*l.light, &places, scene)))
     }
 
-    fn by(irradiances: impl Iterator<Item = f32>) -> LightChoice {
+    fn weighted(irradiances: impl Iterator<Item = f32>) -> LightChoice {
         let mut probabilities = weights(irradiances);
         let few = probabilities.iter().filter(|p| **p > 0.0).count() <= FEW;
         if few {
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn each_light_is_picked_as_often_as_it_says() {
         let powers = [3.0, 0.0, 1.0, f32::NAN, 80.0, 12.0, 4.0];
-        let choice = LightChoice::by(powers.into_iter());
+        let choice = LightChoice::weighted(powers.into_iter());
         let mut counts = [0; 7];
         for i in 0..100_000 {
             let picked = choice.sample((i as f32 + 0.5) / 100_000.0);
@@ -144,15 +144,15 @@ mod tests {
 
     #[test]
     fn of_few_lights_each_is_sampled_that_shines() {
-        let choice = LightChoice::by([1.0, 0.0, 1e9].into_iter());
+        let choice = LightChoice::weighted([1.0, 0.0, 1e9].into_iter());
         assert_eq!(choice.sample(0.5), 0..3);
         assert_eq!([0, 1, 2].map(|light| choice.probability(light)), [1.0, 0.0, 1.0]);
     }
 
     #[test]
     fn where_nothing_shines_nothing_is_picked() {
-        let dark = LightChoice::by([0.0].into_iter());
+        let dark = LightChoice::weighted([0.0].into_iter());
         assert_eq!(dark.probability(0), 0.0);
-        assert!(LightChoice::by([].into_iter()).sample(0.5).is_empty());
+        assert!(LightChoice::weighted([].into_iter()).sample(0.5).is_empty());
     }
 }
