@@ -297,7 +297,7 @@ impl Outcome {
 
     /// The light of the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
-        let mut picture = self.film.window_to_picture()?;
+        let mut picture = self.film.window_to_picture(self.film.window())?;
         self.note_how_far(&mut picture);
         Ok(picture)
     }

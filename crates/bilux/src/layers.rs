@@ -2,14 +2,16 @@
 
 use crate::{Error, Job, Outcome};
 use bilux_pictures::Picture;
-use bilux_pictures::denoise::{Chosen, Task, denoise, denoiser};
+use bilux_pictures::PictureError;
+use bilux_pictures::denoise::{Chosen, Noisy, Source, Task, denoiser, repainted};
 use bilux_transport::aovs::Aov;
-use bilux_transport::push_variance;
+use bilux_transport::{Window, push_variance};
+use std::ops::Range;
 
 /// The value of the setting `denoise` that leaves it to the picture.
 const FOR_DISPLAY: &str = "display";
-/// The denoiser that needs nothing beside this program.
-const OWN: &str = "builtin";
+/// What denoisers go by.
+const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
 
 impl Job {
     /// From now on no library of others is loaded, and no file looked for that may be one.
@@ -36,22 +38,15 @@ impl Job {
             FOR_DISPLAY => "auto",
             name => name,
         };
-        let name = match name {
-            "auto" if self.sandboxed => OWN,
-            "oidn" if self.sandboxed => {
-                let what = "in a sandbox no library is loaded: --denoise builtin".to_owned();
-                return Err(bilux_pictures::PictureError::NoDenoiser { what }.into());
-            }
-            name => name,
-        };
         let task = Task {
             pixels: u64::from(self.render.width) * u64::from(self.render.height),
             threads: self.settings.threads,
             // More of it is better spent on samples.
             time: self.render.stop.time_limit.map(|limit| limit / 4),
+            sandboxed: self.sandboxed,
         };
         let chosen = denoiser(name, &task)?;
-        self.with_layers(&Aov::ALL_LAYERS);
+        self.with_layers(&FOR_DENOISERS);
         self.denoising = chosen.time;
         Ok(Some(chosen))
     }
@@ -73,12 +68,17 @@ impl Outcome {
     /// # Errors
     /// When memory is short, or there are such layers.
     pub fn push_layers(&self, picture: &mut Picture, wanted: &[Aov]) -> Result<(), Error> {
+        self.push_rows(picture, 0..self.film.window().height as usize, wanted)
+    }
+
+    /// Adds layers to a picture of some rows of the film's window.
+    fn push_rows(&self, picture: &mut Picture, rows: Range<usize>, wanted: &[Aov]) -> Result<(), Error> {
         if let Some(features) = &self.features {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
-            features.push_layers(picture, wants)?;
+            features.push_layers(picture, rows.clone(), wants)?;
         }
         if let Some(first) = self.first_half.as_ref().filter(|_| wanted.contains(&Aov::Variance)) {
-            push_variance(picture, &self.film, first)?;
+            push_variance(picture, rows, &self.film, first)?;
         }
         Ok(())
     }
@@ -88,8 +88,27 @@ impl Outcome {
     /// # Errors
     /// When memory is short, or what denoises fails.
     pub fn denoised(&self, chosen: &Chosen) -> Result<Picture, Error> {
-        let mut noisy = self.light()?;
-        self.push_layers(&mut noisy, &Aov::ALL_LAYERS)?;
-        Ok(self.encoded(denoise(&noisy, &*chosen.denoiser)?.main()))
+        let smooth = chosen.denoiser.denoise(self)?;
+        Ok(self.encoded(repainted(self.light()?, &smooth)))
+    }
+
+    /// Some rows of the film's window, with all that denoisers go by.
+    fn noisy(&self, rows: Range<usize>) -> Result<Noisy, Error> {
+        let window = self.film.window();
+        let (y, height) = (window.y + rows.start as u32, rows.len() as u32);
+        let mut picture = self.film.window_to_picture(Window { y, height, ..window })?;
+        self.push_rows(&mut picture, rows.clone(), &FOR_DENOISERS)?;
+        Ok(Noisy::of(&picture, 0..rows.len())?)
+    }
+}
+
+impl Source for Outcome {
+    fn size(&self) -> (usize, usize) {
+        let window = self.film.window();
+        (window.width as usize, window.height as usize)
+    }
+
+    fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError> {
+        self.noisy(rows).map_err(|error| PictureError::Malformed(error.to_string()))
     }
 }

@@ -17,6 +17,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
 use bilux_scene::{Camera, Ray, Scene, Surface, Tracer, TransportMode};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Camera rays of a pixel, where the picture has as many: more shows in no picture.
@@ -177,25 +178,34 @@ impl Features {
         Ok(all)
     }
 
-    /// Adds the layers `albedo`, `normal`, `depth` and `id`, those of them that are wanted, to a picture of the window.
+    /// Adds the layers `albedo`, `normal`, `depth` and `id`, those of them that are wanted, to a picture of some rows of the window,
+    /// counted from its top one.
     ///
     /// # Errors
     /// When the picture has another size, or such layers already.
-    pub fn push_layers(&self, picture: &mut Picture, wanted: impl Fn(&str) -> bool) -> Result<(), FilmError> {
+    pub fn push_layers(
+        &self,
+        picture: &mut Picture,
+        rows: Range<usize>,
+        wanted: impl Fn(&str) -> bool,
+    ) -> Result<(), FilmError> {
+        let width = self.window.width as usize;
+        let pixels = rows.start * width..rows.end * width;
         if wanted("albedo") {
-            picture.push_rgb("albedo", &self.albedo)?;
+            picture.push_rgb("albedo", &self.albedo[pixels.clone()])?;
         }
         if wanted("normal") {
             for (axis, name) in ["normal.X", "normal.Y", "normal.Z"].into_iter().enumerate() {
-                picture.push_channel(name, self.normal.iter().map(|n| n[axis]).collect())?;
+                let along = self.normal[pixels.clone()].iter().map(|n| n[axis]);
+                picture.push_channel(name, along.collect())?;
             }
         }
         if wanted("depth") {
-            picture.push_channel("depth.Z", self.depth.clone())?;
+            picture.push_channel("depth.Z", self.depth[pixels.clone()].to_vec())?;
         }
         if wanted("id") {
-            picture.push_integer_plane("id.object", self.object.clone())?;
-            picture.push_integer_plane("id.material", self.material.clone())?;
+            picture.push_integer_plane("id.object", self.object[pixels.clone()].to_vec())?;
+            picture.push_integer_plane("id.material", self.material[pixels].to_vec())?;
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use crate::error::FilmError;
 use crate::film::Film;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
+use std::ops::Range;
 
 /// The film's window when it had its first samples: what camera paths have brought, and what light paths have left.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,19 +17,20 @@ pub struct FirstHalf {
 
 impl FirstHalf {
     pub(crate) fn of(film: &Film, samples: u32) -> FirstHalf {
-        FirstHalf { samples, layers: layers(film) }
+        FirstHalf { samples, layers: layers(film, 0..film.window().pixels()) }
     }
 
-    /// The variance of each pixel's mean by camera paths, and of that by light paths, where there are any. Of n samples of variance
-    /// σ² the first m and the others differ by σ² n / (m (n - m)) in the square, on average. One difference tells little of
-    /// one pixel: neighbours are to be asked too.
-    pub fn variance(&self, film: &Film) -> [Vec<Rgb>; 2] {
-        let now = layers(film);
-        let of = |layer: usize, counts: &[u32]| {
-            let pairs = now[layer].iter().zip(&self.layers[layer]).zip(counts);
-            pairs.map(|((now, first), &n)| squared(*now - *first, n, self.samples)).collect()
-        };
-        [of(0, &film.counts), of(1, &film.iterations)]
+    /// The variance of each pixel's mean by camera paths, and of that by light paths, where there are any; of some of the
+    /// window's pixels. Of n samples of variance σ² the first m and the others differ by σ² n / (m (n - m)) in the square, on average. One
+    /// difference tells little of one pixel: neighbours are to be asked too.
+    pub fn variance(&self, film: &Film, pixels: Range<usize>) -> [Vec<Rgb>; 2] {
+        let mut now = layers(film, pixels.clone());
+        for (layer, counts) in [&film.counts, &film.iterations].into_iter().enumerate() {
+            for (now, i) in now[layer].iter_mut().zip(pixels.clone()) {
+                *now = squared(*now - self.layers[layer][i], counts[i], self.samples);
+            }
+        }
+        now
     }
 }
 
@@ -39,27 +41,37 @@ fn squared(apart: Rgb, n: u32, m: u32) -> Rgb {
 }
 
 /// What camera paths have brought and, where there are any, what light paths have left.
-fn layers(film: &Film) -> [Vec<Rgb>; 2] {
+fn layers(film: &Film, pixels: Range<usize>) -> [Vec<Rgb>; 2] {
     let window = film.window();
-    let pixels = || (0..window.pixels()).map(|i| window.position(i));
-    let splats = match film.splats.is_empty() {
-        true => Vec::new(),
-        false => pixels().map(|(x, y)| film.splatted(x, y)).collect(),
-    };
-    [pixels().map(|(x, y)| film.sampled(x, y)).collect(), splats]
+    let places = || pixels.clone().map(|i| window.position(i));
+    [places().map(|(x, y)| film.sampled(x, y)).collect(), splats(film, pixels.clone())]
 }
 
-/// Adds the layer `variance` to a picture of a film's window, and where light paths have left any, `light` (which is a part of the
-/// picture) and `light_variance`.
+/// What light paths have left; nothing where there are none.
+fn splats(film: &Film, pixels: Range<usize>) -> Vec<Rgb> {
+    if film.splats.is_empty() {
+        return Vec::new();
+    }
+    pixels.map(|i| film.window().position(i)).map(|(x, y)| film.splatted(x, y)).collect()
+}
+
+/// Adds the layer `variance` to a picture of some rows of a film's window, and where light paths have left any, `light` (which is a part
+/// of the picture) and `light_variance`.
 ///
 /// # Errors
 /// When the picture has another size, or such layers already.
-pub fn push_variance(picture: &mut Picture, film: &Film, first: &FirstHalf) -> Result<(), FilmError> {
-    let [camera, light] = first.variance(film);
+pub fn push_variance(
+    picture: &mut Picture,
+    rows: Range<usize>,
+    film: &Film,
+    first: &FirstHalf,
+) -> Result<(), FilmError> {
+    let width = film.window().width as usize;
+    let pixels = rows.start * width..rows.end * width;
+    let [camera, light] = first.variance(film, pixels.clone());
     picture.push_rgb("variance", &camera)?;
     if !light.is_empty() {
-        let [_, splats] = layers(film);
-        picture.push_rgb("light", &splats)?;
+        picture.push_rgb("light", &splats(film, pixels))?;
         picture.push_rgb("light_variance", &light)?;
     }
     Ok(())
@@ -72,7 +84,8 @@ pub(crate) struct Halves([Option<FirstHalf>; 2]);
 impl Halves {
     /// Looks at a film that has so many samples.
     pub(crate) fn look(&mut self, film: &Film, samples: u32) {
-        self.0.swap(0, 1);
+        // The older one makes room before there is another.
+        self.0[0] = self.0[1].take();
         self.0[1] = Some(FirstHalf::of(film, samples));
     }
 
@@ -100,7 +113,7 @@ mod tests {
                 film.add(x, y, sample, Rgb::grey(light));
             }
         }
-        let [camera, light] = half.unwrap().variance(&film);
+        let [camera, light] = half.unwrap().variance(&film, 0..128 * 128);
         assert!(light.is_empty());
         camera.iter().map(|v| f64::from(v.g)).sum::<f64>() / camera.len() as f64
     }

@@ -38,12 +38,11 @@ impl Film {
         Ok(Picture::from_rgb(self.width() as usize, self.height() as usize, self.to_rgb())?)
     }
 
-    /// The film's window alone as a linear picture.
+    /// A part of the film as a linear picture; black beyond the film's own window.
     ///
     /// # Errors
     /// When there is no room for it.
-    pub fn window_to_picture(&self) -> Result<Picture, FilmError> {
-        let window = self.window();
+    pub fn window_to_picture(&self, window: Window) -> Result<Picture, FilmError> {
         let pixels =
             (0..window.pixels()).map(|i| window.position(i)).map(|(x, y)| self.pixel(x, y)).collect();
         Ok(Picture::from_rgb(window.width as usize, window.height as usize, pixels)?)
@@ -55,7 +54,7 @@ impl Film {
     /// # Errors
     /// When there is no room for it.
     pub fn to_partial(&self) -> Result<Picture, FilmError> {
-        let mut picture = self.window_to_picture()?;
+        let mut picture = self.window_to_picture(self.window())?;
         push_sums(&mut picture, SUMS, &self.sums)?;
         picture.push_integer_plane(SAMPLES, self.counts.clone())?;
         if !self.splats.is_empty() {

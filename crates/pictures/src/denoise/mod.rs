@@ -12,7 +12,7 @@ use crate::error::nearest;
 use crate::{Picture, PictureError};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
-pub use noisy::{Layer, Noisy};
+pub use noisy::{Layer, Noisy, Source};
 use std::time::Duration;
 
 /// Every denoiser that there is, the best first.
@@ -25,6 +25,8 @@ pub struct DenoiserEntry {
     pub entry: Entry,
     /// About how long it takes for so many pixels, on so many threads, at least 1.
     pub time: fn(u64, usize) -> Duration,
+    /// It is in a library of others, which is loaded, and looked for in folders of theirs.
+    pub is_library: bool,
     /// Gets it ready, for so many threads (0 for one each core); else says what is missing, and how to get it.
     pub find: fn(usize) -> Result<Box<dyn Denoiser>, String>,
 }
@@ -38,7 +40,7 @@ pub trait Denoiser {
     ///
     /// # Errors
     /// When the machine has no room, or what denoises fails.
-    fn denoise(&self, noisy: &Noisy) -> Result<Vec<Rgb>, PictureError>;
+    fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError>;
 }
 
 /// A denoiser that was chosen, and what there is to say about the choice.
@@ -60,6 +62,8 @@ pub struct Task {
     pub threads: usize,
     /// What the best denoiser may take at most, if that matters. One that was asked for by its name takes what it takes.
     pub time: Option<Duration>,
+    /// No library of others may be loaded, nor looked for.
+    pub sandboxed: bool,
 }
 
 /// The denoiser of this name, or for `auto` the best that can be had, and has the time.
@@ -72,6 +76,13 @@ pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
     let threads = if task.threads == 0 { cores() } else { task.threads };
     let mut advice = None;
     for (i, row) in DENOISERS.iter().enumerate().filter(|(_, row)| is_auto || name == row.entry.name) {
+        if task.sandboxed && row.is_library {
+            if is_auto {
+                continue;
+            }
+            let what = "in a sandbox no library is loaded: ask for 'builtin'".to_owned();
+            return Err(PictureError::NoDenoiser { what });
+        }
         let time = (row.time)(task.pixels, threads);
         let is_last = i + 1 == DENOISERS.len();
         if is_auto && !is_last && task.time.is_some_and(|most| time > most) {
@@ -101,16 +112,24 @@ pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
 /// # Errors
 /// When it has no colours, or as [`Denoiser::denoise`].
 pub fn denoise(picture: &Picture, denoiser: &dyn Denoiser) -> Result<Picture, PictureError> {
-    let mut picture = picture.clone().into_linear();
-    let before = picture.to_rgb();
-    let noisy = Noisy::of(&picture)?;
-    let smooth = denoiser.denoise(&noisy)?;
-    let finite = |i: usize| before.as_ref().is_none_or(|colours| colours[i].is_finite());
+    let picture = picture.clone().into_linear();
+    let smooth = denoiser.denoise(&picture)?;
+    Ok(repainted(picture, &smooth))
+}
+
+/// The picture in other colours, row by row. Pixels that are not finite stay so.
+pub fn repainted(mut picture: Picture, colours: &[Rgb]) -> Picture {
+    let finite: Vec<bool> = match picture.rgb_planes() {
+        Some(planes) => {
+            (0..picture.pixel_count()).map(|i| planes.iter().all(|plane| plane[i].is_finite())).collect()
+        }
+        None => Vec::new(),
+    };
     for (component, channel) in [("R", 0), ("G", 1), ("B", 2), ("Y", 1)] {
         let samples = picture.channel_mut(component).unwrap_or_default();
-        for (i, sample) in samples.iter_mut().enumerate().filter(|(i, _)| finite(*i)) {
-            *sample = smooth[i][channel];
+        for (i, sample) in samples.iter_mut().enumerate().filter(|(i, _)| finite[*i]) {
+            *sample = colours[i][channel];
         }
     }
-    Ok(picture)
+    picture
 }

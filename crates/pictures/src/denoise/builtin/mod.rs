@@ -8,13 +8,14 @@ mod outliers;
 mod pass;
 mod planes;
 
-use super::{Denoiser, DenoiserEntry, Layer, Noisy};
+use super::{Denoiser, DenoiserEntry, Layer, Noisy, Source};
 use crate::PictureError;
+use crate::limits::reserved;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use guides::Guides;
 use pass::pass;
-use planes::{Light, Planes};
+use planes::Light;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Duration;
 
@@ -26,6 +27,7 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         parameters: &[],
     },
     time: |pixels, threads| Duration::from_nanos(pixels.saturating_mul(900) / threads as u64),
+    is_library: false,
     find: |threads| match Builtin::new(threads) {
         Ok(builtin) => Ok(Box::new(builtin)),
         Err(why) => Err(why.to_string()),
@@ -37,6 +39,12 @@ const STEPS: [usize; 4] = [1, 2, 4, 8];
 
 /// No pass looks farther than this: two steps and half a patch.
 const MARGIN: usize = 2 * 8 + 1;
+
+/// Rows that are filtered at a time: memory for so many is all that a picture takes, however high it is.
+const MOST_ROWS: usize = 512;
+
+/// How far away a row may be that shows in another: what the passes look at, and means of variances, outliers and guesses before them.
+const REACH: usize = 34 + 2 + 2 + 1;
 
 pub(super) struct Builtin {
     pool: ThreadPool,
@@ -56,29 +64,81 @@ impl Denoiser for Builtin {
         "the built-in filter".to_owned()
     }
 
-    fn denoise(&self, noisy: &Noisy) -> Result<Vec<Rgb>, PictureError> {
-        self.pool.install(|| {
-            let guides = Guides::of(noisy)?;
-            let mut sum = vec![Rgb::BLACK; noisy.pixels()];
-            for layer in &noisy.layers {
-                let smooth = smoothed(noisy, layer, &guides)?;
-                sum.iter_mut().zip(smooth).for_each(|(sum, pixel)| *sum += pixel);
-            }
-            Ok(sum)
-        })
+    fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError> {
+        let (width, height) = source.size();
+        let mut all = reserved("denoising", width * height)?;
+        let strips = height.div_ceil(MOST_ROWS).max(1);
+        for strip in 0..strips {
+            let rows = height * strip / strips..height * (strip + 1) / strips;
+            let around = rows.start.saturating_sub(REACH)..(rows.end + REACH).min(height);
+            let smooth = self.pool.install(|| smoothed(source.rows(around.clone())?))?;
+            let kept = (rows.start - around.start) * width..(rows.end - around.start) * width;
+            all.extend_from_slice(&smooth[kept]);
+        }
+        Ok(all)
     }
 }
 
-/// One layer without its noise.
-fn smoothed(noisy: &Noisy, layer: &Layer, guides: &Guides) -> Result<Vec<Rgb>, PictureError> {
-    let mut light = Light::of(noisy, layer)?;
-    for step in STEPS {
-        light = pass(&light, guides, step)?;
+/// The sum of the layers, each without its noise.
+fn smoothed(noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
+    let guides = Guides::of(&noisy)?;
+    let Noisy { width, height, layers, albedo, .. } = noisy;
+    let mut sum = vec![Rgb::BLACK; width * height];
+    for layer in layers {
+        let light = smooth_light((width, height), layer, albedo.as_deref(), &guides)?;
+        let back = |i: usize| albedo.as_ref().map_or(Rgb::WHITE, |albedo| planes::divisor(albedo[i]));
+        sum.iter_mut().enumerate().for_each(|(i, sum)| *sum += light.planes.rgb(i) * back(i));
     }
-    let back = |i: usize, light: Rgb| match &noisy.albedo {
-        Some(albedo) => light * planes::divisor(albedo[i]),
-        None => light,
-    };
-    let planes: &Planes = &light.planes;
-    Ok((0..noisy.pixels()).map(|i| back(i, planes.rgb(i))).collect())
+    Ok(sum)
+}
+
+/// A layer's light without its noise, and without the surfaces' own colours.
+fn smooth_light(
+    size: (usize, usize),
+    layer: Layer,
+    albedo: Option<&[Rgb]>,
+    guides: &Guides,
+) -> Result<Light, PictureError> {
+    STEPS.iter().try_fold(Light::of(size, layer, albedo)?, |light, &step| pass(&light, guides, step))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Picture;
+    use bilux_math::hash::{hash_words, unit_f32};
+
+    /// A picture with every layer, all noise, and guides that keep few pixels apart.
+    fn noise(width: usize, height: usize) -> Picture {
+        let mut picture = Picture::new(width, height).unwrap();
+        let layers = ["", "albedo", "normal", "depth", "variance", "light", "light_variance"];
+        for (k, layer) in layers.into_iter().enumerate() {
+            let names: &[&str] = match layer {
+                "normal" => &["X", "Y", "Z"],
+                "depth" => &["Z"],
+                _ => &["R", "G", "B"],
+            };
+            for (c, name) in names.iter().enumerate() {
+                let apart = if ["albedo", "normal", "depth"].contains(&layer) { 0.001 } else { 1.0 };
+                let at = |i| 1.0 + apart * unit_f32(hash_words([i as u64, (3 * k + c) as u64]) as u32);
+                let samples = (0..width * height).map(at).collect();
+                picture.push_channel(crate::picture::qualified(layer, name), samples).unwrap();
+            }
+        }
+        picture
+    }
+
+    /// What strips are cut from shows nowhere: each sees as far as its passes look.
+    #[test]
+    fn strips_are_the_whole_to_the_bit() {
+        let picture = noise(37, MOST_ROWS + 83);
+        let whole = smoothed(picture.rows(0..picture.height()).unwrap()).unwrap();
+        let strips = Builtin::new(2).unwrap().denoise(&picture).unwrap();
+        assert!(whole == strips);
+        // And no farther: from a row less it would show.
+        let rows = picture.height() / 2;
+        let with = |reach: usize| smoothed(picture.rows(0..rows + reach).unwrap()).unwrap();
+        assert!(whole[..rows * 37] == with(REACH)[..rows * 37]);
+        assert!(whole[..rows * 37] != with(REACH - 12)[..rows * 37]);
+    }
 }

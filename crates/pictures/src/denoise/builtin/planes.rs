@@ -2,7 +2,7 @@
 
 use super::{MARGIN, outliers};
 use crate::PictureError;
-use crate::denoise::{Layer, Noisy};
+use crate::denoise::Layer;
 use crate::limits::zeroed;
 use bilux_math::Rgb;
 use rayon::prelude::*;
@@ -91,9 +91,13 @@ pub(super) fn divisor(albedo: Rgb) -> Rgb {
 }
 
 impl Light {
-    pub(super) fn of(noisy: &Noisy, layer: &Layer) -> Result<Light, PictureError> {
-        let (width, size) = (noisy.width, (noisy.width, noisy.height));
-        let by = |i: usize| noisy.albedo.as_ref().map_or(Rgb::WHITE, |albedo| divisor(albedo[i]));
+    pub(super) fn of(
+        size: (usize, usize),
+        layer: Layer,
+        albedo: Option<&[Rgb]>,
+    ) -> Result<Light, PictureError> {
+        let width = size.0;
+        let by = |i: usize| albedo.map_or(Rgb::WHITE, |albedo| divisor(albedo[i]));
         let colour = |i: usize| layer.colour[i] / by(i);
         let guessed = if layer.variance.is_none() { guess(size, &colour) } else { Vec::new() };
         let told = |i: usize| match &layer.variance {
@@ -103,7 +107,8 @@ impl Light {
             }
             None => guessed[i],
         };
-        let pixels: Vec<(Rgb, f32)> = (0..noisy.pixels()).map(|i| (colour(i), told(i))).collect();
+        let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), told(i))).collect();
+        drop((layer, guessed));
         let pixels = outliers::without(size, &pixels);
         // One estimate of a pixel tells little: those around it are asked too.
         let raw: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();

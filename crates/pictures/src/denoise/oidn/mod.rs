@@ -5,7 +5,7 @@ mod library;
 mod places;
 
 use super::builtin::Builtin;
-use super::{Denoiser, DenoiserEntry, Noisy};
+use super::{Denoiser, DenoiserEntry, Source};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
@@ -21,6 +21,7 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         parameters: &[],
     },
     time: |pixels, threads| BEGIN + Duration::from_nanos(pixels.saturating_mul(NANOSECONDS) / threads as u64),
+    is_library: true,
     find,
 };
 
@@ -57,11 +58,12 @@ impl Denoiser for Oidn {
         self.device.describe()
     }
 
-    fn denoise(&self, noisy: &Noisy) -> Result<Vec<Rgb>, PictureError> {
-        if noisy.width.min(noisy.height) < LEAST_SIDE {
-            return Builtin::new(self.threads)?.denoise(noisy);
+    fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError> {
+        let size = source.size();
+        if size.0.min(size.1) < LEAST_SIDE {
+            return Builtin::new(self.threads)?.denoise(source);
         }
-        let size = (noisy.width, noisy.height);
+        let noisy = source.rows(0..size.1)?;
         let image = |plane: &[Rgb]| Image::new(size, plane.iter().map(|c| c.to_array()));
         let failed = |what: String| PictureError::NoDenoiser { what: format!("Open Image Denoise: {what}") };
         let albedo = noisy.albedo.as_deref().map(image).transpose()?;
