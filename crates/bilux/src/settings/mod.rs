@@ -1,16 +1,20 @@
 //! Everything that can be said about a render, from a scene file's `[render]`, a preset or the command line:
 //! all of it the same keys of one table.
 
+mod studio;
+
 use crate::Error;
-use crate::presets::{Ground, Studio};
+use crate::presets::Studio;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec, Value, Warning};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec, Warning};
 use bilux_transport::Stop;
 use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 use std::time::Duration;
+pub use studio::parse_orbit;
+use studio::{as_orbit, studio};
 
 /// What `[render]` and `--set` understand, beside the parameters of the integrator.
 pub const RENDER: Entry = Entry {
@@ -359,49 +363,6 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
     Ok(choice)
 }
 
-/// A pair of numbers as the text that an orbit is: `[30, 15]` in scene files, `--set orbit=30,15`.
-fn as_orbit(value: Value) -> Value {
-    let Value::List(pair) = &value else { return value };
-    let number = |value: &Value| match value {
-        Value::Integer(i) => Some(i.to_string()),
-        Value::Number(x) => Some(x.to_string()),
-        _ => None,
-    };
-    match pair.iter().map(number).collect::<Option<Vec<_>>>() {
-        Some(numbers) if numbers.len() == 2 => Value::Text(numbers.join(",")),
-        _ => value,
-    }
-}
-
-/// What is asked of the studio, where anything is.
-fn studio(reader: &Reader) -> Result<Studio, Error> {
-    let orbit = match reader.is_given("orbit") {
-        true => {
-            let wrong = |text: &str| {
-                let message = format!(
-                    "'{text}' is no orbit: write AZ,EL in degrees, such as 30,15; EL is from -90 to 90"
-                );
-                SceneError::invalid(message, reader.span("orbit"))
-            };
-            let text = reader.text("orbit");
-            Some(parse_orbit(&text).ok_or_else(|| wrong(&text))?)
-        }
-        false => None,
-    };
-    Ok(Studio {
-        ground: Ground::named(&reader.text("ground")),
-        orbit,
-        focal: reader.is_given("focal").then(|| reader.number("focal")),
-    })
-}
-
-/// Azimuth and elevation, in degrees, of `AZ,EL`; `None` for what is none.
-pub fn parse_orbit(text: &str) -> Option<[f32; 2]> {
-    let (azimuth, elevation) = text.split_once(',')?;
-    let [azimuth, elevation]: [f32; 2] = [azimuth.trim().parse().ok()?, elevation.trim().parse().ok()?];
-    (azimuth.abs() <= 3600.0 && elevation.abs() <= 90.0).then_some([azimuth, elevation])
-}
-
 #[cfg(test)]
 mod tests {
     use super::{Parameters, Quality, Settings};
@@ -434,27 +395,5 @@ mod tests {
         let told = Settings::resolve(&user).unwrap().without_use(&user);
         assert_eq!(told.len(), 1);
         assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
-    }
-
-    #[test]
-    fn an_orbit_is_a_pair_however_it_is_written() {
-        let orbit = |value: Value| {
-            let mut parameters = Parameters::default();
-            parameters.set("orbit", value);
-            Settings::resolve(&parameters).map(|settings| settings.studio.orbit)
-        };
-        let list = |of: &[f64]| Value::List(of.iter().map(|x| Value::Number(*x)).collect());
-        assert_eq!(orbit(Value::Text("30, 15".to_owned())).unwrap(), Some([30.0, 15.0]));
-        assert_eq!(orbit(list(&[30.0, 15.0])).unwrap(), Some([30.0, 15.0]));
-        assert_eq!(
-            orbit(Value::List(vec![Value::Integer(-30), Value::Number(7.5)])).unwrap(),
-            Some([-30.0, 7.5])
-        );
-        assert!(orbit(list(&[30.0, 15.0, 2.0])).is_err());
-        assert!(orbit(list(&[30.0, 95.0])).is_err());
-        // A pair is no size.
-        let mut parameters = Parameters::default();
-        parameters.set("size", list(&[30.0, 15.0]));
-        assert!(Settings::resolve(&parameters).is_err());
     }
 }
