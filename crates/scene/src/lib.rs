@@ -23,6 +23,7 @@ pub mod scene;
 pub mod spheres;
 pub mod surface;
 pub mod texture;
+pub mod wavelength;
 
 pub use bilux_accel::{Counters, Primitive, Query, Ray};
 pub use bsdf::{Bsdf, BsdfSample, TransportMode};
@@ -38,3 +39,4 @@ pub use parameters::{Parameters, Reader, Span, Spec, Value};
 pub use scene::{Scene, Tracer};
 pub use surface::Surface;
 pub use texture::Texture;
+pub use wavelength::Wavelength;

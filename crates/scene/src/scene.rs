@@ -41,6 +41,7 @@ pub(crate) struct SceneParts {
     classic_ambient: Rgb,
     has_nested: bool,
     has_holes: bool,
+    disperses: bool,
 }
 
 impl SceneParts {
@@ -94,6 +95,7 @@ impl SceneParts {
         let of_object = |o: &crate::geometry::Placed| materials[o.material as usize].nested();
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
+        let disperses = materials.iter().any(|material| material.disperses());
         SceneParts {
             geometry,
             materials,
@@ -103,6 +105,7 @@ impl SceneParts {
             classic_ambient,
             has_nested,
             has_holes,
+            disperses,
         }
     }
 
@@ -220,6 +223,12 @@ impl Scene {
     #[inline]
     pub fn has_nested(&self) -> bool {
         self.parts.has_nested
+    }
+
+    /// True when some material sends light of each wavelength another way.
+    #[inline]
+    pub fn disperses(&self) -> bool {
+        self.parts.disperses
     }
 
     /// Radiance from infinity in a direction away from the scene.

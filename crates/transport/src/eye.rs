@@ -9,7 +9,7 @@ use crate::render::{PixelAnchor, RenderSettings};
 use crate::sampler::{PixelSampler, regular_pattern};
 use crate::task::Task;
 use bilux_math::{Vec2, warp};
-use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer};
+use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer, Wavelength};
 use std::sync::Arc;
 
 /// Turns a sample's number into a camera ray and the tools for it.
@@ -21,6 +21,8 @@ pub(crate) struct Eye<'a> {
     lights: LightChoice,
     pub(crate) emission: Emission,
     has_lens: bool,
+    /// Camera paths are merged with light paths of the same iteration.
+    merges: bool,
     pub(crate) photons: Option<&'a Photons>,
 }
 
@@ -33,7 +35,13 @@ impl<'a> Eye<'a> {
     ) -> Eye<'a> {
         let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
         let emission = Emission::new(scene, integrator.guide());
-        Eye { scene, camera, integrator, settings, lights, emission, has_lens, photons: None }
+        let merges = integrator.merging().is_some();
+        Eye { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
+    }
+
+    /// For paths that are merged, whatever the integrator does.
+    pub(crate) fn merging(self) -> Eye<'a> {
+        Eye { merges: true, ..self }
     }
 
     /// With light paths that are aimed as a guide says.
@@ -56,9 +64,12 @@ impl<'a> Eye<'a> {
         };
         let mut sampler = PixelSampler::new(seed, x, y, number);
         let camera_sample = self.camera_sample(&mut sampler, x, y, index);
+        let wavelength =
+            if self.scene.disperses() { self.wavelength(seed, &sampler, number) } else { Wavelength::D };
         let task = Task {
             tracer,
             sampler,
+            wavelength,
             max_depth: self.settings.max_depth,
             camera: self.camera,
             lights: &self.lights,
@@ -67,6 +78,18 @@ impl<'a> Eye<'a> {
             events: None,
         };
         (self.camera.ray(&camera_sample), task)
+    }
+
+    /// What splits paths sends those of a sample where light of this wavelength goes. Paths that are merged have to be of the
+    /// same one: then all samples of an iteration have one.
+    #[cold]
+    fn wavelength(&self, seed: u64, sampler: &PixelSampler, number: u32) -> Wavelength {
+        const STREAM: u64 = 0x7761_7665;
+        const NO_PIXEL: u32 = u32::MAX;
+        let of_all = || PixelSampler::new(seed, NO_PIXEL, NO_PIXEL, number);
+        let mut sampler = if self.merges { of_all() } else { sampler.clone() };
+        sampler.enter(STREAM);
+        Wavelength::sample(sampler.next_1d())
     }
 
     /// Where on film and lens, and when. What the integrator gives no extent takes the pixel's regular

@@ -15,7 +15,7 @@ use crate::render::{Progress, RenderSettings, TILE, threads};
 use crate::window::Window;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_pictures::Picture;
-use bilux_scene::{Camera, Ray, Scene, Surface, Tracer, TransportMode};
+use bilux_scene::{Camera, Ray, Scene, Surface, Tracer, TransportMode, Wavelength};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -120,7 +120,7 @@ impl Sums {
             if event == 0 {
                 self.meet(scene, &surface, sample);
             }
-            let bsdf = media.bsdf(scene, &surface);
+            let bsdf = media.bsdf(scene, &surface, &Wavelength::D);
             let smooth = (bsdf.is_delta() && event < MOST_SMOOTH)
                 .then(|| bsdf.sample(-direction, 0.5, Vec2::splat(0.5), TransportMode::Radiance))
                 .flatten();

@@ -8,7 +8,7 @@
 
 use bilux_math::transcendental::exp;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Bsdf, Nested, Ray, Scene, Surface, Tracer};
+use bilux_scene::{Bsdf, Nested, Ray, Scene, Surface, Tracer, Wavelength};
 
 /// So many media may lie in each other; more are passed as if they were not there.
 const MOST_NESTED: usize = 4;
@@ -100,15 +100,21 @@ impl Media {
         Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
     }
 
-    /// How a surface scatters that separates these media from others.
+    /// How a surface scatters light of a wavelength that separates these media from others.
     #[inline]
-    pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface) -> Bsdf {
+    pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface, wavelength: &Wavelength) -> Bsdf {
         let bsdf = scene.material(surface).bsdf(surface);
-        if !scene.has_nested() || scene.material(surface).nested().is_none() {
+        if !scene.has_nested() && !scene.disperses() {
             return bsdf;
         }
-        match self.without(surface.object).strongest(scene) {
-            Some((_, outside)) => bsdf.against(outside.eta),
+        let is_nested = scene.has_nested() && scene.material(surface).nested().is_some();
+        let around = if is_nested { self.without(surface.object).strongest(scene) } else { None };
+        match around {
+            Some((_, outside)) => {
+                let bsdf = bsdf.refracting(wavelength, outside.index(wavelength));
+                bsdf.splitting(outside.dispersion != 0.0)
+            }
+            None if scene.disperses() => bsdf.refracting(wavelength, 1.0),
             None => bsdf,
         }
     }

@@ -4,7 +4,8 @@ use crate::bidirectional::Photons;
 use crate::emission::Emission;
 use crate::light_choice::LightChoice;
 use crate::sampler::PixelSampler;
-use bilux_scene::{Camera, Scene, Tracer};
+use bilux_math::Rgb;
+use bilux_scene::{Camera, Scene, Tracer, Wavelength};
 
 /// One sample's tools: whom to ask for hits, where random numbers come from, how long paths may be.
 pub struct Task<'a, 's> {
@@ -12,6 +13,8 @@ pub struct Task<'a, 's> {
     pub tracer: &'a mut Tracer<'s>,
     /// The random numbers of this sample.
     pub sampler: PixelSampler,
+    /// That of this sample's paths, wherever they begin.
+    pub wavelength: Wavelength,
     /// Greatest number of scattering events after the camera; 0 is emission only.
     pub max_depth: u32,
     /// Where rays come from.
@@ -39,6 +42,13 @@ impl<'s> Task<'_, 's> {
     /// The scene.
     pub fn scene(&self) -> &'s Scene {
         self.tracer.scene
+    }
+
+    /// What the channels see of light that a whole path brings: once a surface has [split](bilux_scene::Bsdf::splits) it,
+    /// it is of one wavelength.
+    #[inline]
+    pub fn seen(&self, light: Rgb, is_split: bool) -> Rgb {
+        if is_split { light * self.wavelength.weight } else { light }
     }
 
     /// Notes what happens, if anybody wants to know; else nothing is made.

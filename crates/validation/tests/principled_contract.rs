@@ -2,7 +2,7 @@
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::materials::{Ingredients, build};
-use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode};
+use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Wavelength};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
 use bilux_validation::chi_square::uniforms;
 
@@ -60,6 +60,35 @@ fn its_parameters_keep_the_contract() {
             assert_eq!(result, Ok(()), "{name}: {check}");
         }
     }
+}
+
+#[test]
+fn what_disperses_keeps_it_at_every_wavelength() {
+    let parted = ("transmission_dispersion_scale", 1.0);
+    let frosted = [("transmission_weight", 0.8), ("specular_roughness", 0.4), ("coat_weight", 0.5), parted];
+    let clear = [("transmission_weight", 1.0), ("specular_roughness", 0.0), parted, ("specular_ior", 1.9)];
+    for numbers in [frosted, clear] {
+        let bsdf = principled(&numbers, ORANGE);
+        assert!(!bsdf.splits());
+        for nm in [400.0, 460.0, 530.0, 600.0, 690.0] {
+            // In air, and in something denser than it is.
+            for outside in [1.0, 2.1] {
+                let one = bsdf.refracting(&Wavelength::of(nm), outside);
+                assert!(one.splits());
+                for (check, run) in CHECKS {
+                    let result = run(&one.into(), Promise { reciprocal: false, lossless: false });
+                    assert_eq!(result, Ok(()), "{numbers:?} at {nm} nm in {outside}: {check}");
+                }
+            }
+        }
+    }
+    // What nothing goes into, or what has no inside, splits nothing.
+    for numbers in [[parted, ("transmission_weight", 0.0)], [parted, ("coat_weight", 1.0)]] {
+        assert!(!principled(&numbers, ORANGE).refracting(&Wavelength::of(450.0), 1.0).splits());
+    }
+    let pane = Spec::new("", "principled").with("transmission_weight", 1.0f32).with("thin_walled", true);
+    let pane = pane.with("transmission_dispersion_scale", 1.0f32);
+    assert!(!build(&pane, &Ingredients::default()).unwrap().disperses());
 }
 
 #[test]

@@ -217,7 +217,16 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "transmission_weight", weight, picture, Channel::R, &at)?;
         let volume = node.extension("KHR_materials_volume");
         let thickness = volume.map_or(Ok(None), |volume| volume.number("thicknessFactor"))?.unwrap_or(0.0);
-        draft.set("thin_walled", thickness <= 0.0 && !draft.is_solid, at.clone());
+        let is_thin = thickness <= 0.0 && !draft.is_solid;
+        draft.set("thin_walled", is_thin, at.clone());
+        if let Some(dispersion) = node.extension("KHR_materials_dispersion").filter(|_| !is_thin) {
+            // 20 over Abbe's number. Ours is a part, at most all, of what a number says, which is 20 where nothing else is said.
+            let number = dispersion.number("dispersion")?.unwrap_or(0.0) as f32;
+            draft.set("transmission_dispersion_scale", number.min(1.0), dispersion.at());
+            if number > 1.0 {
+                draft.set("transmission_dispersion_abbe_number", 20.0 / number, dispersion.at());
+            }
+        }
         let base = draft.spec.parameters.find("base_color").map(|(value, _)| value.clone());
         let depth = volume.map_or(Ok(None), |volume| volume.number("attenuationDistance"))?;
         let (Some(volume), Some(depth)) = (volume.filter(|_| thickness > 0.0), depth.filter(|d| *d > 0.0))

@@ -60,6 +60,22 @@ pub const SHAPES: &[ShapeEntry] = &[
     },
     ShapeEntry {
         entry: Entry {
+            name: "prism",
+            summary: "a closed upright prism, its first edge along x",
+            source: "",
+            parameters: &[
+                length("radius", "from the middle to its edges", "1"),
+                length("height", "height", "1"),
+                pieces("sides", "sides", "3"),
+            ],
+        },
+        build: |reader| {
+            let (radius, height) = (reader.number("radius"), reader.number("height"));
+            shapes::prism(Vec3::ZERO, radius, height, reader.integer("sides") as u32)
+        },
+    },
+    ShapeEntry {
+        entry: Entry {
             name: "sphere",
             summary: "a sphere, with texture coordinates",
             source: "",

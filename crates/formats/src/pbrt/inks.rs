@@ -245,7 +245,9 @@ impl Pbrt<'_, '_> {
         };
         Ok(match spectra::named(name) {
             Some(Named::Light(colour)) => colour,
-            Some(Named::Glass(index)) => Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index }),
+            Some(Named::Glass { index, .. }) => {
+                Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index })
+            }
             Some(Named::Even(index)) => Rgb::grey(if meaning == Meaning::Light { 1.0 } else { index }),
             Some(Named::Metal { metal, is_extinction }) => {
                 let [eta, k] = super::metals::indices(metal);

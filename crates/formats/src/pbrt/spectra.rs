@@ -58,15 +58,15 @@ const LIGHTS: &[(&str, [f64; 2])] = &[
     ("illum-acesD60", [0.32168, 0.33767]),
 ];
 
-/// Glasses by name, with their refractive index at 587.6 nm. [Schott 2023]
-const GLASSES: &[(&str, f32)] = &[
-    ("glass-BK7", 1.5168),
-    ("glass-BAF10", 1.6700),
-    ("glass-FK51A", 1.4866),
-    ("glass-LASF9", 1.8503),
-    ("glass-F5", 1.6727),
-    ("glass-F10", 1.7283),
-    ("glass-F11", 1.7847),
+/// Glasses by name, with their refractive index at 587.6 nm and Abbe's number. [Schott 2023]
+const GLASSES: &[(&str, f32, f32)] = &[
+    ("glass-BK7", 1.5168, 64.17),
+    ("glass-BAF10", 1.6700, 47.11),
+    ("glass-FK51A", 1.4866, 84.47),
+    ("glass-LASF9", 1.8503, 32.17),
+    ("glass-F5", 1.6727, 32.25),
+    ("glass-F10", 1.7283, 28.53),
+    ("glass-F11", 1.7847, 25.68),
 ];
 
 /// Metals by the beginning of their names, as our own table calls them.
@@ -86,8 +86,8 @@ const OXIDES: &[(&str, f32)] = &[("metal-MgO", 1.737), ("metal-TiO2", 2.613)];
 pub(super) enum Named {
     /// The colour of a light of luminance 1.
     Light(Rgb),
-    /// A refractive index at 587.6 nm.
-    Glass(f32),
+    /// A refractive index at 587.6 nm, and Abbe's number.
+    Glass { index: f32, abbe_number: f32 },
     /// The refractive index of a metal of our table, or its extinction.
     Metal { metal: &'static str, is_extinction: bool },
     /// The same number at every wavelength.
@@ -99,8 +99,8 @@ pub(super) fn named(name: &str) -> Option<Named> {
     if let Some((_, xy)) = LIGHTS.iter().find(|(known, _)| *known == name) {
         return Some(Named::Light(of_chromaticity(*xy)));
     }
-    if let Some((_, index)) = GLASSES.iter().find(|(known, _)| *known == name) {
-        return Some(Named::Glass(*index));
+    if let Some(&(_, index, abbe_number)) = GLASSES.iter().find(|(known, ..)| *known == name) {
+        return Some(Named::Glass { index, abbe_number });
     }
     let (element, part) = name.rsplit_once('-')?;
     let is_extinction = match part {
@@ -118,7 +118,7 @@ pub(super) fn named(name: &str) -> Option<Named> {
 pub(super) fn names() -> impl Iterator<Item = String> {
     let metals = METALS.iter().map(|(name, _)| name).chain(OXIDES.iter().map(|(name, _)| name));
     let metals = metals.flat_map(|name| ["eta", "k"].map(|part| format!("{name}-{part}")));
-    let others = LIGHTS.iter().map(|(name, _)| *name).chain(GLASSES.iter().map(|(name, _)| *name));
+    let others = LIGHTS.iter().map(|(name, _)| *name).chain(GLASSES.iter().map(|(name, ..)| *name));
     others.map(str::to_owned).chain(metals)
 }
 
@@ -147,9 +147,15 @@ impl Spectrum {
         self.at(YELLOW) as f32
     }
 
-    /// True when it is not the same at all of its samples.
-    pub(super) fn varies(&self) -> bool {
-        self.0.windows(2).any(|pair| pair[0][1] != pair[1][1])
+    /// 20 over Abbe's number of a glass with this as its refractive index: by the indices at hydrogen's blue and red lines. `None`
+    /// where they do not fall from blue to red as those of glass do, or are not told.
+    pub(super) fn dispersion(&self) -> Option<f32> {
+        if self.0.windows(2).all(|pair| pair[0][1] == pair[1][1]) {
+            return Some(0.0);
+        }
+        let [blue, yellow, red] = [486.13, YELLOW, 656.27].map(|nm| self.at(nm));
+        let dispersion = 20.0 * (blue - red) / (yellow - 1.0);
+        (red > 0.0 && yellow > 1.0 && (0.0..=20.0).contains(&dispersion)).then_some(dispersion as f32)
     }
 
     /// The colour of a surface that reflects so much of each wavelength, under daylight. Numbers of any kind are averaged
@@ -254,7 +260,7 @@ mod tests {
     #[test]
     fn names_lead_to_metals_and_glasses() {
         assert_eq!(named("metal-CuZn-k"), Some(Named::Metal { metal: "brass", is_extinction: true }));
-        assert_eq!(named("glass-BK7"), Some(Named::Glass(1.5168)));
+        assert_eq!(named("glass-BK7"), Some(Named::Glass { index: 1.5168, abbe_number: 64.17 }));
         assert_eq!(named("metal-Cu"), None);
         assert!(names().all(|name| named(&name).is_some()));
     }

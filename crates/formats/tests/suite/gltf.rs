@@ -277,6 +277,28 @@ fn materials_are_in_the_terms_of_principled() {
 }
 
 #[test]
+fn dispersion_is_of_what_is_solid() {
+    for (thickness, dispersion, wanted) in
+        [(1, 0.5, [Some(0.5), None]), (1, 4.0, [Some(1.0), Some(5.0)]), (0, 0.5, [None; 2])]
+    {
+        let material = format!(
+            r#"{{"extensions":{{"KHR_materials_transmission":{{"transmissionFactor":1}},"KHR_materials_volume":
+            {{"thicknessFactor":{thickness}}},"KHR_materials_dispersion":{{"dispersion":{dispersion}}}}}}}"#
+        );
+        let scene = read(&with_material(&material, ""));
+        let value = |key: &str| spec_of(&scene).parameters.find(key).map(|(value, _)| value.clone());
+        let keys = ["transmission_dispersion_scale", "transmission_dispersion_abbe_number"];
+        assert_eq!(
+            keys.map(value),
+            wanted.map(|number: Option<f32>| number.map(bilux_scene::Value::from)),
+            "{material}"
+        );
+        let built = scene.build(&Default::default(), [0.0, 0.0], 1.0).unwrap();
+        assert_eq!(built.disperses(), thickness == 1, "{material}");
+    }
+}
+
+#[test]
 fn every_extension_gives_a_material_that_can_be_built() {
     let extensions = [
         r#""KHR_materials_transmission":{"transmissionFactor":1}"#,

@@ -158,6 +158,7 @@ name = "red glass"
 kind = "dielectric"
 absorption = [0.1, 2, 3]
 eta = 1.6
+dispersion = 3
 [[material]]
 name = "copper"
 kind = "conductor"
@@ -207,6 +208,9 @@ translate = [0, 4, 0]
         assert_eq!(number("pane", "thin_walled"), Some(vec![1.0]));
         assert_eq!(number("red glass", "thin_walled"), Some(vec![0.0]));
         assert_eq!(number("red glass", "specular_ior"), Some(vec![1.6]));
+        let parts = ["transmission_dispersion_scale", "transmission_dispersion_abbe_number"];
+        let parts = parts.map(|key| number("red glass", key).unwrap()[0]);
+        assert_eq!((parts[0], (parts[1] * 3.0).round()), (1.0, 20.0));
         let left = number("red glass", "transmission_color").unwrap();
         assert!((left[1] - 0.1353).abs() < 1e-3, "{left:?}");
         let copper = number("copper", "base_color").unwrap();

@@ -420,6 +420,31 @@ fn what_is_wrong_is_told_with_its_place() {
 }
 
 #[test]
+fn glass_parts_colours_as_its_name_or_its_spectrum_says() {
+    for (eta, wanted) in [
+        ("\"spectrum eta\" \"glass-BK7\"", Some((1.5168, 20.0 / 64.17))),
+        ("\"spectrum eta\" [ 400 1.54 486.13 1.51 587.6 1.5 656.27 1.49 700 1.48 ]", Some((1.5, 0.8))),
+        ("\"spectrum eta\" [ 400 1.5 700 1.5 ]", None),
+        ("\"float eta\" 1.5", None),
+    ] {
+        let scene = world(&format!("Material \"dielectric\" {eta} Shape \"sphere\""));
+        assert_eq!(warnings(&scene), "");
+        let glass = scene.materials.iter().find(|spec| spec.kind == "dielectric").unwrap();
+        let number = |key: &str| match glass.parameters.find(key) {
+            Some((Value::Number(number), _)) => Some(*number),
+            _ => None,
+        };
+        match wanted {
+            Some((index, dispersion)) => {
+                assert!((number("eta").unwrap() - index).abs() < 1e-4, "{eta}");
+                assert!((number("dispersion").unwrap() - dispersion).abs() < 1e-3, "{eta}");
+            }
+            None => assert_eq!(number("dispersion"), None, "{eta}"),
+        }
+    }
+}
+
+#[test]
 fn what_cannot_be_shown_is_told() {
     for (text, wanted) in [
         (
@@ -429,7 +454,7 @@ fn what_cannot_be_shown_is_told() {
         ("Material \"hair\" Shape \"sphere\"", "hair is shown as glossy fibres"),
         ("Material \"subsurface\" Shape \"sphere\"", "not shown: the surface is matt"),
         (
-            "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\"",
+            "Material \"coateddiffuse\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\"",
             "refracted alike, by the index at 587.6 nm",
         ),
         (

@@ -17,7 +17,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     cases: || {
         let coat = Cover::coat(1.0, super::Albedo::new(&Ggx::new(0.1), 1.6));
         let glass = |ggx, thin, cover| {
-            Lobe::Clear(Clear::new(1.5, ggx, thin, Rgb::grey(0.9), Rgb::new(0.5, 0.8, 0.9), cover))
+            Lobe::Clear(Clear::new((1.5, 0.0), ggx, thin, Rgb::grey(0.9), Rgb::new(0.5, 0.8, 0.9), cover))
         };
         vec![
             ("bottle", glass(Ggx::SMOOTH, false, Cover::NONE)),
@@ -38,16 +38,23 @@ pub struct Clear {
 }
 
 impl Clear {
-    /// An index `eta` of the inside over the outside; `thin` for a pane; factors on what is reflected and on what
-    /// passes, 0..=1.
-    pub fn new(eta: f32, ggx: Ggx, thin: bool, reflected: Rgb, passed: Rgb, cover: Cover) -> Clear {
-        Clear { glass: RoughDielectric { eta, tint: Rgb::WHITE, thin, ggx }, reflected, passed, cover }
+    /// An index of the inside over the outside, and its dispersion; `thin` for a pane; factors on what is reflected and on
+    /// what passes, 0..=1.
+    pub fn new(index: (f32, f32), ggx: Ggx, thin: bool, reflected: Rgb, passed: Rgb, cover: Cover) -> Clear {
+        let (eta, dispersion) = index;
+        let glass = RoughDielectric { eta, dispersion, tint: Rgb::WHITE, thin, ggx };
+        Clear { glass, reflected, passed, cover }
     }
 
-    /// The same where the outside has this refractive index.
-    pub(super) fn against(&self, eta_outside: f32) -> Clear {
-        let eta = if self.glass.thin { self.glass.eta } else { self.glass.eta / eta_outside };
-        Clear { glass: RoughDielectric { eta, ..self.glass }, ..*self }
+    /// What refracts, as it is in the open.
+    #[inline]
+    pub(super) fn glass(&self) -> &RoughDielectric {
+        &self.glass
+    }
+
+    /// The same of another index.
+    pub(super) fn of_index(self, eta: f32) -> Clear {
+        Clear { glass: RoughDielectric { eta, ..self.glass }, ..self }
     }
 
     #[inline]
@@ -57,7 +64,8 @@ impl Clear {
 
     #[inline]
     fn smooth(&self) -> Dielectric {
-        Dielectric { eta: self.glass.eta, tint: Rgb::WHITE, thin: self.glass.thin }
+        let RoughDielectric { eta, dispersion, tint, thin, .. } = self.glass;
+        Dielectric { eta, dispersion, tint, thin }
     }
 
     /// Where glass without width lets light through.

@@ -15,7 +15,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     reciprocal: false,
     lossless: true,
     cases: || {
-        let glass = |eta, thin| Lobe::Dielectric(Dielectric { eta, tint: Rgb::WHITE, thin });
+        let glass = |eta, thin| Lobe::Dielectric(Dielectric { eta, dispersion: 0.0, tint: Rgb::WHITE, thin });
         vec![
             ("glass", glass(1.5, false)),
             ("air in water", glass(1.0 / 1.33, false)),
@@ -27,8 +27,10 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 /// Smooth glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
-    /// Refractive index of the inside over that of the outside.
+    /// Refractive index of the inside over that of the outside, at the d line.
     pub eta: f32,
+    /// 1 over Abbe's number: how much the index depends on the wavelength.
+    pub dispersion: f32,
     /// Factor on all light, 0..=1; white for real glass.
     pub tint: Rgb,
     /// A pane without thickness: both of its faces at once, straight through. [pbrt 2023, 9.5.1]

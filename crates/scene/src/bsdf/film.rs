@@ -6,8 +6,9 @@
 //! wavelength: their means over what the channels see are a table over the path. [Belcour 2017; Born 1999, 7.6]
 
 use super::Fresnel;
+use crate::wavelength::sensitivity;
 use bilux_math::Rgb;
-use bilux_math::transcendental::{cos, exp};
+use bilux_math::transcendental::cos;
 use std::f32::consts::TAU;
 use std::sync::LazyLock;
 
@@ -112,24 +113,6 @@ static COSINES: LazyLock<Vec<Rgb>> = LazyLock::new(|| {
     };
     (0..STEPS).map(mean).collect()
 });
-
-/// What the channels of Rec. 709 see of light of a wavelength in nm, in no unit: the standard observer's curves
-/// [Wyman 2013, eq. 4] by the primaries' matrix.
-fn sensitivity(nm: f32) -> Rgb {
-    let bell = |middle: f32, below: f32, above: f32| {
-        let t = (nm - middle) / if nm < middle { below } else { above };
-        exp(-0.5 * t * t)
-    };
-    let x =
-        1.056 * bell(599.8, 37.9, 31.0) + 0.362 * bell(442.0, 16.0, 26.7) - 0.065 * bell(501.1, 20.4, 26.2);
-    let y = 0.821 * bell(568.8, 46.9, 40.5) + 0.286 * bell(530.9, 16.3, 31.1);
-    let z = 1.217 * bell(437.0, 11.8, 36.0) + 0.681 * bell(459.0, 26.0, 13.8);
-    Rgb::new(
-        3.2406 * x - 1.5372 * y - 0.4986 * z,
-        -0.9689 * x + 1.8758 * y + 0.0415 * z,
-        0.0557 * x - 0.2040 * y + 1.0570 * z,
-    )
-}
 
 #[cfg(test)]
 mod tests {

@@ -82,6 +82,28 @@ impl Lobe {
         }
     }
 
+    /// The index of what lets light in, and its dispersion; none of a wall without thickness.
+    #[inline]
+    pub(super) fn index(&self) -> Option<(f32, f32)> {
+        let (eta, dispersion, thin) = match self {
+            Lobe::Dielectric(glass) => (glass.eta, glass.dispersion, glass.thin),
+            Lobe::RoughDielectric(glass) => (glass.eta, glass.dispersion, glass.thin),
+            Lobe::Clear(lobe) => (lobe.glass().eta, lobe.glass().dispersion, lobe.glass().thin),
+            _ => return None,
+        };
+        (!thin).then_some((eta, dispersion))
+    }
+
+    /// The same of another index.
+    pub(super) fn of_index(self, eta: f32) -> Lobe {
+        match self {
+            Lobe::Dielectric(glass) => Lobe::Dielectric(Dielectric { eta, ..glass }),
+            Lobe::RoughDielectric(glass) => glass.of_index(eta),
+            Lobe::Clear(clear) => Lobe::Clear(clear.of_index(eta)),
+            other => other,
+        }
+    }
+
     /// True when it has no width.
     #[inline]
     pub fn is_delta(&self) -> bool {

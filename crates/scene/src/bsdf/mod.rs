@@ -47,6 +47,7 @@ pub use phong_lobe::PhongLobe;
 pub use rough_dielectric::RoughDielectric;
 pub use sample::BsdfSample;
 
+use crate::wavelength::Wavelength;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
 /// What is carried along a path: radiance from the lights, or importance from the camera.
@@ -88,6 +89,7 @@ pub struct Bsdf {
     rises: [f32; MOST_LOBES],
     total_rise: f32,
     bends: bool,
+    splits: bool,
 }
 
 /// So many lobes are summed at most.
@@ -108,6 +110,7 @@ impl Bsdf {
             rises: [0.0; MOST_LOBES],
             total_rise: 0.0,
             bends: false,
+            splits: false,
         }
     }
 
@@ -123,6 +126,7 @@ impl Bsdf {
             rises: [0.0; MOST_LOBES],
             total_rise: 0.0,
             bends: false,
+            splits: false,
         };
         for (i, lobe) in lobes.into_iter().flatten().take(MOST_LOBES).enumerate() {
             sum.set(i, lobe, 1.0);
@@ -171,17 +175,27 @@ impl Bsdf {
         Bsdf { bends: self.frame.n != self.n_geom && !is_narrow, ..self }
     }
 
-    /// The same where the outside has this refractive index, and not that of air.
-    pub fn against(mut self, eta_outside: f32) -> Bsdf {
+    /// The same for light of one wavelength, where the outside has this refractive index, and not that of air. Where the
+    /// wavelength makes a difference, it [splits](Bsdf::splits) paths.
+    pub fn refracting(mut self, wavelength: &Wavelength, eta_outside: f32) -> Bsdf {
         for lobe in self.lobes.iter_mut().flatten() {
-            match lobe {
-                Lobe::Dielectric(glass) if !glass.thin => glass.eta /= eta_outside,
-                Lobe::RoughDielectric(glass) if !glass.thin => *lobe = glass.against(eta_outside),
-                Lobe::Clear(clear) => *clear = clear.against(eta_outside),
-                _ => {}
-            }
+            let Some((eta, dispersion)) = lobe.index() else { continue };
+            let inside = if dispersion == 0.0 { eta } else { wavelength.index(eta, dispersion) };
+            self.splits |= dispersion != 0.0;
+            *lobe = lobe.of_index(inside / eta_outside);
         }
         self
+    }
+
+    /// The same where that outside makes a difference between wavelengths.
+    pub fn splitting(self, splits: bool) -> Bsdf {
+        Bsdf { splits: self.splits || splits, ..self }
+    }
+
+    /// True where light of other wavelengths is scattered otherwise: a path that has been here is of one.
+    #[inline]
+    pub fn splits(&self) -> bool {
+        self.splits
     }
 
     /// True when all that it scatters goes into single directions.

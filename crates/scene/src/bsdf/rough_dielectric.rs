@@ -17,8 +17,9 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     reciprocal: false,
     lossless: false,
     cases: || {
-        let glass =
-            |eta, thin, ggx| Lobe::RoughDielectric(RoughDielectric { eta, tint: Rgb::WHITE, thin, ggx });
+        let glass = |eta, thin, ggx| {
+            Lobe::RoughDielectric(RoughDielectric { eta, dispersion: 0.0, tint: Rgb::WHITE, thin, ggx })
+        };
         vec![
             ("frosted", glass(1.5, false, Ggx::new(0.3))),
             ("etched", glass(1.5, false, Ggx::new(0.1))),
@@ -32,8 +33,10 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 /// Rough glass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughDielectric {
-    /// Refractive index of the inside over that of the outside.
+    /// Refractive index of the inside over that of the outside, at the d line.
     pub eta: f32,
+    /// 1 over Abbe's number: how much the index depends on the wavelength.
+    pub dispersion: f32,
     /// Factor on all light, 0..=1; white for real glass.
     pub tint: Rgb,
     /// A pane without thickness: what passes goes on as what is reflected would, on the other side.
@@ -49,13 +52,13 @@ impl RoughDielectric {
         !ggx.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
     }
 
-    /// The same where the outside has this refractive index; smooth where it is nearly that of the inside.
-    pub(super) fn against(&self, eta_outside: f32) -> Lobe {
-        let (eta, RoughDielectric { tint, thin, ggx, .. }) = (self.eta / eta_outside, *self);
+    /// The same of another index; smooth where it is nearly that of the outside.
+    pub fn of_index(self, eta: f32) -> Lobe {
+        let RoughDielectric { dispersion, tint, thin, ggx, .. } = self;
         if RoughDielectric::is_rough(eta, thin, &ggx) {
-            Lobe::RoughDielectric(RoughDielectric { eta, tint, thin, ggx })
+            Lobe::RoughDielectric(RoughDielectric { eta, ..self })
         } else {
-            Lobe::Dielectric(Dielectric { eta, tint, thin })
+            Lobe::Dielectric(Dielectric { eta, dispersion, tint, thin })
         }
     }
 

@@ -67,6 +67,28 @@ pub fn cuboid(bounds: Aabb) -> Mesh {
     }
 }
 
+/// A closed upright prism around a point, flat-shaded: `sides` (at least 3) corners on a circle of this radius, the first of
+/// them along x.
+pub fn prism(middle: Vec3, radius: f32, height: f32, sides: u32) -> Mesh {
+    let sides = sides.max(3);
+    let corner = |i: u32, y: f32| {
+        let (sin, cos) = sin_cos_f64(TAU * f64::from(i) / f64::from(sides));
+        middle + DVec3::new(cos, 0.0, -sin).as_vec3() * radius + Vec3::Y * y
+    };
+    let ends = [-0.5 * height, 0.5 * height];
+    let walls = (0..sides).flat_map(|i| {
+        let (a, b) = (i, (i + 1) % sides);
+        [[a, b, b + sides], [a, b + sides, a + sides]]
+    });
+    let caps = (2..sides).flat_map(|i| [[0, i, i - 1], [sides, sides + i - 1, sides + i]]);
+    Mesh {
+        name: "prism".to_owned(),
+        positions: ends.into_iter().flat_map(|y| (0..sides).map(move |i| corner(i, y))).collect(),
+        triangles: walls.chain(caps).collect(),
+        ..Mesh::default()
+    }
+}
+
 /// A closed sphere of nearly equal triangles: an icosahedron, each triangle cut in four `level` times (at most
 /// 10): 20 · 4^level triangles.
 pub fn icosphere(centre: Vec3, radius: f32, level: u32) -> Mesh {

@@ -75,6 +75,10 @@ impl Material for Dressed {
         self.opacity.as_ref()
     }
 
+    fn disperses(&self) -> bool {
+        self.material.disperses()
+    }
+
     fn nested(&self) -> Option<Nested> {
         self.material.nested()
     }

@@ -115,6 +115,10 @@ impl Material for Mix {
         self.a.most_lobes() + self.b.most_lobes()
     }
 
+    fn disperses(&self) -> bool {
+        self.a.disperses() || self.b.disperses()
+    }
+
     fn nested(&self) -> Option<Nested> {
         self.a.nested().or(self.b.nested())
     }

@@ -36,6 +36,7 @@ use crate::lights::Sides;
 use crate::parameters::{Reader, Span, Spec};
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap, Texture};
+use crate::wavelength::Wavelength;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 pub use conductor::straight_on;
@@ -79,6 +80,10 @@ pub trait Material: Send + Sync {
     fn opacity(&self) -> Option<&NumberMap> {
         None
     }
+    /// True when it sends light of each wavelength another way.
+    fn disperses(&self) -> bool {
+        false
+    }
     /// How what is inside stands against what it overlaps with; `None` for what takes no part in that.
     fn nested(&self) -> Option<Nested> {
         None
@@ -96,6 +101,15 @@ pub struct Nested {
     pub priority: u32,
     /// Refractive index over that of air.
     pub eta: f32,
+    /// 1 over Abbe's number.
+    pub dispersion: f32,
+}
+
+impl Nested {
+    /// The index at a wavelength.
+    pub fn index(&self, wavelength: &Wavelength) -> f32 {
+        if self.dispersion == 0.0 { self.eta } else { wavelength.index(self.eta, self.dispersion) }
+    }
 }
 
 /// A row of [`MATERIALS`].

@@ -24,7 +24,7 @@ pub(crate) fn to_camera<const N: usize>(
     let passed = media.visible(task.tracer, &y.surface.spawn_to(seen.p), seen.p.distance(y.surface.p))?;
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
-    let light = y.beta * scattered * passed * seen.density;
+    let light = task.seen(y.beta * scattered * passed * seen.density, y.is_split());
     Some((seen.film, Found { own: ways.splats, others, origin: y.origin, ..Found::only(light) }))
 }
 
@@ -78,6 +78,7 @@ pub(crate) fn to_light<const N: usize>(
     let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
     let from_light = z.partial.others_of_direct(arriving, back, ways.direct);
     let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
+    let light = task.seen(light, z.is_split());
     Some(Found { others: Lanes::ONE * met + from_light, favour: favour(met), ..Found::only(light) })
 }
 
@@ -107,7 +108,7 @@ pub(crate) fn to_vertex<const N: usize>(
         y.partial.others(pdf_z * cos(y) / distance2, y.bsdf.pdf_solid_angle(-direction, y.wo, back_y));
     let from_light =
         z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
-    let light = z.beta * f_z * f_y * y.beta * passed / distance2;
+    let light = task.seen(z.beta * f_z * f_y * y.beta * passed / distance2, z.is_split() || y.is_split());
     let others = from_camera + from_light;
     Some(Found { own: ways.joins, others, origin: y.origin, ..Found::only(light) })
 }
@@ -122,7 +123,7 @@ pub(crate) fn merged<const N: usize>(
     let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
     photons.around(z.surface.p, |spot, y| {
         // On the same surface, not on the other side of a sheet or around a corner.
-        if z.depth + u32::from(spot.depth) + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
+        if z.depth + spot.depth() + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.both_ways(y.wo) else { return };
@@ -130,8 +131,8 @@ pub(crate) fn merged<const N: usize>(
         // shading normal in it. By the normal at `z` a grazing photon from around a bend would be of any brightness.
         let cos = y.n_geom.dot(y.wo).abs();
         let others = y.joined + y.d_vc * pdf + z.partial.before(back);
-        let light = z.beta * scattered * y.beta * (1.0 / cos);
-        let way = Way::Merged { s: count(spot.depth.into()), t: z.count() };
+        let light = task.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || spot.is_split());
+        let way = Way::Merged { s: count(spot.depth()), t: z.count() };
         let own = photons.ways().eta;
         visit(way, &Found { own, others, origin: spot.origin, ..Found::only(light) });
     });

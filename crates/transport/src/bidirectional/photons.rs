@@ -54,10 +54,28 @@ impl Merging {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot {
     pub(crate) p: Vec3,
-    /// Scattering events before it.
-    pub(crate) depth: u16,
+    /// Scattering events before it, doubled, and one more where the path is of one wavelength.
+    pub(super) steps: u16,
     /// As in [`super::Vertex`].
     pub(crate) origin: u16,
+}
+
+impl Spot {
+    pub(crate) fn new(p: Vec3, depth: u32, is_split: bool, origin: u16) -> Spot {
+        Spot { p, steps: (depth << 1) as u16 | u16::from(is_split), origin }
+    }
+
+    /// Scattering events before it.
+    #[inline]
+    pub(crate) fn depth(&self) -> u32 {
+        u32::from(self.steps >> 1)
+    }
+
+    /// The path up to here is of one wavelength.
+    #[inline]
+    pub(crate) fn is_split(&self) -> bool {
+        self.steps & 1 == 1
+    }
 }
 
 /// A vertex of a light path.
@@ -242,7 +260,7 @@ mod tests {
 
     fn photons(count: u64, radius: f32, is_flat: bool) -> Photons {
         let photon = |i| {
-            let spot = Spot { p: point(i, is_flat), depth: 0, origin: i as u16 };
+            let spot = Spot::new(point(i, is_flat), 0, false, i as u16);
             let (wo, n_geom) = (Vec3::Z, Vec3::Z);
             (spot, Photon { wo, n_geom, beta: Rgb::WHITE, joined: Lanes::ZERO, d_vc: Lanes::ZERO })
         };

@@ -21,6 +21,8 @@ pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) depth: u32,
     /// Where its light path began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
+    /// The subpath is of one wavelength, whatever the surface here does.
+    pub(super) came_split: bool,
     /// On the side of `wo`.
     media: Media,
 }
@@ -31,9 +33,14 @@ impl<const N: usize> Vertex<N> {
         count(self.depth)
     }
 
+    /// True where a path through here is of one wavelength.
+    pub(super) fn is_split(&self) -> bool {
+        self.came_split || self.bsdf.splits()
+    }
+
     /// What is kept of it to merge with.
     pub(super) fn photon(&self) -> (Spot, Photon<N>) {
-        let spot = Spot { p: self.surface.p, depth: self.depth as u16, origin: self.origin };
+        let spot = Spot::new(self.surface.p, self.depth, self.came_split, self.origin);
         let (wo, n_geom, beta) = (self.wo, self.surface.n_geom, self.beta);
         (spot, Photon { wo, n_geom, beta, joined: self.partial.joined, d_vc: self.partial.d_vc })
     }
@@ -61,6 +68,8 @@ pub(crate) struct Walk<'w, const N: usize = 1> {
     pub(crate) depth: u32,
     /// True while all events have been without width: what only the camera sees may still be seen.
     pub(crate) specular: bool,
+    /// It is of one wavelength.
+    pub(crate) is_split: bool,
     /// The density of arriving is over area as it is: at the first surface that light from infinity meets.
     by_area: bool,
     /// What refraction has divided radiance by so far (η²), which survival must not depend on.
@@ -93,6 +102,7 @@ impl<'w, const N: usize> Walk<'w, N> {
             partial,
             depth: 0,
             specular: true,
+            is_split: false,
             by_area,
             eta_scale: 1.0,
             full,
@@ -137,9 +147,9 @@ impl<'w, const N: usize> Walk<'w, N> {
         let distance2 = distance2 * self.picked_more(task.scene(), surface.p);
         self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins, merged);
         self.by_area = false;
-        let bsdf = media.bsdf(task.scene(), &surface);
+        let bsdf = media.bsdf(task.scene(), &surface, &task.wavelength);
         let (beta, partial, depth, origin) = (self.beta, self.partial, self.depth, self.origin);
-        Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, media })
+        Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, came_split: self.is_split, media })
     }
 
     /// Goes on from a vertex; false when the subpath ends there.
@@ -154,6 +164,11 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.partial.leave(cos, pdfs, counts);
         self.follow(vertex, &sample, task);
         self.survives(u_survival, roulette_depth)
+    }
+
+    /// What the channels see of what it brings, if light is met next.
+    pub(crate) fn seen(&self, task: &Task) -> Rgb {
+        task.seen(self.beta, self.is_split)
     }
 
     /// How much more often than its start has counted on so far, the first surface of a light path would pick that start.
@@ -173,6 +188,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.beta *= sample.weight;
         self.depth += 1;
         self.specular &= sample.is_delta;
+        self.is_split = vertex.is_split();
         self.eta_scale *= sample.eta * sample.eta;
         self.media = Some(vertex.media_towards(task.scene(), sample.wi));
         self.ray = vertex.surface.spawn(sample.wi);

@@ -105,7 +105,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             tally.spend(Step::Camera, 1);
             let Some(mut z) = walk.meet(task) else {
                 let way = Way::Joined { s: 0, t: count(walk.depth) };
-                from_infinity(task, &walk, |met| tally.here(way, &met.by(walk.beta, &walk.partial)));
+                from_infinity(task, &walk, |met| tally.here(way, &met.by(walk.seen(task), &walk.partial)));
                 return;
             };
             if z.depth == 0 {
@@ -115,9 +115,9 @@ impl<'a, const N: usize> BothEnds<'a, N> {
             }
             // s = 0: the path has met a light by itself.
             if let Some(met) = emitted(task, &z.surface, z.wo) {
-                let seen = || Found::only(z.beta * met.radiance);
+                let seen = || Found::only(walk.seen(task) * met.radiance);
                 let way = Way::Joined { s: 0, t: z.count() };
-                tally.here(way, &if z.depth == 0 { seen() } else { met.by(z.beta, &z.partial) });
+                tally.here(way, &if z.depth == 0 { seen() } else { met.by(walk.seen(task), &z.partial) });
             }
             if z.depth >= task.max_depth {
                 return;

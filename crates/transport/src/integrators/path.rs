@@ -75,6 +75,8 @@ struct Walk {
     last: Option<(Vec3, f32)>,
     /// True while all events have been without width: what only the camera sees may still be seen.
     specular: bool,
+    /// It is of one wavelength.
+    is_split: bool,
     /// Where the ray goes.
     media: Media,
 }
@@ -88,23 +90,25 @@ impl PixelIntegrator for Path {
             eta_scale: 1.0,
             last: None,
             specular: true,
+            is_split: false,
             media: Media::at_start(task.tracer, ray),
         };
         let mut sum = Rgb::BLACK;
         loop {
             let Some((surface, passed)) = walk.media.closest(task.tracer, &walk.ray) else {
-                return sum + walk.beta * self.background(task, &walk);
+                return sum + task.seen(walk.beta, walk.is_split) * self.background(task, &walk);
             };
             let direction = Vec3::from(walk.ray.direction);
             walk.beta *= passed;
-            sum += walk.beta * self.emitted(task, &walk, &surface);
+            sum += task.seen(walk.beta, walk.is_split) * self.emitted(task, &walk, &surface);
             if walk.depth >= task.max_depth {
                 return sum;
             }
             task.sampler.enter(u64::from(walk.depth) + 1);
-            let bsdf = walk.media.bsdf(task.scene(), &surface);
+            let bsdf = walk.media.bsdf(task.scene(), &surface, &task.wavelength);
+            walk.is_split |= bsdf.splits();
             let from = Vertex { surface: &surface, bsdf: &bsdf, wo: -direction, media: &walk.media };
-            sum += walk.beta * self.direct(task, &from);
+            sum += task.seen(walk.beta, walk.is_split) * self.direct(task, &from);
             let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
             let Some(sample) = bsdf.sample(-direction, u_choice, u, TransportMode::Radiance) else {
                 task.note(walk.depth, || format!("is absorbed at {}", surface.p));

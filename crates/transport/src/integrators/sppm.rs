@@ -40,11 +40,11 @@ impl PixelIntegrator for Sppm {
         loop {
             let Some(z) = walk.meet(task) else {
                 // Lights that are seen, in mirrors too; what they give to other surfaces, photons bring.
-                from_infinity(task, &walk, |met| sum += walk.beta * met.radiance);
+                from_infinity(task, &walk, |met| sum += walk.seen(task) * met.radiance);
                 return sum;
             };
             if let Some(met) = emitted(task, &z.surface, z.wo) {
-                sum += z.beta * met.radiance;
+                sum += walk.seen(task) * met.radiance;
             }
             if z.depth >= task.max_depth {
                 return sum;

@@ -50,6 +50,8 @@ const ELSEWHERE: &[&str] = &[
     "thin_walled",
     "transmission_color",
     "transmission_depth",
+    "transmission_dispersion_scale",
+    "transmission_dispersion_abbe_number",
     "coat_ior",
     "fuzz_weight",
     "fuzz_color",
@@ -213,6 +215,12 @@ impl Document<'_> {
         }
         let of = &mut out["extensions"][self.uses("KHR_materials_volume")];
         of["thicknessFactor"] = json!(1.0);
+        let abbe_number = number(spec, "transmission_dispersion_abbe_number").unwrap_or(20.0);
+        let dispersion = number(spec, "transmission_dispersion_scale").unwrap_or(0.0) * 20.0 / abbe_number;
+        if dispersion > 0.0 {
+            out["extensions"][self.uses("KHR_materials_dispersion")]["dispersion"] = json!(dispersion);
+        }
+        let of = &mut out["extensions"]["KHR_materials_volume"];
         if let Some(depth) = number(spec, "transmission_depth").filter(|depth| *depth > 0.0) {
             of["attenuationDistance"] = json!(depth);
             let shade = colour(spec, "transmission_color").unwrap_or(Rgb::WHITE);
@@ -264,6 +272,12 @@ fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spe
                 .with("specular_ior", taken("eta", 1.5.into()))
                 .with("specular_roughness", taken("roughness", 0.0.into()))
                 .with("thin_walled", taken("thin", false.into()));
+            let out = match number(spec, "dispersion").filter(|dispersion| *dispersion > 0.0) {
+                Some(dispersion) => out
+                    .with("transmission_dispersion_scale", dispersion.min(1.0))
+                    .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0)),
+                None => out,
+            };
             if absorbed.is_black() {
                 out
             } else {

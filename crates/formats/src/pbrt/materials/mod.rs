@@ -8,6 +8,7 @@ mod version_3;
 use super::inks::{Ink, Meaning};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
+use super::spectra::{Named, named};
 use super::state::MaterialKey;
 use super::unknown;
 use crate::FormatError;
@@ -99,23 +100,35 @@ impl Pbrt<'_, '_> {
 
     /// A refractive index, where one is given.
     fn index(&mut self, list: &ParameterList, name: &'static str) -> Result<Option<f32>, FormatError> {
+        let Some((index, dispersion)) = self.refraction(list, name)? else { return Ok(None) };
+        if dispersion != Some(0.0) {
+            self.refracts_alike(list, name);
+        }
+        Ok(Some(index))
+    }
+
+    fn refracts_alike(&mut self, list: &ParameterList, name: &'static str) {
+        let what = "light of all colours is refracted alike, by the index at 587.6 nm";
+        self.oddities.note(what, || list.place(name));
+    }
+
+    /// A refractive index at 587.6 nm, and the dispersion that goes with it; `None` for what disperses as nothing here does.
+    fn refraction(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+    ) -> Result<Option<(f32, Option<f32>)>, FormatError> {
         let Some(parameter) = list.find(name) else { return Ok(None) };
         if parameter.kind == Kind::Float {
-            return list.finite(name, 1.5).map(Some);
+            return Ok(Some((list.finite(name, 1.5)?, Some(0.0))));
         }
-        let spectrum = self.whole_spectrum(parameter)?;
-        let varies = match &spectrum {
-            Some(spectrum) => spectrum.varies(),
-            None => parameter.text().is_some_and(|name| name.starts_with("glass-")),
-        };
-        if varies {
-            let what = "light of all colours is refracted alike, by the index at 587.6 nm";
-            self.oddities.note(what, || parameter.at.clone());
+        if let Some(spectrum) = self.whole_spectrum(parameter)? {
+            return Ok(Some((spectrum.at_yellow(), spectrum.dispersion())));
         }
-        match spectrum {
-            Some(spectrum) => Ok(Some(spectrum.at_yellow())),
-            None => Ok(Some(self.colour_of(parameter, Meaning::Number)?.g)),
+        if let Some(Named::Glass { index, abbe_number }) = parameter.text().and_then(named) {
+            return Ok(Some((index, Some(20.0 / abbe_number))));
         }
+        Ok(Some((self.colour_of(parameter, Meaning::Number)?.g, Some(0.0))))
     }
 
     /// Sets a colour or a picture of one.

@@ -70,8 +70,16 @@ pub(super) fn thin_dielectric(pbrt: &mut Pbrt, list: &ParameterList) -> Result<O
 }
 
 fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
-    let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
-    Ok(Spec::new("", "dielectric").with("eta", pbrt.held_index(index, list)))
+    let (index, dispersion) = pbrt.refraction(list, "eta")?.unwrap_or((1.5, Some(0.0)));
+    let spec = Spec::new("", "dielectric").with("eta", pbrt.held_index(index, list));
+    Ok(match dispersion {
+        Some(0.0) => spec,
+        Some(dispersion) => spec.with("dispersion", dispersion),
+        None => {
+            pbrt.refracts_alike(list, "eta");
+            spec
+        }
+    })
 }
 
 impl Pbrt<'_, '_> {

@@ -23,6 +23,8 @@ pub(super) struct Maps {
     /// True where transmission_color is of the surface, and not of what is inside.
     pub(super) tints_surface: bool,
     pub(super) thin: bool,
+    /// 1 over Abbe's number of what is clear; 0 where light does not go into it.
+    pub(super) dispersion: f32,
     pub(super) coat_weight: NumberMap,
     pub(super) coat_color: ColourMap,
     pub(super) coat_roughness: NumberMap,
@@ -41,6 +43,9 @@ impl Maps {
     pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Maps, SceneError> {
         let colour = |key| colour_map(reader, key, ingredients);
         let number = |key| number_map(reader, key, ingredients);
+        let transmission_weight = number("transmission_weight")?;
+        let is_solid = is_there(&transmission_weight) && !reader.bool("thin_walled");
+        let scale = if is_solid { reader.number("transmission_dispersion_scale") } else { 0.0 };
         Ok(Maps {
             base_color: colour("base_color")?,
             base_metalness: number("base_metalness")?,
@@ -50,10 +55,11 @@ impl Maps {
             specular_ior: number("specular_ior")?,
             anisotropy: number("specular_roughness_anisotropy")?,
             rotation: number("anisotropy_rotation")?,
-            transmission_weight: number("transmission_weight")?,
+            transmission_weight,
             transmission_color: colour("transmission_color")?,
             tints_surface: reader.number("transmission_depth") == 0.0 || reader.bool("thin_walled"),
             thin: reader.bool("thin_walled"),
+            dispersion: scale / reader.number("transmission_dispersion_abbe_number"),
             coat_weight: number("coat_weight")?,
             coat_color: colour("coat_color")?,
             coat_roughness: number("coat_roughness")?,
@@ -118,6 +124,7 @@ impl Maps {
                 Rgb::WHITE
             },
             thin: self.thin,
+            dispersion: self.dispersion,
             coat: self.coat_weight.at(uv),
             coat_color: self.coat_color.at(uv).clamp(0.0, 1.0),
             coat_roughness: self.coat_roughness.at(uv),

@@ -65,6 +65,20 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 kind: ParameterKind::Number { min: 0.0, max: 1e6 },
                 default: "0",
             },
+            Parameter {
+                name: "transmission_dispersion_scale",
+                summary: "how much of what transmission_dispersion_abbe_number says parts colours inside of what is clear",
+                unit: "",
+                kind: ParameterKind::Number { min: 0.0, max: 1.0 },
+                default: "0",
+            },
+            Parameter {
+                name: "transmission_dispersion_abbe_number",
+                summary: "the less it is, the further colours are parted: 64 for window glass, 36 for flint glass",
+                unit: "",
+                kind: ParameterKind::Number { min: 1.0, max: 1e4 },
+                default: "20",
+            },
             Parameter { name: "thin_walled", ..THIN },
             PRIORITY,
             number("coat_weight", "how much of the surface has a clear coat", 1.0, "0"),
@@ -203,10 +217,17 @@ impl Material for Principled {
             + usize::from(is_there(&self.maps.fuzz_weight))
     }
 
+    fn disperses(&self) -> bool {
+        self.maps.dispersion > 0.0
+    }
+
     fn nested(&self) -> Option<Nested> {
         let is_solid = !self.maps.thin && is_there(&self.maps.transmission_weight);
-        (is_solid && self.priority > 0)
-            .then_some(Nested { priority: self.priority, eta: self.maps.specular_ior.number })
+        (is_solid && self.priority > 0).then_some(Nested {
+            priority: self.priority,
+            eta: self.maps.specular_ior.number,
+            dispersion: self.maps.dispersion,
+        })
     }
 
     fn sigma_a(&self) -> Rgb {

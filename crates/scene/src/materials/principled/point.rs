@@ -17,6 +17,7 @@ pub(super) struct Point {
     pub(super) transmission: f32,
     pub(super) passed: Rgb,
     pub(super) thin: bool,
+    pub(super) dispersion: f32,
     pub(super) coat: f32,
     pub(super) coat_color: Rgb,
     pub(super) coat_roughness: f32,
@@ -61,7 +62,7 @@ impl Point {
         });
         let clear = (!clear.is_black()).then(|| {
             let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
-            Lobe::Clear(Clear::new(self.ior, ggx, self.thin, reflected, passed, cover))
+            Lobe::Clear(Clear::new((self.ior, self.dispersion), ggx, self.thin, reflected, passed, cover))
         });
         [fuzz, coat, gloss, base, clear]
     }

@@ -186,7 +186,7 @@ impl PixelIntegrator for Auto {
         let settings = pilot::settings(film);
         let least = |turn| if turn == 0 { aim::LEAST_LIGHT_PATHS } else { pilot::LEAST_LIGHT_PATHS };
         let sources = [0, 1, 2].map(|turn| pilot::photon_settings(film, &settings[turn], least(turn)));
-        let eye = |settings| Eye::new(scene, camera, self, settings);
+        let eye = |settings| Eye::new(scene, camera, self, settings).merging();
         let turn = |i: usize| Turn { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
         // A point on each of few lights is always picked; of many, photons find the nearest by themselves.

@@ -1,0 +1,163 @@
+//! Wavelengths. Light is red, green and blue here, and a path has all three at once, until a surface that disperses sends
+//! each wavelength another way. From then on a path is of the one wavelength that was drawn for it before it began, and
+//! the channels count it as they see light of that wavelength. Several wavelengths at once [Wilkie 2014] would ask for
+//! reflectances and lights by wavelengths, of which files know nothing.
+
+use bilux_math::Rgb;
+use bilux_math::transcendental::exp;
+use std::sync::LazyLock;
+
+/// A wavelength of light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wavelength {
+    /// In nanometres.
+    pub nm: f32,
+    /// What the channels see of it, over the density with which it is drawn: on average 1 each.
+    pub weight: Rgb,
+    /// How far it is from the d line, as Cauchy's formula has it: 1/nm², over what that is from the F to the C line.
+    from_d: f32,
+}
+
+/// Fraunhofer's lines by which glass is told, in nm: helium's yellow one, hydrogen's blue and red one.
+const D_LINE: f32 = 587.5618;
+const F_LINE: f32 = 486.1327;
+const C_LINE: f32 = 656.2725;
+
+/// Wavelengths that are drawn, in nm. The channels see next to nothing of others.
+const SHORTEST: f32 = 385.0;
+const STEPS: usize = 340;
+
+impl Wavelength {
+    /// The one that indices are told for.
+    pub const D: Wavelength = Wavelength { nm: D_LINE, weight: Rgb::WHITE, from_d: 0.0 };
+
+    /// Draws one by a number, `[0, 1)`: the more often, the more the channels see of it together.
+    pub fn sample(u: f32) -> Wavelength {
+        let step = SPECTRUM.before.partition_point(|before| *before <= u).clamp(1, STEPS) - 1;
+        let within = (u - SPECTRUM.before[step]) / (SPECTRUM.before[step + 1] - SPECTRUM.before[step]);
+        Wavelength::of(SHORTEST + step as f32 + within.clamp(0.0, 1.0 - f32::EPSILON))
+    }
+
+    /// That of so many nanometres.
+    pub fn of(nm: f32) -> Wavelength {
+        let inverse_square = |nm: f32| 1.0 / (nm * nm);
+        let from_d =
+            (inverse_square(nm) - inverse_square(D_LINE)) / (inverse_square(F_LINE) - inverse_square(C_LINE));
+        let step = (nm - SHORTEST).max(0.0) as usize;
+        Wavelength { nm, weight: SPECTRUM.weights.get(step).copied().unwrap_or(Rgb::BLACK), from_d }
+    }
+
+    /// The index there of a boundary with the index `eta` at the d line; `dispersion` is 1 over Abbe's number. By Cauchy's
+    /// formula, the index of the denser side: no light makes of the denser side the thinner one. [Cauchy 1836]
+    pub fn index(&self, eta: f32, dispersion: f32) -> f32 {
+        if eta < 1.0 {
+            return 1.0 / self.index(1.0 / eta, dispersion);
+        }
+        1.0 + (eta - 1.0) * (1.0 + dispersion * self.from_d).max(0.0)
+    }
+}
+
+/// What is drawn, in steps of 1 nm.
+struct Spectrum {
+    weights: Vec<Rgb>,
+    /// The probability of all steps before each.
+    before: Vec<f32>,
+}
+
+static SPECTRUM: LazyLock<Spectrum> = LazyLock::new(|| {
+    // Light of one wavelength is of purer a colour than red, green and blue make: where a channel would have to be negative it
+    // is 0, and a little more elsewhere.
+    let clipped = |step| sensitivity(SHORTEST + step as f32 + 0.5).map(|channel| channel.max(0.0));
+    let seen: Vec<Rgb> = (0..STEPS).map(clipped).collect();
+    let whole = [0, 1, 2].map(|c| seen.iter().map(|rgb| f64::from(rgb[c])).sum::<f64>());
+    // Of each channel the part that is in each step, and their mean, by which steps are drawn.
+    let parts = |rgb: &Rgb| [0, 1, 2].map(|c| f64::from(rgb[c]) / whole[c]);
+    let density = |rgb: &Rgb| parts(rgb).iter().sum::<f64>() / 3.0;
+    let weight = |rgb: &Rgb| Rgb::from_array(parts(rgb).map(|part| (part / density(rgb)) as f32));
+    let mut sum = 0.0;
+    let after = seen.iter().map(|rgb| {
+        sum += density(rgb);
+        sum as f32
+    });
+    let before = std::iter::once(0.0).chain(after).collect();
+    Spectrum { weights: seen.iter().map(weight).collect(), before }
+});
+
+/// What the channels of Rec. 709 see of light of a wavelength in nm, in no unit: the standard observer's curves
+/// [Wyman 2013, eq. 4] by the primaries' matrix. Negative where a colour is purer than they make.
+pub(crate) fn sensitivity(nm: f32) -> Rgb {
+    let bell = |middle: f32, below: f32, above: f32| {
+        let t = (nm - middle) / if nm < middle { below } else { above };
+        exp(-0.5 * t * t)
+    };
+    let x =
+        1.056 * bell(599.8, 37.9, 31.0) + 0.362 * bell(442.0, 16.0, 26.7) - 0.065 * bell(501.1, 20.4, 26.2);
+    let y = 0.821 * bell(568.8, 46.9, 40.5) + 0.286 * bell(530.9, 16.3, 31.1);
+    let z = 1.217 * bell(437.0, 11.8, 36.0) + 0.681 * bell(459.0, 26.0, 13.8);
+    Rgb::new(
+        3.2406 * x - 1.5372 * y - 0.4986 * z,
+        -0.9689 * x + 1.8758 * y + 0.0415 * z,
+        0.0557 * x - 0.2040 * y + 1.0570 * z,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const N: u32 = 1 << 20;
+
+    fn drawn() -> impl Iterator<Item = Wavelength> {
+        (0..N).map(|i| Wavelength::sample((i as f32 + 0.5) / N as f32))
+    }
+
+    #[test]
+    fn what_is_drawn_is_white_on_average() {
+        for channel in 0..3 {
+            let mean = drawn().map(|one| f64::from(one.weight[channel])).sum::<f64>() / f64::from(N);
+            assert!((mean - 1.0).abs() < 1e-5, "{channel}: {mean}");
+        }
+        for one in drawn().step_by(997) {
+            let sum = one.weight.r + one.weight.g + one.weight.b;
+            assert!((sum - 3.0).abs() < 1e-5, "{one:?}: no weight is above 3");
+            assert_eq!(one, Wavelength::of(one.nm));
+        }
+    }
+
+    #[test]
+    fn colours_are_where_they_belong() {
+        let brightest = |nm: f32| {
+            let Rgb { r, g, b } = Wavelength::of(nm).weight;
+            if r > g.max(b) {
+                'r'
+            } else if g > b {
+                'g'
+            } else {
+                'b'
+            }
+        };
+        let seen: String = [430.0, 460.0, 520.0, 550.0, 620.0, 680.0].map(brightest).iter().collect();
+        assert_eq!(seen, "bbggrr");
+        // Violet has red in it, and yellow is half red and half green.
+        assert!(Wavelength::of(420.0).weight.r > 0.1);
+        let yellow = Wavelength::of(578.0).weight;
+        assert!((yellow.r / yellow.g - 1.0).abs() < 0.35 && yellow.b < 0.02, "{yellow:?}");
+    }
+
+    #[test]
+    fn indices_are_what_abbes_number_says() {
+        let (eta, abbe) = (1.5168f32, 64.17f32);
+        let at = |nm: f32| Wavelength::of(nm).index(eta, 1.0 / abbe);
+        assert_eq!(Wavelength::D.index(eta, 1.0 / abbe), eta);
+        let found = (eta - 1.0) / (at(F_LINE) - at(C_LINE));
+        assert!((found - abbe).abs() < 0.1, "{found}");
+        // The glass that this is has an index of 1.5143 at 656 nm, of 1.5224 at 486 nm and of 1.5302 at 405 nm.
+        for (nm, index) in [(656.3, 1.51432), (486.1, 1.52238), (404.7, 1.53024)] {
+            assert!((at(nm) - index).abs() < 5e-4, "{nm}: {}", at(nm));
+        }
+        // From its other side.
+        let other = Wavelength::of(450.0).index(1.0 / eta, 1.0 / abbe);
+        assert!((other * at(450.0) - 1.0).abs() < 1e-6);
+        assert_eq!(Wavelength::of(700.0).index(1.5, 1e3), 1.0, "the thinner side never becomes the denser");
+    }
+}
