@@ -38,7 +38,8 @@ pub use denoise::{DENOISERS, DenoiserEntry};
 pub use error::PictureError;
 pub use formats::{
     BitDepth, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, format_named, format_of_path,
-    is_decoding, read, read_bytes, read_rgba8, read_with, write, write_atomically, write_bytes,
+    guarded_decoding, is_decoding, read, read_bytes, read_rgba8, read_with, write, write_atomically,
+    write_bytes,
 };
 pub use limits::Limits;
 pub use metrics::{METRICS, MetricEntry, Report, compare};

@@ -65,11 +65,12 @@ impl<'d> Accessor<'d> {
         index: Node<'d>,
         budget: &mut Budget,
     ) -> Result<Accessor<'d>, FormatError> {
-        Accessor::open(document, document.named("accessors", index)?, budget)
+        Accessor::open(document, index.as_count()?, document.named("accessors", index)?, budget)
     }
 
     pub(super) fn open(
         document: &'d Document<'d>,
+        number: usize,
         node: Node<'d>,
         budget: &mut Budget,
     ) -> Result<Accessor<'d>, FormatError> {
@@ -92,7 +93,15 @@ impl<'d> Accessor<'d> {
         };
         let offset = node.count("byteOffset")?.unwrap_or(0);
         let size = accessor.element_size();
-        if let Some(view) = node.get("bufferView") {
+        if let Some(drawn) = document.drawn(number) {
+            if drawn.count != count || drawn.bytes.len() != count.saturating_mul(size) {
+                let (have, bytes) = (drawn.count, drawn.bytes.len());
+                let message =
+                    format!("{have} elements of {bytes} bytes are packed for these {count} of {size}");
+                return Err(node.error(message));
+            }
+            accessor.data = Some(Strided { bytes: &drawn.bytes, stride: size });
+        } else if let Some(view) = node.get("bufferView") {
             accessor.data = Some(strided(document, node, view, [offset, count, size])?);
         } else if count > document.size() {
             let message = format!("{count} elements without data are more than this file can mean");

@@ -2,6 +2,7 @@
 
 use super::json::Node;
 use super::reader::Gltf;
+use super::textures::source;
 use crate::FormatError;
 use bilux_pictures::{Limits, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
@@ -18,7 +19,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let document = self.document;
         let textures = document.root.list("textures").unwrap_or_default();
         let wanted: BTreeSet<usize> =
-            textures.iter().filter_map(|texture| texture.get("source")?.as_count().ok()).collect();
+            textures.iter().filter_map(|texture| source(*texture)?.as_count().ok()).collect();
         if wanted.len() < 2 {
             return Ok(());
         }

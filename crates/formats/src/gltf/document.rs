@@ -14,10 +14,19 @@ pub(super) struct Document<'a> {
     buffers: Vec<Cow<'a, [u8]>>,
     /// The bytes of views that are packed in the file, by their index.
     unpacked: HashMap<usize, Vec<u8>>,
+    /// The data of accessors whose primitives are packed as a whole, by their index.
+    drawn: HashMap<usize, Drawn>,
     /// Bytes of all buffers and of the file itself.
     size: usize,
     /// The file brings a buffer of its own.
     has_binary: bool,
+}
+
+/// The data of an accessor that lies in no buffer, its elements one after the other.
+pub(super) struct Drawn {
+    pub(super) bytes: Vec<u8>,
+    /// Elements.
+    pub(super) count: usize,
 }
 
 /// A part of a buffer.
@@ -64,10 +73,15 @@ impl<'a> Document<'a> {
             root,
             buffers,
             unpacked: HashMap::new(),
+            drawn: HashMap::new(),
             size,
             has_binary: container.binary.is_some(),
         };
         document.unpacked = document.unpack(reading)?;
+        #[cfg(feature = "draco")]
+        {
+            document.drawn = super::draco::unpack(&document, &mut reading.budget)?;
+        }
         Ok(document)
     }
 
@@ -79,6 +93,11 @@ impl<'a> Document<'a> {
             unpacked.insert(i, meshopt::unpacked(extension, bytes, &mut reading.budget)?);
         }
         Ok(unpacked)
+    }
+
+    /// The data of an accessor that was packed with its whole primitive.
+    pub(super) fn drawn(&self, accessor: usize) -> Option<&Drawn> {
+        self.drawn.get(&accessor)
     }
 
     /// Bytes of all that was read: a bound on what an honest file can describe without data.

@@ -12,6 +12,8 @@ const KNOWN: &[&str] = &[
     "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_animation_pointer",
+    #[cfg(feature = "draco")]
+    super::draco::NAME,
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -28,6 +30,8 @@ const KNOWN: &[&str] = &[
     "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    #[cfg(feature = "ktx2")]
+    "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
 

@@ -7,6 +7,8 @@ mod area_lights;
 mod cameras;
 mod container;
 mod document;
+#[cfg(feature = "draco")]
+mod draco;
 mod extensions;
 mod fitting;
 mod glass;

@@ -28,18 +28,18 @@ impl<'d> Gltf<'d, '_, '_> {
                 Err(error) => self.oddities.note(&error.without_place(), || view.at()),
             }
         }
-        for accessor in root.list("accessors")? {
-            self.check_accessor(accessor)?;
+        for (number, accessor) in root.list("accessors")?.into_iter().enumerate() {
+            self.check_accessor(number, accessor)?;
         }
         Ok(())
     }
 
-    fn check_accessor(&mut self, node: Node<'d>) -> Result<(), FormatError> {
+    fn check_accessor(&mut self, number: usize, node: Node<'d>) -> Result<(), FormatError> {
         if node.get("byteOffset").is_some() && node.get("bufferView").is_none() {
             let what = "a byteOffset without a bufferView says nothing";
             self.oddities.note(what, || node.at_key("byteOffset"));
         }
-        match Accessor::open(self.document, node, &mut self.reading.budget) {
+        match Accessor::open(self.document, number, node, &mut self.reading.budget) {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => self.oddities.note(&error.without_place(), || node.at()),
             Ok(accessor) if !accessor.is_aligned(self.document)? => {

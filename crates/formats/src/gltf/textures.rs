@@ -106,8 +106,7 @@ impl<'d> Gltf<'d, '_, '_> {
 
     /// The picture of a texture and its name; none, with a warning, where it cannot be had.
     fn picture(&mut self, texture: Node<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
-        let webp = texture.extension("EXT_texture_webp").and_then(|webp| webp.get("source"));
-        let Some(index) = texture.get("source").or(webp) else {
+        let Some(index) = source(texture) else {
             let what =
                 "a texture has no picture that is understood: a checker of magenta stands in its place";
             self.oddities.note(what, || texture.at());
@@ -172,6 +171,13 @@ impl<'d> Gltf<'d, '_, '_> {
             self.reading.release(bytes);
         }
     }
+}
+
+/// The number of a texture's picture. That which all programs can read stands first: packed ones have lost more.
+pub(super) fn source(texture: Node) -> Option<Node> {
+    let of = |name| texture.extension(name).and_then(|extension| extension.get("source"));
+    let packed = if cfg!(feature = "ktx2") { of("KHR_texture_basisu") } else { None };
+    texture.get("source").or(of("EXT_texture_webp")).or(packed)
 }
 
 fn wrap<'d>(sampler: Node<'d>, key: &'d str) -> Result<Wrap, FormatError> {

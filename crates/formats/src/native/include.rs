@@ -1,7 +1,8 @@
 //! A file together with those that it includes.
 
-use super::document::{BYTES_PER_BYTE, Table, parse};
+use super::document::{BYTES_PER_BYTE, Item, Node, Table, parse};
 use crate::FormatError;
+use crate::formats::format_named;
 use crate::reading::{Reading, Source};
 use bilux_scene::Span;
 use std::collections::HashSet;
@@ -68,10 +69,30 @@ impl Gathering<'_, '_> {
         if !self.seen.insert(path.clone()) {
             return Ok(());
         }
+        if is_of_another_format(file) {
+            self.parts.push(Part { root: as_model(file, at), folder: folder.map(Path::to_owned) });
+            return Ok(());
+        }
         let bytes = self.reading.load(&path)?;
         let shown = Path::new(&**from).with_file_name(file).display().to_string();
         self.add(&bytes, &shown.into(), path.parent())?;
         self.reading.release(bytes);
         Ok(())
     }
+}
+
+fn is_of_another_format(file: &str) -> bool {
+    let extension = Path::new(file).extension().map(|extension| extension.to_string_lossy().into_owned());
+    extension.and_then(|extension| format_named(&extension)).is_some_and(|row| row.entry.name != "toml")
+}
+
+/// A scene of another format as the one model of a part, with its lights and cameras.
+fn as_model(file: &str, at: &Span) -> Table {
+    let entry = |key: &str, node: Node| (key.to_owned(), at.clone(), Item { node, at: at.clone() });
+    let list =
+        |nodes: Vec<Node>| Node::List(nodes.into_iter().map(|node| Item { node, at: at.clone() }).collect());
+    let text = |text: &str| Node::Text(text.to_owned());
+    let with = list(vec![text("lights"), text("cameras")]);
+    let model = Table { entries: vec![entry("file", text(file)), entry("with", with)], at: at.clone() };
+    Table { entries: vec![entry("model", list(vec![Node::Table(model)]))], at: at.clone() }
 }

@@ -1,13 +1,14 @@
 //! The native scene file, in TOML. See `docs/formats/scene-toml.md`.
 //!
 //! A file and its includes are parsed first; then settings, materials and models are taken from each in turn,
-//! so that their order in the files does not matter.
+//! so that their order in the files does not matter; at last materials are replaced.
 
 mod document;
 mod include;
 mod merge;
 mod model;
 mod place;
+mod replace;
 mod scene;
 mod schema;
 mod shapes;
@@ -46,7 +47,8 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
 
 /// A line with one of the tables that only scenes have.
 fn sniff(bytes: &[u8]) -> bool {
-    let tables = ["[[model]]", "[[material]]", "[[light]]", "[camera]", "[[camera]]", "[render]"];
+    let tables =
+        ["[[model]]", "[[material]]", "[[light]]", "[camera]", "[[camera]]", "[render]", "[[replace]]"];
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
     start.lines().any(|line| tables.contains(&line.trim()))
 }

@@ -17,7 +17,7 @@ pub(super) const MOST_NAMES: usize = 100;
 const MOST_SETTINGS: usize = 1000;
 
 /// Keys of the top level.
-pub(super) const KEYS: [&str; 6] = ["include", "render", "camera", "light", "material", "model"];
+pub(super) const KEYS: [&str; 7] = ["include", "render", "camera", "light", "material", "model", "replace"];
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let parts = gather(reading, source)?;
@@ -36,12 +36,18 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     for part in &parts {
         native.materials(part)?;
     }
+    // Before those that models bring: the first camera is the default.
     for part in &parts {
         native.lights_and_cameras(part)?;
+    }
+    let mut replaced = Vec::new();
+    for part in &parts {
         for table in part.root.tables("model")? {
             native.model(table, part)?;
         }
+        replaced.extend(part.root.tables("replace")?);
     }
+    native.replace(&replaced)?;
     let mut scene = native.scene;
     if scene.objects.is_empty() && scene.lights.is_empty() {
         scene.warn("there is no [[model]] in it, so that nothing can be seen", whole_file(source.name));

@@ -26,7 +26,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
         "additionalProperties": false,
         "properties": {
             "include": {
-                "description": "other scene files, relative to this one, that belong to it",
+                "description": "other scene files of any format, relative to this one, that belong to it",
                 "type": "array",
                 "items": { "type": "string" },
             },
@@ -40,6 +40,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
             "light": list(lights),
             "material": list(materials),
             "model": list(model()),
+            "replace": list(replacement()),
         },
     })
 }
@@ -177,6 +178,21 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
         ("instance", described("boolean", "keep one copy of each mesh, however often it stands here")),
         ("with", words),
     ]
+}
+
+/// `[[replace]]`: other materials for what models brought.
+fn replacement() -> Value {
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "properties": {
+            "material": described("string", "the name of the material that is replaced; * is any text, ? any character"),
+            "object": described("string", "the name of the objects whose material is replaced; * is any text, ? any character"),
+            "with": described("string", "the name of the material that comes instead"),
+        },
+        "required": ["with"],
+        "anyOf": [{ "required": ["material"] }, { "required": ["object"] }],
+    })
 }
 
 fn place() -> Vec<(&'static str, Value)> {

@@ -191,8 +191,8 @@ fn what_is_broken_is_refused_with_its_pointer() {
         ("\"2.0\"", "\"two\"", "a version is two numbers"),
         (
             "\"scene\":0",
-            "\"scene\":0,\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]",
-            "without the extension KHR_draco_mesh_compression",
+            "\"scene\":0,\"extensionsRequired\":[\"KHR_texture_procedurals\"]",
+            "without the extension KHR_texture_procedurals",
         ),
         ("]}]}", "]}]", ""),
     ];

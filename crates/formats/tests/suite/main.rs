@@ -7,12 +7,15 @@ mod gltf;
 mod gltf_choices;
 mod gltf_files;
 mod gltf_motion;
+#[cfg(all(feature = "draco", feature = "ktx2"))]
+mod gltf_packed;
 mod gltf_written;
 mod hostile;
 mod native;
 mod obj;
 mod off;
 mod oracles;
+mod overlay;
 mod pbrt;
 mod ply;
 mod round_trips;

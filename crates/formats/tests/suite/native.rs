@@ -503,7 +503,7 @@ fn the_schema_knows_what_the_reader_knows() {
         assert!(text.contains(&format!("\"{word}\"")), "{word}");
     }
     let keys: Vec<&String> = schema["properties"].as_object().unwrap().keys().collect();
-    assert_eq!(keys, ["include", "render", "camera", "light", "material", "model"]);
+    assert_eq!(keys, ["include", "render", "camera", "light", "material", "model", "replace"]);
 }
 
 #[test]
@@ -519,6 +519,9 @@ fn the_examples_of_the_manual_are_scenes() {
     let picture = bilux_pictures::Picture::from_rgb(1, 1, vec![Rgb::WHITE]).unwrap();
     bilux_pictures::write(folder.path().join("tiles.png"), &picture, &Default::default()).unwrap();
     std::fs::write(folder.path().join("pot.obj"), OBJ.replace("usemtl", "#")).unwrap();
+    let car = OBJ.replacen("usemtl paint", "mtllib car.mtl\nusemtl Paint.001", 1).replace("usemtl wood", "#");
+    std::fs::write(folder.path().join("car.obj"), car).unwrap();
+    std::fs::write(folder.path().join("car.mtl"), "newmtl Paint.001\nKd 1 0 0\n").unwrap();
     std::fs::write(folder.path().join("lights.toml"), "[[light]]\nkind = \"point\"\n").unwrap();
     for example in examples {
         let path = folder.path().join("scene.toml");

@@ -22,11 +22,17 @@ pub(super) fn guarded<T>(
     format: &'static str,
     decode: impl FnOnce() -> Result<T, PictureError>,
 ) -> Result<T, PictureError> {
+    let contradicts = || PictureError::invalid(format, "its contents contradict each other");
+    guarded_decoding(decode).unwrap_or_else(|| Err(contradicts()))
+}
+
+/// Runs any decoder that shares nothing with the world but the bytes it reads; none where it panics.
+pub fn guarded_decoding<T>(decode: impl FnOnce() -> T) -> Option<T> {
     let before = DECODING.replace(true);
     // Nothing of what the decoder left half done outlives it.
     let outcome = catch_unwind(AssertUnwindSafe(decode));
     DECODING.set(before);
-    outcome.unwrap_or_else(|_| Err(PictureError::invalid(format, "its contents contradict each other")))
+    outcome.ok()
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@ mod exr_write;
 mod guard;
 mod hdr;
 mod jpeg;
+#[cfg(feature = "ktx2")]
+mod ktx2;
 mod pfm;
 mod png;
 mod pnm;
@@ -15,7 +17,7 @@ mod tokens;
 mod webp;
 
 pub use disk::write_atomically;
-pub use guard::is_decoding;
+pub use guard::{guarded_decoding, is_decoding};
 pub use rgba8::{Rgba8, read_rgba8};
 
 use crate::error::nearest;
@@ -26,8 +28,17 @@ use bilux_math::registry::Entry;
 use std::path::Path;
 
 /// Every format that there is.
-pub const PICTURE_FORMATS: &[PictureFormatEntry] =
-    &[png::ENTRY, exr::ENTRY, hdr::ENTRY, pfm::ENTRY, pnm::ENTRY, jpeg::ENTRY, webp::ENTRY];
+pub const PICTURE_FORMATS: &[PictureFormatEntry] = &[
+    png::ENTRY,
+    exr::ENTRY,
+    hdr::ENTRY,
+    pfm::ENTRY,
+    pnm::ENTRY,
+    jpeg::ENTRY,
+    webp::ENTRY,
+    #[cfg(feature = "ktx2")]
+    ktx2::ENTRY,
+];
 
 /// One format.
 #[derive(Clone, Copy, Debug)]

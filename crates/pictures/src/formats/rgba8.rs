@@ -15,12 +15,16 @@ pub struct Rgba8 {
     pub texels: Vec<[u8; 4]>,
 }
 
-/// Decodes what is stored in sRGB bytes: PNG and JPEG. `None` for all else, which [`super::read_bytes`] reads. Where both do,
+/// Decodes what is stored in sRGB bytes: PNG, JPEG and KTX2. `None` for all else, which [`super::read_bytes`] reads. Where both do,
 /// they give the same, and this in a quarter of the memory.
 ///
 /// # Errors
 /// As [`super::read_bytes`].
 pub fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+    #[cfg(feature = "ktx2")]
+    if (super::ktx2::ENTRY.sniff)(bytes) {
+        return guarded("KTX2", || super::ktx2::read_rgba8(bytes, limits));
+    }
     if (png::ENTRY.sniff)(bytes) {
         guarded("PNG", || png::read_rgba8(bytes, limits))
     } else if (jpeg::ENTRY.sniff)(bytes) {

@@ -1,0 +1,95 @@
+//! Native scenes that lie over files of other formats: what they change, and what they leave.
+
+use bilux_formats::{FormatError, ReadOptions, read};
+use bilux_scene::SceneBuilder;
+use std::fs;
+
+const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n\
+    o wheel left\nusemtl Rubber.001\nf 1 2 3\no wheel right\nusemtl Rubber.002\nf 1 2 4\no body\nusemtl Paint\nf 1 3 4\n";
+const MTL: &str =
+    "newmtl Rubber.001\nKd 0.1 0.1 0.1\nnewmtl Rubber.002\nKd 0.2 0.2 0.2\nnewmtl Paint\nKd 1 0 0\n";
+const OURS: &str = "[[material]]\nname = \"gold\"\nkind = \"conductor\"\nmetal = \"gold\"\n\
+    [[material]]\nname = \"white\"\nkind = \"diffuse\"\n";
+
+/// A scene over a car of three objects.
+fn over_a_car(toml: &str) -> Result<SceneBuilder, FormatError> {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("car.obj", OBJ), ("a.mtl", MTL), ("scene.toml", toml)] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    read(&folder.path().join("scene.toml"), &ReadOptions::default())
+}
+
+/// What each object is made of, by name.
+fn made_of(replacements: &str) -> Result<Vec<(String, String)>, FormatError> {
+    let scene = over_a_car(&format!("include = [\"car.obj\"]\n{OURS}{replacements}"))?;
+    let pairs = scene.objects.iter().map(|o| (o.name.clone(), scene.materials[o.material].name.clone()));
+    Ok(pairs.collect())
+}
+
+fn materials(replacements: &str) -> Vec<String> {
+    made_of(replacements).unwrap_or_else(|error| panic!("{error}")).into_iter().map(|(_, m)| m).collect()
+}
+
+#[test]
+fn materials_are_replaced_by_name_by_pattern_and_by_object() {
+    assert_eq!(materials(""), ["Rubber.001", "Rubber.002", "Paint"]);
+    let by_name = "[[replace]]\nmaterial = \"Paint\"\nwith = \"gold\"\n";
+    assert_eq!(materials(by_name), ["Rubber.001", "Rubber.002", "gold"]);
+    let by_pattern = "[[replace]]\nmaterial = \"Rubber*\"\nwith = \"gold\"\n";
+    assert_eq!(materials(by_pattern), ["gold", "gold", "Paint"]);
+    let by_object = "[[replace]]\nobject = \"*right\"\nwith = \"gold\"\n";
+    assert_eq!(materials(by_object), ["Rubber.001", "gold", "Paint"]);
+    let both = "[[replace]]\nobject = \"wheel*\"\nmaterial = \"*1\"\nwith = \"gold\"\n";
+    assert_eq!(materials(both), ["gold", "Rubber.002", "Paint"]);
+    let several = "[[replace]]\nmaterial = \"*\"\nwith = \"white\"\n[[replace]]\nmaterial = \"Paint\"\nwith = \"gold\"\n";
+    assert_eq!(
+        materials(several),
+        ["white", "white", "gold"],
+        "the last one counts, by the names in the file"
+    );
+}
+
+#[test]
+fn a_replacement_of_nothing_is_told_with_the_nearest_name() {
+    let refusal = |text: &str| made_of(text).expect_err("this should be refused").to_string();
+    let cases = [
+        (
+            "[[replace]]\nmaterial = \"Pant\"\nwith = \"gold\"",
+            "scene.toml:10:12: there is no material 'Pant';",
+        ),
+        ("[[replace]]\nmaterial = \"Pant\"\nwith = \"gold\"", "did you mean 'Paint'?"),
+        ("[[replace]]\nobject = \"wheels left\"\nwith = \"gold\"", "did you mean 'wheel left'?"),
+        ("[[replace]]\nmaterial = \"Glass*\"\nwith = \"gold\"", "known: Paint, Rubber.001, Rubber.002"),
+        ("[[replace]]\nmaterial = \"Paint\"\nwith = \"gld\"", "did you mean 'gold'?"),
+        ("[[replace]]\nmaterial = \"Paint\"\n", "with (the material that comes instead)"),
+        ("[[replace]]\nwith = \"gold\"\n", "material, or object"),
+        ("[[replace]]\nmaterials = \"Paint\"\nwith = \"gold\"", "did you mean 'material'?"),
+        (
+            "[[replace]]\nmaterial = \"Paint\"\nobject = \"wheel*\"\nwith = \"gold\"",
+            "this name and this material",
+        ),
+    ];
+    for (text, part) in cases {
+        let message = refusal(text);
+        assert!(message.contains(part), "{text}: {message}");
+    }
+}
+
+#[test]
+fn what_is_laid_over_comes_first_and_on_top() {
+    let glb = "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0,1]}],\
+        \"extensionsUsed\":[\"KHR_lights_punctual\"],\
+        \"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\",\"name\":\"theirs\"}]}},\
+        \"nodes\":[{\"camera\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\
+        \"cameras\":[{\"name\":\"theirs\",\"type\":\"perspective\",\"perspective\":{\"yfov\":1,\"znear\":1}}]}";
+    let folder = tempfile::tempdir().unwrap();
+    let toml = "include = [\"a.gltf\"]\n[camera]\nname = \"ours\"\n[[light]]\nname = \"ours\"\nkind = \"point\"\n\
+        [[model]]\nshape = \"floor\"\n";
+    fs::write(folder.path().join("a.gltf"), glb).unwrap();
+    fs::write(folder.path().join("scene.toml"), toml).unwrap();
+    let scene = read(&folder.path().join("scene.toml"), &ReadOptions::default()).unwrap();
+    let cameras: Vec<&str> = scene.cameras.iter().map(|camera| camera.spec.name.as_str()).collect();
+    let lights: Vec<&str> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+    assert_eq!((cameras, lights, scene.objects.len()), (vec!["ours", "theirs"], vec!["ours", "theirs"], 1));
+}

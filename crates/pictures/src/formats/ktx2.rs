@@ -1,0 +1,246 @@
+//! KTX2, read only: textures of glTF files come in it, packed by Basis Universal. [KTX 2.0]
+
+use super::guard::guarded;
+use super::{PictureFormatEntry, Rgba8, planes_of};
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use basisu::{DecodeFlags, TargetFormat, Transcoder};
+use bilux_math::registry::Entry;
+
+/// The row of `ktx2`.
+pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
+    entry: Entry {
+        name: "ktx2",
+        summary: "8 bits, sRGB or linear, plain or packed by Basis Universal: read only",
+        source: "KTX 2.0",
+        parameters: &[],
+    },
+    extensions: &["ktx2"],
+    for_display: true,
+    sniff: |bytes| bytes.starts_with(MAGIC),
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    write: None,
+};
+
+const FORMAT: &str = "KTX2";
+const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
+
+/// Pixels by Basis Universal or plain ones, a level unpacked, and four planes of ours.
+const BYTES_PER_PIXEL: u64 = 4 + 4 + 4 * 4;
+
+/// What is known before anything is unpacked.
+struct Header<'a> {
+    width: usize,
+    height: usize,
+    is_srgb: bool,
+    pixels: Pixels<'a>,
+}
+
+/// How pixels lie in the file.
+enum Pixels<'a> {
+    /// One to four bytes a pixel.
+    Plain { bytes: &'a [u8], channels: usize },
+    /// Packed by Basis Universal.
+    Packed { has_alpha: bool },
+}
+
+/// Colour models of the format's descriptor. [KTX 2.0]
+const ETC1S: u8 = 163;
+const UASTC: u8 = 166;
+
+fn u32_at(bytes: &[u8], at: usize) -> Result<u32, PictureError> {
+    let four = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>());
+    four.map(|four| u32::from_le_bytes(*four)).ok_or_else(|| PictureError::truncated(FORMAT, "the header"))
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> Result<u64, PictureError> {
+    Ok(u64::from(u32_at(bytes, at)?) | u64::from(u32_at(bytes, at + 4)?) << 32)
+}
+
+/// The bytes that an offset and a length of the file name.
+fn part<'a>(bytes: &'a [u8], [offset, length]: [u64; 2], what: &str) -> Result<&'a [u8], PictureError> {
+    let end = offset.checked_add(length).and_then(|end| usize::try_from(end).ok());
+    let start = usize::try_from(offset).ok();
+    let found = start.zip(end).and_then(|(start, end)| bytes.get(start..end));
+    found.ok_or_else(|| PictureError::truncated(FORMAT, what))
+}
+
+impl<'a> Header<'a> {
+    /// Checks whatever a decoder will take memory for.
+    fn read(bytes: &'a [u8], limits: &Limits) -> Result<Header<'a>, PictureError> {
+        let invalid = |what: String| Err(PictureError::invalid(FORMAT, what));
+        let [kind, width, height, depth, layers, faces, levels, scheme] = {
+            let at = [12, 20, 24, 28, 32, 36, 40, 44].map(|at| u32_at(bytes, at));
+            let mut all = [0; 8];
+            for (slot, number) in all.iter_mut().zip(at) {
+                *slot = number?;
+            }
+            all
+        };
+        let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
+        if depth > 1 || layers > 1 || faces != 1 {
+            return invalid("it has layers, faces or a depth: only flat pictures are read".to_owned());
+        }
+        if levels > 32 {
+            return invalid(format!("it has {levels} levels, and there cannot be more than 32"));
+        }
+        let descriptor =
+            part(bytes, [u32_at(bytes, 48)?.into(), u32_at(bytes, 52)?.into()], "its description")?;
+        let [model, transfer] = [12, 14].map(|at| descriptor.get(at).copied().unwrap_or(0));
+        part(bytes, [u32_at(bytes, 56)?.into(), u32_at(bytes, 60)?.into()], "its keys")?;
+        part(bytes, [u64_at(bytes, 64)?, u64_at(bytes, 72)?], "its tables")?;
+        let mut first = &bytes[..0];
+        for level in 0..levels.max(1) as usize {
+            let at = 80 + 24 * level;
+            let packed = part(bytes, [u64_at(bytes, at)?, u64_at(bytes, at + 8)?], "a level")?;
+            // A level unpacks to a byte a pixel, in whole blocks of 4 x 4.
+            let most = (u64::from(width) + 3) * (u64::from(height) + 3) * 4;
+            if u64_at(bytes, at + 16)? > most {
+                return invalid(format!("level {level} says that it has more than its pixels"));
+            }
+            if level == 0 {
+                first = packed;
+            }
+        }
+        let pixels = match (kind, model) {
+            (0, ETC1S | UASTC) if scheme <= 2 => {
+                // Where pixels have an alpha, a second sample says so, or a channel of the only one.
+                let has_alpha = match model {
+                    ETC1S => descriptor.len() > 44,
+                    _ => matches!(descriptor.get(31).map(|channel| channel & 15), Some(3 | 5)),
+                };
+                Pixels::Packed { has_alpha }
+            }
+            _ if scheme == 0 && channels_of(kind).is_some() => {
+                let channels = channels_of(kind).unwrap_or(1);
+                let bytes = first.get(..pixels * channels);
+                let bytes = bytes.ok_or_else(|| PictureError::truncated(FORMAT, "the pixels"))?;
+                Pixels::Plain { bytes, channels }
+            }
+            _ => {
+                return invalid(format!(
+                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} are not read: Basis Universal \
+                     (ETC1S and UASTC) and plain ones of 8 bits are"
+                ));
+            }
+        };
+        let (width, height) = (width as usize, height as usize);
+        Ok(Header { width, height, is_srgb: transfer != 1, pixels })
+    }
+
+    /// Interleaved samples and their names.
+    fn samples(&self, bytes: &[u8]) -> Result<(Vec<u8>, &'static [&'static str]), PictureError> {
+        let explain =
+            |error: basisu::Error| PictureError::invalid(FORMAT, format!("it cannot be unpacked: {error:?}"));
+        match self.pixels {
+            Pixels::Plain { bytes, channels } => {
+                let names: &[&str] = match channels {
+                    1 => &["Y"],
+                    3 => &["R", "G", "B"],
+                    _ => &["R", "G", "B", "A"],
+                };
+                Ok((bytes.to_vec(), names))
+            }
+            Pixels::Packed { has_alpha } => {
+                let transcoder = Transcoder::new(bytes).map_err(explain)?;
+                let mut samples =
+                    transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(explain)?;
+                if samples.len() != self.width * self.height * 4 {
+                    return Err(PictureError::truncated(FORMAT, "the pixels"));
+                }
+                if !has_alpha {
+                    samples.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
+                }
+                Ok((samples, &["R", "G", "B", "A"]))
+            }
+        }
+    }
+}
+
+/// Bytes of a pixel of a plain format that is read: R8, R8G8B8 and R8G8B8A8, in numbers and in sRGB. [KTX 2.0]
+fn channels_of(kind: u32) -> Option<usize> {
+    match kind {
+        9 | 15 => Some(1),
+        23 | 29 => Some(3),
+        37 | 43 => Some(4),
+        _ => None,
+    }
+}
+
+/// [`super::read_rgba8`]; none where the file says that its colours are linear.
+pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+    let header = Header::read(bytes, limits)?;
+    if !header.is_srgb {
+        return Ok(None);
+    }
+    let (samples, _) = header.samples(bytes)?;
+    Ok(Rgba8::of(header.width, header.height, &samples))
+}
+
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let header = Header::read(bytes, limits)?;
+    let (samples, names) = header.samples(bytes)?;
+    let pixels = header.width * header.height;
+    let planes =
+        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
+    let mut picture = Picture::new(header.width, header.height)?;
+    picture.colour_space = if header.is_srgb { ColourSpace::Srgb } else { ColourSpace::LinearRec709 };
+    picture.alpha = Alpha::Straight;
+    for (name, plane) in names.iter().zip(planes) {
+        picture.push_channel(*name, plane)?;
+    }
+    Ok(picture)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    /// The picture that the seeds were made of, by another program: ramps, and squares of 4 by 4 in blue.
+    fn truth(x: usize, y: usize) -> [f32; 3] {
+        let blue = if (x / 4 + y / 4) % 2 == 1 { 200.0 } else { 40.0 };
+        [x as f32 / 19.0, y as f32 / 11.0, blue / 255.0]
+    }
+
+    fn seed(name: &str) -> Vec<u8> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/picture_ktx2");
+        std::fs::read(folder.join(name)).unwrap()
+    }
+
+    #[test]
+    fn what_others_packed_looks_as_it_did() {
+        for (name, most) in [
+            ("uastc.ktx2", 0.02),
+            ("uastc_zstd.ktx2", 0.02),
+            ("uastc_alpha.ktx2", 0.05),
+            ("uastc_linear.ktx2", 0.02),
+            ("etc1s.ktx2", 0.12),
+            ("etc1s_alpha.ktx2", 0.12),
+            ("etc1s_mips.ktx2", 0.12),
+        ] {
+            let bytes = seed(name);
+            let picture = read(&bytes, &Limits::default()).unwrap();
+            assert_eq!((picture.width(), picture.height()), (20, 12), "{name}");
+            let mut squares = 0.0;
+            for (y, x) in (0..12).flat_map(|y| (0..20).map(move |x| (y, x))) {
+                let alpha = if name.contains("alpha") && x >= 10 { 80.0 / 255.0 } else { 1.0 };
+                assert!((picture.alpha_at(x, y) - alpha).abs() < 0.1, "{name}: {x}, {y}");
+                let got = picture.rgb(x, y).to_array();
+                squares += (0..3).map(|c| (got[c] - truth(x, y)[c]).powi(2)).sum::<f32>();
+            }
+            let error = (squares / (3.0 * 240.0)).sqrt();
+            assert!(error < most, "{name}: {error}");
+            let at_once = read_rgba8(&bytes, &Limits::default()).unwrap();
+            assert_eq!(at_once.is_none(), name.contains("linear"), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_stated_size_takes_no_memory() {
+        let limits = Limits::new(1 << 20);
+        for name in ["broken_wide.ktx2", "broken_level_of_a_terabyte.ktx2", "broken_tables_far_away.ktx2"] {
+            let error = Header::read(&seed(name), &limits).err().unwrap().to_string();
+            assert!(error.starts_with("KTX2"), "{name}: {error}");
+        }
+    }
+}
