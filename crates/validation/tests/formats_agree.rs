@@ -115,7 +115,7 @@ fn what_formats_hold_looks_the_same_in_all_of_them() {
     let folder = tempfile::tempdir().unwrap();
     let original = scene();
     let ours = blocks(&original, 0);
-    for (i, file) in ["scene.glb", "scene.gltf", "copy.toml"].into_iter().enumerate() {
+    for (i, file) in ["scene.glb", "scene.gltf", "scene.pbrt", "copy.toml"].into_iter().enumerate() {
         let back = there(&original, folder.path(), file);
         let p = agreement(&ours, &blocks(&back, 100 * (i as i64 + 1)));
         assert!(p > UNLIKELY, "{file}: p = {p}");

@@ -80,6 +80,18 @@ impl Mapping {
     }
 }
 
+/// The direction of a place on the square. [Clarberg 2008]
+pub(super) fn on_the_sphere(u: f64, v: f64) -> DVec3 {
+    let (u, v) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+    let (x, y) = (u.abs(), v.abs());
+    let depth = 1.0 - (x + y);
+    let r = 1.0 - depth.abs();
+    let phi = if r == 0.0 { 1.0 } else { (y - x) / r + 1.0 } * PI / 4.0;
+    let (sin, cos) = sin_cos_f64(phi);
+    let (z, across) = (1.0 - r * r, r * (2.0 - r * r).sqrt());
+    DVec3::new(across * cos.copysign(u), across * sin.copysign(v), z.copysign(depth))
+}
+
 /// What a level surface gets from above.
 fn illuminance_of(picture: &Texture, mapping: Mapping) -> f32 {
     const SIDE: u32 = 256;
@@ -183,18 +195,6 @@ mod tests {
         }
         let mean = (n * m) as f64 / 16.0;
         assert!(counts.iter().all(|&c| (f64::from(c) / mean - 1.0).abs() < 0.03), "{counts:?}");
-    }
-
-    /// The direction of a place on the square. [Clarberg 2008]
-    fn on_the_sphere(u: f64, v: f64) -> DVec3 {
-        let (u, v) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-        let (x, y) = (u.abs(), v.abs());
-        let depth = 1.0 - (x + y);
-        let r = 1.0 - depth.abs();
-        let phi = if r == 0.0 { 1.0 } else { (y - x) / r + 1.0 } * PI / 4.0;
-        let (sin, cos) = sin_cos_f64(phi);
-        let (z, across) = (1.0 - r * r, r * (2.0 - r * r).sqrt());
-        DVec3::new(across * cos.copysign(u), across * sin.copysign(v), z.copysign(depth))
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod spectra;
 mod state;
 mod textures;
 mod transforms;
+mod write;
 
 use crate::FormatError;
 use crate::formats::SceneFormatEntry;
@@ -50,7 +51,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     ],
     sniff,
     read: Some(reader::read),
-    write: None,
+    write: Some(write::write),
 };
 
 /// A line that begins the world.

@@ -17,6 +17,7 @@ mod off;
 mod oracles;
 mod overlay;
 mod pbrt;
+mod pbrt_written;
 mod ply;
 mod round_trips;
 mod shared_files;

@@ -55,7 +55,7 @@ impl Pbrt<'_, '_> {
 
 /// The part of light, coming evenly from below, that a boundary turns back: by reciprocity what it lets through from above,
 /// over the square of its index, is not.
-fn reflected_inside(index: f32) -> f32 {
+pub(in crate::pbrt) fn reflected_inside(index: f32) -> f32 {
     const STEPS: u32 = 512;
     let step = |i: u32| {
         let cos = (i as f32 + 0.5) / STEPS as f32;

@@ -5,6 +5,9 @@ mod plain;
 mod roughness;
 mod version_3;
 
+pub(super) use coated::reflected_inside;
+pub(super) use plain::extinction_of;
+
 use super::inks::{Ink, Meaning};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};

@@ -191,7 +191,7 @@ impl Pbrt<'_, '_> {
 }
 
 /// The extinction with which a metal of index 1 reflects so much straight on.
-pub(super) fn extinction_of(reflectance: Rgb) -> Rgb {
+pub(in crate::pbrt) fn extinction_of(reflectance: Rgb) -> Rgb {
     reflectance.map(|r| {
         let r = r.clamp(0.0, 0.9999);
         (2.0 * r.sqrt() / (1.0 - r).sqrt()).min(100.0)

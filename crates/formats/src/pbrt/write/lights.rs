@@ -1,0 +1,112 @@
+//! Lights; panels and spheres as black shapes that give light.
+
+use super::view::from_to;
+use super::{Document, float, numbers, point, rgb};
+use crate::FormatError;
+use crate::pbrt::environment::on_the_sphere;
+use crate::values::{colour, number, texture, vector};
+use crate::writing::Writing;
+use bilux_math::{Rgb, Vec3};
+use bilux_pictures::{Picture, write_bytes};
+use bilux_scene::lights::{BuiltLight, build};
+use bilux_scene::{Spec, Value};
+
+/// What is black but for the light that it gives.
+const BLACK: &str = "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]";
+
+impl Document<'_> {
+    pub(super) fn light(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(), FormatError> {
+        let position = vector(spec, "position").unwrap_or(Vec3::new(0.0, 5.0, 0.0));
+        let shine = |key, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
+        match spec.kind.as_str() {
+            "point" => {
+                let given = rgb("I", shine("intensity", 100.0)) + &point("from", position);
+                self.say(&format!("LightSource \"point\"{given}"));
+            }
+            "directional" => {
+                let direction = vector(spec, "direction").unwrap_or(Vec3::NEG_ONE);
+                let given = rgb("L", shine("irradiance", 3.0)) + &from_to(Vec3::ZERO, direction);
+                self.say(&format!("LightSource \"distant\"{given}"));
+            }
+            "spot" => {
+                let ahead = vector(spec, "look_at").unwrap_or(Vec3::ZERO);
+                let outer = number(spec, "angle").unwrap_or(30.0);
+                let inner = number(spec, "inner_angle").unwrap_or(25.0);
+                let cone = float("coneangle", outer) + &float("conedeltaangle", (outer - inner).max(0.0));
+                let given = rgb("I", shine("intensity", 100.0)) + &from_to(position, ahead) + &cone;
+                self.say(&format!("LightSource \"spot\"{given}"));
+            }
+            "rect" => {
+                let edge = |key, default| vector(spec, key).unwrap_or(default);
+                let (u, v) = (edge("edge_u", Vec3::X), edge("edge_v", Vec3::Z));
+                let radiance = radiance_of(spec, u.cross(v).length());
+                let is_in_front =
+                    matches!(spec.parameters.find("sides"), Some((Value::Text(t), _)) if t == "front");
+                let corners =
+                    [-u - v, u - v, u + v, v - u].map(|c| numbers(&(position + c * 0.5).to_array()));
+                let shape = format!(
+                    "\"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ {} ]",
+                    corners.join("  ")
+                );
+                self.glowing("", &shape, radiance, !is_in_front);
+            }
+            "sphere" => {
+                let radius = number(spec, "radius").unwrap_or(0.5);
+                let radiance = radiance_of(spec, std::f32::consts::PI * radius * radius);
+                let place = format!("Translate {}\n", numbers(&position.to_array()));
+                self.glowing(&place, &format!("\"sphere\"{}", float("radius", radius)), radiance, false);
+            }
+            "environment" => return self.environment(spec, writing),
+            other => writing.warn(format!("pbrt files hold no light of kind '{other}': left out")),
+        }
+        Ok(())
+    }
+
+    /// A black shape that gives light.
+    fn glowing(&mut self, place: &str, shape: &str, radiance: Rgb, both_sides: bool) {
+        let light = area_light(&rgb("L", radiance), both_sides);
+        self.say(&format!("AttributeBegin\n{place}{BLACK}\n{light}\nShape {shape}\nAttributeEnd"));
+    }
+
+    fn environment(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(), FormatError> {
+        let BuiltLight::Light(built) = build(spec, &self.scene.textures)? else { return Ok(()) };
+        if built.is_backdrop() {
+            writing.warn("pbrt files hold no backdrops, which light nothing: left out");
+            return Ok(());
+        }
+        let picture = texture(spec, "radiance").and_then(|i| self.scene.textures.get(i));
+        let changes = ["zenith", "horizon", "ground"].iter().any(|key| colour(spec, key).is_some());
+        if picture.is_none() && !changes {
+            self.say(&format!("LightSource \"infinite\"{}", rgb("L", built.le(Vec3::Y))));
+            return Ok(());
+        }
+        // As many texels as rows by longitude and latitude have around the equator, on the square.
+        let side = picture.map_or(256, |picture| (picture.height() * 3 / 2).clamp(64, 2048));
+        let place = |k: usize| (k as f64 + 0.5) / side as f64;
+        let texels = (0..side * side).map(|i| {
+            let direction = on_the_sphere(place(i % side), place(i / side));
+            built.le(direction.as_vec3())
+        });
+        let picture = Picture::from_rgb(side, side, texels.collect())?;
+        let name = format!("{}-sky-{}.exr", writing.stem, writing.beside.len() + 1);
+        let bytes = write_bytes("exr", &picture, &bilux_pictures::WriteOptions::default())?;
+        writing.beside.push((name.clone(), bytes));
+        writing.warn("environments are drawn anew on the square that pbrt has them on");
+        self.say(&format!("LightSource \"infinite\" \"string filename\" \"{name}\""));
+        Ok(())
+    }
+}
+
+/// What makes the shapes after it give light.
+pub(super) fn area_light(radiance: &str, both_sides: bool) -> String {
+    let sides = if both_sides { " \"bool twosided\" true" } else { "" };
+    format!("AreaLightSource \"diffuse\"{radiance}{sides}")
+}
+
+/// Radiance, given as such or as an intensity over an area.
+fn radiance_of(spec: &Spec, area: f32) -> Rgb {
+    match colour(spec, "radiance").filter(|radiance| !radiance.is_black()) {
+        Some(radiance) => radiance,
+        None => colour(spec, "intensity").unwrap_or(Rgb::BLACK) * (1.0 / area.max(f32::MIN_POSITIVE)),
+    }
+}

@@ -1,0 +1,74 @@
+//! What shapes have of a material: its name, what is inside, the light that they give, and their holes.
+
+use super::lights::area_light;
+use super::textures::Change;
+use super::{Document, float, rgb};
+use crate::FormatError;
+use crate::values::{colour, number, texture};
+use crate::writing::Writing;
+use bilux_math::Rgb;
+use bilux_scene::{Spec, Value};
+use std::fmt::Write;
+
+/// What stands before and behind a shape.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Look {
+    /// Directives.
+    pub(super) begin: String,
+    /// A parameter of the shape.
+    pub(super) alpha: String,
+    pub(super) glows: bool,
+}
+
+/// No change.
+pub(super) const AS_IT_IS: Change = Change { name: "", of: &|texel| texel };
+
+impl Document<'_> {
+    /// Writes a material, and gives what shapes have of it.
+    pub(super) fn look(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Look, FormatError> {
+        let (name, absorbed) = self.material(spec, writing)?;
+        let mut look = Look { begin: format!("NamedMaterial \"{name}\"\n"), ..Look::default() };
+        if !absorbed.is_black() {
+            let medium = self.name(&spec.name, "medium");
+            let given = rgb("sigma_a", absorbed) + &rgb("sigma_s", Rgb::BLACK);
+            self.say(&format!("MakeNamedMedium \"{medium}\" \"string type\" \"homogeneous\"{given}"));
+            let _ = writeln!(look.begin, "MediumInterface \"{medium}\" \"\"");
+        }
+        if let Some(radiance) = self.radiance(spec, writing)? {
+            let is_in_front =
+                matches!(spec.parameters.find("emission_sides"), Some((Value::Text(t), _)) if t == "front");
+            let _ = writeln!(look.begin, "{}", area_light(&radiance, !is_in_front));
+            look.glows = true;
+        }
+        if let Some(index) = texture(spec, "opacity") {
+            let threshold = self.scene.textures.get(index).and_then(|texture| texture.threshold);
+            if threshold.is_some() {
+                writing.warn("the edges of cut-outs are those of their texels");
+            }
+            if let Some(name) = self.numbers(index, AS_IT_IS, writing)? {
+                look.alpha = format!(" \"texture alpha\" \"{name}\"");
+            }
+        } else if let Some(opacity) = number(spec, "opacity").filter(|opacity| *opacity < 1.0) {
+            look.alpha = float("alpha", opacity);
+        }
+        Ok(look)
+    }
+
+    /// The parameters of the light that a surface gives, if any.
+    fn radiance(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Option<String>, FormatError> {
+        let scale = colour(spec, "emission_scale").unwrap_or(Rgb::WHITE);
+        let Some(index) = texture(spec, "emission") else {
+            let light = colour(spec, "emission").filter(|light| !light.is_black());
+            return Ok(light.map(|light| rgb("L", light)));
+        };
+        let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
+        let greatest = scale.max_channel();
+        if scale != Rgb::grey(scale.r) {
+            writing.warn(
+                "the factor of a picture that gives light is grey in pbrt: its greatest channel is taken",
+            );
+        }
+        let file = self.picture(&texture, false, AS_IT_IS, writing)?;
+        Ok(Some(format!(" \"string filename\" \"{file}\"{}", float("scale", greatest))))
+    }
+}

@@ -1,0 +1,162 @@
+//! Writing pbrt-v4: meshes beside it as PLY, pictures as PNG or EXR.
+
+mod lights;
+mod looks;
+mod materials;
+mod textures;
+mod view;
+
+use crate::FormatError;
+use crate::ply::encode;
+use crate::text::whole_file;
+use crate::writing::{UnusedNames, Writing};
+use bilux_math::{Rgb, Transform, Vec3};
+use bilux_scene::{Mesh, Object, SceneBuilder};
+use looks::Look;
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// A scene file while it is put together.
+struct Document<'s> {
+    scene: &'s SceneBuilder,
+    out: String,
+    /// Of textures, materials and media.
+    names: UnusedNames,
+    /// Textures that are there already, by what they are made of.
+    textures: HashMap<String, String>,
+    /// What each material of the scene is called here, and what shapes have of it.
+    looks: Vec<Look>,
+    /// The files of meshes.
+    meshes: HashMap<*const Mesh, String>,
+    /// Objects that are used several times, by mesh and material.
+    shared: HashMap<(*const Mesh, usize), String>,
+}
+
+pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
+    let mut document = Document {
+        scene,
+        out: String::new(),
+        names: UnusedNames::default(),
+        textures: HashMap::new(),
+        looks: Vec::new(),
+        meshes: HashMap::new(),
+        shared: HashMap::new(),
+    };
+    document.view(writing);
+    document.say("WorldBegin");
+    for spec in &scene.materials {
+        let look = document.look(spec, writing)?;
+        document.looks.push(look);
+    }
+    for light in &scene.lights {
+        document.light(light, writing)?;
+    }
+    let mut uses: HashMap<(*const Mesh, usize), usize> = HashMap::new();
+    for object in &scene.objects {
+        *uses.entry((Arc::as_ptr(&object.mesh), object.material)).or_default() += 1;
+    }
+    for object in &scene.objects {
+        let is_shared = uses[&(Arc::as_ptr(&object.mesh), object.material)] > 1;
+        document.object(object, is_shared, writing)?;
+    }
+    writing.main = document.out.into_bytes();
+    Ok(())
+}
+
+impl Document<'_> {
+    fn say(&mut self, line: &str) {
+        self.out.push_str(line);
+        self.out.push('\n');
+    }
+
+    /// A name in quotes that nothing else has.
+    fn name(&mut self, wanted: &str, otherwise: &str) -> String {
+        let wanted = if wanted.is_empty() { otherwise } else { wanted };
+        let plain = |c: char| if c == '"' || c == '\\' || c.is_control() { '_' } else { c };
+        self.names.unused(&wanted.chars().map(plain).collect::<String>())
+    }
+
+    fn object(&mut self, object: &Object, is_shared: bool, writing: &mut Writing) -> Result<(), FormatError> {
+        if object.mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        if !object.motion.is_still() {
+            writing.warn("moving objects are written where they are at 0 seconds");
+        }
+        let place = object.motion.at(0.0);
+        let look = self.looks.get(object.material).cloned().unwrap_or_default();
+        let file = self.mesh(&object.mesh, writing)?;
+        let shape = |look: &Look| {
+            let mut out = look.begin.clone();
+            let _ = writeln!(out, "Shape \"plymesh\" \"string filename\" \"{file}\"{}", look.alpha);
+            out
+        };
+        // Surfaces in objects give no light there.
+        if !is_shared || look.glows {
+            let _ = write!(self.out, "AttributeBegin\n{}{}AttributeEnd\n", placed(&place), shape(&look));
+            return Ok(());
+        }
+        let key = (Arc::as_ptr(&object.mesh), object.material);
+        let name = match self.shared.get(&key) {
+            Some(name) => name.clone(),
+            None => {
+                let name = self.name(&object.name, "object");
+                let _ = write!(self.out, "ObjectBegin \"{name}\"\n{}ObjectEnd\n", shape(&look));
+                self.shared.insert(key, name.clone());
+                name
+            }
+        };
+        let _ =
+            write!(self.out, "AttributeBegin\n{}ObjectInstance \"{name}\"\nAttributeEnd\n", placed(&place));
+        Ok(())
+    }
+
+    /// The file of a mesh, made when it is first asked for.
+    fn mesh(&mut self, mesh: &Arc<Mesh>, writing: &mut Writing) -> Result<String, FormatError> {
+        if let Some(file) = self.meshes.get(&Arc::as_ptr(mesh)) {
+            return Ok(file.clone());
+        }
+        if !mesh.vertex_kd.is_empty() || !mesh.vertex_ks.is_empty() {
+            writing.warn("pbrt files hold no colours of vertices: left out");
+        }
+        if !mesh.uvs2.is_empty() {
+            writing.warn("pbrt files hold one set of texture coordinates: the second is left out");
+        }
+        let bare =
+            Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), uvs2: Vec::new(), ..(**mesh).clone() };
+        let Some(bytes) = encode(&[&bare], writing.options.ascii) else {
+            let message = "a mesh has more vertices than its file can hold";
+            return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
+        };
+        let file = format!("{}-mesh-{}.ply", writing.stem, self.meshes.len() + 1);
+        writing.beside.push((file.clone(), bytes));
+        self.meshes.insert(Arc::as_ptr(mesh), file.clone());
+        Ok(file)
+    }
+}
+
+/// The directive that puts what follows into its place.
+fn placed(place: &Transform) -> String {
+    if place.is_identity() {
+        return String::new();
+    }
+    format!("Transform [ {} ]\n", numbers(&place.matrix().to_cols_array()))
+}
+
+/// Numbers that read back as the same.
+fn numbers(list: &[f32]) -> String {
+    list.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn rgb(name: &str, colour: Rgb) -> String {
+    format!(" \"rgb {name}\" [ {} ]", numbers(&colour.to_array()))
+}
+
+fn point(name: &str, at: Vec3) -> String {
+    format!(" \"point3 {name}\" [ {} ]", numbers(&at.to_array()))
+}
+
+fn float(name: &str, number: f32) -> String {
+    format!(" \"float {name}\" [ {number} ]")
+}

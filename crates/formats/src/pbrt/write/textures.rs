@@ -1,0 +1,121 @@
+//! Pictures on surfaces.
+
+use super::Document;
+use crate::FormatError;
+use crate::writing::Writing;
+use bilux_math::{Rgb, Vec2};
+use bilux_pictures::{Alpha, ColourSpace, Picture, write_bytes};
+use bilux_scene::Texture;
+use bilux_scene::texture::{Filter, Wrap};
+use std::fmt::Write;
+use std::sync::Arc;
+
+/// What a picture's texels become.
+#[derive(Clone, Copy)]
+pub(super) struct Change<'c> {
+    /// Other ones have other names.
+    pub(super) name: &'static str,
+    pub(super) of: &'c dyn Fn(Rgb) -> Rgb,
+}
+
+impl Document<'_> {
+    /// The name of a texture of colours.
+    pub(super) fn colours(
+        &mut self,
+        index: usize,
+        change: Change,
+        writing: &mut Writing,
+    ) -> Result<Option<String>, FormatError> {
+        let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
+        self.defined(index, &texture, "spectrum", change, writing).map(Some)
+    }
+
+    /// The name of a texture of numbers.
+    pub(super) fn numbers(
+        &mut self,
+        index: usize,
+        change: Change,
+        writing: &mut Writing,
+    ) -> Result<Option<String>, FormatError> {
+        let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
+        self.defined(index, &texture, "float", change, writing).map(Some)
+    }
+
+    fn defined(
+        &mut self,
+        index: usize,
+        texture: &Arc<Texture>,
+        holds: &str,
+        change: Change,
+        writing: &mut Writing,
+    ) -> Result<String, FormatError> {
+        let key = format!("{index} {holds} {}", change.name);
+        if let Some(name) = self.textures.get(&key) {
+            return Ok(name.clone());
+        }
+        let is_number = holds == "float";
+        let file = self.picture(texture, is_number, change, writing)?;
+        let name = self.name(&format!("texture {}", self.textures.len() + 1), "");
+        let mut line = format!("Texture \"{name}\" \"{holds}\" \"imagemap\" \"string filename\" \"{file}\"");
+        if (texture.is_data || is_number) && file.ends_with("png") {
+            line += " \"string encoding\" \"linear\"";
+        }
+        if texture.filter == Filter::Nearest {
+            line += " \"string filter\" \"point\"";
+        }
+        if texture.second_uv {
+            writing.warn("pbrt files hold one set of texture coordinates: the second is left out");
+        }
+        match texture.wrap {
+            [Wrap::Repeat, Wrap::Repeat] => {}
+            [Wrap::Clamp, Wrap::Clamp] => line += " \"string wrap\" \"clamp\"",
+            _ => writing.warn("textures whose edges are mirrored, or differ, are written to repeat"),
+        }
+        if let Some(transform) = &texture.transform {
+            // Theirs has v upwards.
+            let at = |u, v| transform.apply(Vec2::new(u, v));
+            let (zero, u, v) = (at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0));
+            if (u.y - zero.y).abs() + (v.x - zero.x).abs() > 1e-5 {
+                writing.warn("pbrt files hold no textures that are turned: written as if they were not");
+            }
+            let scale = [u.x - zero.x, v.y - zero.y];
+            let shift = [zero.x, 1.0 - scale[1] - zero.y];
+            let parts =
+                [("uscale", scale[0]), ("vscale", scale[1]), ("udelta", shift[0]), ("vdelta", shift[1])];
+            for (key, number) in parts {
+                let _ = write!(line, " \"float {key}\" [ {number} ]");
+            }
+        }
+        self.say(&line);
+        self.textures.insert(key, name.clone());
+        Ok(name)
+    }
+
+    /// The file of a picture; what is brighter than white goes into an EXR.
+    pub(super) fn picture(
+        &mut self,
+        texture: &Texture,
+        is_number: bool,
+        change: Change,
+        writing: &mut Writing,
+    ) -> Result<String, FormatError> {
+        let one = |texel: Rgb| match (is_number, texture.channel) {
+            (true, Some(_)) => Rgb::grey(texel.r),
+            (true, None) => Rgb::grey(texel.luminance()),
+            _ => texel,
+        };
+        let texels: Vec<Rgb> = texture.texels().map(|texel| (change.of)(one(texel))).collect();
+        let is_bright = texels.iter().any(|texel| !texel.is_finite() || texel.max_channel() > 1.0);
+        let format = if is_bright { "exr" } else { "png" };
+        let mut picture = Picture::from_rgb(texture.width(), texture.height(), texels)?;
+        if (texture.is_data || is_number) && !is_bright {
+            // As the file holds them, so that no curve is laid over numbers.
+            picture.colour_space = ColourSpace::Srgb;
+        }
+        picture.alpha = Alpha::Straight;
+        let bytes = write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
+        let name = format!("{}-texture-{}.{format}", writing.stem, writing.beside.len() + 1);
+        writing.beside.push((name.clone(), bytes));
+        Ok(name)
+    }
+}

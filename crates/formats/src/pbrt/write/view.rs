@@ -1,0 +1,116 @@
+//! What stands before the world: film, camera, filter, samples and depth.
+
+use super::{Document, float, numbers, point};
+use crate::values::{number, vector};
+use crate::writing::Writing;
+use bilux_math::Vec3;
+use bilux_math::transcendental::{atan, tan};
+use bilux_scene::cameras::CameraSpec;
+use bilux_scene::{Spec, Value};
+
+/// What other programs need not know.
+const QUIET: [&str; 4] = ["size", "max_depth", "filter", "camera"];
+
+impl Document<'_> {
+    /// Everything up to the world.
+    pub(super) fn view(&mut self, writing: &mut Writing) {
+        let settings = &self.scene.settings;
+        let text = |key: &str| match settings.find(key) {
+            Some((Value::Text(text), _)) => Some(text.clone()),
+            _ => None,
+        };
+        let whole = |key: &str| match settings.find(key) {
+            Some((Value::Integer(i), _)) => Some(*i),
+            _ => None,
+        };
+        let size = text("size").and_then(|size| {
+            let (width, height) = size.split_once('x')?;
+            Some([width.parse::<u32>().ok()?, height.parse::<u32>().ok()?])
+        });
+        let [width, height] = size.filter(|size| size.iter().all(|side| *side > 0)).unwrap_or([512, 512]);
+        let file = format!("{}.exr", writing.stem.replace(['"', '\\'], "_"));
+        self.say(&format!(
+            "Film \"rgb\" \"integer xresolution\" [ {width} ] \"integer yresolution\" [ {height} ] \
+             \"string filename\" \"{file}\""
+        ));
+        let filter = match text("filter").as_deref() {
+            None | Some("box") => "PixelFilter \"box\"",
+            Some("tent") => "PixelFilter \"triangle\" \"float xradius\" [ 1 ] \"float yradius\" [ 1 ]",
+            Some("gaussian") => "PixelFilter \"gaussian\"",
+            Some(other) => {
+                writing.warn(format!("pbrt files hold no filter '{other}': gaussian in its place"));
+                "PixelFilter \"gaussian\""
+            }
+        };
+        self.say(filter);
+        let mut sampler = "Sampler \"zsobol\"".to_owned();
+        for (key, theirs) in [("spp", "pixelsamples"), ("seed", "seed")] {
+            if let Some(count) = whole(key).filter(|count| *count > 0) {
+                sampler += &format!(" \"integer {theirs}\" [ {count} ]");
+            }
+        }
+        if sampler.contains('[') {
+            self.say(&sampler);
+        }
+        let depth = whole("max_depth").unwrap_or(16);
+        self.say(&format!("Integrator \"volpath\" \"integer maxdepth\" [ {depth} ]"));
+        for (key, ..) in &settings.0 {
+            if !QUIET.contains(&key.as_str()) && !["spp", "seed"].contains(&key.as_str()) {
+                writing.warn(format!("pbrt files hold no setting '{key}': left out"));
+            }
+        }
+        match self.scene.cameras.as_slice() {
+            [] => {}
+            [first, rest @ ..] => {
+                if !rest.is_empty() {
+                    writing.warn("pbrt files hold one camera: the first");
+                }
+                self.camera(first, width as f32 / height as f32, writing);
+            }
+        }
+    }
+
+    /// Theirs looks along +z with +x to the right.
+    fn camera(&mut self, camera: &CameraSpec, aspect: f32, writing: &mut Writing) {
+        if !camera.keyframes.is_empty() {
+            writing.warn("cameras are written where they are at 0 seconds");
+        }
+        let spec = &camera.spec;
+        let at = |key, default: Vec3| vector(spec, key).unwrap_or(default);
+        let position = at("position", Vec3::new(0.0, 0.0, 5.0));
+        let ahead = at("look_at", Vec3::ZERO);
+        if !is_switched_on(spec, "mirrored") {
+            self.say("Scale -1 1 1");
+        }
+        let all = [position, ahead, at("up", Vec3::Y)].map(|v| numbers(&v.to_array()));
+        self.say(&format!("LookAt {}", all.join("  ")));
+        if spec.kind == "orthographic" {
+            let half = number(spec, "height").unwrap_or(2.0) * 0.5;
+            let window = numbers(&[-half * aspect, half * aspect, -half, half]);
+            self.say(&format!("Camera \"orthographic\" \"float screenwindow\" [ {window} ]"));
+            return;
+        }
+        let vertical = number(spec, "fov").unwrap_or(40.0);
+        // Theirs is that of the shorter side.
+        let shorter = match aspect < 1.0 {
+            true => 2.0 * atan(tan(0.5 * vertical.to_radians()) * aspect).to_degrees(),
+            false => vertical,
+        };
+        let mut line = format!("Camera \"perspective\"{}", float("fov", shorter));
+        if let Some(radius) = number(spec, "aperture").filter(|radius| *radius > 0.0) {
+            let focus = number(spec, "focus").filter(|focus| *focus > 0.0);
+            line += &float("lensradius", radius);
+            line += &float("focaldistance", focus.unwrap_or((ahead - position).length()));
+        }
+        self.say(&line);
+    }
+}
+
+fn is_switched_on(spec: &Spec, key: &str) -> bool {
+    matches!(spec.parameters.find(key), Some((Value::Bool(true), _)))
+}
+
+/// A direction in words that lights share.
+pub(super) fn from_to(from: Vec3, to: Vec3) -> String {
+    point("from", from) + &point("to", to)
+}

@@ -1,0 +1,224 @@
+//! pbrt files of our own: there and back again.
+
+use crate::read_text;
+use bilux_formats::{ReadOptions, WriteOptions, read, write};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{SceneBuilder, Spec, Value};
+use std::path::Path;
+
+/// What was not held, and the scene as it comes back.
+fn there_and_back(scene: &SceneBuilder, folder: &Path) -> (Vec<String>, SceneBuilder) {
+    let path = folder.join("a scene.pbrt");
+    let told = write(&path, scene, &WriteOptions::default()).unwrap();
+    let back = read(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    (told.into_iter().map(|warning| warning.message).collect(), back)
+}
+
+fn scene(toml: &str) -> SceneBuilder {
+    read_text("toml", toml).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// With a plain material for what names none.
+fn there(toml: &str) -> (Vec<String>, SceneBuilder) {
+    let mut original = scene(toml);
+    for spec in original.materials.iter_mut().filter(|spec| spec.kind == "phong") {
+        *spec = Spec::new(&spec.name, "diffuse");
+    }
+    there_and_back(&original, tempfile::tempdir().unwrap().path())
+}
+
+/// The spec of the material of the only object.
+fn material(toml: &str) -> (Vec<String>, Spec) {
+    let text =
+        format!("[[material]]\nname = \"m\"\n{toml}\n[[model]]\nshape = \"sphere\"\nmaterial = \"m\"\n");
+    let (told, back) = there(&text);
+    (told, back.materials[back.objects[0].material].clone())
+}
+
+fn value(spec: &Spec, key: &str) -> Value {
+    spec.parameters.find(key).unwrap_or_else(|| panic!("{key}: {spec:?}")).0.clone()
+}
+
+#[track_caller]
+fn assert_near(spec: &Spec, key: &str, wanted: &[f32]) {
+    let found: Vec<f32> = match value(spec, key) {
+        Value::Number(x) => vec![x as f32],
+        Value::List(list) => {
+            list.iter().map(|x| if let Value::Number(x) = x { *x as f32 } else { -1.0 }).collect()
+        }
+        other => panic!("{key}: {other:?}"),
+    };
+    let near = |(a, b): (&f32, &f32)| (a - b).abs() <= 1e-4 * (1.0 + b.abs());
+    assert!(
+        found.len() == wanted.len() && found.iter().zip(wanted).all(near),
+        "{key}: {found:?}, not {wanted:?}"
+    );
+}
+
+#[test]
+fn cameras_come_back_as_they_stood() {
+    for (size, mirrored) in [("640x480", false), ("300x500", false), ("400x400", true)] {
+        let (told, back) = there(&format!(
+            "[render]\nsize = \"{size}\"\nspp = 8\nseed = 3\nmax_depth = 7\nfilter = \"tent\"\n[camera]\nposition = [1, 2, 6]\n\
+             look_at = [0, 0.5, 0]\nfov = 33\naperture = 0.05\nmirrored = {mirrored}\n[[model]]\nshape = \"floor\"\n"
+        ));
+        assert!(told.is_empty(), "{told:?}");
+        let spec = &back.cameras[0].spec;
+        assert_near(spec, "fov", &[33.0]);
+        assert_near(spec, "aperture", &[0.05]);
+        assert_near(spec, "position", &[1.0, 2.0, 6.0]);
+        assert_near(spec, "focus", &[Vec3::new(1.0, 1.5, 6.0).length()]);
+        assert_eq!(spec.parameters.find("mirrored").is_some(), mirrored);
+        for (key, wanted) in [("size", Value::from(size)), ("filter", "tent".into())] {
+            assert_eq!(back.settings.find(key).unwrap().0, &wanted, "{key}");
+        }
+        for (key, wanted) in [("spp", 8), ("seed", 3), ("max_depth", 7)] {
+            assert_eq!(back.settings.find(key).unwrap().0, &Value::Integer(wanted), "{key}");
+        }
+    }
+    let (_, back) = there("[camera]\nkind = \"orthographic\"\nheight = 3\n[[model]]\nshape = \"floor\"\n");
+    assert_eq!(back.cameras[0].spec.kind, "orthographic");
+    assert_near(&back.cameras[0].spec, "height", &[3.0]);
+}
+
+#[test]
+fn lights_come_back() {
+    let (told, back) = there(
+        "[[light]]\nkind = \"point\"\nposition = [1, 2, 3]\nintensity = [4, 5, 6]\n\
+         [[light]]\nkind = \"spot\"\nposition = [0, 4, 0]\nlook_at = [0, 0, 1]\nintensity = 9\nangle = 25\ninner_angle = 20\n\
+         [[light]]\nkind = \"directional\"\ndirection = [0, -2, 0]\nirradiance = [1, 2, 3]\n\
+         [[light]]\nkind = \"sphere\"\nposition = [3, 3, 3]\nradius = 0.25\nradiance = [7, 8, 9]\n\
+         [[light]]\nkind = \"environment\"\nradiance = [0.1, 0.2, 0.3]\nscale = 2\n\
+         [[light]]\nkind = \"rect\"\nposition = [0, 5, 0]\nedge_u = [2, 0, 0]\nedge_v = [0, 0, 1]\nintensity = 6\nsides = \"front\"\n\
+         [[light]]\nkind = \"ambient\"\n",
+    );
+    assert_eq!(told, ["pbrt files hold no light of kind 'ambient': left out"]);
+    let of =
+        |kind: &str| back.lights.iter().find(|light| light.kind == kind).unwrap_or_else(|| panic!("{kind}"));
+    assert_near(of("point"), "intensity", &[4.0, 5.0, 6.0]);
+    assert_near(of("spot"), "angle", &[25.0]);
+    assert_near(of("spot"), "inner_angle", &[20.0]);
+    assert_near(of("directional"), "direction", &[0.0, -1.0, 0.0]);
+    assert_near(of("directional"), "irradiance", &[1.0, 2.0, 3.0]);
+    assert_near(of("sphere"), "radiance", &[7.0, 8.0, 9.0]);
+    assert_near(of("sphere"), "radius", &[0.25]);
+    assert_near(of("environment"), "radiance", &[0.2, 0.4, 0.6]);
+    let panel = &back.objects[0];
+    let spec = &back.materials[panel.material];
+    assert_near(spec, "emission", &[3.0; 3]);
+    assert_eq!(value(spec, "emission_sides"), "front".into());
+    let [a, b, c] = panel.mesh.triangles[0].map(|i| panel.mesh.positions[i as usize]);
+    assert!((b - a).cross(c - a).y < 0.0, "edge_u × edge_v points down");
+}
+
+#[test]
+fn materials_come_back() {
+    let quiet = |toml: &str| {
+        let (told, spec) = material(toml);
+        assert!(told.is_empty(), "{toml}: {told:?}");
+        spec
+    };
+    let spec = quiet("kind = \"diffuse\"\nreflectance = [0.1, 0.2, 0.3]");
+    assert_eq!((&*spec.kind, &*spec.name), ("diffuse", "m"));
+    assert_near(&spec, "reflectance", &[0.1, 0.2, 0.3]);
+    let spec = quiet("kind = \"conductor\"\nmetal = \"gold\"\nroughness = 0.4\nanisotropy = 0.5");
+    assert_eq!(value(&spec, "metal"), "gold".into());
+    assert_near(&spec, "roughness", &[0.4]);
+    assert_near(&spec, "anisotropy", &[0.5]);
+    let spec = quiet("kind = \"conductor\"\neta = [1, 2, 3]\nk = [4, 5, 6]\nroughness = 0");
+    assert_near(&spec, "k", &[4.0, 5.0, 6.0]);
+    let spec = quiet("kind = \"dielectric\"\neta = 1.7\nabsorption = [1, 2, 3]\nroughness = 0.2");
+    assert_eq!(&*spec.kind, "dielectric");
+    assert_near(&spec, "eta", &[1.7]);
+    assert_near(&spec, "absorption", &[1.0, 2.0, 3.0]);
+    assert_near(&spec, "roughness", &[0.2]);
+    let spec = quiet(
+        "kind = \"principled\"\nbase_color = [0.8, 0.4, 0.1]\nspecular_ior = 1.6\nspecular_roughness = 0.5",
+    );
+    assert_eq!(&*spec.kind, "principled");
+    assert_near(&spec, "base_color", &[0.8, 0.4, 0.1]);
+    assert_near(&spec, "specular_ior", &[1.6]);
+    assert_near(&spec, "specular_roughness", &[0.5]);
+    let spec =
+        quiet("kind = \"principled\"\nbase_metalness = 0\ntransmission_weight = 1\nthin_walled = true");
+    assert_eq!((&*spec.kind, value(&spec, "thin")), ("dielectric", true.into()));
+    let spec = quiet("kind = \"diffuse\"\nreflectance = 0.5\nemission = [1, 2, 3]\nopacity = 0.5");
+    assert_near(&spec, "emission", &[1.0, 2.0, 3.0]);
+    assert_near(&spec, "opacity", &[0.5]);
+    let (told, spec) = material("kind = \"principled\"\nfuzz_weight = 1\ncoat_weight = 0.5");
+    assert_eq!((told.len(), &*spec.kind), (2, "principled"), "{told:?}");
+}
+
+#[test]
+fn mixtures_come_back() {
+    let (told, spec) = material("kind = \"principled\"\nbase_metalness = 0.25\ncoat_weight = 0");
+    assert_eq!((&*spec.kind, told.len()), ("mix", 1), "{told:?}");
+    assert_near(&spec, "amount", &[0.25]);
+}
+
+#[test]
+fn textures_come_back_as_they_were() {
+    use bilux_pictures::{Picture, write as write_picture};
+    let folder = tempfile::tempdir().unwrap();
+    let texels = (0..16).map(|i| Rgb::new(i as f32 / 15.0, 0.25, 1.0 - i as f32 / 15.0)).collect();
+    let picture = Picture::from_rgb(4, 4, texels).unwrap();
+    write_picture(folder.path().join("t.png"), &picture, &Default::default()).unwrap();
+    let toml = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = { texture = \"t.png\" }\n\
+        opacity = { texture = \"t.png\", channel = \"b\" }\n[[model]]\nshape = \"quad\"\nmaterial = \"m\"\n";
+    std::fs::write(folder.path().join("s.toml"), toml).unwrap();
+    let original = read(&folder.path().join("s.toml"), &ReadOptions::default()).unwrap();
+    let (told, back) = there_and_back(&original, folder.path());
+    assert!(told.is_empty(), "{told:?}");
+    let texture = |scene: &SceneBuilder, key: &str| {
+        let spec = &scene.materials[scene.objects[0].material];
+        match value(spec, key) {
+            Value::Texture(index) => scene.textures[index].clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    for key in ["reflectance", "opacity"] {
+        let (ours, theirs) = (texture(&original, key), texture(&back, key));
+        for (u, v) in [(0.1, 0.1), (0.3, 0.8), (0.9, 0.4)] {
+            let [a, b] = [&ours, &theirs].map(|texture| match key {
+                "opacity" => Rgb::grey(texture.number(Vec2::new(u, v))),
+                _ => texture.at(Vec2::new(u, v)),
+            });
+            assert!((a + b * -1.0).to_array().iter().all(|c| c.abs() < 0.005), "{key} {u} {v}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn the_sky_comes_back_the_way_it_stood() {
+    let (_, back) = there(
+        "[[light]]\nkind = \"environment\"\nzenith = [0, 0, 4]\nhorizon = [2, 0, 0]\nground = [0, 1, 0]\n[[model]]\nshape = \"floor\"",
+    );
+    let Value::Texture(index) = value(&back.lights[0], "radiance") else { panic!() };
+    let sky = &back.textures[index];
+    let at = |row: f32| sky.at(Vec2::new(0.3, row));
+    assert!((at(0.99).b - 4.0).abs() < 0.1, "{:?}", at(0.99));
+    assert!((at(0.5).r - 2.0).abs() < 0.1, "{:?}", at(0.5));
+    assert!((at(0.01).g - 1.0).abs() < 0.1, "{:?}", at(0.01));
+}
+
+#[test]
+fn what_stands_there_often_is_one_object() {
+    let (told, back) = there(
+        "[[model]]\nshape = \"sphere\"\nname = \"a\"\n[[model]]\nshape = \"box\"\ntranslate = [3, 0, 0]\nscale = [1, 2, 1]\n",
+    );
+    assert!(told.is_empty() && back.objects.len() == 2, "{told:?}");
+    let mut scene = scene("[[model]]\nshape = \"sphere\"\n");
+    for i in 1..5 {
+        let place = bilux_math::DMat4::from_translation(bilux_math::DVec3::new(f64::from(i), 0.0, 0.0));
+        let copy = scene.objects[0].clone();
+        scene.objects.push(copy.placed(bilux_math::Transform::from_matrix(place).unwrap()));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (_, back) = there_and_back(&scene, folder.path());
+    assert_eq!(back.objects.len(), 5);
+    let first = &back.objects[0].mesh;
+    assert!(back.objects.iter().all(|object| std::sync::Arc::ptr_eq(&object.mesh, first)));
+    assert!((back.bounds(0.0).max.x - scene.bounds(0.0).max.x).abs() < 1e-5);
+    let files = std::fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(files, 2, "the scene and one mesh");
+}
