@@ -5,6 +5,7 @@
 mod accels;
 pub mod build;
 pub mod frames;
+pub mod load;
 pub mod paper;
 pub mod rays;
 pub mod render;

@@ -16,13 +16,15 @@ use std::path::PathBuf;
     bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
     bilux bench rays teapots3 --dump batches           meshes and rays for other programs\n  \
     bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
+    bilux bench load                                  files of 100 MB that it makes, and a million instances\n  \
+    bilux bench load scan.ply house.glb --json\n  \
     bilux bench render --report measured              ten minutes, and a page to look at\n  \
     bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16")]
 pub struct Bench {
     /// What to measure
     #[arg(value_enum)]
     pub kind: BenchKind,
-    /// `rays`: scene files, or teapots3, interior, scan, teapot1m, which are all four traced if none is given, or
+    /// `load`: scene files; without any, some are made. `rays`: scene files, or teapots3, interior, scan, teapot1m, which are all four traced if none is given, or
     /// teapot1k, teapot10k, teapot100k, teapots10m
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
@@ -104,4 +106,6 @@ pub enum BenchKind {
     Rays,
     /// Errors of integrators at equal time, on eight scenes
     Render,
+    /// How fast scene files are read, and how much memory that takes
+    Load,
 }

@@ -180,7 +180,10 @@ impl<'o> Reading<'o> {
             return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
         }
         let limit = self.budget.left();
+        // At once, where the system tells how long it is.
         let mut bytes = Vec::new();
+        let stated = metadata.len().min(limit).saturating_add(1);
+        let _ = usize::try_from(stated).map(|stated| bytes.try_reserve_exact(stated));
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed("read it"))?;
         self.budget.take_bytes(bytes.len() as u64, &path.display().to_string())?;
         Ok(bytes)

@@ -34,6 +34,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Build => bilux_bench::build::run(&options, &tell)?,
         BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &tell)?,
         BenchKind::Render => render(arguments, &tell)?,
+        BenchKind::Load => load(arguments, common, &tell)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?);
@@ -66,6 +67,40 @@ fn render(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_be
         report: arguments.report.clone(),
     };
     Ok(run(&options, tell)?)
+}
+
+/// `bench load`: a process for each file, so that its memory is its own.
+fn load(arguments: &Bench, common: &Common, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+    use bilux_bench::load::{Options, make, report, run};
+    let repeats = arguments.repeats.unwrap_or(5);
+    if let [file] = arguments.scenes.as_slice() {
+        let options = Options { files: vec![file.clone()], repeats, read: read_options(common) };
+        return Ok(run(&options, tell)?);
+    }
+    let folder = std::env::temp_dir().join(format!("bilux-load-{}", std::process::id()));
+    let files = if arguments.scenes.is_empty() {
+        tell("what is made: files of 100 MB, and a million instances");
+        std::fs::create_dir_all(&folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+        make(&folder, 100_000_000, 1_000_000)?
+    } else {
+        arguments.scenes.clone()
+    };
+    let rows = files.iter().map(|file| {
+        tell(&file.display().to_string());
+        let mut command = std::process::Command::new(std::env::current_exe()?);
+        command.args(["bench", "load", "--json", "--quiet", "--repeats", &repeats.to_string()]);
+        command.args(["--max-memory", &common.max_memory.to_string()]).arg(file);
+        let output = command.stderr(std::process::Stdio::inherit()).output()?;
+        anyhow::ensure!(output.status.success(), "{}: could not be measured", file.display());
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        Ok(found["rows"][0].clone())
+    });
+    let rows = rows.collect::<anyhow::Result<Vec<_>>>();
+    if arguments.scenes.is_empty() {
+        // What was made is of no use any more.
+        let _ = std::fs::remove_dir_all(&folder);
+    }
+    Ok(report(rows?))
 }
 
 /// What a reference takes of each integrator where nothing is said, in seconds.
