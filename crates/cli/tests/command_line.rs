@@ -73,6 +73,34 @@ fn pieces_in_any_order_are_the_whole() {
 }
 
 #[test]
+fn layers_of_pieces_are_those_of_the_whole() {
+    let folder = folder();
+    let path = folder.path();
+    let settings = ["-i", "path", "--spp", "8", "--aov", "albedo,normal,depth,ids,variance"];
+    let with = |output: &str, more: &[&str]| render(path, output, &[&settings, more].concat());
+    with("a.exr", &["--crop", "0,0,20,32"]);
+    with("b.exr", &["--samples", "0..4", "--crop", "20,0,28,32"]);
+    with("c.exr", &["--samples", "4..8", "--crop", "20,0,28,32"]);
+    with("whole.exr", &[]);
+    bilux(path).args(["merge", "a.exr", "b.exr", "c.exr", "-o", "joined.exr"]).assert().success();
+    let read = |name: &str| bilux::pictures::read(path.join(name)).unwrap();
+    let (whole, joined) = (read("whole.exr"), read("joined.exr"));
+    for name in ["albedo.G", "normal.Y", "depth.Z"] {
+        assert_eq!(joined.channel(name).unwrap(), whole.channel(name).unwrap(), "{name}");
+    }
+    assert_eq!(joined.integer_plane("id.object").unwrap(), whole.integer_plane("id.object").unwrap());
+    // Each half of the samples has its own guess of the variance: the same in the mean, and where there is but one part.
+    let of = |picture: &bilux::pictures::Picture, columns: std::ops::Range<usize>| -> f64 {
+        let plane = picture.channel("variance.G").unwrap();
+        let rows = plane.chunks(picture.width()).flat_map(|row| &row[columns.clone()]);
+        rows.map(|&v| f64::from(v)).sum()
+    };
+    assert_eq!(of(&joined, 0..20), of(&whole, 0..20));
+    let ratio = of(&joined, 20..48) / of(&whole, 20..48);
+    assert!((0.5..2.0).contains(&ratio), "{ratio}");
+}
+
+#[test]
 fn each_strategy_has_its_pictures_and_its_place_on_a_sheet() {
     let folder = folder();
     let path = folder.path();

@@ -18,6 +18,7 @@ pub mod filters;
 pub mod halves;
 pub mod integrators;
 pub mod interval;
+pub mod join;
 mod light_choice;
 mod media;
 pub mod partial;
@@ -45,6 +46,7 @@ pub use filters::{FILTERS, Filter, FilterEntry};
 pub use halves::{FirstHalf, push_variance};
 pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrator};
 pub use interval::{Estimate, Interval, REPLICATES};
+pub use join::JoinedLayers;
 pub use light_choice::LightChoice;
 pub use plan::{Choice, Plan, Rival};
 pub use render::{

@@ -2,7 +2,7 @@
 
 use bilux::Error;
 use bilux::formats::{FormatError, WriteOptions, write};
-use bilux::math::transcendental::{cos, sin};
+use bilux::math::transcendental::{cos, powf_f64, sin};
 use bilux::math::{Vec2, Vec3};
 use bilux::scene::{Mesh, Object, SceneBuilder};
 use serde_json::json;
@@ -57,7 +57,7 @@ fn waves(side: u32) -> Mesh {
 
 /// A GLB with one box in many places, by `EXT_mesh_gpu_instancing`.
 fn boxes(count: u32) -> Vec<u8> {
-    let side = f64::from(count).cbrt().ceil() as u32;
+    let side = powf_f64(f64::from(count), 1.0 / 3.0).ceil() as u32;
     let mut binary = Vec::new();
     let mut floats = |list: &mut dyn Iterator<Item = f32>| {
         let start = binary.len();

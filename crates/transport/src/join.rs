@@ -1,0 +1,94 @@
+//! The layers of parts of a picture, put together as their films are.
+
+use crate::error::FilmError;
+use crate::film::Film;
+use bilux_pictures::Picture;
+use std::collections::BTreeMap;
+
+/// Layers that are the same in every part that has the pixel.
+const EVEN: [&str; 3] = ["albedo.", "normal.", "depth."];
+/// The same, of whole numbers.
+const IDS: &str = "id.";
+/// The variance of a pixel's mean, which falls as samples come together.
+const VARIANCE: &str = "variance.";
+
+/// Layers of parts, by name.
+#[derive(Default)]
+pub struct JoinedLayers {
+    /// Of each pixel of the whole film: sums, and the samples that they are of.
+    floats: BTreeMap<String, Vec<f32>>,
+    integers: BTreeMap<String, Vec<u32>>,
+    /// Samples of a pixel in the parts so far; none are counted where there is no variance.
+    samples: Vec<u32>,
+    left_out: bool,
+}
+
+impl JoinedLayers {
+    /// Adds the layers of a part, of which `film` is the light.
+    pub fn add(&mut self, part: &Picture, film: &Film) {
+        let (window, size) = (film.window(), film.width() as usize * film.height() as usize);
+        let whole = |i: usize| {
+            let (x, y) = window.position(i);
+            y as usize * film.width() as usize + x as usize
+        };
+        // What light paths have left belongs to the whole film, and its layers do not fall apart by pixels.
+        let has_light = part.channel("light.R").is_some();
+        self.left_out |= has_light;
+        self.samples.resize(size, 0);
+        for channel in part.channels() {
+            let name = channel.name.as_str();
+            let is_even = EVEN.iter().any(|layer| name.starts_with(layer));
+            if !is_even && (has_light || !name.starts_with(VARIANCE)) {
+                continue;
+            }
+            let kept = self.floats.entry(name.to_owned()).or_insert_with(|| vec![0.0; size]);
+            for (i, &sample) in channel.samples.iter().enumerate() {
+                let at = whole(i);
+                if is_even {
+                    kept[at] = sample;
+                    continue;
+                }
+                // The variance of a mean of means, each for its part of the samples.
+                let (x, y) = window.position(i);
+                let (before, new) = (self.samples[at] as f32, film.samples(x, y) as f32);
+                let all = (before + new).max(1.0);
+                let (old, new) = (before / all, new / all);
+                kept[at] = kept[at] * old * old + sample * new * new;
+            }
+        }
+        for plane in part.integer_planes().iter().filter(|plane| plane.name.starts_with(IDS)) {
+            let kept = self.integers.entry(plane.name.clone()).or_insert_with(|| vec![0; size]);
+            plane.samples.iter().enumerate().for_each(|(i, &id)| kept[whole(i)] = id);
+        }
+        for i in 0..window.pixels() {
+            let (x, y) = window.position(i);
+            self.samples[whole(i)] += film.samples(x, y);
+        }
+    }
+
+    /// True where parts had layers that cannot be put together.
+    pub fn left_out(&self) -> bool {
+        self.left_out
+    }
+
+    /// Adds the layers to a picture of a film's window.
+    ///
+    /// # Errors
+    /// When the picture has another size, or such layers already.
+    pub fn push(&self, picture: &mut Picture, film: &Film) -> Result<(), FilmError> {
+        let window = film.window();
+        let places = || {
+            (0..window.pixels()).map(|i| {
+                let (x, y) = window.position(i);
+                y as usize * film.width() as usize + x as usize
+            })
+        };
+        for (name, kept) in &self.floats {
+            picture.push_channel(name.as_str(), places().map(|at| kept[at]).collect())?;
+        }
+        for (name, kept) in &self.integers {
+            picture.push_integer_plane(name.as_str(), places().map(|at| kept[at]).collect())?;
+        }
+        Ok(())
+    }
+}
