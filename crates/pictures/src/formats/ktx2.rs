@@ -56,6 +56,21 @@ fn u64_at(bytes: &[u8], at: usize) -> Result<u64, PictureError> {
     Ok(u64::from(u32_at(bytes, at)?) | u64::from(u32_at(bytes, at + 4)?) << 32)
 }
 
+/// True when a table of keys, from this byte of the file on, ends where its last key does, filled up to a multiple of 4 bytes. The
+/// decoder looks beyond where it does not.
+fn are_whole(keys: &[u8], start: usize) -> bool {
+    let mut at = 0;
+    while keys.len().saturating_sub(at) > 4 {
+        let Ok(length) = u32_at(keys, at) else { return false };
+        // What is too long ends the decoder's search.
+        if length < 2 || length as usize > keys.len() - at - 4 {
+            return true;
+        }
+        at = (start + at + 4 + length as usize).next_multiple_of(4) - start;
+    }
+    at <= keys.len()
+}
+
 /// The bytes that an offset and a length of the file name.
 fn part<'a>(bytes: &'a [u8], [offset, length]: [u64; 2], what: &str) -> Result<&'a [u8], PictureError> {
     let end = offset.checked_add(length).and_then(|end| usize::try_from(end).ok());
@@ -86,7 +101,10 @@ impl<'a> Header<'a> {
         let descriptor =
             part(bytes, [u32_at(bytes, 48)?.into(), u32_at(bytes, 52)?.into()], "its description")?;
         let [model, transfer] = [12, 14].map(|at| descriptor.get(at).copied().unwrap_or(0));
-        part(bytes, [u32_at(bytes, 56)?.into(), u32_at(bytes, 60)?.into()], "its keys")?;
+        let keys = part(bytes, [u32_at(bytes, 56)?.into(), u32_at(bytes, 60)?.into()], "its keys")?;
+        if !are_whole(keys, u32_at(bytes, 56)? as usize) {
+            return Err(PictureError::truncated(FORMAT, "its keys"));
+        }
         part(bytes, [u64_at(bytes, 64)?, u64_at(bytes, 72)?], "its tables")?;
         let mut first = &bytes[..0];
         for level in 0..levels.max(1) as usize {

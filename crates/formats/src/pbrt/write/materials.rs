@@ -20,8 +20,14 @@ const METALS: [(&str, &str); 5] =
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
 /// Parts of `principled` that nothing there says.
-const LEFT_OUT: [(&str, f32); 4] =
-    [("fuzz_weight", 0.0), ("thin_film_weight", 0.0), ("priority", 0.0), ("normal_scale", 1.0)];
+const LEFT_OUT: [(&str, f32); 6] = [
+    ("fuzz_weight", 0.0),
+    ("thin_film_weight", 0.0),
+    ("priority", 0.0),
+    ("normal_scale", 1.0),
+    ("dispersion", 0.0),
+    ("transmission_dispersion_scale", 0.0),
+];
 
 impl Document<'_> {
     /// Writes a material; gives its name, and what is absorbed inside.
