@@ -124,6 +124,7 @@ fn layered_surfaces_look_the_same_from_both_ends() {
         ("coated", coated.with("coat_roughness", 0.2f32).with("coat_color", Rgb::new(0.9, 0.7, 0.6))),
         ("clear", clear.clone().with("transmission_color", Rgb::new(0.6, 0.9, 0.8))),
         ("velvet", principled().with("fuzz_weight", 0.9f32).with("fuzz_roughness", 0.4f32)),
+        ("clay", principled().with("base_diffuse_roughness", 1.0f32)),
         ("leaf", principled().with("diffuse_transmission_weight", 0.6f32)),
         ("oily", principled().with("thin_film_weight", 1.0f32).with("base_metalness", 0.6f32)),
         ("clear in part", clear.with("transmission_weight", 0.5f32)),

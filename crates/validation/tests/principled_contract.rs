@@ -48,6 +48,8 @@ const CASES: &[Case] = &[
     ("velvet", &[("fuzz_weight", 0.9), ("fuzz_roughness", 0.4), ("coat_weight", 0.5)], false),
     ("leaf", &[("diffuse_transmission_weight", 0.6), ("fuzz_weight", 0.3)], false),
     ("oily", &[("thin_film_weight", 0.8), ("base_metalness", 0.5), ("specular_roughness", 0.4)], false),
+    ("rough clay", &[("base_diffuse_roughness", 1.0), ("specular_weight", 0.0)], false),
+    ("glazed clay", &[("base_diffuse_roughness", 0.6), ("coat_weight", 0.7), ("fuzz_weight", 0.3)], false),
     ("dense", &[("specular_ior", 2.4), ("specular_weight", 0.4), ("base_metalness", 0.2)], false),
 ];
 
@@ -126,6 +128,14 @@ fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
             }
         }
     }
+    // Nor does a rough base, alone or below what lets light to it.
+    for roughness in [0.3f32, 1.0] {
+        for weight in [0.0, 1.0] {
+            let numbers = [("base_diffuse_roughness", roughness), ("specular_weight", weight)];
+            let [least, most] = furnace(&principled(&numbers, Rgb::WHITE));
+            assert!(least > 0.97 && most < 1.012, "{numbers:?}: {least:.4} to {most:.4}");
+        }
+    }
     // A sheet loses nothing on its two sides together.
     let [least, most] = furnace(&principled(&[("diffuse_transmission_weight", 0.6)], Rgb::WHITE));
     assert!(least > 0.985 && most < 1.012, "a sheet: {least:.4} to {most:.4}");
@@ -182,6 +192,7 @@ fn nothing_on_top_leaves_the_diffuse_base() {
 #[test]
 fn every_corner_is_finite() {
     let keys = [
+        "base_diffuse_roughness",
         "base_metalness",
         "specular_weight",
         "specular_roughness",

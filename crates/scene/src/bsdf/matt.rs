@@ -1,7 +1,8 @@
 //! Diffuse reflection below a boundary and what covers it: what they let through is all scattered, and comes out again.
-//! [Kulla 2017]
+//! [Kulla 2017] Where the base is rough, as [`Grain`] has it: its light is scaled like Lambert's, and so no more comes out than
+//! got in.
 
-use super::{Albedo, BsdfEntry, BsdfSample, Cover, FuzzAlbedo, Ggx, Lobe, TransportMode};
+use super::{Albedo, BsdfEntry, BsdfSample, Cover, FuzzAlbedo, Ggx, Grain, Lobe, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
@@ -28,12 +29,19 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
         vec![
             ("leaf", leaf(Cover::NONE)),
             ("leaf with a bloom", leaf(Cover::NONE.below(0.7, FuzzAlbedo::new(0.4)))),
+            ("clay", Lobe::Matt(Matt::new(CLAY, Albedo::NONE, Cover::NONE).rough(1.0, CLAY))),
+            ("rough clay, glazed", {
+                let glaze = Albedo::new(&Ggx::new(0.0), 1.5);
+                Lobe::Matt(Matt::new(CLAY, glaze, Cover::NONE).rough(0.5, CLAY))
+            }),
             ("polished paint", paint(0.0, Cover::NONE)),
             ("rough paint", paint(0.4, Cover::NONE)),
             ("coated paint", paint(0.2, Cover::coat(0.8, Albedo::new(&Ggx::new(0.05), 1.6)))),
         ]
     },
 };
+
+const CLAY: Rgb = Rgb { r: 0.9, g: 0.6, b: 0.4 };
 
 /// Diffuse reflection below a boundary, on both sides of the surface alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,10 +53,11 @@ pub struct Matt {
     /// What the boundary reflects.
     boundary: Albedo,
     cover: Cover,
+    grain: Option<Grain>,
 }
 
 /// Gauss and Legendre's places and weights on 0..=1.
-const GAUSS: [(f32, f32); 8] = [
+pub(super) const GAUSS: [(f32, f32); 8] = [
     (0.019_855_07, 0.050_614_27),
     (0.101_666_76, 0.111_190_52),
     (0.237_233_8, 0.156_853_32),
@@ -76,7 +85,13 @@ impl Matt {
             GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * gets_in(t * t)).sum()
         };
         let scale = 1.0 / mean.max(f32::MIN_POSITIVE);
-        Matt { scale: reflected * scale, through: passed * scale, boundary, cover }
+        Matt { scale: reflected * scale, through: passed * scale, boundary, cover, grain: None }
+    }
+
+    /// The same of a base of this roughness, 0..=1, whose own colour this is: what it reflects without what weakens it.
+    pub fn rough(self, roughness: f32, colour: Rgb) -> Matt {
+        let grain = Grain::new(roughness, colour, |cos| self.passed(cos));
+        Matt { grain: (roughness > 0.0).then_some(grain), ..self }
     }
 
     /// How often a direction on the other side is drawn.
@@ -97,7 +112,7 @@ impl Matt {
     #[inline]
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3, _mode: TransportMode) -> Rgb {
         let scale = if wo.z * wi.z > 0.0 {
-            self.scale
+            self.grain.map_or(self.scale, |grain| self.scale * grain.over_lambert(wo, wi))
         } else if wo.z * wi.z < 0.0 {
             self.through
         } else {
@@ -110,8 +125,12 @@ impl Matt {
     #[inline]
     pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
         let through = self.share_through();
-        let side = if wo.z * wi.z > 0.0 { 1.0 - through } else { through };
-        side * warp::cosine_hemisphere_pdf_solid_angle(wi.z.abs())
+        let cosine = warp::cosine_hemisphere_pdf_solid_angle(wi.z.abs());
+        if wo.z * wi.z <= 0.0 {
+            return through * cosine;
+        }
+        let even = self.grain.map_or(0.0, |grain| grain.share_even(wo));
+        (1.0 - through) * (cosine + (0.5 * FRAC_1_PI - cosine) * even)
     }
 
     #[inline]
@@ -121,8 +140,11 @@ impl Matt {
 
     #[inline]
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
-        let mut wi = warp::sample_cosine_hemisphere(u);
-        let transmits = u_choice < self.share_through();
+        let through = self.share_through();
+        let transmits = u_choice < through;
+        let even = self.grain.map_or(0.0, |grain| grain.share_even(wo)) * (1.0 - through);
+        let is_even = !transmits && u_choice - through < even;
+        let mut wi = if is_even { warp::sample_cone(u, 0.0) } else { warp::sample_cosine_hemisphere(u) };
         wi.z *= 1f32.copysign(if transmits { -wo.z } else { wo.z });
         let (f, pdf_solid_angle) = self.eval_and_pdf(wo, wi, mode);
         let sample = BsdfSample::reflected(wi, f, pdf_solid_angle)?;

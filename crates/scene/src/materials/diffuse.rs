@@ -2,14 +2,14 @@
 
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
-    colour_map, reflectance,
+    colour_map, number_map, reflectance,
 };
-use crate::bsdf::{Bsdf, Lambert, Lobe};
+use crate::bsdf::{Albedo, Bsdf, Cover, Lambert, Lobe, Matt};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
-use crate::texture::ColourMap;
+use crate::texture::{ColourMap, NumberMap};
 use bilux_math::Rgb;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use std::sync::Arc;
 
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
@@ -19,6 +19,14 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         source: "Lambert 1760",
         parameters: &[
             reflectance("reflectance", "reflected fraction of the light", "0.7"),
+            Parameter {
+                name: "roughness",
+                summary: "0 is matt after Lambert, 1 as rough as clay or the moon: brighter where the light comes from behind \
+                          the viewer",
+                unit: "",
+                kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
+                default: "0",
+            },
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
@@ -28,12 +36,16 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         ],
     },
     build: |reader, ingredients| {
-        Ok(Arc::new(Diffuse { reflectance: colour_map(reader, "reflectance", ingredients)? }))
+        Ok(Arc::new(Diffuse {
+            reflectance: colour_map(reader, "reflectance", ingredients)?,
+            roughness: number_map(reader, "roughness", ingredients)?,
+        }))
     },
 };
 
 struct Diffuse {
     reflectance: ColourMap,
+    roughness: NumberMap,
 }
 
 impl Diffuse {
@@ -45,8 +57,14 @@ impl Diffuse {
 
 impl Material for Diffuse {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
-        let lambert = Lobe::Lambert(Lambert { albedo: self.albedo(surface) });
-        Bsdf::of(surface.n_shade, surface.n_geom, lambert)
+        let albedo = self.albedo(surface);
+        let roughness = self.roughness.at(surface.uvs());
+        let lobe = if roughness > 0.0 {
+            Lobe::Matt(Matt::new(albedo, Albedo::NONE, Cover::NONE).rough(roughness, albedo))
+        } else {
+            Lobe::Lambert(Lambert { albedo })
+        };
+        Bsdf::of(surface.n_shade, surface.n_geom, lobe)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

@@ -250,10 +250,14 @@ fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spe
             }
             same
         }
-        "diffuse" => out
-            .with("base_color", taken("reflectance", 0.7.into()))
-            .with("specular_weight", 0.0)
-            .with("specular_roughness", 1.0),
+        "diffuse" => {
+            if let Some((roughness, at)) = spec.parameters.find("roughness") {
+                out.parameters.set_at("base_diffuse_roughness", roughness.clone(), at.clone());
+            }
+            out.with("base_color", taken("reflectance", 0.7.into()))
+                .with("specular_weight", 0.0)
+                .with("specular_roughness", 1.0)
+        }
         "mirror" => out
             .with("base_color", taken("reflectance", 0.95.into()))
             .with("base_metalness", 1.0)
@@ -272,10 +276,8 @@ fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spe
                 .with("specular_ior", taken("eta", 1.5.into()))
                 .with("specular_roughness", taken("roughness", 0.0.into()))
                 .with("thin_walled", taken("thin", false.into()));
-            let out = match number(spec, "dispersion").filter(|dispersion| *dispersion > 0.0) {
-                Some(dispersion) => out
-                    .with("transmission_dispersion_scale", dispersion.min(1.0))
-                    .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0)),
+            let out = match number(spec, "dispersion") {
+                Some(dispersion) => parting(out, dispersion),
                 None => out,
             };
             if absorbed.is_black() {
@@ -306,6 +308,12 @@ fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spe
             }
         }
     }
+}
+
+/// With glTF's dispersion as OpenPBR has it: how much of what an Abbe number says, 20 where nothing else is said.
+fn parting(spec: Spec, dispersion: f32) -> Spec {
+    spec.with("transmission_dispersion_scale", dispersion.min(1.0))
+        .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0))
 }
 
 /// Light that a surface gives out: a factor of at most 1, and what is above it in an extension.

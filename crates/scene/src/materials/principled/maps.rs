@@ -11,6 +11,7 @@ use bilux_math::Rgb;
 /// The parameters, each a constant or a texture.
 pub(super) struct Maps {
     pub(super) base_color: ColourMap,
+    pub(super) base_roughness: NumberMap,
     pub(super) base_metalness: NumberMap,
     pub(super) specular_weight: NumberMap,
     pub(super) specular_color: ColourMap,
@@ -48,6 +49,7 @@ impl Maps {
         let scale = if is_solid { reader.number("transmission_dispersion_scale") } else { 0.0 };
         Ok(Maps {
             base_color: colour("base_color")?,
+            base_roughness: number("base_diffuse_roughness")?,
             base_metalness: number("base_metalness")?,
             specular_weight: number("specular_weight")?,
             specular_color: colour("specular_color")?,
@@ -86,6 +88,7 @@ impl Maps {
             &self.passing_color,
         ];
         let numbers = [
+            &self.base_roughness,
             &self.base_metalness,
             &self.specular_weight,
             &self.specular_roughness,
@@ -110,6 +113,7 @@ impl Maps {
         let uv = uv.into();
         Point {
             base_color: self.base_color.at(uv).clamp(0.0, 1.0),
+            base_roughness: self.base_roughness.at(uv),
             metalness: self.base_metalness.at(uv),
             specular_weight: self.specular_weight.at(uv),
             specular_color: self.specular_color.at(uv).clamp(0.0, 1.0),

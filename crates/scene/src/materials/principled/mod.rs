@@ -30,6 +30,12 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         source: "OpenPBR 1.1",
         parameters: &[
             reflectance("base_color", "what diffuse parts reflect, and metal straight on", "0.8"),
+            number(
+                "base_diffuse_roughness",
+                "of what scatters diffusely: 0 is Lambert's, 1 as clay or the moon",
+                1.0,
+                "0",
+            ),
             number("base_metalness", "how much of the surface is metal", 1.0, "0"),
             number("specular_weight", "factor on what is reflected straight on at the surface", 1.0, "1"),
             reflectance(

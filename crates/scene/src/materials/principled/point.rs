@@ -7,6 +7,7 @@ use std::f32::consts::TAU;
 /// The parameters at a point.
 pub(super) struct Point {
     pub(super) base_color: Rgb,
+    pub(super) base_roughness: f32,
     pub(super) metalness: f32,
     pub(super) specular_weight: f32,
     pub(super) specular_color: Rgb,
@@ -51,14 +52,19 @@ impl Point {
         });
         let (albedo, passing) =
             (self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing);
-        let is_bare = eta <= 1.0 && cover.is_none() && passing.is_black();
+        let is_bare = eta <= 1.0 && cover.is_none() && passing.is_black() && self.base_roughness == 0.0;
         let base = (!albedo.is_black() || !passing.is_black()).then(|| {
             if is_bare {
                 return Lobe::Lambert(Lambert { albedo });
             }
             // What a film reflects at its brightest colour does not get in at any.
             let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
-            Lobe::Matt(Matt::sheet(albedo, passing, Albedo::new(&ggx, most), cover))
+            let matt = Matt::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
+            Lobe::Matt(if self.base_roughness > 0.0 {
+                matt.rough(self.base_roughness, self.base_color)
+            } else {
+                matt
+            })
         });
         let clear = (!clear.is_black()).then(|| {
             let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
