@@ -3,15 +3,16 @@
 use crate::Error;
 use crate::fingerprint::fingerprint;
 use crate::oddities::oddities;
-use crate::settings::Settings;
+use crate::settings::{Background, Settings};
+use bilux_math::Rgb;
 use bilux_pictures::{Picture, WriteOptions};
 use bilux_scene::{
-    AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Warning,
+    AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Spec, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
     Choice, Features, Film, Filter, FirstHalf, Interval, PixelAnchor, Progress, Reached, RenderError,
-    RenderSettings, Replay, SamplePlace, Stop, Strategies, Window,
+    RenderSettings, Replay, SamplePlace, Stop, Strategies, Window, coverage,
 };
 use std::ops::Range;
 use std::path::Path;
@@ -62,6 +63,8 @@ pub struct Outcome {
     pub interval: Option<Interval>,
     /// What surfaces are like, where it was asked for ([`Job::with_layers`]).
     pub features: Option<Features>,
+    /// The part of each pixel that is not transparent, in rows of the film's window, where pictures are to be.
+    pub coverage: Option<Vec<f32>>,
     /// What the first half of the samples says, where variance was asked for ([`Job::with_layers`]).
     pub first_half: Option<FirstHalf>,
     linear_transfer: bool,
@@ -87,7 +90,11 @@ impl Job {
     /// # Errors
     /// When anything in the scene is wrong.
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
-        let completed = crate::presets::completed(scene, &settings.studio);
+        let mut completed = crate::presets::completed(scene, &settings.studio);
+        if settings.background.is_cut_out() {
+            let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
+            crate::presets::put_behind(&mut completed, nothing);
+        }
         let aspect = settings.width as f32 / settings.height as f32;
         let triangles = completed.objects.iter().map(|object| object.mesh.triangles.len()).sum();
         let accel = settings.accel_for(triangles);
@@ -181,6 +188,13 @@ impl Job {
             *limit = rest.saturating_sub(begun.elapsed());
         }
         let rendered = bilux_transport::render(scene, camera, integrator, &render, progress)?;
+        let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
+        let coverage = self
+            .settings
+            .background
+            .is_cut_out()
+            .then(|| coverage(scene, camera, integrator, &render, samples))
+            .transpose()?;
         let mut film = rendered.film;
         if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
             self.fingerprint().clone_into(&mut film.fingerprint);
@@ -193,6 +207,7 @@ impl Job {
             reached: rendered.reached,
             interval: rendered.interval,
             features,
+            coverage,
             first_half: rendered.first_half.filter(|_| !rendered.cancelled),
             linear_transfer: self.settings.linear_transfer,
         })
@@ -263,7 +278,11 @@ impl Job {
             name => name,
         };
         let tone_map = bilux_pictures::tonemap::tone_map(name)?;
-        Ok(WriteOptions { exposure: self.settings.exposure, tone_map, ..WriteOptions::default() })
+        let behind = match self.settings.background {
+            Background::Colour(colour) => Some(colour),
+            Background::Surroundings | Background::Transparent => None,
+        };
+        Ok(WriteOptions { exposure: self.settings.exposure, tone_map, behind, ..WriteOptions::default() })
     }
 
     /// Writes the picture, or for a partial one its film.
@@ -298,6 +317,9 @@ impl Outcome {
     /// The light of the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
         let mut picture = self.film.window_to_picture(self.film.window())?;
+        if let Some(coverage) = &self.coverage {
+            picture.push_channel("A", coverage.clone())?;
+        }
         self.note_how_far(&mut picture);
         Ok(picture)
     }

@@ -3,7 +3,7 @@
 use crate::Error;
 use bilux_formats::ReadOptions;
 pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply};
-use bilux_scene::{SceneBuilder, Value};
+use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 
 /// A copy of the scene in which a missing camera and missing light are made up for, and what is asked of the studio is
@@ -14,12 +14,36 @@ pub fn completed(scene: &SceneBuilder, studio: &Studio) -> SceneBuilder {
     scene
 }
 
+/// Shows a picture, in longitude and latitude, where the camera sees nothing else, whatever lights the scene.
+///
+/// # Errors
+/// When the picture cannot be read, or has no colours.
+pub fn set_behind(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
+    let light = picture_light(scene, picture, options)?;
+    put_behind(scene, light);
+    Ok(())
+}
+
+/// Makes an environment the only backdrop of a scene.
+pub(crate) fn put_behind(scene: &mut SceneBuilder, environment: Spec) {
+    scene.lights.retain(|light| !light.is_backdrop());
+    scene.lights.push(environment.with("backdrop", true));
+}
+
 /// Lights a scene by a picture of its surroundings, in longitude and latitude, in place of an environment that it may have. Lamps
 /// stay.
 ///
 /// # Errors
 /// When the picture cannot be read, or has no colours.
 pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
+    let light = picture_light(scene, picture, options)?;
+    scene.lights.retain(|light| light.kind != "environment" || light.is_backdrop());
+    scene.lights.push(light);
+    Ok(())
+}
+
+/// A picture of surroundings as a light, its texture among the scene's.
+fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<Spec, Error> {
     let name = picture.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     // As a scene file would say it, so that the picture is looked for, decoded and refused as those of scenes are.
     let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
@@ -29,17 +53,14 @@ pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions)
     let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // Nobody who asks for it wants a checker in its place.
     let options = ReadOptions { strict: true, ..options.clone() };
-    let read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options)?;
+    let mut read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options)?;
     let before = scene.textures.len();
-    scene.textures.extend(read.textures);
-    scene.lights.retain(|light| light.kind != "environment");
-    for mut light in read.lights {
-        for (_, value, _) in &mut light.parameters.0 {
-            if let Value::Texture(index) = value {
-                *index += before;
-            }
+    scene.textures.append(&mut read.textures);
+    let mut light = read.lights.swap_remove(0);
+    for (_, value, _) in &mut light.parameters.0 {
+        if let Value::Texture(index) = value {
+            *index += before;
         }
-        scene.lights.push(light);
     }
-    Ok(())
+    Ok(light)
 }

@@ -1,6 +1,7 @@
 //! What `bilux denoise` is told.
 
 use crate::values::{Exposure, parse_exposure};
+use anyhow::bail;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -29,4 +30,14 @@ pub struct Denoise {
     /// Tone curve, in pictures for a display (`bilux list tonemaps`)
     #[arg(long, value_name = "NAME", default_value = "none")]
     pub tonemap: String,
+}
+
+/// Finds out whether a denoiser is taken for a scene, since it stands apart from its flag.
+pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
+    let is_denoiser =
+        |scene: &&PathBuf| bilux::settings::DENOISE.iter().any(|name| scene.as_os_str() == *name);
+    if let Some(name) = scenes.iter().find(is_denoiser).filter(|name| !name.exists()) {
+        bail!("'{0}' is no scene: write --denoise={0}, with the sign between", name.display());
+    }
+    Ok(())
 }

@@ -30,6 +30,7 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("orbit", "--orbit", text(&a.studio.orbit)),
         ("focal", "--focal", number(a.studio.focal)),
         ("ground", "--ground", text(&a.studio.ground)),
+        ("background", "--background", text(&a.studio.background())),
         ("time", "--at", number(a.at)),
         ("exposure", "--exposure", number(stops)),
         ("auto_exposure", "--exposure", (a.exposure == Some(Exposure::Auto)).then_some(Value::Bool(true))),

@@ -1,11 +1,14 @@
 //! How a model is photographed, as it is typed.
 
 use crate::settings_from::from_flag;
-use anyhow::Context;
+use crate::usage;
+use anyhow::{Context, bail};
+use bilux::formats::ReadOptions;
 use bilux::presets::Studio;
-use bilux::scene::{Parameters, Value};
+use bilux::scene::{Parameters, SceneBuilder, Value};
+use bilux::settings::Background;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What is asked of the studio.
 #[derive(Args)]
@@ -25,9 +28,48 @@ pub struct StudioArguments {
     /// Light all of it by a picture of its surroundings, in longitude and latitude: .hdr, .exr or any other
     #[arg(long, value_name = "FILE")]
     pub env: Option<PathBuf>,
+    /// What is behind a model: transparent, or a colour (white, '#rrggbb', R,G,B), or a picture to be seen in place of what lights it
+    #[arg(long, value_name = "transparent|COLOR|FILE")]
+    pub background: Option<String>,
     /// N pictures from all around, one by one; needs {frame} in OUT
     #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"])]
     pub turntable: Option<u32>,
+}
+
+impl StudioArguments {
+    /// Puts around a scene what is asked for.
+    pub fn set_up(&self, scene: &mut SceneBuilder, options: &ReadOptions) -> anyhow::Result<()> {
+        if let Some(preset) = &self.preset {
+            bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
+        }
+        if let Some(picture) = &self.env {
+            bilux::presets::surround(scene, picture, options).context("--env")?;
+        }
+        if let Some(picture) = self.picture_behind() {
+            bilux::presets::set_behind(scene, picture, options).context("--background")?;
+        }
+        Ok(())
+    }
+
+    /// The background where it is a picture, and no colour.
+    pub fn picture_behind(&self) -> Option<&Path> {
+        let is_setting = |text: &str| Background::parse(text).is_some() || text.starts_with('#');
+        self.background.as_deref().filter(|text| !is_setting(text)).map(Path::new)
+    }
+
+    /// Finds out before the work whether there is such a background.
+    pub fn check(&self) -> anyhow::Result<()> {
+        if let Some(picture) = self.picture_behind().filter(|picture| !picture.exists()) {
+            let text = picture.display();
+            bail!("--background: '{text}' is no file, nor transparent, white, '#rrggbb' or R,G,B of 0 to 1");
+        }
+        Ok(())
+    }
+
+    /// The background where it is a setting.
+    pub fn background(&self) -> Option<String> {
+        self.background.clone().filter(|_| self.picture_behind().is_none())
+    }
 }
 
 /// The same settings from farther around the model, in turns to the right.

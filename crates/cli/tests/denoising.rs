@@ -1,4 +1,4 @@
-//! When pictures are denoised, by what, and what is told of it; budgets where nothing is said; layers.
+//! When pictures are denoised, by what, and what is told of it; budgets where nothing is said; layers; what is behind a model.
 
 use assert_cmd::Command;
 use bilux::pictures::formats::read;
@@ -93,4 +93,45 @@ fn a_denoiser_that_is_not_there_is_an_error_that_says_how_to_get_it() {
     let output = command.assert().code(2).stdout("").get_output().stderr.clone();
     let said = String::from_utf8(output).unwrap();
     assert!(said.contains("pip install pyoidn") && !folder.path().join("a.png").exists(), "{said}");
+}
+
+#[test]
+fn what_is_behind_a_model_is_what_was_asked_for() {
+    let folder = folder();
+    let path = folder.path();
+    let seen = |background: &str, more: &[&str]| {
+        render(path, "a.png", &[&["--spp", "4", "--background", background], more].concat());
+        read(path.join("a.png")).unwrap()
+    };
+    let corner = |background: &str, more: &[&str]| {
+        seen(background, more).rgb(0, 0).to_array().map(|c| (c * 255.0).round())
+    };
+    assert_eq!(corner("white", &[]), [255.0; 3]);
+    // It is no light, so that no curve and no exposure changes it.
+    assert_eq!(corner("#336699", &["--tonemap", "agx", "--exposure", "3"]), [51.0, 102.0, 153.0]);
+    assert_eq!(corner("0,1,0", &["--denoise"]), [0.0, 255.0, 0.0]);
+    let cut = seen("transparent", &[]);
+    assert_eq!((cut.alpha_at(0, 0), cut.alpha_at(16, 16)), (0.0, 1.0));
+    let half = (0..32 * 32).filter(|i| (0.1..0.9).contains(&cut.alpha_at(i % 32, i / 32))).count();
+    assert!(half > 20, "edges are smooth: {half} pixels");
+    render(path, "a.exr", &["--spp", "4", "--background", "transparent"]);
+    assert_eq!(read(path.join("a.exr")).unwrap().alpha_at(0, 0), 0.0);
+    // A picture of surroundings is seen as it is, and the studio's lamps stay.
+    let mut sky = bilux::pictures::Picture::new(4, 2).unwrap();
+    sky.push_rgb("", &[bilux::math::Rgb::new(0.0, 0.0, 1.0); 8]).unwrap();
+    bilux::pictures::write(path.join("sky.hdr"), &sky, &bilux::pictures::WriteOptions::default()).unwrap();
+    assert_eq!(corner("sky.hdr", &["--tonemap", "none"]), [0.0, 0.0, 255.0]);
+    let middle = |background: &str| seen(background, &["--tonemap", "none"]).rgb(16, 16);
+    let apart = (middle("sky.hdr") - middle("black")).map(f32::abs).max_channel();
+    assert!(apart < 0.01, "{apart}");
+    for wrong in ["whte", "#12345"] {
+        let mut command = Command::cargo_bin("bilux").unwrap();
+        command.current_dir(path).args(["render", "pot.obj", "-o", "b.png", "--background", wrong]);
+        let said = String::from_utf8(command.assert().code(2).get_output().stderr.clone()).unwrap();
+        assert!(said.contains(wrong) && said.contains("#rrggbb"), "{said}");
+    }
+    let mut command = Command::cargo_bin("bilux").unwrap();
+    command.current_dir(path).args(["render", "pot.obj", "-o", "b.png", "--denoise", "builtin"]);
+    let said = String::from_utf8(command.assert().code(2).get_output().stderr.clone()).unwrap();
+    assert!(said.contains("--denoise=builtin"), "{said}");
 }

@@ -311,6 +311,20 @@ impl Picture {
         self
     }
 
+    /// A picture for a display with a colour of linear light behind it, and no alpha any more.
+    pub(crate) fn before(self, colour: Rgb) -> Picture {
+        let mut picture = self.into_linear();
+        let Some(at) = picture.channels.iter().position(|c| c.name == "A") else {
+            return picture.into_srgb();
+        };
+        let alpha = picture.channels.remove(at).samples;
+        for (name, behind) in [("R", colour.r), ("G", colour.g), ("B", colour.b), ("Y", colour.luminance())] {
+            let samples = picture.channel_mut(name).unwrap_or_default();
+            samples.iter_mut().zip(&alpha).for_each(|(sample, alpha)| *sample += (1.0 - alpha) * behind);
+        }
+        picture.into_srgb()
+    }
+
     /// Applies a function to every sample of the main picture's colour and of every layer's.
     fn map_colours(&mut self, f: impl Fn(f32) -> f32 + Sync) {
         let colours: Vec<bool> = self.channels.iter().map(|c| self.is_colour(&c.name)).collect();

@@ -152,6 +152,9 @@ impl SceneBuilder {
         for spec in &self.lights {
             match lights::build(spec, &self.textures)? {
                 BuiltLight::Light(light) => built.lights.push(SceneLight::new(&spec.name, light)),
+                BuiltLight::Several(lights) => {
+                    built.lights.extend(lights.into_iter().map(|light| SceneLight::new(&spec.name, light)));
+                }
                 BuiltLight::Surface { mesh, emission, sides, classic } => {
                     let material = glowing(emission, sides)?;
                     if let Some(colour) = classic {

@@ -136,6 +136,11 @@ impl Spec {
         self.parameters.set(key, value);
         self
     }
+
+    /// True for an environment that is only to be seen.
+    pub fn is_backdrop(&self) -> bool {
+        matches!(self.parameters.find("backdrop"), Some((Value::Bool(true), _)))
+    }
 }
 
 /// Reads a spec's parameters by the row that describes them. Made by [`Reader::new`], which refuses unknown keys.

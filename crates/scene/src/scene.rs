@@ -39,6 +39,8 @@ pub(crate) struct SceneParts {
     object_lights: Vec<Option<u32>>,
     cameras: Vec<(String, Arc<dyn Camera>)>,
     classic_ambient: Rgb,
+    has_backdrop: bool,
+    has_surroundings: bool,
     has_nested: bool,
     has_holes: bool,
     disperses: bool,
@@ -92,6 +94,10 @@ impl SceneParts {
             light.classic_colour = light.light.classic_colour(&bounds);
         }
         let classic_ambient = lights.iter().map(|l| l.light.classic_ambient()).sum();
+        let has_backdrop = lights.iter().any(|l| l.light.is_backdrop());
+        let surrounds =
+            |l: &SceneLight| l.light.is_infinite() && !l.light.is_delta() && !l.light.is_backdrop();
+        let has_surroundings = lights.iter().any(surrounds);
         let of_object = |o: &crate::geometry::Placed| materials[o.material as usize].nested();
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
@@ -103,6 +109,8 @@ impl SceneParts {
             object_lights,
             cameras,
             classic_ambient,
+            has_backdrop,
+            has_surroundings,
             has_nested,
             has_holes,
             disperses,
@@ -231,9 +239,23 @@ impl Scene {
         self.parts.disperses
     }
 
-    /// Radiance from infinity in a direction away from the scene.
-    pub fn background(&self, direction: Vec3) -> Rgb {
-        self.parts.lights.iter().map(|l| l.light.le(direction)).sum()
+    /// Radiance from infinity in a direction away from the scene, as it is seen after so many mirrors and glasses.
+    pub fn background(&self, direction: Vec3, events: u32) -> Rgb {
+        let shown = self.parts.lights.iter().filter(|l| self.shows(&*l.light, events, true));
+        shown.map(|l| l.light.le(direction)).sum()
+    }
+
+    /// True when light from infinity is there for a ray that has been scattered so often, all of it by mirrors and smooth glass if
+    /// `specular`: the camera itself sees backdrops in place of the surroundings that light the scene, and mirrors and glass show them
+    /// where there are no surroundings.
+    #[inline]
+    pub fn shows(&self, light: &dyn Light, events: u32, specular: bool) -> bool {
+        match (light.is_backdrop(), events) {
+            (true, 0) => true,
+            (true, _) => specular && !self.parts.has_surroundings,
+            (false, 0) => !self.parts.has_backdrop,
+            (false, _) => true,
+        }
     }
 
     /// The greatest channel of the radiance that any surface gives out, or that comes from infinity straight
@@ -241,7 +263,8 @@ impl Scene {
     pub fn brightest_radiance(&self) -> f32 {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
         let surfaces = self.parts.materials.iter().map(|m| m.emission());
-        let infinity = axes.into_iter().map(|axis| self.background(axis));
+        let from = |axis: Vec3| self.parts.lights.iter().map(|l| l.light.le(axis)).sum();
+        let infinity = axes.into_iter().map(from);
         surfaces.chain(infinity).map(Rgb::max_channel).fold(0.0, f32::max)
     }
 

@@ -195,7 +195,8 @@ fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
 #[test]
 fn a_studio_is_as_it_is_asked_for() {
     // From the right, at the height of its middle, through a long lens: seen whole, as big as through any other.
-    let asked = Studio { ground: Some(Ground::Mirror), orbit: Some([90.0, 0.0]), focal: Some(135.0) };
+    let asked =
+        Studio { ground: Some(Ground::Mirror), orbit: Some([90.0, 0.0]), focal: Some(135.0), cut_out: false };
     let mut scene = teapot();
     complete(&mut scene, &asked);
     builds(&scene);
@@ -216,6 +217,21 @@ fn a_studio_is_as_it_is_asked_for() {
     let mut below = teapot();
     complete(&mut below, &Studio { orbit: Some([0.0, -40.0]), ..Studio::default() });
     assert_eq!(below.objects.len(), 1);
+}
+
+#[test]
+fn what_is_cut_out_gets_no_cove_and_a_backdrop_is_no_lamp() {
+    let mut scene = teapot();
+    complete(&mut scene, &Studio { cut_out: true, ..Studio::default() });
+    assert_eq!((scene.objects.len(), scene.lights.len()), (1, 3));
+    let mut scene = teapot();
+    scene.lights.push(Spec::new("behind", "environment").with("backdrop", true));
+    complete(&mut scene, &Studio::default());
+    assert_eq!((scene.objects.len(), scene.lights.len()), (1, 4));
+    // It is there all the same where it is asked for.
+    let mut scene = teapot();
+    complete(&mut scene, &Studio { cut_out: true, ground: Some(Ground::Shadow), ..Studio::default() });
+    assert_eq!(scene.objects.len(), 2);
 }
 
 #[test]

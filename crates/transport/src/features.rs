@@ -95,6 +95,36 @@ pub fn features(
     Features::of(window, &tiles, done).map(Some)
 }
 
+/// The part of each pixel's first samples whose camera rays meet something, 0..=1, in rows of the film's window, the top one first.
+///
+/// # Errors
+/// As [`features`].
+pub fn coverage(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    samples: u32,
+) -> Result<Vec<f32>, RenderError> {
+    settings.check()?;
+    let window = settings.window();
+    let eye = Eye::new(scene, camera, integrator, settings);
+    let mut met = zeroed::<f32>(window.pixels())?;
+    let of_row = |(row, met): (usize, &mut [f32])| {
+        let mut tracer = Tracer::new(eye.scene, false);
+        for (column, met) in met.iter_mut().enumerate() {
+            let (x, y) = (window.x + column as u32, window.y + row as u32);
+            let hits = (0..samples).filter(|&sample| {
+                let (ray, _) = eye.sample(&mut tracer, x, y, sample);
+                tracer.closest(&ray).is_some()
+            });
+            *met = hits.count() as f32 / samples.max(1) as f32;
+        }
+    };
+    threads(settings)?.install(|| met.par_chunks_mut(window.width as usize).enumerate().for_each(of_row));
+    Ok(met)
+}
+
 /// One sample of each pixel of a tile.
 fn look(eye: &Eye, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.scene, false);
@@ -113,7 +143,7 @@ impl Sums {
         for event in 0..=MOST_SMOOTH {
             let direction = Vec3::from(ray.direction);
             let Some((surface, passed)) = media.closest(tracer, &ray) else {
-                self.albedo += beta * scene.background(direction).clamp(0.0, 1.0);
+                self.albedo += beta * scene.background(direction, event).clamp(0.0, 1.0);
                 return;
             };
             beta *= passed;

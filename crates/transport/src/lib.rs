@@ -40,7 +40,7 @@ pub mod window;
 pub use bidirectional::{Merging, Photons};
 pub use emission::{Emission, Guide};
 pub use error::{FilmError, RenderError};
-pub use features::{FEATURE_SAMPLES, Features, features};
+pub use features::{FEATURE_SAMPLES, Features, coverage, features};
 pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};
 pub use halves::{FirstHalf, push_variance};

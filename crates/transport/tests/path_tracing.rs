@@ -12,6 +12,10 @@ fn path(sampling: &str) -> Box<dyn PixelIntegrator> {
     integrators::build(&Spec::new("", "path").with("sampling", sampling)).unwrap()
 }
 
+fn named(name: &str) -> Box<dyn PixelIntegrator> {
+    integrators::build(&Spec::new("", name)).unwrap()
+}
+
 /// The means of eight pictures with different seeds, each over all of its pixels.
 fn means(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSettings) -> Vec<Rgb> {
     let mean = |seed| {
@@ -145,6 +149,28 @@ fn a_backdrop_is_seen_and_lights_nothing() {
     assert!(near(seen(above, Vec3::ZERO), Rgb::BLACK), "it lights no floor");
     assert!(near(seen(above, mirror), Rgb::BLACK), "nor the floor in the mirror");
     assert!(near(seen(below, mirror), colour), "it is seen in the mirror");
+    // Beside surroundings it is what the camera sees, and they are what the mirror shows, and what lights the floor.
+    let lit = Rgb::grey(0.7);
+    builder.lights.push(Spec::new("", "environment").with("radiance", lit));
+    for integrator in
+        [path("mis"), named("bdpt"), named("vcm"), named("light"), named("whitted"), named("cast")]
+    {
+        let seen = |from: Vec3, at: Vec3| {
+            let mut builder = builder.clone();
+            look(&mut builder, from, at, 0.02);
+            shoot(&built(&builder), &*integrator, &RenderSettings::new(1, 1, 64)).film.pixel(0, 0)
+        };
+        assert!(near(seen(above, Vec3::new(-3.0, 5.0, -1.0)), colour), "seen in place of what lights");
+    }
+    let seen = |from: Vec3, at: Vec3| {
+        let mut builder = builder.clone();
+        look(&mut builder, from, at, 0.02);
+        [path("mis"), named("bdpt")].map(|integrator| {
+            shoot(&built(&builder), &*integrator, &RenderSettings::new(1, 1, 64)).film.pixel(0, 0)
+        })
+    };
+    assert!(seen(below, mirror).into_iter().all(|light| near(light, lit)), "the mirror shows what lights");
+    assert!(seen(above, Vec3::ZERO).into_iter().all(|light| light.g > 0.2), "the floor is lit");
 }
 
 #[test]

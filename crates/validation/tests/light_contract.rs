@@ -135,7 +135,10 @@ fn cases() -> Vec<LightCase> {
     let beside = Spec::new("", "rect").with("radiance", RADIANCE).with("position", Vec3::new(1.0, 2.5, 0.5));
     let mut cases: Vec<LightCase> = LIGHTS.iter().map(|light| row(light.entry.name)).collect();
     cases.extend([
-        with_light("sky", sky.clone()),
+        with_light("gradient", sky.clone()),
+        with_light("sun", Spec::new("", "directional").with("diameter", 0.533f32)),
+        with_light("wide sun", Spec::new("", "directional").with("diameter", 70.0f32)),
+        with_light("low sun", Spec::new("", "sky").with("elevation", 3.0f32).with("sun_diameter", 10.0f32)),
         with_light("backdrop", sky.with("backdrop", true)),
         with_light("spot without an edge", spot(20.0, 20.0)),
         with_light("spot of half the sphere", spot(90.0, 0.0)),

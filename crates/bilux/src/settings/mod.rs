@@ -1,10 +1,13 @@
 //! Everything that can be said about a render, from a scene file's `[render]`, a preset or the command line:
 //! all of it the same keys of one table.
 
+mod background;
 mod studio;
 
 use crate::Error;
 use crate::presets::Studio;
+pub use background::Background;
+use background::background;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -15,6 +18,9 @@ use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 use std::time::Duration;
 pub use studio::parse_orbit;
 use studio::{as_orbit, studio};
+
+/// The values of the setting `denoise`.
+pub const DENOISE: &[&str] = &["display", "auto", "oidn", "builtin", "off"];
 
 /// What `[render]` and `--set` understand, beside the parameters of the integrator.
 pub const RENDER: Entry = Entry {
@@ -67,6 +73,11 @@ pub const RENDER: Entry = Entry {
             default: "false",
         },
         text(
+            "background",
+            "behind what is seen: surroundings, transparent, or a colour: white, #rrggbb, R,G,B",
+            "surroundings",
+        ),
+        text(
             "tonemap",
             "the curve for pictures for a display; auto is neutral where the studio lights a model, else none",
             "auto",
@@ -74,7 +85,7 @@ pub const RENDER: Entry = Entry {
         choice(
             "denoise",
             "what takes the noise away: display for the best, in pictures for a display that noise or time ends",
-            &["display", "auto", "oidn", "builtin", "off"],
+            DENOISE,
             "display",
         ),
         choice("transfer", "how light becomes bytes", &["srgb", "linear"], "srgb"),
@@ -187,6 +198,8 @@ pub struct Settings {
     pub tonemap: String,
     /// What takes the noise away.
     pub denoise: String,
+    /// What is seen where there is nothing else.
+    pub background: Background,
     /// Bytes are proportional to light.
     pub linear_transfer: bool,
 }
@@ -210,7 +223,7 @@ impl Settings {
         let integrator_parameters = integrator_parameters(integrator, rest)?;
         let (width, height) = parse_size(&reader.text("size"))
             .ok_or_else(|| SceneError::invalid(no_size(&reader.text("size")), reader.span("size")))?;
-        let stop = stop(&reader);
+        let (stop, background) = (stop(&reader), background(&reader)?);
         let spp = match reader.integer("spp") {
             0 if stop.is_any() => MOST_SPP,
             0 => integrator.default_spp,
@@ -233,7 +246,8 @@ impl Settings {
                 name => name,
             },
             camera_at: reader.span("camera").clone(),
-            studio: studio(&reader)?,
+            background,
+            studio: Studio { cut_out: background.is_cut_out(), ..studio(&reader)? },
             time: reader.number("time"),
             shutter: reader.number("shutter"),
             fps: reader.number("fps"),

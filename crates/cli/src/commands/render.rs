@@ -2,6 +2,7 @@
 
 use super::{DONE, aov, check_choices, check_folder, denoise, read_options_with, tell_warnings};
 use crate::arguments::{Common, Render};
+use crate::denoising::check_scenes;
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
 use crate::{output, settings_from, usage};
@@ -23,6 +24,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let user = settings_from::render(arguments).map_err(usage::wrong)?;
     let targets = targets(arguments).map_err(usage::wrong)?;
     aov::check(arguments).map_err(usage::wrong)?;
+    arguments.studio.check().map_err(usage::wrong)?;
     let mut failed = 0;
     for (scene, output) in &targets {
         match render_one(scene, output, &user, arguments, common, &interrupt) {
@@ -48,6 +50,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
 /// Every scene with its picture's name, found wrong before anything is rendered.
 fn targets(arguments: &Render) -> anyhow::Result<Vec<(PathBuf, PathBuf)>> {
     let pattern = arguments.output.to_string_lossy();
+    check_scenes(&arguments.scenes)?;
     if arguments.scenes.len() > 1 && !pattern.contains("{stem}") {
         bail!("one picture for {} scenes: write -o '{{stem}}.png'", arguments.scenes.len());
     }
@@ -113,12 +116,7 @@ impl Input<'_> {
             None => bilux::load(self.path, &options)?,
         };
         check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
-        if let Some(preset) = &self.arguments.studio.preset {
-            bilux::presets::apply(preset, &mut scene).map_err(usage::wrong)?;
-        }
-        if let Some(picture) = &self.arguments.studio.env {
-            bilux::presets::surround(&mut scene, picture, &options).context("--env")?;
-        }
+        self.arguments.studio.set_up(&mut scene, &options)?;
         Ok(scene)
     }
 

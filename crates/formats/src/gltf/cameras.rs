@@ -40,6 +40,9 @@ pub(super) fn camera(
             oddities.note("a camera's yfov is out of range: taken as 0.01 to 179 degrees", || lens.at());
         }
         spec.parameters.set("fov", fov.clamp(0.01, 179.0) as f32);
+        if let Some(shape) = lens.get("aspectRatio") {
+            spec.parameters.set("frame", shape.as_number()?.clamp(0.0, 1000.0) as f32);
+        }
         if world.determinant() < 0.0 {
             spec.parameters.set("mirrored", true);
         }

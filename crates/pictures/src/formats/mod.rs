@@ -24,6 +24,7 @@ use crate::error::nearest;
 use crate::picture::hold_within;
 use crate::tonemap::{TONEMAPS, ToneMapEntry, to_display};
 use crate::{Limits, Picture, PictureError};
+use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use std::path::Path;
 
@@ -71,6 +72,8 @@ pub struct WriteOptions {
     pub exposure: f32,
     /// The curve for pictures for a display.
     pub tone_map: &'static ToneMapEntry,
+    /// What shows through what is transparent, in linear light of a display, in pictures for one.
+    pub behind: Option<Rgb>,
 }
 
 /// How many steps a sample of a picture for a display has.
@@ -85,7 +88,7 @@ pub enum BitDepth {
 
 impl Default for WriteOptions {
     fn default() -> WriteOptions {
-        WriteOptions { bit_depth: BitDepth::default(), exposure: 0.0, tone_map: &TONEMAPS[0] }
+        WriteOptions { bit_depth: BitDepth::default(), exposure: 0.0, tone_map: &TONEMAPS[0], behind: None }
     }
 }
 
@@ -180,7 +183,10 @@ fn display_planes(
     options: &WriteOptions,
 ) -> Result<DisplayPlanes, PictureError> {
     require_colour(format, picture)?;
-    let picture = to_display(picture, options.exposure, options.tone_map)?;
+    let mut picture = to_display(picture, options.exposure, options.tone_map)?;
+    if let Some(behind) = options.behind {
+        picture = picture.before(behind);
+    }
     let grey = picture.channel("R").is_none();
     let mut names = if grey { vec!["Y"] } else { vec!["R", "G", "B"] };
     if picture.channel("A").is_some() {

@@ -26,6 +26,13 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 default: "40",
             },
             Parameter {
+                name: "frame",
+                summary: "width over height of what is shown whole also in narrower pictures; 0 for the height alone",
+                unit: "",
+                kind: ParameterKind::Number { min: 0.0, max: 1000.0 },
+                default: "0",
+            },
+            Parameter {
                 name: "aperture",
                 summary: "radius of the lens; 0 for a pinhole",
                 unit: "m",
@@ -45,7 +52,7 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
     build: |keys, aspect| {
         let keys = keys
             .iter()
-            .map(|(time, reader)| Ok((*time, Key::read(reader)?)))
+            .map(|(time, reader)| Ok((*time, Key::read(reader, aspect)?)))
             .collect::<Result<Vec<_>, SceneError>>()?;
         let mirrored = keys.first().is_some_and(|(_, key)| key.mirrored);
         let aspect = if mirrored { -aspect } else { aspect };
@@ -90,12 +97,13 @@ struct Key {
 }
 
 impl Key {
-    fn read(reader: &Reader) -> Result<Key, SceneError> {
+    fn read(reader: &Reader, aspect: f32) -> Result<Key, SceneError> {
+        let wider = (reader.number("frame") / aspect).max(1.0);
         let key = Key {
             position: reader.vector("position"),
             look_at: reader.vector("look_at"),
             up: reader.vector("up"),
-            tan_half_fov: tan(reader.number("fov").to_radians() * 0.5),
+            tan_half_fov: tan(reader.number("fov").to_radians() * 0.5) * wider,
             aperture: reader.number("aperture"),
             focus: reader.number("focus"),
             mirrored: reader.bool("mirrored"),

@@ -1,13 +1,14 @@
 //! `directional`: parallel light from infinitely far, as from the sun.
 
 use super::distant::{Across, disc_pdf_area, ray};
+use super::sun::Sun;
 use super::{
     BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
 };
 use crate::classic::ClassicLight;
 use crate::error::SceneError;
 use crate::surface::Surface;
-use bilux_math::registry::Entry;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 use std::sync::Arc;
@@ -15,11 +16,18 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "directional",
-        summary: "parallel light from infinitely far, as from the sun",
+        summary: "light from infinitely far, parallel or of a disc, as from the sun",
         source: "",
         parameters: &[
             vector("direction", "where the light goes", "-1 -1 -1"),
             colour("irradiance", "what falls on a surface that faces it", "W/m²", "3"),
+            Parameter {
+                name: "diameter",
+                summary: "angle under which it is seen, which makes edges of shadows soft: 0.533 for the sun, 0 for a point",
+                unit: "degrees",
+                kind: ParameterKind::Number { min: 0.0, max: 180.0 },
+                default: "0",
+            },
             CLASSIC,
         ],
     },
@@ -28,6 +36,11 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             SceneError::invalid("a light's direction must not be zero", reader.span("direction"))
         })?;
         let (irradiance, classic) = (reader.colour("irradiance"), given_classic(reader));
+        let diameter = reader.number("diameter").to_radians();
+        // A smaller one has no area in f32.
+        if diameter > 1e-6 {
+            return Ok(BuiltLight::Light(Arc::new(Sun::new(towards, diameter, irradiance, classic))));
+        }
         Ok(BuiltLight::Light(Arc::new(Directional { towards, irradiance, classic })))
     },
 };

@@ -37,7 +37,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             sky("ground", "what comes from straight below; -1 for radiance"),
             Parameter {
                 name: "backdrop",
-                summary: "only to be seen: it lights nothing",
+                summary: "only to be seen, in place of the environments that light the scene: it lights nothing",
                 unit: "",
                 kind: ParameterKind::Bool,
                 default: "false",

@@ -13,8 +13,10 @@ mod environment_map;
 mod mesh_light;
 mod point;
 mod rect;
+mod sky;
 mod sphere;
 mod spot;
+mod sun;
 
 pub use mesh_light::{MeshLight, Picture};
 pub use sphere::SphereLight;
@@ -205,7 +207,7 @@ pub trait Light: Send + Sync {
         Rgb::BLACK
     }
 
-    /// True when it is only to be seen by the camera, directly or through mirrors and glass, and lights nothing.
+    /// True when it is only to be seen by the camera, and lights nothing ([`crate::Scene::shows`]).
     fn is_backdrop(&self) -> bool {
         false
     }
@@ -233,6 +235,8 @@ pub trait Light: Send + Sync {
 pub enum BuiltLight {
     /// A light without a surface.
     Light(Arc<dyn Light>),
+    /// Several such, which take their name from one row.
+    Several(Vec<Arc<dyn Light>>),
     /// A surface that gives light; the builder makes it an object and its [`MeshLight`].
     Surface {
         /// The surface, in world space.
@@ -274,6 +278,7 @@ pub const LIGHTS: &[LightEntry] = &[
     rect::ENTRY,
     sphere::ENTRY,
     environment::ENTRY,
+    sky::ENTRY,
     ambient::ENTRY,
 ];
 

@@ -208,7 +208,7 @@ pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut vis
     for (index, light) in scene.lights().iter().enumerate() {
         let light = &light.light;
         let radiance = light.le(direction);
-        if radiance.is_black() || (light.is_backdrop() && !walk.specular) {
+        if radiance.is_black() || !scene.shows(&**light, walk.depth, walk.specular) {
             continue;
         }
         if walk.depth == 0 || light.is_backdrop() {

@@ -76,7 +76,7 @@ impl RayTree {
         let direction = Vec3::from(ray.direction);
         let Some(surface) = task.tracer.closest(ray) else {
             task.note(node.depth, || format!("leaves the scene towards {direction}"));
-            return task.scene().background(direction);
+            return task.scene().background(direction, node.depth);
         };
         let outside = surface.n_geom.dot(direction) <= 0.0;
         let material = task.scene().material(&surface);

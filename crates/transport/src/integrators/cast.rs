@@ -56,7 +56,7 @@ impl PixelIntegrator for Cast {
         let direction = Vec3::from(ray.direction);
         let Some(surface) = task.tracer.closest(ray) else {
             task.note(0, || "leaves the scene".to_owned());
-            return task.scene().background(direction);
+            return task.scene().background(direction, 0);
         };
         task.note(0, || format!("meets object {} at {}", surface.object, surface.p));
         let material = task.scene().material(&surface);

@@ -32,7 +32,7 @@ impl PixelIntegrator for Light {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         match task.tracer.closest(ray) {
             Some(surface) => task.scene().emission(&surface, -Vec3::from(ray.direction)),
-            None => task.scene().background(ray.direction.into()),
+            None => task.scene().background(ray.direction.into(), 0),
         }
     }
 

@@ -140,11 +140,10 @@ impl Path {
         let mut sum = Rgb::BLACK;
         for (index, light) in task.scene().lights().iter().enumerate() {
             let radiance = light.light.le(direction);
-            if radiance.is_black() {
+            if radiance.is_black() || !task.scene().shows(&*light.light, walk.depth, walk.specular) {
                 continue;
             }
             sum += match walk.last {
-                _ if light.light.is_backdrop() && !walk.specular => Rgb::BLACK,
                 _ if light.light.is_backdrop() => radiance,
                 None => radiance,
                 Some((from, pdf)) => {

@@ -55,6 +55,8 @@ pub struct Studio {
     pub orbit: Option<[f32; 2]>,
     /// Focal length in mm, for a picture 24 mm high.
     pub focal: Option<f32>,
+    /// It is cut out of its surroundings, so that nothing is put around it unasked.
+    pub cut_out: bool,
 }
 
 impl Studio {
@@ -76,7 +78,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     let studio = Studio::default();
     let framing = Framing::of(scene, &studio);
     scene.cameras.push(framing.camera());
-    scene.lights.extend(lights(&framing));
+    scene.lights.extend(lights(&framing, Ground::Shadow));
     furnish(scene, &framing, Ground::Shadow);
     Ok(())
 }
@@ -85,10 +87,13 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
 /// studio where it has neither. What is asked for in `studio` is there in any case: its camera is the first one then.
 /// Does nothing to a scene that has both where nothing is asked for.
 pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
-    let lit = !scene.lights.is_empty() || scene.objects.iter().any(|o| gives_light(scene, o));
+    let lit = scene.lights.iter().any(|light| !light.is_backdrop())
+        || scene.objects.iter().any(|o| gives_light(scene, o));
     let seen = !scene.cameras.is_empty();
+    let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
+    let bare = !lit && !seen && !behind;
     let asked = studio.orbit.is_some() || studio.focal.is_some();
-    let ground = studio.ground.unwrap_or(if lit || seen { Ground::None } else { Ground::Shadow });
+    let ground = studio.ground.unwrap_or(if bare { Ground::Shadow } else { Ground::None });
     if lit && seen && !asked && ground == Ground::None {
         return;
     }
@@ -101,9 +106,9 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
     if !lit {
         // It may be close, and have in view what stands behind the model.
         let behind_model = |spec: &Spec| spec.name == RIM;
-        scene
-            .lights
-            .extend(lights(&framing).into_iter().filter(|spec| !seen || asked || !behind_model(spec)));
+        scene.lights.extend(
+            lights(&framing, ground).into_iter().filter(|spec| !seen || asked || !behind_model(spec)),
+        );
     }
     if !lit && !seen {
         of_clay(scene);
@@ -160,7 +165,9 @@ fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
 }
 
 /// A large panel from the left and above, a weaker one from behind on the right, and a pale room.
-fn lights(framing: &Framing) -> [Spec; 3] {
+/// Without a cove, which sends on what it gets, the room is brighter.
+fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
+    let bright = if ground == Ground::None { 1.7 } else { 1.0 };
     let [right, up, forward] = framing.axes;
     let warm = Rgb::new(1.0, 0.96, 0.90);
     let cool = Rgb::new(0.86, 0.93, 1.0);
@@ -170,9 +177,9 @@ fn lights(framing: &Framing) -> [Spec; 3] {
         key.spec(framing, warm * 4.4).with("classic", warm * 0.72),
         rim.spec(framing, cool * 3.2).with("classic", cool * 0.28),
         Spec::new("room", "environment")
-            .with("zenith", Rgb::new(0.40, 0.42, 0.46))
-            .with("horizon", Rgb::new(0.26, 0.27, 0.29))
-            .with("ground", Rgb::new(0.10, 0.096, 0.092)),
+            .with("zenith", Rgb::new(0.40, 0.42, 0.46) * bright)
+            .with("horizon", Rgb::new(0.26, 0.27, 0.29) * bright)
+            .with("ground", Rgb::new(0.10, 0.096, 0.092) * bright),
     ]
 }
 
