@@ -107,6 +107,21 @@ impl<'a> Body<'a> {
         })
     }
 
+    /// True for binary numbers whose first byte is the least.
+    pub(super) fn is_little(&self) -> bool {
+        self.encoding == Encoding::Little
+    }
+
+    /// The bytes that are not read yet, of a binary body.
+    pub(super) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.pos..]
+    }
+
+    /// Goes on by some bytes, of which there are as many.
+    pub(super) fn pass(&mut self, bytes: usize) {
+        self.pos += bytes;
+    }
+
     /// Passes numbers without looking at them.
     pub(super) fn skip(&mut self, scalar: Scalar, count: i64) -> Result<(), FormatError> {
         if self.encoding == Encoding::Ascii {

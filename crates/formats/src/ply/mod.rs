@@ -1,8 +1,10 @@
 //! PLY, text and binary of both byte orders. See `docs/formats/ply.md`.
 
 mod body;
+mod direct;
 mod header;
 mod read;
+mod slots;
 mod write;
 
 pub(crate) use write::encode;

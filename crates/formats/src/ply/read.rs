@@ -1,7 +1,9 @@
 //! Reading PLY.
 
 use super::body::Body;
+use super::direct::can_be;
 use super::header::{Element, Property, Scalar, read_header};
+use super::slots::{MEANINGS, Slots};
 use crate::FormatError;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
@@ -22,24 +24,38 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         body: Body::new(source, &places, header.encoding, header.body),
         soup: Soup::default(),
         vertices: Slots::default(),
+        triangles: None,
         wedge_uvs: Vec::new(),
         wedges: HashMap::new(),
         smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
         oddities: Oddities::default(),
     };
+    // Where vertices have their normals and faces nothing else, these are triangles at once.
+    let first = |name: &str| header.elements.iter().position(|element| element.name == name);
+    let are_in_order = first("vertex").is_some_and(|vertex| Some(vertex) < first("face"));
+    let are_few =
+        header.elements.iter().filter(|e| matches!(&*e.name, "vertex" | "face" | "tristrips")).count() == 2;
     for element in &header.elements {
-        reader.element(element)?;
+        let is_plain = are_in_order && are_few && element.name == "face" && can_be(element);
+        if is_plain && (reader.vertices.normals || reader.reading.crease_angle <= 0.0) {
+            reader.body.check_claim(element)?;
+            reader.triangles = Some(reader.triangles_of(element)?);
+        } else {
+            reader.element(element)?;
+        }
     }
     let (texture, scene) = (header.texture, SceneBuilder::default());
     reader.finish(texture, scene)
 }
 
-struct Ply<'a, 'o, 'r> {
-    reading: &'r mut Reading<'o>,
-    source: &'a Source<'a>,
-    places: &'a Places<'a>,
-    body: Body<'a>,
-    soup: Soup,
+pub(super) struct Ply<'a, 'o, 'r> {
+    pub(super) reading: &'r mut Reading<'o>,
+    pub(super) source: &'a Source<'a>,
+    pub(super) places: &'a Places<'a>,
+    pub(super) body: Body<'a>,
+    pub(super) soup: Soup,
+    /// Of all faces, where nothing has to be welded.
+    triangles: Option<Vec<[u32; 3]>>,
     vertices: Slots,
     /// Texture coordinates of corners rather than vertices, each value once.
     wedge_uvs: Vec<Vec2>,
@@ -47,54 +63,7 @@ struct Ply<'a, 'o, 'r> {
     wedges: HashMap<[u32; 2], u32>,
     /// How faces without normals look.
     smoothing: Smoothing,
-    oddities: Oddities,
-}
-
-/// What the numbers of a vertex can mean, by the names that programs give them.
-const MEANINGS: [&[&str]; 14] = [
-    &["x"],
-    &["y"],
-    &["z"],
-    &["nx", "normal_x"],
-    &["ny", "normal_y"],
-    &["nz", "normal_z"],
-    &["u", "s", "texture_u", "texture_s"],
-    &["v", "t", "texture_v", "texture_t"],
-    &["red", "r", "diffuse_red"],
-    &["green", "g", "diffuse_green"],
-    &["blue", "b", "diffuse_blue"],
-    &["specular_red"],
-    &["specular_green"],
-    &["specular_blue"],
-];
-
-/// Which meanings the vertices of a file have.
-#[derive(Default)]
-struct Slots {
-    /// The meaning of each property.
-    meaning: Vec<Option<usize>>,
-    /// Types of colours.
-    colour: [Option<f32>; 2],
-    normals: bool,
-    uvs: bool,
-    kd: bool,
-    ks: bool,
-}
-
-impl Slots {
-    fn new(element: &Element) -> Slots {
-        let meaning_of = |p: &Property| {
-            MEANINGS.iter().position(|names| names.contains(&p.name.as_str())).filter(|_| p.count.is_none())
-        };
-        let meaning: Vec<Option<usize>> = element.properties.iter().map(meaning_of).collect();
-        let all = |slots: std::ops::Range<usize>| slots.into_iter().all(|slot| meaning.contains(&Some(slot)));
-        let scale = |slot| {
-            let property = meaning.iter().position(|&m| m == Some(slot));
-            property.and_then(|p| element.properties[p].scalar.colour_scale())
-        };
-        let (normals, uvs, kd, ks) = (all(3..6), all(6..8), all(8..11), all(11..14));
-        Slots { colour: [scale(8), scale(11)], normals, uvs, kd, ks, meaning }
-    }
+    pub(super) oddities: Oddities,
 }
 
 impl Ply<'_, '_, '_> {
@@ -142,10 +111,24 @@ impl Ply<'_, '_, '_> {
         }
         let floats = 3 * (1 + usize::from(slots.normals) + usize::from(slots.kd) + usize::from(slots.ks))
             + 2 * usize::from(slots.uvs);
+        // As many as the bytes that are left can hold, so that all room is made at once.
+        self.reading.budget.take_bytes(element.count * 4 * floats as u64, self.source.name)?;
+        self.make_room(&slots, element.count as usize);
+        let plain = slots.offsets(element).filter(|_| self.body.is_little());
         for _ in 0..element.count {
-            self.reading.budget.take::<f32>(floats, self.source.name)?;
             let start = self.body.offset();
             let mut values = [0f32; MEANINGS.len()];
+            if let Some((offsets, stride)) = &plain
+                && let Some(row) = self.body.rest().get(..*stride)
+            {
+                for (slot, at) in offsets {
+                    let bytes = row[*at..].first_chunk::<4>().copied().unwrap_or_default();
+                    values[*slot] = f32::from_le_bytes(bytes);
+                }
+                self.body.pass(*stride);
+                self.push_vertex(&values, &slots, start);
+                continue;
+            }
             for (property, meaning) in element.properties.iter().zip(&slots.meaning) {
                 match meaning {
                     Some(slot) => values[*slot] = self.body.number(property.scalar)?,
@@ -159,11 +142,21 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    fn end_row(&mut self, start: usize) {
+    pub(super) fn end_row(&mut self, start: usize) {
         if self.body.end_row() {
             let places = self.places;
             self.oddities.note("a line has more words than the header says", || places.at(start));
         }
+    }
+
+    fn make_room(&mut self, slots: &Slots, count: usize) {
+        let soup = &mut self.soup;
+        let room = |wanted: bool| if wanted { count } else { 0 };
+        soup.positions.reserve_exact(count);
+        soup.normals.reserve_exact(room(slots.normals));
+        soup.uvs.reserve_exact(room(slots.uvs));
+        soup.colours.reserve_exact(room(slots.kd));
+        soup.specular.reserve_exact(room(slots.ks));
     }
 
     fn push_vertex(&mut self, values: &[f32; MEANINGS.len()], slots: &Slots, start: usize) {
@@ -317,6 +310,9 @@ impl Ply<'_, '_, '_> {
         texture: Option<(String, usize)>,
         mut scene: SceneBuilder,
     ) -> Result<SceneBuilder, FormatError> {
+        if let Some(triangles) = self.triangles.take().filter(|triangles| !triangles.is_empty()) {
+            return self.finish_triangles(texture, scene, triangles);
+        }
         if self.soup.ends.is_empty() {
             let message = if self.soup.positions.is_empty() {
                 "there is no face in it"
@@ -348,7 +344,7 @@ impl Ply<'_, '_, '_> {
     }
 
     /// The texture of the whole mesh, as MeshLab names it in a comment.
-    fn texture(
+    pub(super) fn texture(
         &mut self,
         file: &str,
         offset: usize,

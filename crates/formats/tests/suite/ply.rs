@@ -125,3 +125,78 @@ fn headers_that_promise_the_world_take_nothing() {
         assert!(read_bytes(text.as_bytes(), "ply", None, "x.ply", &little).is_err());
     }
 }
+
+/// Vertices with normals, the last of them unused, and a triangle, a square and a line; `extra` adds a property to faces.
+fn with_normals(encoding: &str, extra: bool) -> Vec<u8> {
+    let property = if extra { "property uchar flags\n" } else { "" };
+    let mut file = format!(
+        "ply\nformat {encoding} 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
+         property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n\
+         element face 3\nproperty list uchar int vertex_indices\n{property}end_header\n"
+    )
+    .into_bytes();
+    let (big, text) = (encoding.contains("big"), encoding == "ascii");
+    let mut word = |file: &mut Vec<u8>, number: f32, is_index: bool| match (text, is_index) {
+        (true, _) => file.extend(format!("{number} ").bytes()),
+        (_, true) => {
+            let bytes = (number as i32).to_le_bytes();
+            file.extend(if big { [bytes[3], bytes[2], bytes[1], bytes[0]] } else { bytes });
+        }
+        _ => {
+            let bytes = number.to_le_bytes();
+            file.extend(if big { [bytes[3], bytes[2], bytes[1], bytes[0]] } else { bytes });
+        }
+    };
+    for i in 0..6 {
+        let corner = [(i % 2) as f32, (i / 2) as f32, 0.25];
+        corner.iter().chain(&[0.0, 0.0, 1.0, 0.5, i as f32]).for_each(|&x| word(&mut file, x, false));
+        file.extend(if text { &b"\n"[..] } else { b"" });
+    }
+    for face in [&[1.0f32, 3.0, 2.0][..], &[0.0, 1.0, 3.0, 2.0], &[0.0, 1.0]] {
+        let count = face.len() as u8;
+        file.extend(if text { format!("{count} ").into_bytes() } else { vec![count] });
+        face.iter().for_each(|&index| word(&mut file, index, true));
+        file.extend(if extra { if text { &b"7 "[..] } else { &[7] } } else { b"" });
+        file.extend(if text { &b"\n"[..] } else { b"" });
+    }
+    file
+}
+
+#[test]
+fn triangles_are_the_same_whether_anything_was_welded_or_not() {
+    let corners = |bytes: &[u8]| {
+        let scene = crate::read_text("ply", bytes).unwrap_or_else(|error| panic!("{error}"));
+        let mesh = &scene.objects[0].mesh;
+        assert_eq!(
+            (mesh.positions.len(), mesh.normals.len(), mesh.uvs.len()),
+            (4, 4, 4),
+            "what no face has is left out"
+        );
+        assert!(crate::warnings(&scene).contains("fewer than 3 corners"), "{}", crate::warnings(&scene));
+        let of = |corner: u32| {
+            let corner = corner as usize;
+            format!("{} {} {}", mesh.positions[corner], mesh.normals[corner], mesh.uvs[corner])
+        };
+        mesh.triangles.iter().map(|triangle| triangle.map(of)).collect::<Vec<_>>()
+    };
+    let welded = corners(&with_normals("ascii", true));
+    assert_eq!(welded.len(), 3);
+    for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        for extra in [false, true] {
+            assert_eq!(corners(&with_normals(encoding, extra)), welded, "{encoding} {extra}");
+        }
+    }
+}
+
+#[test]
+fn faces_of_vertices_that_are_not_there_are_refused_in_every_form() {
+    for encoding in ["binary_little_endian", "binary_big_endian"] {
+        let mut file = with_normals(encoding, false);
+        let first = file.len() - (1 + 8) - (1 + 16) - 12;
+        for bytes in [[0x7f; 4], [0xff; 4]] {
+            file[first..first + 4].copy_from_slice(&bytes);
+            let message = crate::refusal("ply", &file);
+            assert!(message.contains("this face names vertex"), "{message}");
+        }
+    }
+}
