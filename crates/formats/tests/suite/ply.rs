@@ -136,7 +136,7 @@ fn with_normals(encoding: &str, extra: bool) -> Vec<u8> {
     )
     .into_bytes();
     let (big, text) = (encoding.contains("big"), encoding == "ascii");
-    let mut word = |file: &mut Vec<u8>, number: f32, is_index: bool| match (text, is_index) {
+    let word = |file: &mut Vec<u8>, number: f32, is_index: bool| match (text, is_index) {
         (true, _) => file.extend(format!("{number} ").bytes()),
         (_, true) => {
             let bytes = (number as i32).to_le_bytes();

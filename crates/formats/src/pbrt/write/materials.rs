@@ -20,13 +20,14 @@ const METALS: [(&str, &str); 5] =
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
 /// Parts of `principled` that nothing there says.
-const LEFT_OUT: [(&str, f32); 6] = [
+const LEFT_OUT: [(&str, f32); 7] = [
     ("fuzz_weight", 0.0),
     ("thin_film_weight", 0.0),
     ("priority", 0.0),
     ("normal_scale", 1.0),
     ("dispersion", 0.0),
     ("transmission_dispersion_scale", 0.0),
+    ("base_diffuse_roughness", 0.0),
 ];
 
 impl Document<'_> {
@@ -44,7 +45,13 @@ impl Document<'_> {
         }
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {
-            "diffuse" => self.matt(spec, "reflectance", 0.7, writing)?,
+            "diffuse" => {
+                if texture(spec, "roughness").is_some() || number(spec, "roughness").is_some_and(|x| x > 0.0)
+                {
+                    writing.warn("pbrt files hold no 'roughness' of what is matt: left out");
+                }
+                self.matt(spec, "reflectance", 0.7, writing)?
+            }
             "mirror" => {
                 writing.warn("mirrors are written as metal, which reflects more along the surface");
                 let reflectance = self.colour_of(spec, "reflectance", 0.95, AS_IT_IS, writing)?;
