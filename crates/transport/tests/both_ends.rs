@@ -127,6 +127,7 @@ fn layered_surfaces_look_the_same_from_both_ends() {
         ("clay", principled().with("base_diffuse_roughness", 1.0f32)),
         ("leaf", principled().with("diffuse_transmission_weight", 0.6f32)),
         ("oily", principled().with("thin_film_weight", 1.0f32).with("base_metalness", 0.6f32)),
+        ("oily glass", clear.clone().with("thin_film_weight", 1.0f32).with("thin_film_ior", 1.8f32)),
         ("clear in part", clear.with("transmission_weight", 0.5f32)),
     ] {
         check(name, &built(&panel_over(material)), &["light", "bdpt", "vcm"]);

@@ -220,23 +220,24 @@ pub fn the_same_from_both_ends(s: &Scatterer, _promise: Promise) -> Result<(), S
     Ok(())
 }
 
-/// No more goes out than came in; all of it where promised.
+/// Of no channel more goes out than came in; all of it where promised.
 pub fn energy(s: &Scatterer, promise: Promise) -> Result<(), String> {
     for (i, wo) in known_directions().into_iter().enumerate() {
-        let weights: Vec<f64> = (0..SAMPLES)
-            .map(|k| {
-                draw(s, wo, 300 + i as u64, k, IMPORTANCE).map_or(0.0, |x| f64::from(x.weight.max_channel()))
-            })
+        let weights: Vec<Rgb> = (0..SAMPLES)
+            .map(|k| draw(s, wo, 300 + i as u64, k, IMPORTANCE).map_or(Rgb::BLACK, |x| x.weight))
             .collect();
         let n = weights.len() as f64;
-        let mean = weights.iter().sum::<f64>() / n;
-        let variance = weights.iter().map(|w| (w - mean) * (w - mean)).sum::<f64>() / (n - 1.0);
-        let error = 5.0 * (variance / n).sqrt() + 1e-5;
-        if mean > 1.0 + error {
-            return Err(format!("wo {wo}: gives out {mean:.5} of the light"));
-        }
-        if promise.lossless && mean < 1.0 - error {
-            return Err(format!("wo {wo}: keeps only {mean:.5} of the light, and promised all"));
+        for channel in 0..3 {
+            let weights = || weights.iter().map(|weight| f64::from(weight[channel]));
+            let mean = weights().sum::<f64>() / n;
+            let variance = weights().map(|w| (w - mean) * (w - mean)).sum::<f64>() / (n - 1.0);
+            let error = 5.0 * (variance / n).sqrt() + 1e-5;
+            if mean > 1.0 + error {
+                return Err(format!("wo {wo}: gives out {mean:.5} of the light"));
+            }
+            if promise.lossless && mean < 1.0 - error {
+                return Err(format!("wo {wo}: keeps only {mean:.5} of the light, and promised all"));
+            }
         }
     }
     Ok(())

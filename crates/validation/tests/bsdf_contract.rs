@@ -83,7 +83,7 @@ fn a_turned_normal_scatters_the_same_from_both_ends() {
 fn sums_of_lobes_about_a_turned_normal_do_too() {
     let [grey, glass, sheen, metal] = [
         Lobe::Lambert(Lambert { albedo: Rgb::new(0.2, 0.5, 0.7) }),
-        Lobe::Dielectric(Dielectric { eta: 1.5, dispersion: 0.0, tint: Rgb::WHITE, thin: false }),
+        Lobe::Dielectric(Dielectric { eta: 1.5, dispersion: 0.0, tint: Rgb::WHITE, thin: false, film: None }),
         Lobe::Phong(PhongLobe { reflectance: Rgb::WHITE, exponent: 20.0 }),
         Lobe::Mirror(Mirror { reflectance: Rgb::new(0.9, 0.6, 0.3) }),
     ];
@@ -234,7 +234,8 @@ fn flat_surface() -> Surface {
 /// A lobe with one of its functions spoilt, and the check that has to see it.
 fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     let lambert = Lobe::Lambert(Lambert { albedo: Rgb::WHITE });
-    let glass = Lobe::Dielectric(Dielectric { eta: 1.5, dispersion: 0.0, tint: Rgb::WHITE, thin: false });
+    let glass =
+        Lobe::Dielectric(Dielectric { eta: 1.5, dispersion: 0.0, tint: Rgb::WHITE, thin: false, film: None });
     let mirror = Lobe::Mirror(Mirror { reflectance: Rgb::WHITE });
     let white = Promise { reciprocal: true, lossless: true };
     let adjoint = Promise { reciprocal: false, lossless: true };

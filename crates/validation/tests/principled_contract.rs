@@ -45,6 +45,11 @@ const CASES: &[Case] = &[
     ("metal in part, brushed", &[("base_metalness", 0.5), ("specular_roughness_anisotropy", 0.8)], false),
     ("coated paint", &[("specular_roughness", 0.5), ("coat_weight", 0.8), ("coat_roughness", 0.3)], false),
     ("frosted", &[("transmission_weight", 0.7), ("specular_roughness", 0.4), ("coat_weight", 0.5)], true),
+    (
+        "oily glass",
+        &[("transmission_weight", 0.8), ("specular_roughness", 0.4), ("thin_film_weight", 0.7)],
+        true,
+    ),
     ("velvet", &[("fuzz_weight", 0.9), ("fuzz_roughness", 0.4), ("coat_weight", 0.5)], false),
     ("leaf", &[("diffuse_transmission_weight", 0.6), ("fuzz_weight", 0.3)], false),
     ("oily", &[("thin_film_weight", 0.8), ("base_metalness", 0.5), ("specular_roughness", 0.4)], false),
@@ -154,6 +159,13 @@ fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
             let [_, most] = furnace(&principled(&numbers, Rgb::WHITE));
             assert!(most < 1.012, "film of {thickness}: {most:.4}");
         }
+    }
+    // What a film on glass does not reflect, it lets through.
+    for thickness in [0.1f32, 0.4] {
+        let film = [("thin_film_weight", 1.0), ("thin_film_thickness", thickness), ("thin_film_ior", 1.8)];
+        let clear = [("transmission_weight", 1.0), ("specular_roughness", 0.0), ("specular_ior", 1.0)];
+        let [least, most] = furnace(&principled(&[film, clear].concat(), Rgb::WHITE));
+        assert!(least > 0.985 && most < 1.012, "bubble of {thickness}: {least:.4} to {most:.4}");
     }
     let grey = furnace(&principled(&[("specular_roughness", 0.7)], Rgb::grey(0.9)));
     assert!(grey[0] < 0.985, "a grey one passes for white: {grey:?}");

@@ -1,6 +1,6 @@
 //! The clear part of a surface: glass, smooth or rough, solid or a pane, below what covers it.
 
-use super::{BsdfEntry, BsdfSample, Cover, Dielectric, Ggx, Lobe, RoughDielectric, TransportMode};
+use super::{BsdfEntry, BsdfSample, Cover, Dielectric, Film, Ggx, Lobe, RoughDielectric, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -19,7 +19,16 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
         let glass = |ggx, thin, cover| {
             Lobe::Clear(Clear::new((1.5, 0.0), ggx, thin, Rgb::grey(0.9), Rgb::new(0.5, 0.8, 0.9), cover))
         };
+        let oily = |ggx, thin| {
+            let film = Film { weight: 0.9, thickness: 380.0, eta: 1.8 };
+            let clear = Clear::new((1.4, 0.0), ggx, thin, Rgb::WHITE, Rgb::WHITE, Cover::NONE);
+            Lobe::Clear(clear.below(film))
+        };
         vec![
+            ("oily glass", oily(Ggx::SMOOTH, false)),
+            ("oily pane", oily(Ggx::SMOOTH, true)),
+            ("oily frosted glass", oily(Ggx::new(0.2), false)),
+            ("oily frosted pane", oily(Ggx::new(0.3), true)),
             ("bottle", glass(Ggx::SMOOTH, false, Cover::NONE)),
             ("coated glass", glass(Ggx::new(0.2), false, coat)),
             ("coated pane", glass(Ggx::new(0.3), true, coat)),
@@ -42,8 +51,13 @@ impl Clear {
     /// what passes, 0..=1.
     pub fn new(index: (f32, f32), ggx: Ggx, thin: bool, reflected: Rgb, passed: Rgb, cover: Cover) -> Clear {
         let (eta, dispersion) = index;
-        let glass = RoughDielectric { eta, dispersion, tint: Rgb::WHITE, thin, ggx };
+        let glass = RoughDielectric { eta, dispersion, tint: Rgb::WHITE, thin, ggx, film: None };
         Clear { glass, reflected, passed, cover }
+    }
+
+    /// The same below a thin film.
+    pub fn below(self, film: Film) -> Clear {
+        Clear { glass: RoughDielectric { film: Some(film), ..self.glass }, ..self }
     }
 
     /// What refracts, as it is in the open.
@@ -64,8 +78,8 @@ impl Clear {
 
     #[inline]
     fn smooth(&self) -> Dielectric {
-        let RoughDielectric { eta, dispersion, tint, thin, .. } = self.glass;
-        Dielectric { eta, dispersion, tint, thin }
+        let RoughDielectric { eta, dispersion, tint, thin, film, .. } = self.glass;
+        Dielectric { eta, dispersion, tint, thin, film }
     }
 
     /// Where glass without width lets light through.

@@ -1,6 +1,6 @@
 //! A smooth boundary between two media that do not absorb: Fresnel's equations and Snell's law.
 
-use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
+use super::{BsdfEntry, BsdfSample, Film, Lobe, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -15,7 +15,9 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     reciprocal: false,
     lossless: true,
     cases: || {
-        let glass = |eta, thin| Lobe::Dielectric(Dielectric { eta, dispersion: 0.0, tint: Rgb::WHITE, thin });
+        let glass = |eta, thin| {
+            Lobe::Dielectric(Dielectric { film: None, eta, dispersion: 0.0, tint: Rgb::WHITE, thin })
+        };
         vec![
             ("glass", glass(1.5, false)),
             ("air in water", glass(1.0 / 1.33, false)),
@@ -35,6 +37,8 @@ pub struct Dielectric {
     pub tint: Rgb,
     /// A pane without thickness: both of its faces at once, straight through. [pbrt 2023, 9.5.1]
     pub thin: bool,
+    /// On its outside; a pane has it on both sides.
+    pub film: Option<Film>,
 }
 
 impl Dielectric {
@@ -67,12 +71,18 @@ impl Dielectric {
             // Light that goes to and fro between the two faces adds up. [pbrt 2023, eq. 9.12]
             reflected = 2.0 * reflected / (1.0 + reflected);
         }
+        let mut colours = [Rgb::WHITE; 2];
+        if let Some(film) = &self.film {
+            (reflected, colours) = shares(film.over_clear(wo.z.abs(), self.eta, wo.z > 0.0, self.thin));
+        }
         if u_choice < reflected {
-            return Some(self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, None));
+            let sample = self.towards(Vec3::new(-wo.x, -wo.y, wo.z), reflected, None);
+            return Some(BsdfSample { weight: sample.weight * colours[0], ..sample });
         }
         let wi = self.transmitted(wo)?;
         let eta = if self.thin { 1.0 } else { eta };
         let mut sample = self.towards(wi, 1.0 - reflected, Some(eta));
+        sample.weight *= colours[1];
         if mode == TransportMode::Radiance {
             sample.weight = sample.weight / (eta * eta);
         }
@@ -108,6 +118,13 @@ impl Dielectric {
     pub(super) fn strength(&self) -> f32 {
         self.tint.luminance()
     }
+}
+
+/// The mean of what is reflected by the channels; and of what is reflected and of what passes, each channel over the mean.
+pub(super) fn shares(reflected: Rgb) -> (f32, [Rgb; 2]) {
+    let mean = (reflected.r + reflected.g + reflected.b) * (1.0 / 3.0);
+    let over = |share: Rgb, mean: f32| if mean > 0.0 { share * (1.0 / mean) } else { Rgb::WHITE };
+    (mean, [over(reflected, mean), over(Rgb::WHITE + reflected * -1.0, 1.0 - mean)])
 }
 
 /// Reflected fraction of unpolarised light at a smooth boundary: `cos_theta` of the incident direction, 0..=1,

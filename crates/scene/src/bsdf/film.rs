@@ -5,7 +5,7 @@
 //! R = 1 - (1-a²)(1-b²) / (1-q²) · (1 + 2 Σ (-q)^m cos mδ), δ = 2π · path / wavelength. Only the cosines depend on the
 //! wavelength: their means over what the channels see are a table over the path. [Belcour 2017; Born 1999, 7.6]
 
-use super::Fresnel;
+use super::{Fresnel, fresnel_dielectric};
 use crate::wavelength::sensitivity;
 use bilux_math::Rgb;
 use bilux_math::transcendental::cos;
@@ -34,6 +34,20 @@ impl Film {
         let across = amplitude(self.eta * within, eta * below);
         let along = amplitude(within / self.eta, below / eta);
         self.reflected(above, within, [Rgb::grey(across), Rgb::grey(along)])
+    }
+
+    /// What clear glass of an index `eta` over the outside reflects where its surface has the film in part, by the channels:
+    /// of light that comes from the outside, or from the inside, under this cosine. A pane has the film on both of its faces.
+    #[inline(never)]
+    pub(super) fn over_clear(&self, cosine: f32, eta: f32, outside: bool, thin: bool) -> Rgb {
+        let above2 = 1.0 - (1.0 - cosine * cosine) * if outside || thin { 1.0 } else { eta * eta };
+        if above2 <= 0.0 {
+            return Rgb::WHITE;
+        }
+        let above = above2.sqrt();
+        let bare = Rgb::grey(fresnel_dielectric(above, eta));
+        let once = if eta < 1.0 { bare } else { bare.lerp(self.over_glass(above, eta), self.weight) };
+        if thin { once.map(|r| 2.0 * r / (1.0 + r)) } else { once }
     }
 
     /// The same of metal, which turns the phase of light by half.
@@ -160,6 +174,29 @@ mod tests {
         }
         // There are colours to be told apart.
         assert!(most > 0.05, "{most}");
+    }
+
+    #[test]
+    fn clear_glass_has_airys_colours_from_both_sides() {
+        for thickness in [110.0f32, 380.0, 550.0] {
+            let film = Film { weight: 1.0, thickness, eta: 1.8 };
+            for cosine in [1.0f32, 0.8, 0.5, 0.2] {
+                let wanted = by_wavelengths(&film, cosine, 1.5);
+                let below = (1.0 - (1.0 - cosine * cosine) / 2.25f32).sqrt();
+                let panes = wanted.map(|r| r + (1.0 - r) * (1.0 - r) * r / (1.0 - r * r));
+                for (found, wanted) in [
+                    (film.over_clear(cosine, 1.5, true, false), wanted),
+                    (film.over_clear(below, 1.5, false, false), wanted),
+                    (film.over_clear(cosine, 1.5, true, true), panes),
+                ] {
+                    let off = found + wanted * -1.0;
+                    let off = off.r.abs().max(off.g.abs()).max(off.b.abs());
+                    assert!(off < 0.01, "{film:?} at {cosine}: {found:?}, {wanted:?}");
+                }
+            }
+            // Beyond the critical angle all is reflected, film or not.
+            assert_eq!(film.over_clear(0.5, 1.5, false, false), Rgb::WHITE);
+        }
     }
 
     #[test]

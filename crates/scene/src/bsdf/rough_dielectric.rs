@@ -1,7 +1,8 @@
 //! Rough glass: facets that reflect and refract by Fresnel's equations and Snell's law. [Walter 2007]
 
 use super::conductor::facet_between;
-use super::{BsdfEntry, BsdfSample, Dielectric, Ggx, Lobe, TransportMode, fresnel_dielectric, refract};
+use super::dielectric::shares;
+use super::{BsdfEntry, BsdfSample, Dielectric, Film, Ggx, Lobe, TransportMode, fresnel_dielectric, refract};
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -18,7 +19,14 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     lossless: false,
     cases: || {
         let glass = |eta, thin, ggx| {
-            Lobe::RoughDielectric(RoughDielectric { eta, dispersion: 0.0, tint: Rgb::WHITE, thin, ggx })
+            Lobe::RoughDielectric(RoughDielectric {
+                film: None,
+                eta,
+                dispersion: 0.0,
+                tint: Rgb::WHITE,
+                thin,
+                ggx,
+            })
         };
         vec![
             ("frosted", glass(1.5, false, Ggx::new(0.3))),
@@ -43,6 +51,8 @@ pub struct RoughDielectric {
     pub thin: bool,
     /// How its facets are turned; not smooth.
     pub ggx: Ggx,
+    /// On its outside; a pane has it on both sides.
+    pub film: Option<Film>,
 }
 
 impl RoughDielectric {
@@ -54,11 +64,11 @@ impl RoughDielectric {
 
     /// The same of another index; smooth where it is nearly that of the outside.
     pub fn of_index(self, eta: f32) -> Lobe {
-        let RoughDielectric { dispersion, tint, thin, ggx, .. } = self;
+        let RoughDielectric { dispersion, tint, thin, ggx, film, .. } = self;
         if RoughDielectric::is_rough(eta, thin, &ggx) {
             Lobe::RoughDielectric(RoughDielectric { eta, ..self })
         } else {
-            Lobe::Dielectric(Dielectric { eta, dispersion, tint, thin })
+            Lobe::Dielectric(Dielectric { eta, dispersion, tint, thin, film })
         }
     }
 
@@ -73,51 +83,62 @@ impl RoughDielectric {
     }
 
     pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
-        let (f, pdf) = match (wo.z * wi.z > 0.0, self.thin) {
+        let (f, pdf, cos) = match (wo.z * wi.z > 0.0, self.thin) {
             (true, _) => self.reflected(wo, wi, |reflected| reflected),
             (false, true) => self.reflected(wo, Vec3::new(wi.x, wi.y, -wi.z), |reflected| 1.0 - reflected),
             (false, false) => self.refracted(wo, wi, mode),
         };
-        (self.tint * f, pdf)
+        let Some(film) = &self.film else { return (self.tint * f, pdf) };
+        let passes = usize::from(wo.z * wi.z < 0.0);
+        // What is refracted tells its cosine on the outside.
+        let outside = wo.z > 0.0 || passes == 1;
+        let (_, colours) = shares(film.over_clear(cos, self.eta, outside, self.thin));
+        (self.tint * colours[passes] * f, pdf)
     }
 
     /// Light that comes back from the facets, or through those of a pane; `share` is that of Fresnel's fraction.
     #[inline]
-    fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32) {
-        let eta = self.eta_from(wo);
-        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (0.0, 0.0) };
+    fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32, f32) {
+        let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
+        let Some((wo, wi, m)) = facet_between(&self.ggx, wo, wi) else { return (0.0, 0.0, 1.0) };
         let cos = wo.dot(m);
-        let density = self.ggx.distribution(m) * share(self.fresnel(cos, eta));
-        (density * self.ggx.visible(wo, wi), density * 0.25 * self.ggx.seen(wo))
+        let density = self.ggx.distribution(m) * share(self.fresnel(cos, eta, outside));
+        (density * self.ggx.visible(wo, wi), density * 0.25 * self.ggx.seen(wo), cos)
     }
 
     /// Light that passes the facets. [Walter 2007, eq. 21]
     #[inline]
-    fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32) {
-        let eta = self.eta_from(wo);
+    fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32, f32) {
+        let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
         let side = 1f32.copysign(wo.z);
         let (wo, wi) = (Vec3::new(wo.x, wo.y, wo.z * side), Vec3::new(wi.x, wi.y, wi.z * side));
         let Some(m) = (wo + wi * eta).try_normalize().map(|m| m * 1f32.copysign(m.z)) else {
-            return (0.0, 0.0);
+            return (0.0, 0.0, 1.0);
         };
         let (cos_o, cos_i) = (wo.dot(m), -wi.dot(m));
         if cos_o <= 0.0 || cos_i <= 0.0 || wo.z == 0.0 || wi.z == 0.0 {
-            return (0.0, 0.0);
+            return (0.0, 0.0, 1.0);
         }
         let spread = cos_o - eta * cos_i;
         let per_angle = cos_i * cos_o * eta * eta / (spread * spread);
-        let density = self.ggx.distribution(m) * passed(cos_o, cos_i, eta) * per_angle;
+        // By the cosine on the outside, from which both ends find the same to the last digits.
+        let above = if outside { cos_o } else { cos_i };
+        let passes = match &self.film {
+            Some(_) => 1.0 - self.fresnel(above, self.eta, true),
+            None => passed(cos_o, cos_i, eta),
+        };
+        let density = self.ggx.distribution(m) * passes * per_angle;
         let below = Vec3::new(wi.x, wi.y, -wi.z);
         let f = density * 4.0 * self.ggx.visible(wo, below);
         let f = if mode == TransportMode::Radiance { f / (eta * eta) } else { f };
-        if f.is_finite() { (f, density * self.ggx.seen(wo)) } else { (0.0, 0.0) }
+        if f.is_finite() { (f, density * self.ggx.seen(wo), above) } else { (0.0, 0.0, 1.0) }
     }
 
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let eta = self.eta_from(wo);
         let above = Vec3::new(wo.x, wo.y, wo.z.abs());
         let m = self.ggx.sample_visible(above, u, Ggx::FULL);
-        let reflects = u_choice < self.fresnel(above.dot(m), eta);
+        let reflects = u_choice < self.fresnel(above.dot(m), eta, wo.z > 0.0);
         let wi = match (reflects, self.thin) {
             (true, _) => reflect(above, m),
             (false, true) => reflect(above, m) * Vec3::new(1.0, 1.0, -1.0),
@@ -133,9 +154,12 @@ impl RoughDielectric {
         Some(BsdfSample { transmits: !reflects, eta, ..sample })
     }
 
-    /// The reflected fraction at a facet; of a pane, at both of its faces.
+    /// The reflected fraction at a facet, the mean of the channels; of a pane, at both of its faces.
     #[inline]
-    fn fresnel(&self, cos: f32, eta: f32) -> f32 {
+    fn fresnel(&self, cos: f32, eta: f32, outside: bool) -> f32 {
+        if let Some(film) = &self.film {
+            return shares(film.over_clear(cos, self.eta, outside, self.thin)).0;
+        }
         if !self.thin {
             return fresnel_dielectric(cos, eta);
         }

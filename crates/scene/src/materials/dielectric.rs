@@ -84,7 +84,7 @@ impl Material for Glass {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
         let Glass { eta, dispersion, thin, .. } = *self;
         let (tint, ggx) = (self.tint.at(surface.uvs()), self.roughness.at(surface));
-        let glass = RoughDielectric { eta, dispersion, tint, thin, ggx }.of_index(eta);
+        let glass = RoughDielectric { eta, dispersion, tint, thin, ggx, film: None }.of_index(eta);
         Bsdf::of(surface.n_shade, surface.n_geom, glass).along(surface.tangent)
     }
 

@@ -99,7 +99,13 @@ impl Material for Phong {
                     .then_some(Lobe::Phong(PhongLobe { reflectance: highlight, exponent: c.exponent })),
             ]
         } else {
-            let glass = Dielectric { eta: c.eta, dispersion: 0.0, tint: c.kt.clamp(0.0, 1.0), thin: c.thin };
+            let glass = Dielectric {
+                eta: c.eta,
+                dispersion: 0.0,
+                tint: c.kt.clamp(0.0, 1.0),
+                thin: c.thin,
+                film: None,
+            };
             [Some(Lobe::Dielectric(glass)), None, None]
         };
         Bsdf::new(surface.n_shade, surface.n_geom, lobes)

@@ -68,7 +68,8 @@ impl Point {
         });
         let clear = (!clear.is_black()).then(|| {
             let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
-            Lobe::Clear(Clear::new((self.ior, self.dispersion), ggx, self.thin, reflected, passed, cover))
+            let clear = Clear::new((self.ior, self.dispersion), ggx, self.thin, reflected, passed, cover);
+            Lobe::Clear(if self.film.weight > 0.0 { clear.below(self.film) } else { clear })
         });
         [fuzz, coat, gloss, base, clear]
     }
