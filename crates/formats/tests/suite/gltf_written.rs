@@ -131,6 +131,7 @@ fn our_own_scenes_come_back() {
         "toml",
         r#"
 [camera]
+frame = 1.5
 position = [1, 2, 5]
 look_at = [0, 0.5, 0]
 fov = 33
@@ -228,5 +229,17 @@ translate = [0, 4, 0]
         let camera = &back.cameras[0].spec;
         let fov = camera.parameters.find("fov").map(|(value, _)| values(&back, value)).unwrap();
         assert!((fov[0] - 33.0).abs() < 1e-3, "{fov:?}");
+        let frame = camera.parameters.find("frame").map(|(value, _)| values(&back, value)).unwrap();
+        assert!((frame[0] - 1.5).abs() < 1e-6, "all that the picture showed: {frame:?}");
     }
+}
+
+/// A file has no size of the picture, but its camera shows as much as it did in that.
+#[test]
+fn a_camera_takes_the_shape_of_its_picture_along() {
+    let scene = read_text("toml", "[render]\nsize = \"480x320\"\n[camera]\nfov = 33\n").unwrap();
+    let (back, lost) = there(&scene, &tempfile::tempdir().unwrap().path().join("a.glb"));
+    assert_eq!(lost.len(), 1, "{lost:?}");
+    let frame = back.cameras[0].spec.parameters.find("frame").map(|(value, _)| value.clone());
+    assert!(matches!(frame, Some(Value::Number(shape)) if (shape - 1.5).abs() < 1e-6), "{frame:?}");
 }

@@ -7,7 +7,7 @@ use bilux_math::glam::{Mat3, Mat4, Quat};
 use bilux_math::{MotionKey, Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
-use bilux_scene::{Mesh, Spec};
+use bilux_scene::{Mesh, Spec, Value};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
 
@@ -33,6 +33,14 @@ impl Document<'_> {
         self.push("animations", json!({ "channels": channels, "samplers": samplers }));
     }
 
+    /// Width over height of the scene's picture, where it says its size.
+    fn picture_shape(&self) -> Option<f32> {
+        let Some((Value::Text(size), _)) = self.scene.settings.find("size") else { return None };
+        let (width, height) = size.split_once('x')?;
+        let [width, height]: [f32; 2] = [width.trim().parse().ok()?, height.trim().parse().ok()?];
+        Some(width / height).filter(|shape| shape.is_finite() && *shape > 0.0)
+    }
+
     pub(super) fn camera(&mut self, camera: &CameraSpec, writing: &mut Writing) {
         let spec = &camera.spec;
         if !camera.keyframes.is_empty() {
@@ -49,7 +57,12 @@ impl Document<'_> {
             json!({ "type": "orthographic", "orthographic": { "xmag": half, "ymag": half, "znear": 0.0, "zfar": 1e6 } })
         } else {
             let fov = number(spec, "fov").unwrap_or(40.0).to_radians();
-            json!({ "type": "perspective", "perspective": { "yfov": fov, "znear": 0.001 } })
+            let mut lens = json!({ "yfov": fov, "znear": 0.001 });
+            // So that other shapes of pictures show no less.
+            if let Some(shape) = number(spec, "frame").filter(|&shape| shape > 0.0).or(self.picture_shape()) {
+                lens["aspectRatio"] = json!(shape);
+            }
+            json!({ "type": "perspective", "perspective": lens })
         };
         let lens = self.push("cameras", lens);
         self.root(json!({
