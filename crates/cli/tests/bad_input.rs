@@ -120,7 +120,7 @@ fn command_lines_that_ask_for_what_there_is_not() {
         let output = command.current_dir(path).args(arguments).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.pbrt"]), 2, &["pot.pbrt: this is no scene format"]);
+    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyz"]), 2, &["pot.xyz: this is no scene format"]);
     assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["that is what `bilux render` does"]);
     assert_told(bilux(&["generate", "teapts", "-o", "a.obj"]), 2, &["did you mean 'teapots'?"]);
     assert_told(bilux(&["generate", "teapots", "-o", "a.png"]), 2, &["no scene format that can be written"]);
