@@ -1,7 +1,7 @@
 //! What shapes have of a material: its name, what is inside, the light that they give, and their holes.
 
 use super::lights::area_light;
-use super::textures::Change;
+use super::textures::{Change, Holds};
 use super::{Document, float, rgb};
 use crate::FormatError;
 use crate::values::{colour, number, texture};
@@ -45,7 +45,7 @@ impl Document<'_> {
             if threshold.is_some() {
                 writing.warn("the edges of cut-outs are those of their texels");
             }
-            if let Some(name) = self.numbers(index, AS_IT_IS, writing)? {
+            if let Some(name) = self.texture(index, Holds::Numbers, AS_IT_IS, writing)? {
                 look.alpha = format!(" \"texture alpha\" \"{name}\"");
             }
         } else if let Some(opacity) = number(spec, "opacity").filter(|opacity| *opacity < 1.0) {

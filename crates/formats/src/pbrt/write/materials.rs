@@ -1,7 +1,7 @@
 //! Our materials in their terms: what [`super::super::materials`] reads, the other way round.
 
 use super::looks::AS_IT_IS;
-use super::textures::Change;
+use super::textures::{Change, Holds};
 use super::{Document, float, rgb};
 use crate::FormatError;
 use crate::pbrt::materials::{extinction_of, reflected_inside};
@@ -102,7 +102,7 @@ impl Document<'_> {
         writing: &mut Writing,
     ) -> Result<String, FormatError> {
         if let Some(index) = texture(spec, key)
-            && let Some(name) = self.colours(index, change, writing)?
+            && let Some(name) = self.texture(index, Holds::Colours, change, writing)?
         {
             return Ok(format!(" \"texture x\" \"{name}\""));
         }
@@ -183,7 +183,7 @@ impl Document<'_> {
     ) -> Result<String, FormatError> {
         if let Some(index) = texture(spec, even) {
             let square = Change { name: "squared", of: &|texel| texel * texel };
-            if let Some(name) = self.numbers(index, square, writing)? {
+            if let Some(name) = self.texture(index, Holds::Numbers, square, writing)? {
                 return Ok(format!(" \"texture {before}roughness\" \"{name}\""));
             }
         }
@@ -260,7 +260,7 @@ impl Document<'_> {
 
     fn amount(&mut self, spec: &Spec, key: &str, writing: &mut Writing) -> Result<String, FormatError> {
         if let Some(index) = texture(spec, key)
-            && let Some(name) = self.numbers(index, AS_IT_IS, writing)?
+            && let Some(name) = self.texture(index, Holds::Numbers, AS_IT_IS, writing)?
         {
             return Ok(format!(" \"texture amount\" \"{name}\""));
         }

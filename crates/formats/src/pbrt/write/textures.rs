@@ -8,7 +8,6 @@ use bilux_pictures::{Alpha, ColourSpace, Picture, write_bytes};
 use bilux_scene::Texture;
 use bilux_scene::texture::{Filter, Wrap};
 use std::fmt::Write;
-use std::sync::Arc;
 
 /// What a picture's texels become.
 #[derive(Clone, Copy)]
@@ -18,43 +17,30 @@ pub(super) struct Change<'c> {
     pub(super) of: &'c dyn Fn(Rgb) -> Rgb,
 }
 
+/// What a texture's texels are taken for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Holds {
+    Colours,
+    Numbers,
+}
+
 impl Document<'_> {
-    /// The name of a texture of colours.
-    pub(super) fn colours(
+    /// The name of a texture as it is needed; none where there is no such texture.
+    pub(super) fn texture(
         &mut self,
         index: usize,
+        holds: Holds,
         change: Change,
         writing: &mut Writing,
     ) -> Result<Option<String>, FormatError> {
         let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
-        self.defined(index, &texture, "spectrum", change, writing).map(Some)
-    }
-
-    /// The name of a texture of numbers.
-    pub(super) fn numbers(
-        &mut self,
-        index: usize,
-        change: Change,
-        writing: &mut Writing,
-    ) -> Result<Option<String>, FormatError> {
-        let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
-        self.defined(index, &texture, "float", change, writing).map(Some)
-    }
-
-    fn defined(
-        &mut self,
-        index: usize,
-        texture: &Arc<Texture>,
-        holds: &str,
-        change: Change,
-        writing: &mut Writing,
-    ) -> Result<String, FormatError> {
+        let is_number = holds == Holds::Numbers;
+        let holds = if is_number { "float" } else { "spectrum" };
         let key = format!("{index} {holds} {}", change.name);
         if let Some(name) = self.textures.get(&key) {
-            return Ok(name.clone());
+            return Ok(Some(name.clone()));
         }
-        let is_number = holds == "float";
-        let file = self.picture(texture, is_number, change, writing)?;
+        let file = self.picture(&texture, is_number, change, writing)?;
         let name = self.name(&format!("texture {}", self.textures.len() + 1), "");
         let mut line = format!("Texture \"{name}\" \"{holds}\" \"imagemap\" \"string filename\" \"{file}\"");
         if (texture.is_data || is_number) && file.ends_with("png") {
@@ -88,7 +74,7 @@ impl Document<'_> {
         }
         self.say(&line);
         self.textures.insert(key, name.clone());
-        Ok(name)
+        Ok(Some(name))
     }
 
     /// The file of a picture; what is brighter than white goes into an EXR.
