@@ -266,6 +266,21 @@ fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
 }
 
 #[test]
+fn pictures_that_are_only_read_become_others() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
+    for (format, name) in
+        [("tiff", "rgba_lzw.tif"), ("bmp", "runs8.bmp"), ("tga", "rgb_runs.tga"), ("webp", "rgb.webp")]
+    {
+        let file = corpus.join(format!("picture_{format}")).join(name);
+        bilux(path).args(["convert", file.to_str().unwrap(), "-o", "out.png"]).assert().success();
+        let [before, after] = [&file, &path.join("out.png")].map(|path| bilux::pictures::read(path).unwrap());
+        assert_eq!(before.channels(), after.channels(), "{name}");
+    }
+}
+
+#[test]
 fn every_shipped_scene_is_made_read_and_rendered_the_same() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();

@@ -1,7 +1,7 @@
 //! Decoded pictures as the texels of textures.
 
 use bilux_math::Rgb;
-use bilux_pictures::{ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
+use bilux_pictures::{Alpha, ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
 
 /// The texels of a picture file; `None` where it has no colours. `is_data` keeps numbers as they are.
@@ -11,7 +11,7 @@ pub(crate) fn decoded(
     is_data: bool,
     limits: &Limits,
 ) -> Result<Option<Image>, PictureError> {
-    if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, limits)? {
+    if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, hint, limits)? {
         return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
     }
     Ok(image_of(read_bytes(bytes, hint, limits)?, is_data))
@@ -19,7 +19,7 @@ pub(crate) fn decoded(
 
 /// The texels of a picture, in bytes where it came in bytes; `None` where it has no colours. `is_data` keeps
 /// numbers as they are.
-fn image_of(picture: Picture, is_data: bool) -> Option<Image> {
+fn image_of(mut picture: Picture, is_data: bool) -> Option<Image> {
     let (width, height) = (picture.width(), picture.height());
     let alpha = |picture: &Picture| picture.channel("A").map(<[f32]>::to_vec);
     if picture.colour_space == ColourSpace::Srgb || is_data {
@@ -28,6 +28,8 @@ fn image_of(picture: Picture, is_data: bool) -> Option<Image> {
             return Some(Image { width, height, texels: Texels::Bytes(bytes(planes, picture.channel("A"))) });
         }
     }
+    // Texels are the colours beneath their alpha, which materials use on its own.
+    picture.alpha = Alpha::Premultiplied;
     let picture = if is_data { picture } else { picture.into_linear() };
     let alpha = alpha(&picture).unwrap_or_default();
     let texels = Texels::Floats { colours: picture.to_rgb()?, alpha };
@@ -78,7 +80,7 @@ mod tests {
                 let options = WriteOptions { bit_depth, ..WriteOptions::default() };
                 let bytes = write_bytes("png", &picture, &options).unwrap();
                 let limits = Limits::default();
-                let is_bytes = read_rgba8(&bytes, &limits).unwrap().is_some();
+                let is_bytes = read_rgba8(&bytes, None, &limits).unwrap().is_some();
                 assert_eq!(is_bytes, bit_depth == BitDepth::Eight);
                 for is_data in [false, true] {
                     let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), is_data).unwrap();
@@ -90,6 +92,24 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    /// In eight bits and in sixteen, and so in either way of holding texels.
+    #[test]
+    fn colours_are_what_they_are_beneath_their_alpha() {
+        let mut picture = Picture::new(1, 1).unwrap();
+        picture.colour_space = ColourSpace::Srgb;
+        picture.alpha = Alpha::Straight;
+        for (name, sample) in [("R", 1.0), ("G", 0.2), ("B", 0.0), ("A", 0.4)] {
+            picture.push_channel(name, vec![sample]).unwrap();
+        }
+        for bit_depth in [BitDepth::Eight, BitDepth::Sixteen] {
+            let options = WriteOptions { bit_depth, ..WriteOptions::default() };
+            let bytes = write_bytes("png", &picture, &options).unwrap();
+            let image = decoded(&bytes, None, false, &Limits::default()).unwrap().unwrap();
+            let texture = bilux_scene::Texture::of("", std::sync::Arc::new(image), false);
+            assert!((texture.texel(0, 0).r - 1.0).abs() < 1e-4, "{bit_depth:?}: {:?}", texture.texel(0, 0));
         }
     }
 }

@@ -35,7 +35,9 @@ fn every_seed_is_told_by_its_first_bytes() {
             let path = seed.unwrap().path();
             let bytes = std::fs::read(&path).unwrap();
             let told = PICTURE_FORMATS.iter().find(|row| (row.sniff)(&bytes)).map(|row| row.entry.name);
-            assert_eq!(told, Some(row.entry.name), "{}", path.display());
+            // TGA has no first bytes of its own, and nobody else takes them for theirs.
+            let expected = Some(row.entry.name).filter(|&name| name != "tga");
+            assert_eq!(told, expected, "{}", path.display());
             let extension = path.extension().unwrap().to_string_lossy();
             assert_eq!(format_named(&extension).map(|row| row.entry.name), Some(row.entry.name));
         }

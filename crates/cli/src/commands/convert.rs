@@ -6,15 +6,15 @@ use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::WriteOptions;
 use bilux::pictures::Limits;
-use bilux::pictures::formats::format_of_path;
+use bilux::pictures::format_named;
 use std::path::Path;
 
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
     check_folder(output).map_err(usage::wrong)?;
-    let is_picture = |path| format_of_path(path).is_ok();
     match (is_picture(input), is_picture(output)) {
         (true, true) => {
+            bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
             let picture = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
             bilux::pictures::write(output, &picture, &Default::default())?;
         }
@@ -36,6 +36,12 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
         }
     }
     Ok(DONE)
+}
+
+/// True for what is read as a picture, even if it is never written.
+fn is_picture(path: &Path) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|extension| format_named(extension).is_some())
 }
 
 fn mismatch(input: &Path, output: &Path, one: &str, other: &str) -> anyhow::Error {

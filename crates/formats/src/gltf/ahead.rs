@@ -32,7 +32,7 @@ impl<'d> Gltf<'d, '_, '_> {
             .collect();
         // Decoders' buffers and texels are held side by side for a moment, all at once.
         let share = Limits::new(self.reading.budget.left() / (2 * encoded.len().max(1) as u64));
-        let decode = |bytes: &[u8]| read_rgba8(bytes, &share).ok().flatten();
+        let decode = |bytes: &[u8]| read_rgba8(bytes, None, &share).ok().flatten();
         let decoded: Vec<_> = encoded.par_iter().map(|(_, (_, bytes))| decode(bytes)).collect();
         for ((number, (name, bytes)), picture) in encoded.into_iter().zip(decoded) {
             self.let_go(bytes);

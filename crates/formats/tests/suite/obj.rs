@@ -145,6 +145,58 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     assert_eq!(value(&read(&path, &open).unwrap().materials[1], "kd"), Some(&Value::Texture(1)));
 }
 
+/// One row of two texels: a colour, then white.
+fn old_picture(extension: &str, [r, g, b]: [u8; 3]) -> Vec<u8> {
+    let row = [b, g, r, 255, 255, 255];
+    match extension {
+        "tga" => [&[0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 24, 0][..], &row].concat(),
+        "bmp" => {
+            let core = [12, 0, 0, 0, 2, 0, 1, 0, 1, 0, 24, 0];
+            [b"BM\x22\0\0\0\0\0\0\0\x1a\0\0\0".as_slice(), &core, &row, &[0, 0]].concat()
+        }
+        _ => {
+            // Width, height, bits, no packing, RGB, offset, channels, rows and bytes of the one strip.
+            let tags: [[u16; 2]; 9] =
+                [[256, 2], [257, 1], [258, 8], [259, 1], [262, 2], [273, 8], [277, 3], [278, 1], [279, 6]];
+            let mut bytes = b"II*\0\x0e\0\0\0".to_vec();
+            bytes.extend([r, g, b, 255, 255, 255, 9, 0]);
+            for [tag, value] in tags {
+                bytes.extend([tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).as_flattened());
+            }
+            bytes.extend([0; 4]);
+            bytes
+        }
+    }
+}
+
+#[test]
+fn textures_of_older_formats_are_shown() {
+    for extension in ["tga", "bmp", "tif"] {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+        write(&format!("t.{extension}"), &old_picture(extension, [255, 0, 51]));
+        write("l.mtl", format!("newmtl m\nKd 1 1 1\nmap_Kd t.{extension}\n").as_bytes());
+        write("s.obj", format!("mtllib l.mtl\n{SQUARE}usemtl m\nf 1 2 3\n").as_bytes());
+        let toml = "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = { texture = \"t.EXT\" }\n\
+                    [[light]]\nkind = \"environment\"\nradiance = { texture = \"t.EXT\" }\n";
+        write("s.toml", toml.replace("EXT", extension).as_bytes());
+        let pbrt = "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.EXT\"\n\
+                    Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"disk\"\n";
+        write("s.pbrt", pbrt.replace("EXT", extension).as_bytes());
+        for scene in ["s.obj", "s.toml", "s.pbrt"] {
+            let scene = read(&folder.path().join(scene), &ReadOptions::default()).unwrap();
+            assert_eq!(warnings(&scene), "", "{extension}");
+            let texture = &scene.textures[0];
+            assert_eq!((texture.width(), texture.height()), (2, 1), "{extension}");
+            let linear = bilux_math::colour::srgb_decode(0.2);
+            assert_eq!(texture.texel(0, 0), Rgb::new(1.0, 0.0, linear), "{extension}");
+            assert_eq!(texture.texel(1, 0), Rgb::WHITE);
+            // In bytes, as it came.
+            assert!(texture.image.is_bytes(), "{extension}");
+        }
+    }
+}
+
 #[test]
 fn broken_files_are_refused_with_their_place() {
     let cases = [

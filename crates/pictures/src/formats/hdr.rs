@@ -22,6 +22,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: false,
     sniff: |bytes| bytes.starts_with(b"#?"),
     read,
+    read_rgba8: None,
     write: Some(write),
 };
 

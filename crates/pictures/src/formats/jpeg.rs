@@ -1,8 +1,9 @@
 //! JPEG, read only: textures come in it, renderings should not leave in it.
 
+use super::PictureFormatEntry;
 use super::guard::guarded;
-use super::{PictureFormatEntry, Rgba8, planes_of};
-use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use super::rgba8::Interleaved;
+use crate::{Limits, PictureError};
 use bilux_math::registry::Entry;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
@@ -15,7 +16,8 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     extensions: &["jpg", "jpeg", "jpe", "jfif"],
     for_display: true,
     sniff: |bytes| bytes.starts_with(&[0xff, 0xd8, 0xff]),
-    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
     write: None,
 };
 
@@ -24,8 +26,8 @@ const FORMAT: &str = "JPEG";
 /// Decoded bytes, the coefficients of progressive files for up to four components, and three planes.
 const BYTES_PER_PIXEL: u64 = 4 + 4 * 2 + 3 * 4;
 
-/// The width, the height and the bytes of one or three channels.
-fn decode(bytes: &[u8], limits: &Limits) -> Result<(usize, usize, Vec<u8>), PictureError> {
+/// The bytes of one or three channels.
+fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let options =
         DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX));
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
@@ -44,28 +46,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<(usize, usize, Vec<u8>), Pict
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
     samples.truncate(pixels * channels);
-    Ok((info.width.into(), info.height.into(), samples))
-}
-
-/// [`super::read_rgba8`].
-pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
-    let (width, height, samples) = decode(bytes, limits)?;
-    Ok(Rgba8::of(width, height, &samples))
-}
-
-fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
-    let (width, height, samples) = decode(bytes, limits)?;
-    let pixels = width * height;
-    let names: &[&str] = if samples.len() == pixels { &["Y"] } else { &["R", "G", "B"] };
-    let planes =
-        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
-    let mut picture = Picture::new(width, height)?;
-    picture.colour_space = ColourSpace::Srgb;
-    picture.alpha = Alpha::Straight;
-    for (name, plane) in names.iter().zip(planes) {
-        picture.push_channel(*name, plane)?;
-    }
-    Ok(picture)
+    Ok(Interleaved { width: info.width.into(), height: info.height.into(), samples })
 }
 
 /// True when an end marker follows the first scan. Segments before it are stepped over, since the

@@ -1,8 +1,9 @@
 //! KTX2, read only: textures of glTF files come in it, packed by Basis Universal. [KTX 2.0]
 
 use super::guard::guarded;
-use super::{PictureFormatEntry, Rgba8, planes_of};
-use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use super::rgba8::Interleaved;
+use super::{PictureFormatEntry, Rgba8};
+use crate::{ColourSpace, Limits, Picture, PictureError};
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use bilux_math::registry::Entry;
 
@@ -18,6 +19,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: true,
     sniff: |bytes| bytes.starts_with(MAGIC),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
     write: None,
 };
 
@@ -38,7 +40,7 @@ struct Header<'a> {
 /// How pixels lie in the file.
 enum Pixels<'a> {
     /// One to four bytes a pixel.
-    Plain { bytes: &'a [u8], channels: usize },
+    Plain(&'a [u8]),
     /// Packed by Basis Universal.
     Packed { has_alpha: bool },
 }
@@ -132,7 +134,7 @@ impl<'a> Header<'a> {
                 let channels = channels_of(kind).unwrap_or(1);
                 let bytes = first.get(..pixels * channels);
                 let bytes = bytes.ok_or_else(|| PictureError::truncated(FORMAT, "the pixels"))?;
-                Pixels::Plain { bytes, channels }
+                Pixels::Plain(bytes)
             }
             _ => {
                 return invalid(format!(
@@ -145,19 +147,11 @@ impl<'a> Header<'a> {
         Ok(Header { width, height, is_srgb: transfer != 1, pixels })
     }
 
-    /// Interleaved samples and their names.
-    fn samples(&self, bytes: &[u8]) -> Result<(Vec<u8>, &'static [&'static str]), PictureError> {
+    fn unpacked(&self, bytes: &[u8]) -> Result<Interleaved, PictureError> {
         let explain =
             |error: basisu::Error| PictureError::invalid(FORMAT, format!("it cannot be unpacked: {error:?}"));
-        match self.pixels {
-            Pixels::Plain { bytes, channels } => {
-                let names: &[&str] = match channels {
-                    1 => &["Y"],
-                    3 => &["R", "G", "B"],
-                    _ => &["R", "G", "B", "A"],
-                };
-                Ok((bytes.to_vec(), names))
-            }
+        let samples = match self.pixels {
+            Pixels::Plain(bytes) => bytes.to_vec(),
             Pixels::Packed { has_alpha } => {
                 let transcoder = Transcoder::new(bytes).map_err(explain)?;
                 let mut samples =
@@ -168,9 +162,10 @@ impl<'a> Header<'a> {
                 if !has_alpha {
                     samples.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
                 }
-                Ok((samples, &["R", "G", "B", "A"]))
+                samples
             }
-        }
+        };
+        Ok(Interleaved { width: self.width, height: self.height, samples })
     }
 }
 
@@ -185,26 +180,16 @@ fn channels_of(kind: u32) -> Option<usize> {
 }
 
 /// [`super::read_rgba8`]; none where the file says that its colours are linear.
-pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
     let header = Header::read(bytes, limits)?;
-    if !header.is_srgb {
-        return Ok(None);
-    }
-    let (samples, _) = header.samples(bytes)?;
-    Ok(Rgba8::of(header.width, header.height, &samples))
+    if header.is_srgb { Ok(header.unpacked(bytes)?.rgba8()) } else { Ok(None) }
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let header = Header::read(bytes, limits)?;
-    let (samples, names) = header.samples(bytes)?;
-    let pixels = header.width * header.height;
-    let planes =
-        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
-    let mut picture = Picture::new(header.width, header.height)?;
-    picture.colour_space = if header.is_srgb { ColourSpace::Srgb } else { ColourSpace::LinearRec709 };
-    picture.alpha = Alpha::Straight;
-    for (name, plane) in names.iter().zip(planes) {
-        picture.push_channel(*name, plane)?;
+    let mut picture = header.unpacked(bytes)?.picture(FORMAT)?;
+    if !header.is_srgb {
+        picture.colour_space = ColourSpace::LinearRec709;
     }
     Ok(picture)
 }

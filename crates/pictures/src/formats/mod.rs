@@ -1,5 +1,6 @@
 //! Picture files. To add a format: a file with its `ENTRY`, and a line in the table.
 
+mod bmp;
 mod disk;
 mod exr;
 mod exr_write;
@@ -13,6 +14,8 @@ mod png;
 mod pnm;
 mod primaries;
 mod rgba8;
+mod tga;
+mod tiff;
 mod tokens;
 mod webp;
 
@@ -39,6 +42,9 @@ pub const PICTURE_FORMATS: &[PictureFormatEntry] = &[
     webp::ENTRY,
     #[cfg(feature = "ktx2")]
     ktx2::ENTRY,
+    tiff::ENTRY,
+    bmp::ENTRY,
+    tga::ENTRY,
 ];
 
 /// One format.
@@ -50,16 +56,20 @@ pub struct PictureFormatEntry {
     pub extensions: &'static [&'static str],
     /// True when samples are encoded for a display: exposure and tone map apply when writing.
     pub for_display: bool,
-    /// True when a file of this format may begin with these bytes.
+    /// True when a file of this format may begin with these bytes; never, where a format has no mark of its own.
     pub sniff: fn(&[u8]) -> bool,
     /// Reads a whole file.
     pub read: ReadFn,
+    /// Reads it where it is stored in sRGB bytes, and gives none where it is not; `None` where that would save nothing.
+    pub read_rgba8: Option<ReadRgba8Fn>,
     /// Writes a whole file; `None` where the format is only read.
     pub write: Option<WriteFn>,
 }
 
 /// How a format is read.
 pub type ReadFn = fn(&[u8], &Limits) -> Result<Picture, PictureError>;
+/// How a format is read into four bytes a pixel.
+pub type ReadRgba8Fn = fn(&[u8], &Limits) -> Result<Option<Rgba8>, PictureError>;
 /// How a format is written.
 pub type WriteFn = fn(&Picture, &WriteOptions) -> Result<Vec<u8>, PictureError>;
 
@@ -109,13 +119,17 @@ pub fn read_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, Pic
 /// Reads a picture from memory. `hint`, a format's name or extension, is asked only where the first
 /// bytes do not tell what this is.
 pub fn read_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {
+    (row_of(bytes, hint)?.read)(bytes, limits)
+}
+
+/// The format of these bytes.
+fn row_of(bytes: &[u8], hint: Option<&str>) -> Result<&'static PictureFormatEntry, PictureError> {
     let by_content = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
-    let row = match (by_content, hint) {
-        (Some(row), _) => row,
-        (None, Some(hint)) => format_named(hint).ok_or_else(|| unknown(hint, "read", |_| true))?,
-        (None, None) => return Err(PictureError::Unrecognised { known: known(|_| true) }),
-    };
-    (row.read)(bytes, limits)
+    match (by_content, hint) {
+        (Some(row), _) => Ok(row),
+        (None, Some(hint)) => format_named(hint).ok_or_else(|| unknown(hint, "read", |_| true)),
+        (None, None) => Err(PictureError::Unrecognised { known: known(|_| true) }),
+    }
 }
 
 /// Writes a picture file in one step: beside the target first, then renamed over it. The extension

@@ -18,6 +18,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: false,
     sniff: |bytes| matches!(bytes, [b'P', b'F' | b'f', blank, ..] if blank.is_ascii_whitespace()),
     read,
+    read_rgba8: None,
     write: Some(write),
 };
 

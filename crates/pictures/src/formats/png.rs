@@ -1,6 +1,7 @@
 //! PNG: all that it can hold comes in; 8 or 16 bits, sRGB, go out. [PNG]
 
 use super::guard::guarded;
+use super::rgba8::Interleaved;
 use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes, planes_of};
 use crate::limits::zeroed;
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
@@ -22,6 +23,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: true,
     sniff: |bytes| bytes.starts_with(b"\x89PNG"),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
     write: Some(write),
 };
 
@@ -64,7 +66,8 @@ pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>,
     let (reader, frame, samples) = decode(bytes, limits, 8 + 4)?;
     let is_plain =
         frame.bit_depth == ::png::BitDepth::Eight && colour_space(reader.info()) == ColourSpace::Srgb;
-    Ok(is_plain.then(|| Rgba8::of(frame.width as usize, frame.height as usize, &samples)).flatten())
+    let whole = Interleaved { width: frame.width as usize, height: frame.height as usize, samples };
+    Ok(is_plain.then(|| whole.rgba8()).flatten())
 }
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {

@@ -18,6 +18,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     for_display: true,
     sniff: |bytes| matches!(bytes, [b'P', b'1'..=b'6', next, ..] if next.is_ascii_whitespace() || *next == b'#'),
     read,
+    read_rgba8: None,
     write: Some(write),
 };
 

@@ -1,8 +1,7 @@
-//! Pictures that are textures: four bytes a pixel, without a detour by planes.
+//! Pictures in bytes: textures take four a pixel, without a detour by planes.
 
-use super::guard::guarded;
-use super::{jpeg, png};
-use crate::{Limits, PictureError};
+use super::{planes_of, row_of};
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 
 /// Bytes of an sRGB picture, alpha not multiplied in.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,36 +14,69 @@ pub struct Rgba8 {
     pub texels: Vec<[u8; 4]>,
 }
 
-/// Decodes what is stored in sRGB bytes: PNG, JPEG and KTX2. `None` for all else, which [`super::read_bytes`] reads. Where both do,
-/// they give the same, and this in a quarter of the memory.
+/// Decodes what is stored in sRGB bytes. `None` for all else, which [`super::read_bytes`] reads. Where both do, they give the
+/// same, and this in a quarter of the memory.
 ///
 /// # Errors
 /// As [`super::read_bytes`].
-pub fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
-    #[cfg(feature = "ktx2")]
-    if (super::ktx2::ENTRY.sniff)(bytes) {
-        return guarded("KTX2", || super::ktx2::read_rgba8(bytes, limits));
-    }
-    if (png::ENTRY.sniff)(bytes) {
-        guarded("PNG", || png::read_rgba8(bytes, limits))
-    } else if (jpeg::ENTRY.sniff)(bytes) {
-        guarded("JPEG", || jpeg::read_rgba8(bytes, limits))
-    } else {
-        Ok(None)
-    }
+pub fn read_rgba8(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+    row_of(bytes, hint)?.read_rgba8.map_or(Ok(None), |read| read(bytes, limits))
 }
 
-impl Rgba8 {
-    /// From interleaved samples of one to four channels: grey, grey and alpha, colours, colours and alpha.
-    pub(super) fn of(width: usize, height: usize, samples: &[u8]) -> Option<Rgba8> {
-        let pixels = width.checked_mul(height).filter(|&pixels| pixels > 0)?;
-        let texels = match samples.len() / pixels {
+/// Interleaved bytes of one to four channels (grey, grey and alpha, colours, colours and alpha), in sRGB, alpha not
+/// multiplied in.
+pub(super) struct Interleaved {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) samples: Vec<u8>,
+}
+
+impl Interleaved {
+    fn channels(&self) -> usize {
+        self.samples.len() / (self.width * self.height).max(1)
+    }
+
+    /// The same as planes.
+    pub(super) fn picture(&self, format: &'static str) -> Result<Picture, PictureError> {
+        let names: &[&str] = match self.channels() {
+            1 => &["Y"],
+            2 => &["Y", "A"],
+            3 => &["R", "G", "B"],
+            _ => &["R", "G", "B", "A"],
+        };
+        let mut picture = Picture::new(self.width, self.height)?;
+        picture.colour_space = ColourSpace::Srgb;
+        picture.alpha = Alpha::Straight;
+        let number = |byte: &u8| f32::from(*byte) / 255.0;
+        let planes = planes_of(format, self.samples.iter(), names.len(), picture.pixel_count(), number)?;
+        for (name, plane) in names.iter().zip(planes) {
+            picture.push_channel(*name, plane)?;
+        }
+        Ok(picture)
+    }
+
+    /// The same as four bytes a pixel.
+    pub(super) fn rgba8(&self) -> Option<Rgba8> {
+        let samples = &self.samples[..];
+        let texels = match self.channels() {
             1 => samples.iter().map(|&y| [y, y, y, 255]).collect(),
             2 => samples.as_chunks::<2>().0.iter().map(|&[y, a]| [y, y, y, a]).collect(),
             3 => samples.as_chunks::<3>().0.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),
             4 => samples.as_chunks::<4>().0.to_vec(),
             _ => return None,
         };
-        Some(Rgba8 { width, height, texels })
+        Some(Rgba8 { width: self.width, height: self.height, texels })
+    }
+
+    /// Makes all of it opaque where none of it is: writers that know of no alpha leave noughts in its place.
+    pub(super) fn show_what_is_all_transparent(&mut self) {
+        let channels = self.channels();
+        let first = channels.saturating_sub(1);
+        if !matches!(channels, 2 | 4) {
+            return;
+        }
+        if self.samples.iter().skip(first).step_by(channels).all(|&alpha| alpha == 0) {
+            self.samples.iter_mut().skip(first).step_by(channels).for_each(|alpha| *alpha = 255);
+        }
     }
 }

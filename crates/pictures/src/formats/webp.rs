@@ -1,9 +1,10 @@
 //! WebP, read only: textures come in it.
 
+use super::PictureFormatEntry;
 use super::guard::guarded;
-use super::{PictureFormatEntry, planes_of};
+use super::rgba8::Interleaved;
 use crate::limits::zeroed;
-use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use crate::{Limits, PictureError};
 use bilux_math::registry::Entry;
 use image_webp::WebPDecoder;
 use std::io::Cursor;
@@ -14,7 +15,8 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     extensions: &["webp"],
     for_display: true,
     sniff: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
-    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
+    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
     write: None,
 };
 
@@ -24,24 +26,17 @@ const FORMAT: &str = "WebP";
 const BYTES_PER_PIXEL: u64 = 4 + 8 + 4 * 4;
 
 /// The first picture of one that moves.
-fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let explain = |error: image_webp::DecodingError| PictureError::invalid(FORMAT, error.to_string());
     let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(explain)?;
     decoder.set_memory_limit(usize::try_from(limits.max_bytes).unwrap_or(usize::MAX));
     let (width, height) = decoder.dimensions();
     let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
-    let names: &[&str] = if decoder.has_alpha() { &["R", "G", "B", "A"] } else { &["R", "G", "B"] };
-    let size = pixels.checked_mul(names.len()).filter(|&size| decoder.output_buffer_size() == Some(size));
+    let size = pixels
+        .checked_mul(if decoder.has_alpha() { 4 } else { 3 })
+        .filter(|&size| decoder.output_buffer_size() == Some(size));
     let size = size.ok_or_else(|| PictureError::invalid(FORMAT, "its size is none"))?;
     let mut samples = zeroed::<u8>(FORMAT, size)?;
     decoder.read_image(&mut samples).map_err(explain)?;
-    let planes =
-        planes_of(FORMAT, samples.iter(), names.len(), pixels, |byte: &u8| f32::from(*byte) / 255.0)?;
-    let mut picture = Picture::new(width as usize, height as usize)?;
-    picture.colour_space = ColourSpace::Srgb;
-    picture.alpha = Alpha::Straight;
-    for (name, plane) in names.iter().zip(planes) {
-        picture.push_channel(*name, plane)?;
-    }
-    Ok(picture)
+    Ok(Interleaved { width: width as usize, height: height as usize, samples })
 }

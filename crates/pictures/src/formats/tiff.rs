@@ -1,0 +1,266 @@
+//! TIFF, read only: scans, maps and textures of films come in it. [TIFF 6.0]
+
+use super::guard::guarded;
+use super::rgba8::Interleaved;
+use super::{PictureFormatEntry, Rgba8};
+use crate::limits::{reserved, zeroed};
+use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
+use bilux_math::registry::Entry;
+use std::io::{Cursor, ErrorKind};
+use tiff::decoder::{Decoder, DecodingResult};
+use tiff::tags::{SampleFormat, Tag};
+use tiff::{ColorType, TiffError};
+
+/// The row of `tiff`.
+pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
+    entry: Entry {
+        name: "tiff",
+        summary: "whole numbers of 1 to 32 bits, sRGB; floats of 16 to 64, linear; with alpha; packed by Deflate, LZW, \
+                  PackBits or not; its first picture: read only",
+        source: "TIFF 6.0",
+        parameters: &[],
+    },
+    extensions: &["tif", "tiff"],
+    for_display: true,
+    sniff: |bytes| [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].into_iter().any(|mark| bytes.starts_with(mark)),
+    read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
+    read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),
+    write: None,
+};
+
+const FORMAT: &str = "TIFF";
+
+/// No way of packing makes so many bytes of one: what a file is too short for takes no memory.
+const MOST_OF_A_BYTE: u64 = 4096;
+
+/// More channels than any picture has, those that are left out among them.
+const MOST_CHANNELS: u16 = 64;
+
+/// What is multiplied into the colours.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Opacity {
+    None,
+    Straight,
+    Premultiplied,
+}
+
+/// Samples as they are stored, and how they lie.
+struct Decoded {
+    width: usize,
+    height: usize,
+    samples: DecodingResult,
+    /// Bits of a sample in the file.
+    bits: u8,
+    /// Channels there are, and which of them are taken: one or three, and alpha behind them.
+    channels: usize,
+    colours: usize,
+    opacity: Opacity,
+    /// Each channel lies by itself.
+    in_planes: bool,
+    /// Which corner the first pixel is in, from 1 to 8.
+    orientation: u16,
+}
+
+fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
+    let memory = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
+    let mut own = tiff::decoder::Limits::default();
+    own.decoding_buffer_size = memory;
+    own.intermediate_buffer_size = memory;
+    own.ifd_value_size = own.ifd_value_size.min(memory);
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(explain)?.with_limits(own);
+    let (width, height) = decoder.dimensions().map_err(explain)?;
+    let kind = decoder.colortype().map_err(explain)?;
+    let bits = kind.bit_depth();
+    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).map_err(explain)?.unwrap_or_default();
+    let opacity = match extra.first() {
+        Some(1) => Opacity::Premultiplied,
+        Some(2) => Opacity::Straight,
+        _ => Opacity::None,
+    };
+    let (channels, colours, opacity) = match kind {
+        ColorType::Gray(_) => (1, 1, Opacity::None),
+        ColorType::Multiband { num_samples, .. } => (num_samples, 1, opacity),
+        ColorType::RGB(_) => (3, 3, Opacity::None),
+        ColorType::RGBA(_) if opacity == Opacity::None => (4, 3, Opacity::Straight),
+        ColorType::RGBA(_) => (4, 3, opacity),
+        other => return Err(unsupported(format!("the kind of colours {other:?}"))),
+    };
+    if channels > MOST_CHANNELS || usize::from(channels) < colours + usize::from(opacity != Opacity::None) {
+        return Err(PictureError::invalid(FORMAT, format!("there is no picture of {channels} channels")));
+    }
+    let each = u64::from(channels) * u64::from(bits.div_ceil(8));
+    // Samples as they are stored, again where they are unpacked, and four planes of ours.
+    limits.check(FORMAT, width.into(), height.into(), 2 * each + 4 * 4)?;
+    // A tile is unpacked whole, even where little of it is seen.
+    let (across, down) = decoder.chunk_dimensions();
+    limits.check(FORMAT, across.into(), down.min(height).into(), each)?;
+    if u64::from(width) * u64::from(height) * each / 8 > bytes.len() as u64 * MOST_OF_A_BYTE {
+        return Err(PictureError::truncated(FORMAT, "the pixels"));
+    }
+    let orientation = decoder.find_tag_unsigned::<u16>(Tag::Orientation).map_err(explain)?.unwrap_or(1);
+    let mut samples = DecodingResult::U8(Vec::new());
+    let layout = decoder.read_image_to_buffer(&mut samples).map_err(explain)?;
+    if layout.sample_format == SampleFormat::Int {
+        return Err(unsupported("a picture of numbers with a sign".to_owned()));
+    }
+    let (width, height, channels) = (width as usize, height as usize, usize::from(channels));
+    let in_planes = layout.planes > 1;
+    let mut decoded =
+        Decoded { width, height, samples, bits, channels, colours, opacity, in_planes, orientation };
+    decoded.unpack_bits()?;
+    Ok(decoded)
+}
+
+impl Decoded {
+    /// Makes samples of few bits bytes of 0 to 255.
+    fn unpack_bits(&mut self) -> Result<(), PictureError> {
+        let DecodingResult::U8(packed) = &self.samples else { return Ok(()) };
+        let bits = usize::from(self.bits);
+        if bits >= 8 {
+            return Ok(());
+        }
+        // Rows begin with a byte.
+        let across = if self.in_planes { self.width } else { self.width * self.channels };
+        let row = (across * bits).div_ceil(8);
+        let most = (1u32 << bits) - 1;
+        let mut bytes: Vec<u8> = reserved(FORMAT, self.width * self.height * self.channels)?;
+        for row in packed.chunks_exact(row) {
+            bytes.extend((0..across).map(|i| {
+                // One by one: three bits of a sample may lie on either side of a border of bytes.
+                let bit = |at: usize| u32::from(row[at / 8] >> (7 - at % 8) & 1);
+                let sample = (i * bits..(i + 1) * bits).fold(0, |sample, at| sample << 1 | bit(at));
+                (sample * 255 / most) as u8
+            }));
+        }
+        self.samples = DecodingResult::U8(bytes);
+        Ok(())
+    }
+
+    /// The number of a sample among all, from its channel and its pixel.
+    fn place(&self, channel: usize, pixel: usize) -> usize {
+        if self.in_planes {
+            channel * self.width * self.height + pixel
+        } else {
+            pixel * self.channels + channel
+        }
+    }
+
+    /// Which pixel of the file each of the picture is, if they are not the same ones; and the picture's size.
+    fn turned(&self) -> ([usize; 2], impl Fn(usize) -> usize) {
+        let (width, height, orientation) = (self.width, self.height, self.orientation);
+        let size = if matches!(orientation, 5..=8) { [height, width] } else { [width, height] };
+        let of = move |pixel: usize| {
+            let (x, y) = (pixel % size[0], pixel / size[0]);
+            let (column, row) = match orientation {
+                2 => (width - 1 - x, y),
+                3 => (width - 1 - x, height - 1 - y),
+                4 => (x, height - 1 - y),
+                5 => (y, x),
+                6 => (y, height - 1 - x),
+                7 => (width - 1 - y, height - 1 - x),
+                8 => (width - 1 - y, x),
+                _ => (x, y),
+            };
+            row * width + column
+        };
+        (size, of)
+    }
+
+    /// The channels that are taken.
+    fn taken(&self) -> usize {
+        self.colours + usize::from(self.opacity != Opacity::None)
+    }
+
+    /// A plane of numbers.
+    fn plane(&self, channel: usize) -> Result<Vec<f32>, PictureError> {
+        let pixels = self.width * self.height;
+        let mut plane = zeroed(FORMAT, pixels)?;
+        let (_, turned) = self.turned();
+        let at = |pixel: usize| self.place(channel, turned(pixel));
+        let mut fill = |sample: &dyn Fn(usize) -> Option<f32>| {
+            plane.iter_mut().enumerate().try_for_each(|(pixel, number)| {
+                *number = sample(at(pixel))?;
+                Some(())
+            })
+        };
+        let filled = match &self.samples {
+            DecodingResult::U8(all) => fill(&|i| all.get(i).map(|&s| f32::from(s) / 255.0)),
+            DecodingResult::U16(all) => fill(&|i| all.get(i).map(|&s| f32::from(s) / 65535.0)),
+            DecodingResult::U32(all) => {
+                fill(&|i| all.get(i).map(|&s| (f64::from(s) / f64::from(u32::MAX)) as f32))
+            }
+            DecodingResult::F16(all) => fill(&|i| all.get(i).map(|s| s.to_f32())),
+            DecodingResult::F32(all) => fill(&|i| all.get(i).copied()),
+            DecodingResult::F64(all) => fill(&|i| all.get(i).map(|&s| s as f32)),
+            _ => return Err(unsupported("a picture of whole numbers of 64 bits".to_owned())),
+        };
+        filled.map(|()| plane).ok_or_else(|| PictureError::truncated(FORMAT, "the pixels"))
+    }
+
+    fn is_light(&self) -> bool {
+        matches!(self.samples, DecodingResult::F16(_) | DecodingResult::F32(_) | DecodingResult::F64(_))
+    }
+}
+
+/// [`super::read_rgba8`]; none of what has more bits, or alpha in its colours.
+fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
+    let decoded = decode(bytes, limits)?;
+    let DecodingResult::U8(all) = &decoded.samples else { return Ok(None) };
+    if decoded.opacity == Opacity::Premultiplied {
+        return Ok(None);
+    }
+    let ([width, height], turned) = decoded.turned();
+    let mut samples = reserved(FORMAT, width * height * decoded.taken())?;
+    for pixel in (0..width * height).map(turned) {
+        let part = (0..decoded.taken()).map(|channel| all.get(decoded.place(channel, pixel)).copied());
+        samples.extend(part.map(|sample| sample.unwrap_or(0)));
+    }
+    Ok(Interleaved { width, height, samples }.rgba8())
+}
+
+fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
+    let decoded = decode(bytes, limits)?;
+    let ([width, height], _) = decoded.turned();
+    let mut picture = Picture::new(width, height)?;
+    let names: &[&str] = if decoded.colours == 1 { &["Y"] } else { &["R", "G", "B"] };
+    let mut planes =
+        (0..decoded.taken()).map(|channel| decoded.plane(channel)).collect::<Result<Vec<_>, _>>()?;
+    let is_light = decoded.is_light();
+    picture.colour_space = if is_light { ColourSpace::LinearRec709 } else { ColourSpace::Srgb };
+    let is_multiplied = decoded.opacity == Opacity::Premultiplied;
+    picture.alpha = if is_light && is_multiplied { Alpha::Premultiplied } else { Alpha::Straight };
+    let alpha = if decoded.opacity == Opacity::None { None } else { planes.pop() };
+    if let Some(alpha) = alpha.as_ref().filter(|_| is_multiplied && !is_light) {
+        // Encoded colours are multiplied as they stand.
+        for (colour, alpha) in planes.iter_mut().flat_map(|plane| plane.iter_mut().zip(alpha)) {
+            *colour = if *alpha > 0.0 { (*colour / alpha).min(1.0) } else { *colour };
+        }
+    }
+    for (name, plane) in names.iter().zip(planes) {
+        picture.push_channel(*name, plane)?;
+    }
+    if let Some(alpha) = alpha {
+        picture.push_channel("A", alpha)?;
+    }
+    Ok(picture)
+}
+
+fn unsupported(what: String) -> PictureError {
+    let advice = "save it as grey or RGB, packed by Deflate or not at all";
+    PictureError::Unsupported { format: FORMAT, what, advice }
+}
+
+fn explain(error: TiffError) -> PictureError {
+    match error {
+        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            PictureError::truncated(FORMAT, "the pixels or what comes before them")
+        }
+        TiffError::UnsupportedError(what) => unsupported(format!("'{what}'")),
+        TiffError::LimitsExceeded => PictureError::Unsupported {
+            format: FORMAT,
+            what: "a part that needs more memory than the limit".to_owned(),
+            advice: "raise the memory limit if the file is to be trusted",
+        },
+        other => PictureError::invalid(FORMAT, other.to_string()),
+    }
+}
