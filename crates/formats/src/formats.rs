@@ -1,12 +1,13 @@
 //! The table of formats, and reading and writing by it.
 
-use crate::reading::{Reading, Source};
+use crate::reading::{Reading, Source, open};
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
 use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, native, obj, off, pbrt, ply, stl};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, Warning};
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,7 +31,13 @@ pub struct SceneFormatEntry {
 }
 
 /// Turns bytes into a scene.
-pub(crate) type ReadFormat = fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>;
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ReadFormat {
+    /// From all of them.
+    Whole(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
+    /// As they come; the source has only their beginning, which comes with them too.
+    Flowing(fn(&mut Reading, &Source, &mut dyn Read) -> Result<SceneBuilder, FormatError>),
+}
 /// Turns a scene into bytes.
 pub(crate) type WriteFormat = fn(&SceneBuilder, &mut Writing) -> Result<(), FormatError>;
 
@@ -66,17 +73,38 @@ pub fn format_of_path(path: &Path) -> Result<&'static SceneFormatEntry, FormatEr
 /// # Errors
 /// What is wrong, with its place; see [`FormatError`].
 pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatError> {
-    let folder = path.parent();
-    let mut reading = Reading::new(options, folder);
-    let bytes = reading.load(path)?;
-    let row = match extension(path).and_then(|e| format_named(&e)) {
-        Some(row) => row,
-        None => sniffed(&bytes).ok_or_else(|| unknown(path, "read", SceneFormatEntry::reads))?,
-    };
+    let mut reading = Reading::new(options, path.parent());
+    let row = extension(path).and_then(|e| format_named(&e));
     let name = path.display().to_string().into();
     reading.open.extend(std::fs::canonicalize(path));
-    read_source(row, &mut reading, &Source { bytes: &bytes, name: &name, folder })
+    read_file(row, &mut reading, path, &name)
 }
+
+/// Reads a file with a row, or else with that which its first bytes tell; messages call it by the name.
+pub(crate) fn read_file(
+    row: Option<&SceneFormatEntry>,
+    reading: &mut Reading,
+    path: &Path,
+    name: &Arc<str>,
+) -> Result<SceneBuilder, FormatError> {
+    let folder = path.parent();
+    if let Some(row @ SceneFormatEntry { read: Some(ReadFormat::Flowing(_)), .. }) = row {
+        let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
+        let (mut file, _) = open(path)?;
+        let mut head = Vec::new();
+        file.by_ref().take(BEGINNING).read_to_end(&mut head).map_err(failed)?;
+        return flow(row, reading, &Source { bytes: &head, name, folder }, &mut (&head[..]).chain(file));
+    }
+    let bytes = reading.load(path)?;
+    let row = row.or_else(|| sniffed(&bytes));
+    let row = row.ok_or_else(|| unknown(path, "read", SceneFormatEntry::reads))?;
+    let scene = read_source(row, reading, &Source { bytes: &bytes, name, folder })?;
+    reading.release(bytes);
+    Ok(scene)
+}
+
+/// So much of a file as its reader looks at before it reads it.
+const BEGINNING: u64 = 4096;
 
 /// Reads a scene from memory. `format` is a name or an extension, or empty to go by the bytes; `base` the
 /// folder of files that it names; `name` what messages call it.
@@ -118,6 +146,16 @@ pub(crate) fn read_source(
     reading: &mut Reading,
     source: &Source,
 ) -> Result<SceneBuilder, FormatError> {
+    flow(row, reading, source, &mut &source.bytes[..])
+}
+
+/// The same where the source may have only the beginning of its bytes, for a reader that takes them as they come.
+fn flow(
+    row: &SceneFormatEntry,
+    reading: &mut Reading,
+    source: &Source,
+    from: &mut dyn Read,
+) -> Result<SceneBuilder, FormatError> {
     let Some(read) = row.read else {
         return Err(unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
     };
@@ -125,7 +163,10 @@ pub(crate) fn read_source(
         return Err(FormatError::malformed("the file is empty: export it again", whole_file(source.name)));
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
-    let scene = read(reading, source)?;
+    let scene = match read {
+        ReadFormat::Whole(read) => read(reading, source)?,
+        ReadFormat::Flowing(read) => read(reading, source, from)?,
+    };
     reading.settle(spent, textures, &scene);
     match scene.warnings.first() {
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),

@@ -7,6 +7,7 @@
 
 mod asc;
 mod bake;
+mod blocks;
 mod budget;
 mod error;
 mod float;

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// The bytes that a reader reads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
-    /// The whole file.
+    /// The whole file; of one that is read in blocks, its beginning.
     pub(crate) bytes: &'a [u8],
     /// Its name, for messages.
     pub(crate) name: &'a Arc<str>,
@@ -172,19 +172,14 @@ impl<'o> Reading<'o> {
 
     /// A file's bytes. They count as held until [`Reading::release`].
     pub(crate) fn load(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
-        let failed = |action| move |source| FormatError::Io { path: path.to_owned(), action, source };
-        let file = fs::File::open(path).map_err(failed("open it"))?;
-        let metadata = file.metadata().map_err(failed("open it"))?;
-        if metadata.is_dir() {
-            let at = whole_file(&path.display().to_string().into());
-            return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
-        }
+        let (file, length) = open(path)?;
         let limit = self.budget.left();
         // At once, where the system tells how long it is.
         let mut bytes = Vec::new();
-        let stated = metadata.len().min(limit).saturating_add(1);
+        let stated = length.min(limit).saturating_add(1);
         let _ = usize::try_from(stated).map(|stated| bytes.try_reserve_exact(stated));
-        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed("read it"))?;
+        let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
+        file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
         self.budget.take_bytes(bytes.len() as u64, &path.display().to_string())?;
         Ok(bytes)
     }
@@ -216,6 +211,18 @@ impl<'o> Reading<'o> {
         self.textures.insert((path, holds), texture.clone());
         Ok(texture)
     }
+}
+
+/// A file to be read, and how long the system says that it is.
+pub(crate) fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
+    let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
+    let file = fs::File::open(path).map_err(failed)?;
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
+        let at = whole_file(&path.display().to_string().into());
+        return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
+    }
+    Ok((file, metadata.len()))
 }
 
 /// What a mesh holds, in bytes.
@@ -256,6 +263,17 @@ pub(crate) struct Oddities {
 const MOST_KINDS: usize = 40;
 
 impl Oddities {
+    /// Takes over what was noted in a part of the file before which so many lines stand.
+    pub(crate) fn append(&mut self, part: Oddities, lines: u32) {
+        for (what, count, mut at) in part.kinds {
+            at.line = at.line.saturating_add(lines);
+            self.note(&what, || at);
+            if let Some((_, counted, _)) = self.kinds.iter_mut().find(|(kind, ..)| *kind == what) {
+                *counted += count - 1;
+            }
+        }
+    }
+
     /// Notes one more of a kind; `at` is asked only for the first.
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
         let kinds = self.kinds.len();

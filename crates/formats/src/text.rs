@@ -11,8 +11,37 @@ use std::sync::Arc;
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     pos: usize,
+    /// How many lines have been passed, and where this one begins.
+    line: (u32, usize),
     /// Whether a backslash at a line's end continues it.
     joins_lines: bool,
+}
+
+/// Line and column in a file, from 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) line: u32,
+    pub(crate) column: u32,
+}
+
+impl Place {
+    pub(crate) fn of_key(key: u64) -> Place {
+        Place { line: (key >> 32) as u32, column: key as u32 }
+    }
+
+    /// Both numbers in one, rising as one reads.
+    pub(crate) fn key(self) -> u64 {
+        u64::from(self.line) << 32 | u64::from(self.column)
+    }
+
+    /// The same where so many lines stand before.
+    pub(crate) fn after(self, lines: u32) -> Place {
+        Place { line: self.line.saturating_add(lines), ..self }
+    }
+
+    pub(crate) fn in_file(self, file: &Arc<str>) -> Span {
+        Span { file: file.clone(), line: self.line, column: self.column }
+    }
 }
 
 const fn is_blank(byte: u8) -> bool {
@@ -25,7 +54,7 @@ const fn is_newline(byte: u8) -> bool {
 
 impl<'a> Cursor<'a> {
     pub(crate) fn new(bytes: &'a [u8]) -> Cursor<'a> {
-        Cursor { bytes, pos: 0, joins_lines: false }
+        Cursor { bytes, pos: 0, line: (0, 0), joins_lines: false }
     }
 
     /// The same for formats in which a backslash at a line's end continues it.
@@ -37,6 +66,22 @@ impl<'a> Cursor<'a> {
     #[inline]
     pub(crate) fn offset(&self) -> usize {
         self.pos
+    }
+
+    /// Where a byte of the line stands that the cursor is in; not to be asked after [`Cursor::go_to`].
+    pub(crate) fn place(&self, offset: usize) -> Place {
+        let (lines, start) = self.line;
+        let column = u32::try_from(offset - start + 1).unwrap_or(u32::MAX);
+        Place { line: lines.saturating_add(1), column }
+    }
+
+    /// How many line ends have been passed.
+    pub(crate) fn lines(&self) -> u32 {
+        self.line.0
+    }
+
+    fn next_line(&mut self) {
+        self.line = (self.line.0.saturating_add(1), self.pos);
     }
 
     /// Goes to an offset.
@@ -54,11 +99,14 @@ impl<'a> Cursor<'a> {
         while let Some(&byte) = self.bytes.get(self.pos) {
             match byte {
                 b if is_blank(b) => self.pos += 1,
-                b'\\' if self.joins_lines => match &self.bytes[self.pos + 1..] {
-                    [b'\r', b'\n', ..] => self.pos += 3,
-                    [b'\r' | b'\n', ..] => self.pos += 2,
-                    _ => break,
-                },
+                b'\\' if self.joins_lines => {
+                    match &self.bytes[self.pos + 1..] {
+                        [b'\r', b'\n', ..] => self.pos += 3,
+                        [b'\r' | b'\n', ..] => self.pos += 2,
+                        _ => break,
+                    }
+                    self.next_line();
+                }
                 _ => break,
             }
         }
@@ -107,6 +155,7 @@ impl<'a> Cursor<'a> {
             };
             let continued = self.joins_lines && rest[..length].ends_with(b"\\");
             self.pos += length + if rest[length..].starts_with(b"\r\n") { 2 } else { 1 };
+            self.next_line();
             if !continued {
                 return;
             }

@@ -3,7 +3,7 @@
 mod read;
 mod write;
 
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::text::Cursor;
 use bilux_math::registry::Entry;
 
@@ -24,7 +24,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "materials: kd, ks, reflectivity",
     ],
     sniff,
-    read: Some(read::read),
+    read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };
 

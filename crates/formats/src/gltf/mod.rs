@@ -32,7 +32,7 @@ mod uri;
 mod variants;
 mod write;
 
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
@@ -58,7 +58,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "variants",
     ],
     sniff,
-    read: Some(reader::read),
+    read: Some(ReadFormat::Whole(reader::read)),
     write: Some(write::write),
 };
 

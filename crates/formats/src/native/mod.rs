@@ -18,7 +18,7 @@ mod write;
 pub use schema::toml_schema;
 pub use shapes::{SHAPES, ShapeEntry};
 
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
@@ -41,7 +41,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "settings",
     ],
     sniff,
-    read: Some(scene::read),
+    read: Some(ReadFormat::Whole(scene::read)),
     write: Some(write::write),
 };
 

@@ -8,8 +8,8 @@ use super::scene::{MOST_NAMES, Native};
 use super::shapes::SHAPES;
 use super::specs::{missing, plain_value};
 use crate::FormatError;
-use crate::formats::{format_named, read_source, unknown};
-use crate::reading::{Source, bytes_of};
+use crate::formats::{format_named, read_file, unknown};
+use crate::reading::bytes_of;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value};
@@ -129,13 +129,10 @@ impl Native<'_, '_> {
         let Some(row) = format_named(&extension).filter(|row| row.reads()) else {
             return Err(unknown(Path::new(name), "read", |row| row.reads()));
         };
-        let bytes = self.reading.load(path)?;
         self.reading.enter(path, &item.at)?;
         let shown = Path::new(&*table.at.file).with_file_name(name).display().to_string();
-        let source = Source { bytes: &bytes, name: &shown.into(), folder: path.parent() };
-        let mut model = read_source(row, self.reading, &source)?;
+        let mut model = read_file(Some(row), self.reading, path, &shown.into())?;
         self.reading.leave();
-        self.reading.release(bytes);
         self.scene.warnings.append(&mut model.warnings);
         self.scene.inventory.animations.extend(model.inventory.animations.iter().cloned());
         let model = Arc::new(model);

@@ -1,11 +1,12 @@
 //! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
 
+mod block;
 mod mtl;
 mod mtl_write;
 mod read;
 mod write;
 
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::text::Cursor;
 use bilux_math::registry::Entry;
 
@@ -19,7 +20,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     extensions: &["obj"],
     capabilities: &["polygons", "normals", "uv", "vertex-kd", "objects", "materials", "textures"],
     sniff,
-    read: Some(read::read),
+    read: Some(ReadFormat::Flowing(read::read)),
     write: Some(write::write),
 };
 

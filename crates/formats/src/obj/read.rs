@@ -1,22 +1,42 @@
-//! Reading the statements of an OBJ file.
+//! Reading an OBJ file, block by block.
 
+use super::block::{Block, Turn, bad_corner, read_block};
 use super::mtl::read_library;
 use crate::FormatError;
-use crate::float::parse_f32;
-use crate::normals::{BY_ANGLE, FLAT, Smoothing};
+use crate::blocks::Blocks;
+use crate::normals::{BY_ANGLE, Smoothing};
 use crate::reading::{Oddities, Reading, Source};
-use crate::soup::{Corner, NONE, Run, Soup, assemble};
-use crate::text::{Cursor, Places, name_of, no_text, quoted};
-use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Object, SceneBuilder};
+use crate::soup::{NONE, Run, Soup, assemble};
+use crate::text::{Cursor, Place, Places, no_text, whole_file};
+use bilux_math::Rgb;
+use bilux_scene::{Mesh, Object, SceneBuilder, Span};
+use rayon::prelude::*;
 use std::collections::HashMap;
+use std::io::Read;
+use std::path::Path;
 
-pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+/// Bytes of a block: enough that what it costs to join them does not count.
+const BLOCK: usize = 1 << 20;
+
+pub(super) fn read(
+    reading: &mut Reading,
+    source: &Source,
+    from: &mut dyn Read,
+) -> Result<SceneBuilder, FormatError> {
+    read_in_blocks(reading, source, from, BLOCK)
+}
+
+/// The text is held only while it is read: as many blocks as there are threads.
+fn read_in_blocks(
+    reading: &mut Reading,
+    source: &Source,
+    from: &mut dyn Read,
+    size: usize,
+) -> Result<SceneBuilder, FormatError> {
     let mut reader = Obj {
         reading,
         source,
-        cursor: Cursor::joining_lines(source.bytes),
-        places: Places::new(source.name, source.bytes),
+        lines: 0,
         soup: Soup { first_vertex: 1, ..Soup::default() },
         scene: SceneBuilder::default(),
         materials: HashMap::new(),
@@ -26,249 +46,185 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         smoothing: BY_ANGLE,
         in_run: false,
     };
-    reader.statements().map_err(|error| no_text(error, source))?;
+    reader.blocks(&mut Blocks::new(from, size)).map_err(|error| no_text(error, source))?;
     reader.finish()
 }
 
 struct Obj<'a, 'o, 'r> {
     reading: &'r mut Reading<'o>,
     source: &'a Source<'a>,
-    cursor: Cursor<'a>,
-    places: Places<'a>,
+    /// Line ends before the block that is joined.
+    lines: u32,
     soup: Soup,
     scene: SceneBuilder,
     /// Index of each material, by its name.
     materials: HashMap<String, usize>,
     oddities: Oddities,
     name: String,
-    material: Option<(String, usize)>,
+    material: Option<(String, u64)>,
     smoothing: Smoothing,
     /// False when the next face begins a new run.
     in_run: bool,
 }
 
 impl Obj<'_, '_, '_> {
-    fn statements(&mut self) -> Result<(), FormatError> {
-        while !self.cursor.is_done() {
-            self.cursor.skip_blanks();
-            let start = self.cursor.offset();
-            match self.cursor.word() {
-                b"v" => self.vertex()?,
-                b"vt" => self.texture_coordinates()?,
-                b"vn" => self.normal()?,
-                b"f" | b"fo" => self.face(start)?,
-                b"o" | b"g" => {
-                    let name = self.cursor.rest_of_line();
-                    self.name = name_of(name);
-                    self.in_run = false;
-                }
-                b"usemtl" => {
-                    let name = self.cursor.rest_of_line();
-                    self.material = Some((name_of(name), start));
-                    self.in_run = false;
-                }
-                b"mtllib" => self.libraries(start)?,
-                b"s" => self.smoothing_group(start)?,
-                b"" => {}
-                word if word.starts_with(b"#") => self.pass_line(),
-                word => self.other_statement(word, start)?,
+    /// Reads blocks side by side and joins them in order, so that it does not show how many threads there are.
+    fn blocks(&mut self, blocks: &mut Blocks) -> Result<(), FormatError> {
+        let file = self.source.name;
+        let mut spare: Vec<Block> = Vec::new();
+        loop {
+            let mut texts = Vec::new();
+            while texts.len() < rayon::current_num_threads() {
+                let failed =
+                    |source| FormatError::Io { path: Path::new(&**file).into(), action: "read it", source };
+                let Some(text) = blocks.next(self.reading.budget.left()).map_err(failed)? else { break };
+                self.reading.budget.take_bytes(text.len() as u64, file)?;
+                texts.push(text);
             }
-            self.cursor.end_line();
+            let budget = &self.reading.budget;
+            spare.resize_with(texts.len(), Block::default);
+            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, file, budget, block);
+            let parts: Vec<Block> = match texts.len() {
+                0 => return Ok(()),
+                1 => spare.drain(..).zip(&texts).map(parse).collect(),
+                _ => spare.par_drain(..).zip(&texts).map(parse).collect(),
+            };
+            for (mut block, text) in parts.into_iter().zip(texts) {
+                self.join(&mut block, &text)?;
+                spare.push(block.emptied());
+                self.reading.budget.give_back(text.len() as u64);
+                blocks.give_back(text);
+            }
+        }
+    }
+
+    /// Adds what a block says to what those before it said.
+    fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
+        self.reading.budget.take_bytes(block.spent, self.source.name)?;
+        self.turn_round(block, text)?;
+        self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
+        self.add_colours(block)?;
+        let soup = &mut self.soup;
+        soup.positions.append(&mut block.positions);
+        soup.uvs.append(&mut block.uvs);
+        soup.normals.append(&mut block.normals);
+        let corners = soup.faces.corner_count() + block.corners.len();
+        let most = [soup.positions.len(), soup.uvs.len(), soup.normals.len(), corners];
+        self.add_faces(block)?;
+        let end = Place { line: 1, column: 1 }.after(self.lines).after(block.lines);
+        self.lines = self.lines.saturating_add(block.lines);
+        match block.failure.take() {
+            Some(FormatError::Malformed { message, mut at }) => {
+                at.line = at.line.saturating_add(end.line - 1 - block.lines);
+                Err(FormatError::Malformed { message, at })
+            }
+            Some(error) => Err(error),
+            // Indices are 32-bit numbers, and the last one means that there is none.
+            None if most.iter().any(|&count| count as u64 >= u64::from(NONE)) => {
+                let message = "there are more than 4 billion vertices or corners: cut the file into several";
+                Err(FormatError::malformed(message, end.in_file(self.source.name)))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Gives corners that count backwards their indices.
+    fn turn_round(&self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
+        let soup = &self.soup;
+        let before = [soup.positions.len(), soup.uvs.len(), soup.normals.len()];
+        for backward in &block.backward {
+            let index = before[backward.part as usize] as i64 + backward.index;
+            let index = u32::try_from(index).ok().filter(|&index| index != NONE).ok_or_else(|| {
+                let mut cursor = Cursor::joining_lines(text);
+                cursor.go_to(backward.offset);
+                let mut at = Places::new(self.source.name, text).at(backward.offset);
+                at.line = at.line.saturating_add(self.lines);
+                bad_corner(cursor.word(), at)
+            })?;
+            // A face that something was wrong with may have ended before its corner was there.
+            let corner = backward.corner.and_then(|corner| block.corners.get_mut(corner as usize));
+            if let Some(corner) = corner {
+                corner[backward.part as usize] = index;
+            }
         }
         Ok(())
     }
 
-    /// Goes to the line's end, so that a backslash there continues nothing.
-    fn pass_line(&mut self) {
-        self.cursor.rest_of_line();
-    }
-
-    /// `v x y z [w]` or `v x y z r g b`.
-    fn vertex(&mut self) -> Result<(), FormatError> {
-        let mut numbers = [0.0; 8];
-        let count = self.numbers(&mut numbers, 3)?;
-        self.reading.budget.take::<Vec3>(1, self.source.name)?;
+    /// Where one vertex has a colour all have.
+    fn add_colours(&mut self, block: &Block) -> Result<(), FormatError> {
         let soup = &mut self.soup;
-        soup.positions.push(Vec3::from_slice(&numbers));
-        let colour = match count {
-            6 => Rgb::from_array([numbers[3], numbers[4], numbers[5]]),
-            7.. => Rgb::from_array([numbers[4], numbers[5], numbers[6]]),
-            _ => Rgb::WHITE,
-        };
-        if count >= 6 || !soup.colours.is_empty() {
-            let added = soup.positions.len() - soup.colours.len();
-            self.reading.budget.take::<Rgb>(added, self.source.name)?;
-            soup.colours.resize(soup.positions.len() - 1, Rgb::WHITE);
-            soup.colours.push(colour);
+        if !block.colours.is_empty() || !soup.colours.is_empty() {
+            let count = soup.positions.len() + block.positions.len();
+            self.reading.budget.take::<Rgb>(count - soup.colours.len(), self.source.name)?;
+            soup.colours.resize(soup.positions.len(), Rgb::WHITE);
+            soup.colours.extend_from_slice(&block.colours);
+            soup.colours.resize(count, Rgb::WHITE);
         }
-        self.check_room(self.soup.positions.len())
+        Ok(())
     }
 
-    fn texture_coordinates(&mut self) -> Result<(), FormatError> {
-        let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 1)?;
-        self.reading.budget.take::<Vec2>(1, self.source.name)?;
-        self.soup.uvs.push(Vec2::from_slice(&numbers));
-        self.check_room(self.soup.uvs.len())
-    }
-
-    fn normal(&mut self) -> Result<(), FormatError> {
-        let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 3)?;
-        self.reading.budget.take::<Vec3>(1, self.source.name)?;
-        self.soup.normals.push(Vec3::from_slice(&numbers));
-        self.check_room(self.soup.normals.len())
-    }
-
-    /// Indices are 32-bit numbers, and the last one means that there is none.
-    fn check_room(&self, count: usize) -> Result<(), FormatError> {
-        if (count as u64) < u64::from(NONE) {
-            return Ok(());
-        }
-        let message = "there are more than 4 billion of these: cut the file into several";
-        Err(FormatError::malformed(message, self.places.at(self.cursor.offset())))
-    }
-
-    /// The numbers of a statement, `least` of them or more; how many there are.
-    #[inline]
-    fn numbers(&mut self, numbers: &mut [f32], least: usize) -> Result<usize, FormatError> {
-        let mut count = 0;
-        let mut odd = false;
-        while count < numbers.len() {
-            let word = self.cursor.word();
-            match parse_f32(word) {
-                Some(value) => {
-                    odd |= !value.is_finite();
-                    numbers[count] = value;
-                    count += 1;
+    fn add_faces(&mut self, block: &mut Block) -> Result<(), FormatError> {
+        let mut next = 0;
+        for (face, turn) in std::mem::take(&mut block.turns) {
+            self.faces_up_to(face, &mut next, block)?;
+            match turn {
+                Turn::Name(name) => (self.name, self.in_run) = (name, false),
+                Turn::Material(name, place) => {
+                    self.material = Some((name, place.after(self.lines).key()));
+                    self.in_run = false;
                 }
-                None if word.is_empty() || word.starts_with(b"#") => break,
-                None => {
-                    let at = self.places.at(self.cursor.offset() - word.len());
-                    return Err(FormatError::malformed(format!("{} is no number", quoted(word)), at));
+                Turn::Smoothing(smoothing) => self.smoothing = smoothing,
+                Turn::Libraries(line, place) => {
+                    self.libraries(line, &place.after(self.lines).in_file(self.source.name))?;
                 }
             }
         }
-        if count < least {
-            let at = self.places.at(self.cursor.offset());
-            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
-            let message =
-                format!("there are {count} numbers on this line, where {least} are needed{cut_off}");
-            return Err(FormatError::malformed(message, at));
-        }
-        if odd {
-            let (places, offset) = (&self.places, self.cursor.offset());
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
-            self.oddities.note(what, || places.at(offset));
-        }
-        Ok(count)
+        self.faces_up_to(block.ends.len(), &mut next, block)
     }
 
-    fn face(&mut self, start: usize) -> Result<(), FormatError> {
-        let first = self.soup.corners.len();
-        loop {
-            let word = self.cursor.word();
-            if word.is_empty() || word.starts_with(b"#") {
-                break;
-            }
-            let corner = self.corner(word)?;
-            self.soup.corners.push(corner);
-        }
-        let count = self.soup.corners.len() - first;
-        if count < 3 {
-            self.soup.corners.truncate(first);
-            let places = &self.places;
-            let what = "a face has fewer than 3 corners and is left out";
-            self.oddities.note(what, || places.at(start));
+    fn faces_up_to(&mut self, end: usize, next: &mut usize, block: &Block) -> Result<(), FormatError> {
+        let first = std::mem::replace(next, end);
+        if first == end {
             return Ok(());
         }
-        self.reading.budget.take::<Corner>(count, self.source.name)?;
-        self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
-        self.check_room(self.soup.corners.len())?;
         if !self.in_run {
             self.begin_run()?;
         }
-        self.soup.ends.push(self.soup.corners.len() as u32);
-        self.soup.offsets.push(start);
-        self.soup.smoothing.push(self.smoothing);
+        let start = if first == 0 { 0 } else { block.ends[first - 1] };
+        let ends = &block.ends[first..end];
+        self.soup.smooth(self.smoothing);
+        let corners = &block.corners[start as usize..block.ends[end - 1] as usize];
+        self.soup.faces.append(corners, ends.iter().map(|end| end - start));
+        block.places[first..end]
+            .iter()
+            .for_each(|place| self.soup.places.push(place.after(self.lines).key()));
         Ok(())
     }
 
     fn begin_run(&mut self) -> Result<(), FormatError> {
         self.in_run = true;
-        let first_face = self.soup.ends.len();
+        let first_face = self.soup.faces.len();
         let run = Run { first_face, name: self.name.clone(), material: self.material.clone() };
         let same = |last: &Run| last.name == run.name && last.material_name() == run.material_name();
         if self.soup.runs.last().is_some_and(same) {
             return Ok(());
         }
         let text = run.name.len() + run.material.as_ref().map_or(0, |(name, _)| name.len());
-        self.reading.budget.take::<(Run, Object, bilux_scene::Mesh)>(1, self.source.name)?;
+        self.reading.budget.take::<(Run, Object, Mesh)>(1, self.source.name)?;
         self.reading.budget.take::<u8>(2 * text, self.source.name)?;
         self.soup.runs.push(run);
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    #[inline]
-    fn corner(&self, word: &[u8]) -> Result<Corner, FormatError> {
-        let soup = &self.soup;
-        let counts = [soup.positions.len(), soup.uvs.len(), soup.normals.len()];
-        let mut corner = [NONE; 3];
-        let mut rest = word;
-        for (part, count) in counts.into_iter().enumerate() {
-            let length = rest.iter().position(|&b| b == b'/').unwrap_or(rest.len());
-            if length > 0 {
-                corner[part] = index(&rest[..length], count).ok_or_else(|| self.bad_corner(word))?;
-            }
-            match rest.get(length + 1..) {
-                Some(after) => rest = after,
-                None if corner[0] == NONE => return Err(self.bad_corner(word)),
-                None => return Ok(corner),
-            }
-        }
-        Err(self.bad_corner(word))
-    }
-
-    #[cold]
-    fn bad_corner(&self, word: &[u8]) -> FormatError {
-        let at = self.places.at(self.cursor.offset() - word.len());
-        let message = format!(
-            "{} is no corner of a face: it has to be a vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
-             counted from 1, or backwards from -1",
-            quoted(word)
-        );
-        FormatError::malformed(message, at)
-    }
-
-    /// `s off` and `s 0` are flat, any other number is a group that is smooth.
-    fn smoothing_group(&mut self, start: usize) -> Result<(), FormatError> {
-        let word = self.cursor.word();
-        let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<u32>().ok());
-        self.smoothing = match (word, number) {
-            (b"off" | b"", _) | (_, Some(0)) => FLAT,
-            (b"on", _) => 1,
-            (_, Some(group)) => group.min(BY_ANGLE - 1),
-            _ => {
-                let message =
-                    format!("{} is no smoothing group: it has to be a number or 'off'", quoted(word));
-                return Err(FormatError::malformed(message, self.places.at(start)));
-            }
-        };
-        Ok(())
-    }
-
     /// `mtllib NAME…`: names with blanks are tried whole first.
-    fn libraries(&mut self, start: usize) -> Result<(), FormatError> {
-        let line = name_of(self.cursor.rest_of_line());
-        let at = self.places.at(start);
+    fn libraries(&mut self, line: String, at: &Span) -> Result<(), FormatError> {
         let folder = self.source.folder;
-        let names = match self.reading.locate(folder, &line, &at) {
+        let names = match self.reading.locate(folder, &line, at) {
             Ok(_) => vec![line],
             Err(_) => split_names(&line),
         };
         for name in names {
-            let located = self.reading.locate(folder, &name, &at);
+            let located = self.reading.locate(folder, &name, at);
             let loaded = located.and_then(|path| Ok((self.reading.load(&path)?, path)));
             let (bytes, path) = match loaded {
                 Ok(loaded) => loaded,
@@ -286,43 +242,18 @@ impl Obj<'_, '_, '_> {
         Ok(())
     }
 
-    fn other_statement(&mut self, word: &[u8], start: usize) -> Result<(), FormatError> {
-        let what = match word {
-            b"l" | b"p" => "lines and points are not drawn".to_owned(),
-            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
-            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
-                "free-form curves and surfaces are not drawn".to_owned()
-            }
-            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
-            | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
-                format!("the statement {} is left out", quoted(word))
-            }
-            _ => {
-                let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
-                if !readable {
-                    let message = format!("{} is no statement of an OBJ file", quoted(word));
-                    return Err(FormatError::malformed(message, self.places.at(start)));
-                }
-                format!("the unknown statement {} is left out", quoted(word))
-            }
-        };
-        let places = &self.places;
-        self.oddities.note(&what, || places.at(start));
-        self.pass_line();
-        Ok(())
-    }
-
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, materials, mut oddities, soup, places, .. } = self;
-        if soup.ends.is_empty() {
+        let Obj { reading, source, mut scene, materials, mut oddities, soup, .. } = self;
+        if soup.faces.is_empty() {
             let message = if soup.positions.is_empty() {
                 "there is no face in it: is this an OBJ file?"
             } else {
                 "there is no face in it, only points or lines, which are not drawn"
             };
-            return Err(FormatError::malformed(message, places.whole()));
+            return Err(FormatError::malformed(message, whole_file(source.name)));
         }
-        assemble(reading, source, &places, soup, materials, &mut scene, &mut oddities)?;
+        let place = |key: u64| Place::of_key(key).in_file(source.name);
+        assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }
@@ -346,47 +277,42 @@ fn split_names(line: &str) -> Vec<String> {
     names
 }
 
-/// An index as OBJ counts (from 1, or backwards from -1) as one from 0; whether forward ones exist is looked
-/// at when the file has been read.
-#[inline]
-fn index(text: &[u8], count: usize) -> Option<u32> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
-    };
-    if digits.is_empty() || digits.len() > 10 {
-        return None;
-    }
-    let mut number = 0u64;
-    for &digit in digits {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        number = number * 10 + u64::from(digit - b'0');
-    }
-    let from_zero = if negative { (count as u64).checked_sub(number)? } else { number.checked_sub(1)? };
-    (number > 0).then_some(())?;
-    u32::try_from(from_zero).ok().filter(|&i| i != NONE)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn indices_count_from_one_or_backwards() {
-        assert_eq!(index(b"1", 0), Some(0));
-        assert_eq!(index(b"+7", 3), Some(6));
-        assert_eq!(index(b"-1", 8), Some(7));
-        assert_eq!(index(b"-8", 8), Some(0));
-        for bad in ["0", "-0", "-9", "", "-", "1.5", "4294967296", "99999999999"] {
-            assert_eq!(index(bad.as_bytes(), 8), None, "{bad}");
-        }
-    }
+    use crate::ReadOptions;
+    use std::sync::Arc;
 
     #[test]
     fn names_with_escaped_blanks() {
         assert_eq!(split_names(r"a.mtl b\ c.mtl  d\e.mtl"), ["a.mtl", "b c.mtl", r"d\e.mtl"]);
+    }
+
+    /// All that is read, or what is wrong, in words.
+    fn read_with(text: &str, size: usize) -> String {
+        let options = ReadOptions::default();
+        let mut reading = Reading::new(&options, None);
+        let name: Arc<str> = "f.obj".into();
+        let source = Source { bytes: text.as_bytes(), name: &name, folder: None };
+        match read_in_blocks(&mut reading, &source, &mut text.as_bytes(), size) {
+            Ok(scene) => format!("{:?} {:?} {:?}", scene.objects, scene.materials, scene.warnings),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn where_blocks_end_does_not_show() {
+        let head = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\r\nv 1 1 0 1 .5 .2\rv 0 1 \\\n 0\nv 2 2 2\nvt 0 0\nvt 1 1\nvn 0 0 1\n\n";
+        let faces = "f 1 2 3\ns 1\nf -5 -4 -3 -2\ng a b\nf 1/1/1 -4/-1/-1 3//1\nf 1 2\nusemtl x\n  f 4/2 3/9 9\ng c\nv 9 9 nan\n";
+        let middle = "f 6 1 2\nl 1 2\nv 3 3 3\nv 4 4 4\nv 5 5 5\nf -1 -2 -9\n";
+        for end in
+            ["", "f -1 -2 -10\n", "f 1 2 3 # ok\nf -1 -2/x\n", "v 1 2\n", "f 1 2 99\n", "v 1 2", "\u{1}\u{2}"]
+        {
+            let text = format!("{head}{faces}{middle}{end}");
+            let whole = read_with(&text, 1 << 20);
+            for size in [1, 2, 3, 5, 8, 13, 40, 100] {
+                assert_eq!(read_with(&text, size), whole, "{size} {end:?}");
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 mod read;
 mod write;
 
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use read::Columns;
 
@@ -19,7 +19,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: |bytes| {
         Columns::of_word(bytes.split(u8::is_ascii_whitespace).next().unwrap_or_default()).is_some()
     },
-    read: Some(read::read),
+    read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };
 

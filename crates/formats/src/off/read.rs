@@ -162,51 +162,52 @@ impl<'a> Off<'a, '_, '_> {
 
     fn faces(&mut self, count: u64, columns: Columns) -> Result<(), FormatError> {
         let of_vertex = |given: bool, vertex: u32| if given { vertex } else { NONE };
+        let mut corners = Vec::new();
         for _ in 0..count {
             let start = self.next_line("all of its faces")?;
-            let first = self.soup.corners.len();
+            corners.clear();
             for _ in 0..self.index("a face begins with its number of corners")? {
                 let vertex = self.index("a face has the numbers of its vertices, counted from 0")?;
                 self.reading.budget.take::<Corner>(1, self.source.name)?;
                 let (uv, normal) = (of_vertex(columns.uvs, vertex), of_vertex(columns.normals, vertex));
-                self.soup.corners.push([vertex, uv, normal]);
+                corners.push([vertex, uv, normal]);
             }
             if !matches!(self.cursor.peek_word(), [] | [b'#', ..]) {
                 let places = self.places;
                 self.oddities.note("a face has a colour of its own, which is left out", || places.at(start));
             }
             self.cursor.end_line();
-            self.end_face(first, start)?;
+            self.end_face(&corners, start)?;
         }
         Ok(())
     }
 
-    fn end_face(&mut self, first: usize, start: usize) -> Result<(), FormatError> {
+    fn end_face(&mut self, corners: &[Corner], start: usize) -> Result<(), FormatError> {
         let (soup, places) = (&mut self.soup, self.places);
-        if soup.corners.len() - first < 3 {
-            soup.corners.truncate(first);
+        if corners.len() < 3 {
             self.oddities.note("a face has fewer than 3 corners and is left out", || places.at(start));
             return Ok(());
         }
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
-        if soup.corners.len() as u64 >= u64::from(NONE) {
+        if (soup.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
             let message = "there are more than 4 billion corners: cut the file into several";
             return Err(FormatError::malformed(message, places.at(start)));
         }
-        soup.ends.push(soup.corners.len() as u32);
-        soup.offsets.push(start);
-        soup.smoothing.push(self.smoothing);
+        soup.smooth(self.smoothing);
+        soup.faces.push(corners);
+        soup.places.push(start as u64);
         Ok(())
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
         let Off { reading, source, places, mut soup, mut oddities, .. } = self;
-        if soup.ends.is_empty() {
+        if soup.faces.is_empty() {
             return Err(FormatError::malformed("there is no face in it", places.whole()));
         }
         soup.runs.push(Run { first_face: 0, name: source.stem(), material: None });
         let mut scene = SceneBuilder::default();
-        assemble(reading, source, places, soup, HashMap::new(), &mut scene, &mut oddities)?;
+        let place = |offset: u64| places.at(offset as usize);
+        assemble(reading, source, &place, soup, HashMap::new(), &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }

@@ -23,7 +23,7 @@ mod transforms;
 mod write;
 
 use crate::FormatError;
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{SceneError, Span};
 
@@ -50,7 +50,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "settings",
     ],
     sniff,
-    read: Some(reader::read),
+    read: Some(ReadFormat::Whole(reader::read)),
     write: Some(write::write),
 };
 

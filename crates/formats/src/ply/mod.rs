@@ -9,7 +9,7 @@ mod write;
 
 pub(crate) use write::encode;
 
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
@@ -22,6 +22,6 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     extensions: &["ply"],
     capabilities: &["polygons", "normals", "uv", "vertex-kd", "vertex-ks"],
     sniff: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply "),
-    read: Some(read::read),
+    read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };

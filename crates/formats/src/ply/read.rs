@@ -191,13 +191,13 @@ impl Ply<'_, '_, '_> {
             let message = format!("the element '{}' has no list 'vertex_indices'", element.name);
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
+        let mut corners = Vec::new();
         for _ in 0..element.count {
             let start = self.body.offset();
-            let first = self.soup.corners.len();
             let mut wedges = None;
             for property in &element.properties {
                 if is(property, &["vertex_indices", "vertex_index"]) {
-                    self.indices(property, strips, start)?;
+                    self.indices(property, strips, start, &mut corners)?;
                 } else if is(property, &["texcoord"]) && !strips {
                     wedges = Some(self.wedges(property)?);
                 } else {
@@ -205,17 +205,24 @@ impl Ply<'_, '_, '_> {
                 }
             }
             if let Some(uvs) = wedges {
-                self.set_wedges(first, uvs, start);
+                self.set_wedges(&mut corners, uvs, start);
             }
+            self.end_face(&mut corners, start)?;
             self.end_row(start);
         }
         Ok(())
     }
 
-    /// The corners of one face, or of a strip of triangles, in which -1 begins anew.
-    fn indices(&mut self, property: &Property, strips: bool, start: usize) -> Result<(), FormatError> {
+    /// The corners of one face; or the faces of a strip of triangles, in which -1 begins anew.
+    fn indices(
+        &mut self,
+        property: &Property,
+        strips: bool,
+        start: usize,
+        corners: &mut Vec<Corner>,
+    ) -> Result<(), FormatError> {
         let count = self.body.integer(property.count.unwrap_or(property.scalar))?;
-        let first = self.soup.corners.len();
+        self.end_face(corners, start)?;
         let mut strip: [u32; 2] = [NONE; 2];
         let mut turned = false;
         for _ in 0..count {
@@ -231,45 +238,40 @@ impl Ply<'_, '_, '_> {
                     let [a, b] = strip;
                     if a != NONE {
                         let triangle = if turned { [b, a, vertex] } else { [a, b, vertex] };
-                        triangle.iter().for_each(|&v| self.push_corner(v));
-                        self.end_face(start)?;
+                        corners.extend(triangle.map(corner_of));
+                        self.end_face(corners, start)?;
                         turned = !turned;
                     }
                     strip = [b, vertex];
                 }
-                Some(vertex) => self.push_corner(vertex),
+                Some(vertex) => corners.push(corner_of(vertex)),
             }
         }
-        if strips {
-            return Ok(());
-        }
-        if self.soup.corners.len() - first < 3 {
-            self.soup.corners.truncate(first);
+        if !strips && corners.len() < 3 {
+            corners.clear();
             let places = self.places;
             let what = "a face has fewer than 3 corners and is left out";
             self.oddities.note(what, || places.at(start));
+        }
+        Ok(())
+    }
+
+    /// Adds a face where there is one.
+    fn end_face(&mut self, corners: &mut Vec<Corner>, start: usize) -> Result<(), FormatError> {
+        if corners.is_empty() {
             return Ok(());
         }
-        self.end_face(start)
-    }
-
-    /// Vertices that come later in the file bring their normals and uvs too, which are looked at in the end.
-    fn push_corner(&mut self, vertex: u32) {
-        self.soup.corners.push([vertex, NONE, NONE]);
-    }
-
-    fn end_face(&mut self, start: usize) -> Result<(), FormatError> {
         let soup = &mut self.soup;
-        let corners = soup.corners.len() - soup.ends.last().map_or(0, |&end| end as usize);
-        self.reading.budget.take::<Corner>(corners, self.source.name)?;
+        self.reading.budget.take::<Corner>(corners.len(), self.source.name)?;
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
-        if soup.corners.len() as u64 >= u64::from(NONE) {
+        if (soup.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
             let message = "there are more than 4 billion corners: cut the file into several";
             return Err(FormatError::malformed(message, self.places.at(start)));
         }
-        soup.ends.push(soup.corners.len() as u32);
-        soup.offsets.push(start);
-        soup.smoothing.push(self.smoothing);
+        soup.smooth(self.smoothing);
+        soup.faces.push(corners);
+        soup.places.push(start as u64);
+        corners.clear();
         Ok(())
     }
 
@@ -285,8 +287,7 @@ impl Ply<'_, '_, '_> {
         Ok(uvs)
     }
 
-    fn set_wedges(&mut self, first: usize, uvs: Vec<Vec2>, start: usize) {
-        let corners = &mut self.soup.corners[first..];
+    fn set_wedges(&mut self, corners: &mut [Corner], uvs: Vec<Vec2>, start: usize) {
         if uvs.len() != corners.len() {
             if !uvs.is_empty() && !corners.is_empty() {
                 let places = self.places;
@@ -313,7 +314,7 @@ impl Ply<'_, '_, '_> {
         if let Some(triangles) = self.triangles.take().filter(|triangles| !triangles.is_empty()) {
             return self.finish_triangles(texture, scene, triangles);
         }
-        if self.soup.ends.is_empty() {
+        if self.soup.faces.is_empty() {
             let message = if self.soup.positions.is_empty() {
                 "there is no face in it"
             } else {
@@ -327,7 +328,7 @@ impl Ply<'_, '_, '_> {
         if !wedges.is_empty() {
             self.soup.uvs = wedges;
         }
-        for corner in &mut self.soup.corners {
+        for (_, corner) in self.soup.faces.corners_mut() {
             let of_vertex = |given: bool| if given { corner[0] } else { NONE };
             *corner =
                 [corner[0], if corner[1] == NONE { of_vertex(uvs) } else { corner[1] }, of_vertex(normals)];
@@ -338,7 +339,8 @@ impl Ply<'_, '_, '_> {
             self.texture(&file, offset, &mut scene, &mut materials)?;
         }
         let Ply { reading, source, places, soup, mut oddities, .. } = self;
-        assemble(reading, source, places, soup, materials, &mut scene, &mut oddities)?;
+        let place = |offset: u64| places.at(offset as usize);
+        assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
     }
@@ -365,4 +367,9 @@ impl Ply<'_, '_, '_> {
         }
         Ok(())
     }
+}
+
+/// Vertices that come later in the file bring their normals and uvs too, which are looked at in the end.
+fn corner_of(vertex: u32) -> Corner {
+    [vertex, NONE, NONE]
 }

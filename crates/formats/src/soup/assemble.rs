@@ -1,77 +1,105 @@
 //! Faces over separate lists of positions, uvs and normals, into meshes.
 
-use super::{Corner, NONE, Run, Soup};
+use super::{Corner, FaceList, NONE, Run, Soup};
 use crate::FormatError;
 use crate::normals::{FLAT, Faces};
 use crate::polygon::Triangulator;
 use crate::reading::{Oddities, Reading, Source, plain_material};
-use crate::text::Places;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Mesh, Object, SceneBuilder};
+use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// What a vertex takes while it is made: position, normal, uv, kd and what finds it again.
 type Vertex = [u32; 14];
 
-/// Makes an object of every run.
+/// Makes an object of every run. `place` tells where the words of [`Soup::places`] are.
 pub(crate) fn assemble(
     reading: &mut Reading,
     source: &Source,
-    places: &Places,
+    place: &dyn Fn(u64) -> Span,
     mut soup: Soup,
     mut materials: HashMap<String, usize>,
     scene: &mut SceneBuilder,
     oddities: &mut Oddities,
 ) -> Result<(), FormatError> {
-    check_indices(&mut soup, places, oddities)?;
+    check_indices(&mut soup, place, oddities)?;
     add_normals(reading, source, &mut soup)?;
     reading.budget.take_bytes((soup.positions.len() * size_of::<Slot>()) as u64, source.name)?;
     // A polygon has two triangles fewer than corners.
-    reading.budget.take::<[u32; 3]>(soup.corners.len() - 2 * soup.ends.len(), source.name)?;
+    let triangles = soup.faces.corner_count() - 2 * soup.faces.len();
+    reading.budget.take::<[u32; 3]>(triangles, source.name)?;
+    let faces = std::mem::take(&mut soup.faces);
     let mut welder = Welder::new(soup.positions.len());
     let mut triangulator = Triangulator::default();
-    let stem = source.stem();
-    let runs = std::mem::take(&mut soup.runs);
-    for (i, run) in runs.iter().enumerate() {
-        let end = runs.get(i + 1).map_or(soup.ends.len(), |next| next.first_face);
-        let mut piece = Piece::new(&soup, &mut welder);
-        for face in run.first_face..end {
-            let made = piece.made.len();
-            if piece.add_face(face, &mut triangulator).is_none() {
-                let what = "a hollow polygon has too many corners to be cut, and is drawn as if it bulged";
-                oddities.note(what, || places.at(soup.offsets[face]));
-            }
-            reading.budget.take::<Vertex>(piece.made.len() - made, source.name)?;
+    let mut rooms = rooms(&soup, &faces).into_iter();
+    let mut piece = Piece::new(&soup, rooms.next());
+    let mut run = 0;
+    let mut finish = |piece: Piece, run: &Run, oddities: &mut Oddities| {
+        let name = if run.name.is_empty() { source.stem() } else { run.name.clone() };
+        let mesh = Mesh { name: name.clone(), ..piece.into_mesh(run, place, oddities) };
+        let material = material_of(run, &soup, &mut materials, place, scene, oddities);
+        scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+    };
+    // Corners are let go as triangles are made of them: both at once are the most that reading takes.
+    faces.consume(|face, corners| {
+        if soup.runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
+            let done = std::mem::replace(&mut piece, Piece::new(&soup, rooms.next()));
+            finish(done, &soup.runs[run], oddities);
+            (run, welder.run) = (run + 1, welder.run + 1);
         }
-        piece.note_gaps(run, places, &soup, oddities);
-        let material = material_of(run, &soup, &mut materials, places, scene, oddities);
-        let mut mesh = piece.mesh;
-        let name = if run.name.is_empty() { &stem } else { &run.name };
-        mesh.name.clone_from(name);
-        scene.objects.push(Object::new(name, Arc::new(mesh), material));
+        let made = piece.made.len();
+        if piece.add_face(corners, &mut welder, &mut triangulator).is_none() {
+            let what = "a hollow polygon has too many corners to be cut, and is drawn as if it bulged";
+            oddities.note(what, || place(soup.places.at(face)));
+        }
+        reading.budget.take::<Vertex>(piece.made.len() - made, source.name)
+    })?;
+    if let Some(last) = soup.runs.get(run) {
+        finish(piece, last, oddities);
     }
     Ok(())
 }
 
+/// Corners and faces of a run.
+#[derive(Clone, Copy, Default)]
+struct Room {
+    corners: usize,
+    faces: usize,
+}
+
+fn rooms(soup: &Soup, faces: &FaceList) -> Vec<Room> {
+    let mut rooms = vec![Room::default(); soup.runs.len()];
+    let mut run = 0;
+    for (face, corners) in faces.iter().enumerate() {
+        run += usize::from(soup.runs.get(run + 1).is_some_and(|next| next.first_face <= face));
+        rooms[run].corners += corners.len();
+        rooms[run].faces += 1;
+    }
+    rooms
+}
+
 /// Indices may point forward, so they are looked at when everything has been read. Without its position a
 /// corner is nothing; it can do without the rest.
-fn check_indices(soup: &mut Soup, places: &Places, oddities: &mut Oddities) -> Result<(), FormatError> {
+fn check_indices(
+    soup: &mut Soup,
+    place: &dyn Fn(u64) -> Span,
+    oddities: &mut Oddities,
+) -> Result<(), FormatError> {
     let counts = [soup.positions.len(), soup.uvs.len(), soup.normals.len()].map(|n| n as u32);
-    let (ends, offsets) = (&soup.ends, &soup.offsets);
-    let place = |corner: usize| places.at(offsets[ends.partition_point(|&end| end as usize <= corner)]);
-    for (i, corner) in soup.corners.iter_mut().enumerate() {
+    let places = &soup.places;
+    for (face, corner) in soup.faces.corners_mut() {
         if corner[0] >= counts[0] {
             let (named, count) = (u64::from(corner[0]) + u64::from(soup.first_vertex), counts[0]);
             let from = if soup.first_vertex == 0 { ", counted from 0" } else { "" };
             let message = format!("this face names vertex {named}, but the file has only {count}{from}");
-            return Err(FormatError::malformed(message, place(i)));
+            return Err(FormatError::malformed(message, place(places.at(face))));
         }
         for part in [1, 2] {
             if corner[part] != NONE && corner[part] >= counts[part] {
                 corner[part] = NONE;
                 let what = "a face names texture coordinates or a normal that the file does not have";
-                oddities.note(what, || place(i));
+                oddities.note(what, || place(places.at(face)));
             }
         }
     }
@@ -80,30 +108,39 @@ fn check_indices(soup: &mut Soup, places: &Places, oddities: &mut Oddities) -> R
 
 /// Gives corners without a normal one by smoothing groups or the crease angle, if any of them needs one.
 fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Result<(), FormatError> {
-    let lacking = soup.corners.iter().any(|corner| corner[2] == NONE);
+    let lacking = soup.faces.iter().flatten().any(|corner| corner[2] == NONE);
     let mixed = lacking && !soup.normals.is_empty();
     let angle = reading.crease_angle;
     if !lacking || (angle <= 0.0 && !mixed) {
         return Ok(());
     }
     if angle <= 0.0 {
-        soup.smoothing.fill(FLAT);
+        soup.smoothing = vec![(0, FLAT)];
     }
-    // Each corner its neighbours, its index and at most a normal; each face its own.
-    let needed = 24 * soup.corners.len() + 16 * (soup.ends.len() + soup.positions.len());
+    // Each corner its position, its neighbours, its index and at most a normal; each face its own.
+    let needed = 28 * soup.faces.corner_count() + 24 * (soup.faces.len() + soup.positions.len());
     reading.budget.take_bytes(needed as u64, source.name)?;
+    let position_of: Vec<u32> = soup.faces.iter().flatten().map(|corner| corner[0]).collect();
+    let mut end = 0;
+    let ends: Vec<u32> = soup
+        .faces
+        .iter()
+        .map(|corners| {
+            end += corners.len() as u32;
+            end
+        })
+        .collect();
     let faces = Faces {
         positions: &soup.positions,
-        ends: &soup.ends,
-        position_of: |corner: usize| soup.corners[corner][0],
-        smoothing: &soup.smoothing,
+        ends: &ends,
+        position_of: |corner: usize| position_of[corner],
+        smoothing: &soup.smoothing_of_each(),
     };
     let found = if mixed { Some(faces.all_corner_normals(angle)) } else { faces.corner_normals(angle) };
     let Some(found) = found else { return Ok(()) };
     let given = soup.normals.len() as u32;
-    for (corner, index) in
-        soup.corners.iter_mut().zip(found.of_corner).filter(|(corner, _)| corner[2] == NONE)
-    {
+    let corners = soup.faces.corners_mut().map(|(_, corner)| corner);
+    for (corner, index) in corners.zip(found.of_corner).filter(|(corner, _)| corner[2] == NONE) {
         corner[2] = given + index;
     }
     soup.normals.extend(found.normals);
@@ -114,7 +151,7 @@ fn material_of(
     run: &Run,
     soup: &Soup,
     materials: &mut HashMap<String, usize>,
-    places: &Places,
+    place: &dyn Fn(u64) -> Span,
     scene: &mut SceneBuilder,
     oddities: &mut Oddities,
 ) -> usize {
@@ -128,7 +165,7 @@ fn material_of(
     }
     if let Some(offset) = offset {
         let what = "a material is in no library that was read; a plain one stands in its place";
-        oddities.note(what, || places.at(offset));
+        oddities.note(what, || place(offset));
     }
     let mut spec = plain_material(!soup.colours.is_empty(), !soup.specular.is_empty());
     if offset.is_some() {
@@ -157,14 +194,13 @@ const LONGEST_CHAIN: usize = 32;
 
 impl Welder {
     fn new(positions: usize) -> Welder {
-        Welder { slots: vec![Slot::default(); positions], run: 0 }
+        Welder { slots: vec![Slot::default(); positions], run: 1 }
     }
 }
 
 /// A mesh in the making.
 struct Piece<'s> {
     soup: &'s Soup,
-    welder: &'s mut Welder,
     mesh: Mesh,
     /// For each vertex: its uv and normal, and the next vertex of the same position.
     made: Vec<[u32; 3]>,
@@ -174,24 +210,40 @@ struct Piece<'s> {
 }
 
 impl<'s> Piece<'s> {
-    fn new(soup: &'s Soup, welder: &'s mut Welder) -> Piece<'s> {
-        welder.run += 1;
-        let (mesh, made, corners) = (Mesh::default(), Vec::new(), Vec::new());
-        Piece { soup, welder, mesh, made, corners, has_uvs: false, lacks_uvs: false }
+    /// With room for all triangles, and for as many vertices as there may well be; what of it is not needed costs nothing.
+    fn new(soup: &'s Soup, room: Option<Room>) -> Piece<'s> {
+        let Room { corners, faces } = room.unwrap_or_default();
+        let longest = soup.positions.len().max(soup.uvs.len()).max(soup.normals.len());
+        let vertices = corners.min(longest);
+        let of = |wanted: bool| if wanted { vertices } else { 0 };
+        let mesh = Mesh {
+            positions: Vec::with_capacity(vertices),
+            uvs: Vec::with_capacity(of(!soup.uvs.is_empty())),
+            normals: Vec::with_capacity(of(!soup.normals.is_empty())),
+            vertex_kd: Vec::with_capacity(of(!soup.colours.is_empty())),
+            vertex_ks: Vec::with_capacity(of(!soup.specular.is_empty())),
+            triangles: Vec::with_capacity(corners - 2 * faces),
+            ..Mesh::default()
+        };
+        let made = Vec::with_capacity(vertices);
+        Piece { soup, mesh, made, corners: Vec::new(), has_uvs: false, lacks_uvs: false }
     }
 
     /// `None` when a polygon could not be cut properly.
-    fn add_face(&mut self, face: usize, triangulator: &mut Triangulator) -> Option<()> {
-        let start = if face == 0 { 0 } else { self.soup.ends[face - 1] } as usize;
-        let corners = &self.soup.corners[start..self.soup.ends[face] as usize];
+    fn add_face(
+        &mut self,
+        corners: &[Corner],
+        welder: &mut Welder,
+        triangulator: &mut Triangulator,
+    ) -> Option<()> {
         if let [a, b, c] = corners {
-            let triangle = [self.vertex(*a), self.vertex(*b), self.vertex(*c)];
+            let triangle = [self.vertex(*a, welder), self.vertex(*b, welder), self.vertex(*c, welder)];
             self.mesh.triangles.push(triangle);
             return Some(());
         }
         self.corners.clear();
         for &corner in corners {
-            let vertex = self.vertex(corner);
+            let vertex = self.vertex(corner, welder);
             self.corners.push(vertex);
         }
         let (corners, triangles) = (&self.corners, &mut self.mesh.triangles);
@@ -201,9 +253,9 @@ impl<'s> Piece<'s> {
 
     /// The vertex of a corner, made when it is new.
     #[inline]
-    fn vertex(&mut self, [position, uv, normal]: Corner) -> u32 {
-        let slot = &mut self.welder.slots[position as usize];
-        let mut next = if slot.run == self.welder.run { slot.first } else { NONE };
+    fn vertex(&mut self, [position, uv, normal]: Corner, welder: &mut Welder) -> u32 {
+        let slot = &mut welder.slots[position as usize];
+        let mut next = if slot.run == welder.run { slot.first } else { NONE };
         let chain = next;
         for _ in 0..LONGEST_CHAIN {
             let Some(&[old_uv, old_normal, after]) = self.made.get(next as usize) else { break };
@@ -213,7 +265,7 @@ impl<'s> Piece<'s> {
             next = after;
         }
         let vertex = self.made.len() as u32;
-        *slot = Slot { run: self.welder.run, first: vertex };
+        *slot = Slot { run: welder.run, first: vertex };
         self.made.push([uv, normal, chain]);
         self.push_attributes([position, uv, normal]);
         vertex
@@ -240,12 +292,19 @@ impl<'s> Piece<'s> {
     }
 
     /// A mesh has texture coordinates at all vertices or at none.
-    fn note_gaps(&mut self, run: &Run, places: &Places, soup: &Soup, oddities: &mut Oddities) {
+    fn into_mesh(mut self, run: &Run, place: &dyn Fn(u64) -> Span, oddities: &mut Oddities) -> Mesh {
         if !self.has_uvs {
             self.mesh.uvs = Vec::new();
         } else if self.lacks_uvs {
             let what = "some corners of an object have no texture coordinates; they are 0 there";
-            oddities.note(what, || places.at(soup.offsets[run.first_face]));
+            oddities.note(what, || place(self.soup.places.at(run.first_face)));
         }
+        let mesh = &mut self.mesh;
+        mesh.positions.shrink_to_fit();
+        mesh.uvs.shrink_to_fit();
+        mesh.normals.shrink_to_fit();
+        mesh.vertex_kd.shrink_to_fit();
+        mesh.vertex_ks.shrink_to_fit();
+        self.mesh
     }
 }

@@ -1,8 +1,10 @@
 //! What OBJ and PLY files hold, and meshes made of it.
 
 mod assemble;
+mod faces;
 
 pub(crate) use assemble::assemble;
+pub(crate) use faces::{FaceList, Steps};
 
 use crate::normals::Smoothing;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -23,12 +25,11 @@ pub(crate) struct Soup {
     pub(crate) specular: Vec<Rgb>,
     pub(crate) uvs: Vec<Vec2>,
     pub(crate) normals: Vec<Vec3>,
-    pub(crate) corners: Vec<Corner>,
-    /// Where each face's corners end.
-    pub(crate) ends: Vec<u32>,
-    /// Where in the file each face stands.
-    pub(crate) offsets: Vec<usize>,
-    pub(crate) smoothing: Vec<Smoothing>,
+    pub(crate) faces: FaceList,
+    /// Where in the file each face stands: in the words of whoever reads it, who turns them into a [`bilux_scene::Span`].
+    pub(crate) places: Steps,
+    /// Where the smoothing changes: the first face that has it.
+    pub(crate) smoothing: Vec<(usize, Smoothing)>,
     pub(crate) runs: Vec<Run>,
     /// What the format calls its first vertex: 1 in OBJ, 0 elsewhere.
     pub(crate) first_vertex: u32,
@@ -40,7 +41,27 @@ pub(crate) struct Run {
     pub(crate) first_face: usize,
     pub(crate) name: String,
     /// The material's name and where it is asked for; `None` for a plain one.
-    pub(crate) material: Option<(String, usize)>,
+    pub(crate) material: Option<(String, u64)>,
+}
+
+impl Soup {
+    /// Says how the faces from here on join their neighbours.
+    #[inline]
+    pub(crate) fn smooth(&mut self, smoothing: Smoothing) {
+        if self.smoothing.last().is_none_or(|(_, last)| *last != smoothing) {
+            self.smoothing.push((self.faces.len(), smoothing));
+        }
+    }
+
+    /// How each face joins its neighbours.
+    fn smoothing_of_each(&self) -> Vec<Smoothing> {
+        let mut of_each = Vec::with_capacity(self.faces.len());
+        let ends = self.smoothing.iter().skip(1).map(|(first, _)| *first).chain([self.faces.len()]);
+        for ((_, smoothing), end) in self.smoothing.iter().zip(ends) {
+            of_each.resize(end, *smoothing);
+        }
+        of_each
+    }
 }
 
 impl Run {

@@ -5,7 +5,7 @@ mod binary;
 mod write;
 
 use crate::FormatError;
-use crate::formats::SceneFormatEntry;
+use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::reading::{Reading, Source, default_material};
 use crate::text::whole_file;
 use bilux_math::registry::Entry;
@@ -21,7 +21,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     extensions: &["stl"],
     capabilities: &["triangles", "objects (text only)"],
     sniff: |bytes| binary::fits(bytes) || begins_with_solid(bytes),
-    read: Some(read),
+    read: Some(ReadFormat::Whole(read)),
     write: Some(write::write),
 };
 

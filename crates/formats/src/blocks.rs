@@ -1,0 +1,116 @@
+//! A text in blocks of whole lines, so that no more of a large file is held than is being read.
+
+use std::io::{self, Read};
+
+/// Cuts a text into blocks.
+pub(crate) struct Blocks<'r> {
+    from: &'r mut dyn Read,
+    /// What has been read beyond the last block.
+    rest: Vec<u8>,
+    size: usize,
+    ended: bool,
+    /// Blocks that have been read, to be filled again.
+    spare: Vec<Vec<u8>>,
+}
+
+impl<'r> Blocks<'r> {
+    /// Blocks of about `size` bytes, or longer where a line is.
+    pub(crate) fn new(from: &'r mut dyn Read, size: usize) -> Blocks<'r> {
+        Blocks { from, rest: Vec::new(), size: size.max(1), ended: false, spare: Vec::new() }
+    }
+
+    /// The next block; none at the end. Each ends where a line does, but for the last, and for one of more than `most` bytes, which
+    /// is cut there: nobody wants it then.
+    pub(crate) fn next(&mut self, most: u64) -> io::Result<Option<Vec<u8>>> {
+        let mut block = self.spare.pop().unwrap_or_default();
+        block.clear();
+        block.append(&mut self.rest);
+        let mut searched = 0;
+        loop {
+            // Twice as many where a line does not end, so that what is searched stays in proportion.
+            let wanted = self.size.max(searched);
+            self.ended =
+                self.ended || (&mut *self.from).take(wanted as u64).read_to_end(&mut block)? < wanted;
+            if self.ended {
+                return Ok((!block.is_empty()).then_some(block));
+            }
+            if let Some(end) = last_end(&block, searched) {
+                self.rest.extend_from_slice(&block[end..]);
+                block.truncate(end);
+                return Ok(Some(block));
+            }
+            if block.len() as u64 > most {
+                return Ok(Some(block));
+            }
+            // The last byte is looked at again, when it is known what follows.
+            searched = block.len().saturating_sub(1);
+        }
+    }
+
+    /// Takes a block back that has been read.
+    pub(crate) fn give_back(&mut self, block: Vec<u8>) {
+        self.spare.push(block);
+    }
+}
+
+/// Where the last whole line ends, from a place on. One that a backslash may continue, and one of which it is not known
+/// whether CR is followed by LF, do not count.
+fn last_end(block: &[u8], from: usize) -> Option<usize> {
+    (from..block.len().saturating_sub(1)).rev().find_map(|i| {
+        let before = match block[i] {
+            b'\n' if i > 0 && block[i - 1] == b'\r' => i - 1,
+            b'\n' => i,
+            b'\r' if block[i + 1] != b'\n' => i,
+            _ => return None,
+        };
+        (!block[..before].ends_with(b"\\")).then_some(i + 1)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn blocks(text: &str, size: usize) -> Vec<String> {
+        let mut bytes = text.as_bytes();
+        let mut blocks = Blocks::new(&mut bytes, size);
+        let mut all = Vec::new();
+        while let Some(block) = blocks.next(u64::MAX).unwrap() {
+            all.push(String::from_utf8(block.clone()).unwrap());
+            blocks.give_back(block);
+        }
+        all
+    }
+
+    #[test]
+    fn lines_stay_whole_and_so_do_those_that_are_continued() {
+        for end in ["\n", "\r", "\r\n"] {
+            let text = format!("ab{end}c \\{end}d{end}efghijkl");
+            let expected = [format!("ab{end}"), format!("c \\{end}d{end}"), "efghijkl".to_owned()];
+            assert_eq!(blocks(&text, 1), expected, "{end:?}");
+            assert_eq!(blocks(&text, 100).concat(), text);
+        }
+        assert!(blocks("", 5).is_empty());
+    }
+
+    #[test]
+    fn a_line_longer_than_what_is_allowed_is_given_up() {
+        let text = "x".repeat(1000);
+        let mut bytes = text.as_bytes();
+        let block = Blocks::new(&mut bytes, 10).next(100).unwrap().unwrap();
+        assert!((101..=200).contains(&block.len()), "{}", block.len());
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_is_lost_and_no_line_end_is_cut(text in "[a\r\n\\\\]{0,60}", size in 1usize..20) {
+            let all = blocks(&text, size);
+            prop_assert_eq!(all.concat(), text);
+            for pair in all.windows(2) {
+                prop_assert!(pair[0].ends_with(['\r', '\n']), "{:?}", all);
+                prop_assert!(!(pair[0].ends_with('\r') && pair[1].starts_with('\n')), "{:?}", all);
+            }
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! The lines of one block of an OBJ file, read by themselves: what earlier blocks say is added when they are joined.
+
+use crate::FormatError;
+use crate::budget::Budget;
+use crate::float::parse_f32;
+use crate::normals::{BY_ANGLE, FLAT, Smoothing};
+use crate::reading::Oddities;
+use crate::soup::{Corner, NONE};
+use crate::text::{Cursor, Place, name_of, quoted};
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::Span;
+use std::sync::Arc;
+
+/// What a block of lines says. Lines and faces are counted from its own beginning.
+#[derive(Debug, Default)]
+pub(super) struct Block {
+    pub(super) positions: Vec<Vec3>,
+    /// As many as positions, or none where none has a colour.
+    pub(super) colours: Vec<Rgb>,
+    pub(super) uvs: Vec<Vec2>,
+    pub(super) normals: Vec<Vec3>,
+    pub(super) corners: Vec<Corner>,
+    /// Where each face's corners end.
+    pub(super) ends: Vec<u32>,
+    pub(super) places: Vec<Place>,
+    /// Corners that count backwards from where they stand.
+    pub(super) backward: Vec<Backward>,
+    /// What changes between faces, in order.
+    pub(super) turns: Vec<(usize, Turn)>,
+    pub(super) oddities: Oddities,
+    /// How many line ends there are.
+    pub(super) lines: u32,
+    /// What reading the block has taken of the budget.
+    pub(super) spent: u64,
+    /// What ended it early.
+    pub(super) failure: Option<FormatError>,
+}
+
+/// A part of a corner that counts backwards.
+#[derive(Debug)]
+pub(super) struct Backward {
+    /// Which corner; none for one of a face that is left out.
+    pub(super) corner: Option<u32>,
+    /// Which of position, uv and normal.
+    pub(super) part: u8,
+    /// How far behind the first of the block it lies.
+    pub(super) index: i64,
+    /// Where in the block the corner is written.
+    pub(super) offset: usize,
+}
+
+/// What changes between two faces.
+#[derive(Debug)]
+pub(super) enum Turn {
+    Name(String),
+    Material(String, Place),
+    Smoothing(Smoothing),
+    /// The rest of an `mtllib` line.
+    Libraries(String, Place),
+}
+
+/// A face of more corners than this asks for room while it is read.
+const MANY: usize = 4096;
+
+impl Block {
+    /// An empty one that keeps the room of its lists: large ones that come and go leave holes in memory.
+    pub(super) fn emptied(mut self) -> Block {
+        self.positions.clear();
+        self.colours.clear();
+        self.uvs.clear();
+        self.normals.clear();
+        self.corners.clear();
+        self.ends.clear();
+        self.places.clear();
+        self.backward.clear();
+        self.turns.clear();
+        Block { oddities: Oddities::default(), failure: None, ..self }
+    }
+}
+
+/// Reads a block of whole lines into one that is empty.
+pub(super) fn read_block(text: &[u8], file: &Arc<str>, budget: &Budget, block: Block) -> Block {
+    let cursor = Cursor::joining_lines(text);
+    let mut reader = Reader { cursor, file, budget: budget.clone(), block };
+    let failure = reader.statements().err();
+    let spent = reader.budget.spent() - budget.spent();
+    Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
+}
+
+/// What is wrong with a corner; `at` is where it stands.
+#[cold]
+pub(super) fn bad_corner(word: &[u8], at: Span) -> FormatError {
+    let message = format!(
+        "{} is no corner of a face: it has to be a vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
+         counted from 1, or backwards from -1",
+        quoted(word)
+    );
+    FormatError::malformed(message, at)
+}
+
+struct Reader<'a> {
+    cursor: Cursor<'a>,
+    file: &'a Arc<str>,
+    budget: Budget,
+    block: Block,
+}
+
+impl<'a> Reader<'a> {
+    fn statements(&mut self) -> Result<(), FormatError> {
+        while !self.cursor.is_done() {
+            self.cursor.skip_blanks();
+            let start = self.cursor.place(self.cursor.offset());
+            match self.cursor.word() {
+                b"v" => self.vertex()?,
+                b"vt" => self.texture_coordinates()?,
+                b"vn" => self.normal()?,
+                b"f" | b"fo" => self.face(start)?,
+                b"o" | b"g" => {
+                    let name = name_of(self.cursor.rest_of_line());
+                    self.turn(Turn::Name(name));
+                }
+                b"usemtl" => {
+                    let name = name_of(self.cursor.rest_of_line());
+                    self.turn(Turn::Material(name, start));
+                }
+                b"mtllib" => {
+                    let line = name_of(self.cursor.rest_of_line());
+                    self.turn(Turn::Libraries(line, start));
+                }
+                b"s" => self.smoothing_group(start)?,
+                b"" => {}
+                word if word.starts_with(b"#") => self.pass_line(),
+                word => self.other_statement(word, start)?,
+            }
+            self.cursor.end_line();
+        }
+        Ok(())
+    }
+
+    /// Goes to the line's end, so that a backslash there continues nothing.
+    fn pass_line(&mut self) {
+        self.cursor.rest_of_line();
+    }
+
+    /// Where a byte of this line stands.
+    fn at(&self, offset: usize) -> Span {
+        self.cursor.place(offset).in_file(self.file)
+    }
+
+    fn note(&mut self, what: &str, at: Place) {
+        let file = self.file;
+        self.block.oddities.note(what, || at.in_file(file));
+    }
+
+    fn turn(&mut self, turn: Turn) {
+        let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
+        // Of several of a kind that no face stands between the last one counts.
+        if let Some((before, last)) = turns.last_mut()
+            && *before == faces
+            && !matches!(turn, Turn::Libraries(..))
+            && std::mem::discriminant(last) == std::mem::discriminant(&turn)
+        {
+            *last = turn;
+            return;
+        }
+        turns.push((faces, turn));
+    }
+
+    /// `v x y z [w]` or `v x y z r g b`.
+    fn vertex(&mut self) -> Result<(), FormatError> {
+        let mut numbers = [0.0; 8];
+        let count = self.numbers(&mut numbers, 3)?;
+        self.budget.take::<Vec3>(1, self.file)?;
+        let block = &mut self.block;
+        block.positions.push(Vec3::from_slice(&numbers));
+        let colour = match count {
+            6 => Rgb::from_array([numbers[3], numbers[4], numbers[5]]),
+            7.. => Rgb::from_array([numbers[4], numbers[5], numbers[6]]),
+            _ => Rgb::WHITE,
+        };
+        if count >= 6 || !block.colours.is_empty() {
+            block.colours.resize(block.positions.len() - 1, Rgb::WHITE);
+            block.colours.push(colour);
+        }
+        Ok(())
+    }
+
+    fn texture_coordinates(&mut self) -> Result<(), FormatError> {
+        let mut numbers = [0.0; 4];
+        self.numbers(&mut numbers, 1)?;
+        self.budget.take::<Vec2>(1, self.file)?;
+        self.block.uvs.push(Vec2::from_slice(&numbers));
+        Ok(())
+    }
+
+    fn normal(&mut self) -> Result<(), FormatError> {
+        let mut numbers = [0.0; 4];
+        self.numbers(&mut numbers, 3)?;
+        self.budget.take::<Vec3>(1, self.file)?;
+        self.block.normals.push(Vec3::from_slice(&numbers));
+        Ok(())
+    }
+
+    /// The numbers of a statement, `least` of them or more; how many there are.
+    #[inline]
+    fn numbers(&mut self, numbers: &mut [f32], least: usize) -> Result<usize, FormatError> {
+        let mut count = 0;
+        let mut odd = false;
+        while count < numbers.len() {
+            let word = self.cursor.word();
+            match parse_f32(word) {
+                Some(value) => {
+                    odd |= !value.is_finite();
+                    numbers[count] = value;
+                    count += 1;
+                }
+                None if word.is_empty() || word.starts_with(b"#") => break,
+                None => {
+                    let at = self.at(self.cursor.offset() - word.len());
+                    return Err(FormatError::malformed(format!("{} is no number", quoted(word)), at));
+                }
+            }
+        }
+        if count < least {
+            let at = self.at(self.cursor.offset());
+            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
+            let message =
+                format!("there are {count} numbers on this line, where {least} are needed{cut_off}");
+            return Err(FormatError::malformed(message, at));
+        }
+        if odd {
+            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            self.note(what, self.cursor.place(self.cursor.offset()));
+        }
+        Ok(count)
+    }
+
+    fn face(&mut self, start: Place) -> Result<(), FormatError> {
+        let (first, backward) = (self.block.corners.len(), self.block.backward.len());
+        loop {
+            let word = self.cursor.word();
+            if word.is_empty() || word.starts_with(b"#") {
+                break;
+            }
+            let corner = self.corner(word)?;
+            self.block.corners.push(corner);
+            if (self.block.corners.len() - first).is_multiple_of(MANY) {
+                self.budget.take::<Corner>(MANY, self.file)?;
+            }
+        }
+        let count = self.block.corners.len() - first;
+        if count < 3 {
+            self.block.corners.truncate(first);
+            self.block.backward[backward..].iter_mut().for_each(|left_out| left_out.corner = None);
+            self.note("a face has fewer than 3 corners and is left out", start);
+            return Ok(());
+        }
+        self.budget.take::<Corner>(count % MANY, self.file)?;
+        if self.block.corners.len() as u64 >= u64::from(NONE) {
+            let message = "there are more than 4 billion corners: cut the file into several";
+            return Err(FormatError::malformed(message, start.in_file(self.file)));
+        }
+        self.budget.take::<[usize; 2]>(1, self.file)?;
+        self.block.ends.push(self.block.corners.len() as u32);
+        self.block.places.push(start);
+        Ok(())
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    #[inline]
+    fn corner(&mut self, word: &[u8]) -> Result<Corner, FormatError> {
+        let mut corner = [NONE; 3];
+        let mut rest = word;
+        for part in 0..3 {
+            let length = rest.iter().position(|&b| b == b'/').unwrap_or(rest.len());
+            if length > 0 {
+                corner[part] = match index(&rest[..length]) {
+                    Some(Index::Forward(index)) => index,
+                    Some(Index::Backward(back)) => self.backward(word, part, back),
+                    None => return Err(self.bad_corner(word)),
+                };
+            }
+            match rest.get(length + 1..) {
+                Some(after) => rest = after,
+                None if corner[0] == NONE => return Err(self.bad_corner(word)),
+                None => return Ok(corner),
+            }
+        }
+        Err(self.bad_corner(word))
+    }
+
+    /// Notes a part of a corner that counts backwards, and gives what stands in its place until it is known.
+    fn backward(&mut self, word: &[u8], part: usize, back: i64) -> u32 {
+        let block = &mut self.block;
+        let known = [block.positions.len(), block.uvs.len(), block.normals.len()][part];
+        block.backward.push(Backward {
+            corner: Some(block.corners.len() as u32),
+            part: part as u8,
+            index: known as i64 - back,
+            offset: self.cursor.offset() - word.len(),
+        });
+        0
+    }
+
+    #[cold]
+    fn bad_corner(&self, word: &[u8]) -> FormatError {
+        bad_corner(word, self.at(self.cursor.offset() - word.len()))
+    }
+
+    /// `s off` and `s 0` are flat, any other number is a group that is smooth.
+    fn smoothing_group(&mut self, start: Place) -> Result<(), FormatError> {
+        let word = self.cursor.word();
+        let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<u32>().ok());
+        let smoothing = match (word, number) {
+            (b"off" | b"", _) | (_, Some(0)) => FLAT,
+            (b"on", _) => 1,
+            (_, Some(group)) => group.min(BY_ANGLE - 1),
+            _ => {
+                let message =
+                    format!("{} is no smoothing group: it has to be a number or 'off'", quoted(word));
+                return Err(FormatError::malformed(message, start.in_file(self.file)));
+            }
+        };
+        self.turn(Turn::Smoothing(smoothing));
+        Ok(())
+    }
+
+    fn other_statement(&mut self, word: &[u8], start: Place) -> Result<(), FormatError> {
+        let what = match word {
+            b"l" | b"p" => "lines and points are not drawn".to_owned(),
+            b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
+            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
+                "free-form curves and surfaces are not drawn".to_owned()
+            }
+            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
+            | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
+                format!("the statement {} is left out", quoted(word))
+            }
+            _ => {
+                let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
+                if !readable {
+                    let message = format!("{} is no statement of an OBJ file", quoted(word));
+                    return Err(FormatError::malformed(message, start.in_file(self.file)));
+                }
+                format!("the unknown statement {} is left out", quoted(word))
+            }
+        };
+        self.note(&what, start);
+        self.pass_line();
+        Ok(())
+    }
+}
+
+/// An index as OBJ counts, as one from 0, or how far back it lies.
+#[derive(Debug, PartialEq)]
+enum Index {
+    Forward(u32),
+    Backward(i64),
+}
+
+/// An index as OBJ counts, from 1, or backwards from -1; whether it exists is looked at when that is known.
+#[inline]
+fn index(text: &[u8]) -> Option<Index> {
+    let (negative, digits) = match text {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, text),
+    };
+    if digits.is_empty() || digits.len() > 10 {
+        return None;
+    }
+    let mut number = 0i64;
+    for &digit in digits {
+        if !digit.is_ascii_digit() {
+            return None;
+        }
+        number = number * 10 + i64::from(digit - b'0');
+    }
+    if number == 0 {
+        return None;
+    }
+    if negative {
+        return Some(Index::Backward(number));
+    }
+    u32::try_from(number - 1).ok().filter(|&i| i != NONE).map(Index::Forward)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_count_from_one_or_backwards() {
+        assert_eq!(index(b"1"), Some(Index::Forward(0)));
+        assert_eq!(index(b"+7"), Some(Index::Forward(6)));
+        assert_eq!(index(b"-1"), Some(Index::Backward(1)));
+        assert_eq!(index(b"-8"), Some(Index::Backward(8)));
+        for bad in ["0", "-0", "", "-", "1.5", "4294967296", "99999999999"] {
+            assert_eq!(index(bad.as_bytes()), None, "{bad}");
+        }
+    }
+}
