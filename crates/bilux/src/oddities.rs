@@ -15,6 +15,11 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
             "the camera is inside of something transparent, and sees all through it: move the camera out, \
              unless this is meant",
         );
+    } else if sees_backs_alone(given.objects.len() as u32, scene, camera) {
+        warn(
+            "the camera sees nothing but backs of surfaces that show their front alone (doubleSided is false, in glTF), \
+             and so nothing: look from the other side, as by --orbit 180",
+        );
     }
     warnings
 }
@@ -22,6 +27,24 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
 fn has_finite_triangle(mesh: &Mesh) -> bool {
     let is_finite = |&i: &u32| mesh.positions.get(i as usize).is_some_and(|p| p.is_finite());
     mesh.triangles.iter().any(|triangle| triangle.iter().all(is_finite))
+}
+
+/// True when the camera would see something of a scene's first objects if it did not see through their backs.
+fn sees_backs_alone(objects: u32, scene: &Scene, camera: &dyn Camera) -> bool {
+    const GRID: usize = 32;
+    let mut tracer = Tracer::new(scene, false);
+    let mut hides = false;
+    for i in 0..GRID * GRID {
+        let film = Vec2::new((i % GRID) as f32 + 0.5, (i / GRID) as f32 + 0.5) / GRID as f32;
+        let ray = camera.ray(&CameraSample { film, lens: Vec2::ZERO, time: scene.shutter()[0] });
+        let mut meets = |ray: &Ray| tracer.closest(ray).filter(|surface| surface.object < objects);
+        let Some(first) = meets(&ray) else { continue };
+        if !scene.hides(&first, -Vec3::from(ray.direction)) || meets(&scene.from_camera(ray)).is_some() {
+            return false;
+        }
+        hides = true;
+    }
+    hides
 }
 
 /// Directions that meet no wall of an ordinary room at an edge.
@@ -95,6 +118,14 @@ mod tests {
         scene.cameras.push(CameraSpec { spec: camera, ..CameraSpec::default() });
         let job = Job::new(&scene, &Parameters::default()).unwrap();
         job.warnings().iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn who_sees_nothing_but_backs_is_told() {
+        let shell = || Spec::new("shell", "diffuse").with("visible_sides", "front");
+        assert!(told(shell(), [0.1, 0.2, 0.0])[0].contains("--orbit 180"));
+        assert!(told(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
+        assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
     }
 
     #[test]

@@ -209,25 +209,25 @@ impl Geometry {
 
     /// Which object a hit belongs to.
     pub fn object_of(&self, hit: &Hit) -> u32 {
-        self.locate(hit).0
+        self.locate(hit.primitive()).0
     }
 
     /// The object and the triangle within its mesh, or the sphere.
-    fn locate(&self, hit: &Hit) -> (u32, u32) {
-        if self.still.is_some() && hit.instance == 0 {
-            let after = self.still_objects.partition_point(|(first, _)| *first <= hit.primitive);
+    fn locate(&self, Primitive { instance, index }: Primitive) -> (u32, u32) {
+        if self.still.is_some() && instance == 0 {
+            let after = self.still_objects.partition_point(|(first, _)| *first <= index);
             let (first, object) = self.still_objects[after - 1];
-            (object, hit.primitive - first)
-        } else if hit.instance == self.spheres.instance() {
-            (self.spheres.object(hit.primitive), hit.primitive)
+            (object, index - first)
+        } else if instance == self.spheres.instance() {
+            (self.spheres.object(index), index)
         } else {
-            (self.instance_objects[hit.instance as usize], hit.primitive)
+            (self.instance_objects[instance as usize], index)
         }
     }
 
     /// The material that a hit belongs to, and the texture coordinates there; those of spheres are not told.
     pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, UvPair) {
-        let (object, triangle) = self.locate(hit);
+        let (object, triangle) = self.locate(hit.primitive());
         let material = self.material_of(object);
         match self.objects.get(object as usize) {
             Some(placed) => {
@@ -236,6 +236,25 @@ impl Geometry {
             }
             None => (material, Vec2::ZERO.into()),
         }
+    }
+
+    /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for spheres.
+    pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
+        let Primitive { instance, index } = primitive;
+        if instance == self.spheres.instance() {
+            return None;
+        }
+        let (object, triangle) = self.locate(primitive);
+        let placed = &self.objects[object as usize];
+        let place = self.places[object as usize];
+        let Place { to_world, mirrors } = place.unwrap_or_else(|| Place::new(placed.motion.at(time)));
+        let baked = self.still.as_ref().filter(|_| instance == 0);
+        let [a, b, c] = match baked {
+            Some(still) => still.triangles()[index as usize].map(Vec3::from),
+            None => placed.mesh.triangles[triangle as usize]
+                .map(|i| to_world.point(placed.mesh.positions[i as usize])),
+        };
+        Some((b - a).cross(c - a) * if mirrors { -1.0 } else { 1.0 })
     }
 
     /// All that shading needs to know of a hit.
@@ -249,7 +268,7 @@ impl Geometry {
     }
 
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let (object, triangle) = self.locate(hit);
+        let (object, triangle) = self.locate(hit.primitive());
         let placed = &self.objects[object as usize];
         let mesh = &*placed.mesh;
         let indices = mesh.triangles[triangle as usize].map(|i| i as usize);

@@ -77,7 +77,7 @@ impl<'a> Eye<'a> {
             photons: self.photons,
             events: None,
         };
-        (self.camera.ray(&camera_sample), task)
+        (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
     }
 
     /// What splits paths sends those of a sample where light of this wavelength goes. Paths that are merged have to be of the

@@ -64,6 +64,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 draft.set("base_color", Rgb::WHITE, Span::default());
                 draft.set("base_metalness", 1.0, Span::default());
                 draft.set("specular_roughness", 1.0, Span::default());
+                draft.set("visible_sides", "front", Span::default());
             }
         }
         let has = |key| draft.spec.parameters.find(key).is_some();
@@ -106,7 +107,7 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(unlit) = node.extension("KHR_materials_unlit") {
             self.unlit(unlit, draft);
         }
-        Ok(())
+        self.sides(node, draft)
     }
 
     fn base(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
@@ -149,6 +150,18 @@ impl<'d> Gltf<'d, '_, '_> {
             (None, None) => alpha.into(),
         };
         draft.set("opacity", opacity, node.at());
+        Ok(())
+    }
+
+    /// What light goes into is seen from within.
+    fn sides(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let is_whole = draft.spec.parameters.find("transmission_weight").is_none();
+        if is_whole && !node.switch("doubleSided")? {
+            draft.set("visible_sides", "front", node.at());
+            if draft.spec.parameters.find("emission").is_some() {
+                draft.set("emission_sides", "front", node.at());
+            }
+        }
         Ok(())
     }
 

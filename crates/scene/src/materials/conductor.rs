@@ -2,7 +2,7 @@
 
 use super::metals::{METALS, NAMES};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
-use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, colour_map, reflectance};
+use super::{Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY, VISIBLE_SIDES, colour_map, reflectance};
 use crate::bsdf::{Bsdf, Conductor, Fresnel, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -44,6 +44,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             ANISOTROPY,
             ROTATION,
             OPACITY,
+            VISIBLE_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],

@@ -2,7 +2,7 @@
 
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
-    colour_map, number_map, reflectance,
+    VISIBLE_SIDES, colour_map, number_map, reflectance,
 };
 use crate::bsdf::{Albedo, Bsdf, Cover, Lambert, Lobe, Matt};
 use crate::classic::ClassicMaterial;
@@ -31,6 +31,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION_SCALE,
             EMISSION_SIDES,
             OPACITY,
+            VISIBLE_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],

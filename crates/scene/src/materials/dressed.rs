@@ -1,7 +1,9 @@
-//! What any material may have besides its way to scatter light: normals from a picture, light of its own, holes.
+//! What any material may have besides its way to scatter light: normals from a picture, light of its own, holes, a back that
+//! is not seen.
 
 use super::glow::{self, Glow};
 use super::normal_map::{self, NormalMap};
+use super::visible::VISIBLE_SIDES;
 use super::{Ingredients, Material, MaterialEntry, Nested, opacity};
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
@@ -20,14 +22,16 @@ pub(super) fn dress(
     reader: &Reader,
     ingredients: &Ingredients,
 ) -> Result<Arc<dyn Material>, SceneError> {
-    let may_glow = row.entry.parameters.iter().any(|parameter| parameter.name == glow::EMISSION.name);
+    let has = |name: &str| row.entry.parameters.iter().any(|parameter| parameter.name == name);
     let normals = normal_map::read(reader, ingredients)?;
-    let glow = if may_glow { glow::read(reader, ingredients)? } else { None };
+    let glow = if has(glow::EMISSION.name) { glow::read(reader, ingredients)? } else { None };
     let opacity = opacity::read(reader, ingredients)?;
-    if normals.is_none() && glow.is_none() && opacity.is_none() {
+    let is_seen = if has(VISIBLE_SIDES.name) { reader.text(VISIBLE_SIDES.name) } else { String::new() };
+    let visible = Sides::named(&is_seen);
+    if normals.is_none() && glow.is_none() && opacity.is_none() && visible == Sides::Both {
         return Ok(material);
     }
-    Ok(Arc::new(Dressed { material, normals, glow, opacity }))
+    Ok(Arc::new(Dressed { material, normals, glow, opacity, visible }))
 }
 
 struct Dressed {
@@ -35,6 +39,7 @@ struct Dressed {
     normals: Option<NormalMap>,
     glow: Option<Glow>,
     opacity: Option<NumberMap>,
+    visible: Sides,
 }
 
 impl Material for Dressed {
@@ -73,6 +78,10 @@ impl Material for Dressed {
 
     fn opacity(&self) -> Option<&NumberMap> {
         self.opacity.as_ref()
+    }
+
+    fn visible_sides(&self) -> Sides {
+        self.visible
     }
 
     fn disperses(&self) -> bool {

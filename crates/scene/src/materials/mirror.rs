@@ -2,7 +2,7 @@
 
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
-    colour_map, reflectance, spread,
+    VISIBLE_SIDES, colour_map, reflectance, spread,
 };
 use crate::bsdf::{Bsdf, Lobe, Mirror};
 use crate::classic::ClassicMaterial;
@@ -23,6 +23,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION_SCALE,
             EMISSION_SIDES,
             OPACITY,
+            VISIBLE_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],

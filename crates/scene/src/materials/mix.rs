@@ -4,6 +4,7 @@ use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, 
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
+use crate::lights::Sides;
 use crate::parameters::Reader;
 use crate::surface::Surface;
 use crate::texture::NumberMap;
@@ -58,6 +59,10 @@ fn read_part(reader: &Reader, ingredients: &Ingredients, key: &str) -> Result<Ar
     }
     if material.opacity().is_some() {
         let message = format!("'{key}' has holes, which its mix would not: give the opacity to the mix");
+        return Err(SceneError::invalid(message, reader.span(key)));
+    }
+    if material.visible_sides() != Sides::Both {
+        let message = format!("'{key}' is seen from its front, and a mix is seen from both sides");
         return Err(SceneError::invalid(message, reader.span(key)));
     }
     if !material.emission().is_black() {

@@ -28,6 +28,7 @@ mod opacity;
 mod phong;
 mod principled;
 mod roughness;
+mod visible;
 
 use crate::bsdf::{Bsdf, MOST_LOBES};
 use crate::classic::ClassicMaterial;
@@ -44,6 +45,7 @@ use glow::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 use normal_map::{NORMAL, NORMAL_SCALE};
 use opacity::OPACITY;
 use std::sync::Arc;
+use visible::VISIBLE_SIDES;
 
 /// Something that surfaces are made of.
 pub trait Material: Send + Sync {
@@ -79,6 +81,10 @@ pub trait Material: Send + Sync {
     /// How much of the surface there is, where it has holes.
     fn opacity(&self) -> Option<&NumberMap> {
         None
+    }
+    /// From which sides of its triangles a camera sees it.
+    fn visible_sides(&self) -> Sides {
+        Sides::Both
     }
     /// True when it sends light of each wavelength another way.
     fn disperses(&self) -> bool {

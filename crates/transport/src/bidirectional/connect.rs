@@ -17,11 +17,12 @@ pub(crate) fn to_camera<const N: usize>(
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
     let scattered = y.bsdf.eval(y.wo, seen.wi, TransportMode::Importance);
-    if scattered.is_black() {
+    if scattered.is_black() || task.scene().hides(&y.surface, seen.wi) {
         return None;
     }
     let media = y.media_towards(task.scene(), seen.wi);
-    let passed = media.visible(task.tracer, &y.surface.spawn_to(seen.p), seen.p.distance(y.surface.p))?;
+    let ray = task.scene().to_camera(y.surface.spawn_to(seen.p));
+    let passed = media.visible(task.tracer, &ray, seen.p.distance(y.surface.p))?;
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
     let light = task.seen(y.beta * scattered * passed * seen.density, y.is_split());

@@ -62,6 +62,8 @@ const ELSEWHERE: &[&str] = &[
     "normal",
     "normal_scale",
     "opacity",
+    "visible_sides",
+    "emission_sides",
 ];
 
 impl Document<'_> {
@@ -76,7 +78,14 @@ impl Document<'_> {
                 writing.warn(format!("glTF files hold no '{key}' of a material: left out"));
             }
         }
-        let mut out = json!({ "doubleSided": true });
+        let is_front =
+            |key| matches!(principled.parameters.find(key), Some((Value::Text(side), _)) if side == "front");
+        let is_one_sided = is_front("visible_sides");
+        let glows = principled.parameters.find("emission").is_some();
+        if glows && is_front("emission_sides") != is_one_sided {
+            writing.warn("in glTF files a surface gives light on those sides from which it is seen");
+        }
+        let mut out = json!({ "doubleSided": !is_one_sided });
         if !spec.name.is_empty() {
             out["name"] = json!(spec.name);
         }
@@ -232,7 +241,9 @@ impl Document<'_> {
 /// What any material comes to as `principled`.
 fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spec {
     let mut out = Spec::new(&spec.name, "principled");
-    for key in ["emission", "emission_scale", "normal", "normal_scale", "opacity"] {
+    for key in
+        ["emission", "emission_scale", "emission_sides", "normal", "normal_scale", "opacity", "visible_sides"]
+    {
         if let Some((value, at)) = spec.parameters.find(key) {
             out.parameters.set_at(key, value.clone(), at.clone());
         }

@@ -10,7 +10,7 @@ mod point;
 use super::dielectric::PRIORITY;
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY,
-    THIN, reflectance,
+    THIN, VISIBLE_SIDES, reflectance,
 };
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
@@ -128,6 +128,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             EMISSION_SCALE,
             EMISSION_SIDES,
             OPACITY,
+            VISIBLE_SIDES,
             NORMAL,
             NORMAL_SCALE,
         ],
@@ -141,6 +142,10 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             let message =
                 "with a transmission_depth transmission_color is of the inside, which has no texture";
             return Err(SceneError::invalid(message, reader.span("transmission_color")));
+        }
+        if is_there(&maps.transmission_weight) && !maps.thin && reader.text("visible_sides") == "front" {
+            let message = "what light goes into is seen from both sides: leave visible_sides out";
+            return Err(SceneError::invalid(message, reader.span("visible_sides")));
         }
         let sigma_a = if is_deep && is_there(&maps.transmission_weight) {
             maps.transmission_color.colour.map(|c| -ln(c.clamp(DARKEST, 1.0)) / depth)

@@ -1,17 +1,19 @@
 //! The immutable scene, and the [`Tracer`] through which integrators ask it.
 
+mod tracer;
+
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
 use crate::geometry::{Geometry, corner_uvs};
-use crate::lights::{Light, MeshLight, Picture, SphereLight};
+use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_accel::instancing::TwoLevel;
-use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
-use bilux_math::hash::{hash_words, unit_f32};
+use bilux_accel::{Accelerator, Query};
 use bilux_math::{Aabb, Rgb, Vec3};
 use std::sync::Arc;
+pub use tracer::Tracer;
 
 /// A light of the scene.
 #[derive(Clone)]
@@ -43,6 +45,7 @@ pub(crate) struct SceneParts {
     has_surroundings: bool,
     has_nested: bool,
     has_holes: bool,
+    hides_backs: bool,
     disperses: bool,
 }
 
@@ -101,6 +104,7 @@ impl SceneParts {
         let of_object = |o: &crate::geometry::Placed| materials[o.material as usize].nested();
         let has_nested = geometry.objects().iter().any(|o| of_object(o).is_some());
         let has_holes = materials.iter().any(|material| material.opacity().is_some());
+        let hides_backs = materials.iter().any(|material| material.visible_sides() == Sides::Front);
         let disperses = materials.iter().any(|material| material.disperses());
         SceneParts {
             geometry,
@@ -113,18 +117,9 @@ impl SceneParts {
             has_surroundings,
             has_nested,
             has_holes,
+            hides_backs,
             disperses,
         }
-    }
-
-    /// True when the surface is there for a ray that hits it: where it has holes each ray decides for itself, by a
-    /// number that depends on nothing but the ray and the hit.
-    fn stops(&self, ray: u64, hit: &Hit) -> bool {
-        let (material, uv) = self.geometry.material_and_uv(hit);
-        let Some(opacity) = self.materials[material as usize].opacity() else { return true };
-        let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
-        let number = hash_words([ray, place, u64::from(hit.t.to_bits())]) as u32;
-        unit_f32(number) < opacity.at(uv)
     }
 }
 
@@ -278,103 +273,4 @@ impl Scene {
     pub fn has_luminous_surfaces(&self) -> bool {
         self.parts.object_lights.iter().any(Option::is_some)
     }
-}
-
-/// Asks a scene on behalf of one thread, and counts.
-pub struct Tracer<'s> {
-    /// The scene.
-    pub scene: &'s Scene,
-    /// What the rays took; only `rays` unless counting is on.
-    pub counters: Counters,
-    counting: bool,
-}
-
-impl<'s> Tracer<'s> {
-    /// A tracer; with `counting`, every node and triangle test is counted.
-    pub fn new(scene: &'s Scene, counting: bool) -> Tracer<'s> {
-        Tracer { scene, counters: Counters::default(), counting }
-    }
-
-    /// What a ray meets first.
-    #[inline]
-    pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
-        let scene = self.scene;
-        let hit = if scene.parts.has_holes {
-            let number = number_of(ray);
-            let stops = |hit: &Hit| scene.parts.stops(number, hit);
-            self.closest_hit(ray, &Query { filter: Some(&stops), ..scene.query })
-        } else {
-            self.closest_hit(ray, &scene.query)
-        }?;
-        let mut surface = scene.parts.geometry.surface(ray, &hit);
-        if surface.tangent != Vec3::ZERO {
-            surface.n_shade = scene.material(&surface).n_shade(&surface);
-        }
-        Some(surface)
-    }
-
-    #[inline]
-    fn closest_hit(&mut self, ray: &Ray, query: &Query) -> Option<Hit> {
-        let accelerator = &self.scene.accelerator;
-        if self.counting {
-            return accelerator.closest_hit_counted(ray, query, &mut self.counters);
-        }
-        self.counters.rays += 1;
-        match &self.scene.alone {
-            Some(tree) if ray.mask != 0 => self.scene.parts.geometry.closest_hit(&**tree, ray, query),
-            _ => accelerator.closest_hit(ray, query),
-        }
-    }
-
-    /// True when anything is between a ray's ends.
-    #[inline]
-    pub fn occluded(&mut self, ray: &Ray) -> bool {
-        let scene = self.scene;
-        if scene.parts.has_holes {
-            let number = number_of(ray);
-            let stops = |hit: &Hit| scene.parts.stops(number, hit);
-            return self.any_hit(ray, &Query { filter: Some(&stops), ..scene.query });
-        }
-        self.any_hit(ray, &scene.query)
-    }
-
-    #[inline]
-    fn any_hit(&mut self, ray: &Ray, query: &Query) -> bool {
-        let accelerator = &self.scene.accelerator;
-        if self.counting {
-            return accelerator.any_hit_counted(ray, query, &mut self.counters);
-        }
-        self.counters.rays += 1;
-        match &self.scene.alone {
-            Some(tree) if ray.mask != 0 => self.scene.parts.geometry.any_hit(&**tree, ray, query),
-            _ => accelerator.any_hit(ray, query),
-        }
-    }
-
-    /// True when something that gives no light itself is between a ray's ends: in the classic modes the
-    /// surface of a lamp does not shade.
-    pub fn blocked(&mut self, ray: &Ray) -> bool {
-        if !self.occluded(ray) {
-            return false;
-        }
-        if !self.scene.has_luminous_surfaces() {
-            return true;
-        }
-        let mut rest = *ray;
-        while let Some(surface) = self.closest(&rest) {
-            if self.scene.light_of(surface.object).is_none() {
-                return true;
-            }
-            rest.exclude = surface.primitive;
-            rest.t_min = surface.t.next_up();
-        }
-        false
-    }
-}
-
-/// What tells a ray from others.
-fn number_of(ray: &Ray) -> u64 {
-    let [x, y, z] = ray.origin.map(|c| u64::from(c.to_bits()));
-    let [dx, dy, dz] = ray.direction.map(|c| u64::from(c.to_bits()));
-    hash_words([x << 32 | dx, y << 32 | dy, z << 32 | dz])
 }

@@ -1,0 +1,167 @@
+//! How a scene is asked: what rays meet, and what they pass.
+
+use super::{Scene, SceneParts};
+use crate::lights::Sides;
+use crate::surface::Surface;
+use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
+use bilux_math::Vec3;
+use bilux_math::hash::{hash_words, unit_f32};
+
+/// The mask of rays from the camera, which pass the backs that it does not see.
+const FROM_CAMERA: u32 = u32::MAX >> 1;
+
+/// The mask of rays that end at the camera.
+const TO_CAMERA: u32 = u32::MAX >> 2;
+
+impl Scene {
+    /// A ray from the camera: it passes the backs of what is seen from its front alone.
+    #[inline]
+    pub fn from_camera(&self, ray: Ray) -> Ray {
+        if self.parts.hides_backs { Ray { mask: FROM_CAMERA, ..ray } } else { ray }
+    }
+
+    /// A ray that ends at the camera: it passes the same as one that comes from there.
+    #[inline]
+    pub fn to_camera(&self, ray: Ray) -> Ray {
+        if self.parts.hides_backs { Ray { mask: TO_CAMERA, ..ray } } else { ray }
+    }
+
+    /// True when a camera that is `towards` there from a surface sees through it.
+    #[inline]
+    pub fn hides(&self, surface: &Surface, towards: Vec3) -> bool {
+        self.parts.hides_backs
+            && self.material(surface).visible_sides() == Sides::Front
+            && self.parts.front(surface.primitive, surface.time).unwrap_or(surface.n_geom).dot(towards) <= 0.0
+    }
+}
+
+impl SceneParts {
+    fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
+        self.geometry.front(primitive, time)
+    }
+
+    /// What lets some rays pass.
+    #[inline]
+    fn is_patchy_for(&self, ray: &Ray) -> bool {
+        self.has_holes || ray.mask != u32::MAX
+    }
+
+    /// True when the surface is there for a ray that hits it: not where the camera sees through its back, and where it has holes
+    /// each ray decides for itself, by a `number` that depends on nothing but the ray and the hit.
+    fn stops(&self, ray: &Ray, number: u64, hit: &Hit) -> bool {
+        let (material, uv) = self.geometry.material_and_uv(hit);
+        let material = &self.materials[material as usize];
+        if ray.mask != u32::MAX && material.visible_sides() == Sides::Front {
+            let outwards = || self.geometry.surface(ray, hit).n_geom;
+            let front = self.front(hit.primitive(), ray.time).unwrap_or_else(outwards);
+            let along = front.dot(ray.direction.into());
+            let towards_camera = if ray.mask == TO_CAMERA { along } else { -along };
+            if towards_camera <= 0.0 {
+                return false;
+            }
+        }
+        let Some(opacity) = material.opacity() else { return true };
+        let place = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
+        let number = hash_words([number, place, u64::from(hit.t.to_bits())]) as u32;
+        unit_f32(number) < opacity.at(uv)
+    }
+}
+
+/// Asks a scene on behalf of one thread, and counts.
+pub struct Tracer<'s> {
+    /// The scene.
+    pub scene: &'s Scene,
+    /// What the rays took; only `rays` unless counting is on.
+    pub counters: Counters,
+    counting: bool,
+}
+
+impl<'s> Tracer<'s> {
+    /// A tracer; with `counting`, every node and triangle test is counted.
+    pub fn new(scene: &'s Scene, counting: bool) -> Tracer<'s> {
+        Tracer { scene, counters: Counters::default(), counting }
+    }
+
+    /// What a ray meets first.
+    #[inline]
+    pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
+        let scene = self.scene;
+        let hit = if scene.parts.is_patchy_for(ray) {
+            let number = number_of(ray);
+            let stops = |hit: &Hit| scene.parts.stops(ray, number, hit);
+            self.closest_hit(ray, &Query { filter: Some(&stops), ..scene.query })
+        } else {
+            self.closest_hit(ray, &scene.query)
+        }?;
+        let mut surface = scene.parts.geometry.surface(ray, &hit);
+        if surface.tangent != Vec3::ZERO {
+            surface.n_shade = scene.material(&surface).n_shade(&surface);
+        }
+        Some(surface)
+    }
+
+    #[inline]
+    fn closest_hit(&mut self, ray: &Ray, query: &Query) -> Option<Hit> {
+        let accelerator = &self.scene.accelerator;
+        if self.counting {
+            return accelerator.closest_hit_counted(ray, query, &mut self.counters);
+        }
+        self.counters.rays += 1;
+        match &self.scene.alone {
+            Some(tree) if ray.mask != 0 => self.scene.parts.geometry.closest_hit(&**tree, ray, query),
+            _ => accelerator.closest_hit(ray, query),
+        }
+    }
+
+    /// True when anything is between a ray's ends.
+    #[inline]
+    pub fn occluded(&mut self, ray: &Ray) -> bool {
+        let scene = self.scene;
+        if scene.parts.is_patchy_for(ray) {
+            let number = number_of(ray);
+            let stops = |hit: &Hit| scene.parts.stops(ray, number, hit);
+            return self.any_hit(ray, &Query { filter: Some(&stops), ..scene.query });
+        }
+        self.any_hit(ray, &scene.query)
+    }
+
+    #[inline]
+    fn any_hit(&mut self, ray: &Ray, query: &Query) -> bool {
+        let accelerator = &self.scene.accelerator;
+        if self.counting {
+            return accelerator.any_hit_counted(ray, query, &mut self.counters);
+        }
+        self.counters.rays += 1;
+        match &self.scene.alone {
+            Some(tree) if ray.mask != 0 => self.scene.parts.geometry.any_hit(&**tree, ray, query),
+            _ => accelerator.any_hit(ray, query),
+        }
+    }
+
+    /// True when something that gives no light itself is between a ray's ends: in the classic modes the
+    /// surface of a lamp does not shade.
+    pub fn blocked(&mut self, ray: &Ray) -> bool {
+        if !self.occluded(ray) {
+            return false;
+        }
+        if !self.scene.has_luminous_surfaces() {
+            return true;
+        }
+        let mut rest = *ray;
+        while let Some(surface) = self.closest(&rest) {
+            if self.scene.light_of(surface.object).is_none() {
+                return true;
+            }
+            rest.exclude = surface.primitive;
+            rest.t_min = surface.t.next_up();
+        }
+        false
+    }
+}
+
+/// What tells a ray from others.
+fn number_of(ray: &Ray) -> u64 {
+    let [x, y, z] = ray.origin.map(|c| u64::from(c.to_bits()));
+    let [dx, dy, dz] = ray.direction.map(|c| u64::from(c.to_bits()));
+    hash_words([x << 32 | dx, y << 32 | dy, z << 32 | dz])
+}

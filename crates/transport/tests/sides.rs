@@ -1,0 +1,112 @@
+//! Surfaces that the camera sees from their front alone, and looks through from behind.
+
+mod common;
+
+use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::{AccelChoice, Mesh, SceneBuilder, Spec, Texture, Value};
+use bilux_transport::{RenderSettings, integrators};
+use common::statistics::{agreement, blocks};
+use common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky};
+use std::sync::Arc;
+
+/// Less likely than this by chance: a bug.
+const UNLIKELY: f64 = 1e-4;
+
+/// An upright wall that turns its back to whoever looks from +z.
+fn wall() -> Arc<Mesh> {
+    let mut mesh = (*quad(Vec3::new(-1.2, 0.05, 1.2), Vec3::Y * 1.1, Vec3::X * 2.4)).clone();
+    mesh.uvs = vec![Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];
+    Arc::new(mesh)
+}
+
+/// A floor and a ball behind a wall, and a lamp on this side of it.
+fn behind(wall: Arc<Mesh>, material: Spec) -> SceneBuilder {
+    let mut builder = SceneBuilder::default();
+    put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
+    put(&mut builder, "ball", ball(Vec3::new(0.2, 0.5, -0.2), 0.5, 12, true), diffuse(0.8f32));
+    put(&mut builder, "wall", wall, material);
+    let panel = Spec::new("", "rect").with("position", Vec3::new(-0.3, 2.5, 2.2)).with("intensity", 12.0f32);
+    builder.lights.push(panel);
+    sky(&mut builder, 0.2);
+    let texels = [1.0, 0.0, 0.3, 0.7].map(Rgb::grey).to_vec();
+    builder.textures.push(Arc::new(Texture::new("", 2, 2, texels, true)));
+    look(&mut builder, Vec3::new(0.0, 1.6, 4.5), Vec3::new(0.0, 0.4, 0.0), 40.0);
+    builder
+}
+
+fn one_sided(material: Spec) -> Spec {
+    material.with("visible_sides", "front")
+}
+
+#[test]
+fn what_is_seen_from_its_front_looks_the_same_from_both_ends() {
+    let plain = one_sided(diffuse(Rgb::new(0.3, 0.5, 0.8)));
+    let shiny = one_sided(Spec::new("", "principled").with("specular_roughness", 0.3f32));
+    let lace = one_sided(diffuse(0.6f32)).with("opacity", Value::Texture(0));
+    let sign = one_sided(diffuse(0.3f32)).with("emission", Rgb::new(1.0, 0.7, 0.3));
+    let around = ball(Vec3::new(0.0, 1.5, 4.5), 0.7, 12, false);
+    for (name, mesh, material) in [
+        ("plain", wall(), plain.clone()),
+        ("shiny", wall(), shiny),
+        ("lace", wall(), lace),
+        ("sign", wall(), sign),
+        ("a ball around the camera", around, plain),
+    ] {
+        let scene = built(&behind(mesh, material));
+        let path = blocks(&scene, &*integrator("path"), 0);
+        for (i, other) in ["light", "bdpt", "vcm", "auto"].iter().enumerate() {
+            let found = blocks(&scene, &*integrator(other), 100 * (i as u64 + 1));
+            let p = agreement(&path, &found);
+            assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
+        }
+    }
+}
+
+/// Planted bugs: light paths that do not reach the camera through a back, and those that show it the back.
+#[test]
+fn backs_that_light_paths_do_not_know_are_found_out() {
+    let grey = || diffuse(0.5f32);
+    let path = blocks(&built(&behind(wall(), one_sided(grey()))), &*integrator("path"), 0);
+    for (i, other) in ["light", "bdpt"].iter().enumerate() {
+        let found = blocks(&built(&behind(wall(), grey())), &*integrator(other), 100 * (i as u64 + 1));
+        let p = agreement(&path, &found);
+        assert!(p < UNLIKELY, "{other} passes: p = {p}");
+    }
+}
+
+/// What is behind the back is seen as if nothing were before it, in the shade that it gives.
+#[test]
+fn a_back_is_looked_through_and_gives_shade() {
+    let seen = |lid: Arc<Mesh>| {
+        let mut builder = SceneBuilder::default();
+        put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
+        put(&mut builder, "lid", lid, one_sided(diffuse(0.0f32)));
+        sky(&mut builder, 1.0);
+        look(&mut builder, Vec3::new(0.0, 2.0, 0.0), Vec3::Z * 0.01, 10.0);
+        let settings = RenderSettings::new(16, 16, 256);
+        let pixels = shoot(&built(&builder), &*integrator("path"), &settings).film.to_rgb();
+        pixels.iter().map(|p| f64::from(p.g)).sum::<f64>() / pixels.len() as f64
+    };
+    let facing_down = quad(Vec3::new(-3.0, 1.0, -3.0), Vec3::X * 6.0, Vec3::Z * 6.0);
+    assert_eq!(seen(floor(1.0, 3.0)), 0.0, "its front is black");
+    // As seen from the floor's middle, the lid covers this much of the sky. [Howell 2010, C-11]
+    let leg = 10f64.sqrt();
+    let covered = 4.0 / std::f64::consts::PI * (3.0 / leg) * (3.0 / leg).atan();
+    let shaded = seen(facing_down);
+    assert!((shaded - 0.5 * (1.0 - covered)).abs() < 0.003, "{shaded}, of {covered} covered");
+}
+
+#[test]
+fn backs_are_the_same_whatever_finds_them() {
+    let builder = behind(wall(), one_sided(diffuse(0.6f32)));
+    let picture = |accel: &str| {
+        let choice = AccelChoice { name: accel.to_owned(), ..AccelChoice::default() };
+        let scene = builder.build(&choice, [0.0, 0.0], 1.0).unwrap();
+        let settings = RenderSettings::new(24, 24, 8);
+        shoot(&scene, &*integrators::build(&Spec::new("", "path")).unwrap(), &settings).film.to_rgb()
+    };
+    let brute = picture("brute");
+    for row in bilux_accel::ACCELERATORS {
+        assert!(picture(row.entry.name) == brute, "{} sees other backs than brute", row.entry.name);
+    }
+}
