@@ -330,6 +330,7 @@ impl Geometry {
             p_error,
             n_geom,
             n_shade,
+            n_smooth: n_shade,
             tangent,
             handedness,
             uv,

@@ -132,6 +132,7 @@ impl Spheres {
             p_error,
             n_geom: n,
             n_shade: n,
+            n_smooth: n,
             tangent: Vec3::ZERO,
             handedness: 1.0,
             uv,

@@ -18,8 +18,10 @@ pub struct Surface {
     /// Unit normal of the triangle, on the outside: where the vertex normals point if there are any, else
     /// where the vertices run counter-clockwise.
     pub n_geom: Vec3,
-    /// Unit shading normal, interpolated; `n_geom` where the mesh has none.
+    /// Unit shading normal: that of the material's picture of normals where it has one, else `n_smooth`.
     pub n_shade: Vec3,
+    /// Unit normal, interpolated; `n_geom` where the mesh has none.
+    pub n_smooth: Vec3,
     /// Along the surface, where its material tells directions apart: as u grows, or around the object's own y axis where
     /// the mesh has no texture coordinates. Else, and where there is none, zero.
     pub tangent: Vec3,

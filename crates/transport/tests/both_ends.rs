@@ -164,7 +164,16 @@ fn waves() -> Texture {
 fn normal_maps_look_the_same_from_both_ends() {
     let satin = Spec::new("", "conductor").with("metal", "silver").with("roughness", 0.6f32);
     let frosted = Spec::new("", "dielectric").with("roughness", 0.6f32);
-    for (name, material) in [("matt", diffuse(0.8f32)), ("satin", satin), ("frosted", frosted)] {
+    let bumps_below_a_coat =
+        Spec::new("", "principled").with("coat_weight", 1.0f32).with("coat_roughness", 0.4f32);
+    let coat_with_bumps = bumps_below_a_coat.clone().with("coat_normal", Value::Texture(0));
+    for (name, material) in [
+        ("matt", diffuse(0.8f32)),
+        ("satin", satin),
+        ("frosted", frosted),
+        ("bumps below a coat", bumps_below_a_coat),
+        ("a coat with bumps", coat_with_bumps.with("normal_scale", 0.3f32)),
+    ] {
         let mut builder = panel_over(material.with("normal", Value::Texture(0)));
         builder.textures.push(Arc::new(waves()));
         for (object, tiles) in [(0, 1.0), (3, 3.0)] {

@@ -219,6 +219,7 @@ fn flat_surface() -> Surface {
         p_error: Vec3::ZERO,
         n_geom: Vec3::Z,
         n_shade: Vec3::Z,
+        n_smooth: Vec3::Z,
         tangent: Vec3::X,
         handedness: 1.0,
         uv: Vec2::ZERO,

@@ -6,13 +6,15 @@ use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Wavelength};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
 use bilux_validation::chi_square::uniforms;
 
-fn surface(n_shade: Vec3) -> Surface {
+/// A point where the material's picture of normals, if it has one, turned that of the mesh.
+fn surface(n_shade: Vec3, n_smooth: Vec3) -> Surface {
     Surface {
         t: 1.0,
         p: Vec3::ZERO,
         p_error: Vec3::ZERO,
         n_geom: Vec3::Z,
         n_shade,
+        n_smooth,
         tangent: Vec3::X,
         handedness: 1.0,
         uv: Vec2::ZERO,
@@ -30,9 +32,13 @@ fn principled(numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
 }
 
 fn about(n_shade: Vec3, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
+    at(&surface(n_shade, n_shade), numbers, base)
+}
+
+fn at(surface: &Surface, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
     let spec = Spec::new("", "principled").with("base_color", base);
     let spec = numbers.iter().fold(spec, |spec, (key, number)| spec.with(key, *number));
-    build(&spec, &Ingredients::default()).unwrap().bsdf(&surface(n_shade))
+    build(&spec, &Ingredients::default()).unwrap().bsdf(surface)
 }
 
 const ORANGE: Rgb = Rgb { r: 0.9, g: 0.5, b: 0.1 };
@@ -107,6 +113,50 @@ fn turned_normals_keep_it_too() {
             run(&about(n_shade, numbers, ORANGE).into(), Promise { reciprocal: false, lossless: false });
         assert_eq!(result, Ok(()), "{name}");
     }
+}
+
+/// Rough ground below a coat that is as smooth as the mesh, and both turned against the triangle.
+#[test]
+fn a_coat_with_a_normal_of_its_own_keeps_it_too() {
+    let coats: [&[(&str, f32)]; 4] = [
+        &[("coat_weight", 0.8), ("coat_roughness", 0.3)],
+        &[("coat_weight", 1.0), ("coat_roughness", 0.0), ("fuzz_weight", 0.4)],
+        &[("coat_weight", 0.6), ("base_metalness", 0.5), ("specular_roughness", 0.0)],
+        &[("coat_weight", 0.5), ("transmission_weight", 0.7), ("specular_roughness", 0.4)],
+    ];
+    let checks = ["weight times density is eval", "the same from both ends"];
+    let (bump, tilt) = (Vec3::new(-0.3, 0.4, 1.0).normalize(), Vec3::new(0.1, 0.05, 1.0).normalize());
+    for numbers in coats {
+        for (n_shade, n_smooth) in [(bump, Vec3::Z), (bump, tilt), (Vec3::Z, tilt)] {
+            let bsdf = at(&surface(n_shade, n_smooth), numbers, ORANGE);
+            for bsdf in [bsdf, bsdf.bending()] {
+                for (check, run) in CHECKS.iter().filter(|(check, _)| checks.contains(check)) {
+                    let result = run(&bsdf.into(), Promise { reciprocal: false, lossless: false });
+                    assert_eq!(result, Ok(()), "{numbers:?} about {n_shade} and {n_smooth}: {check}");
+                }
+            }
+        }
+    }
+}
+
+/// A polished coat mirrors light about the normal of the mesh, and what is below it about that of the picture.
+#[test]
+fn a_coat_mirrors_about_its_own_normal() {
+    let n_shade = Vec3::new(0.3, 0.0, 1.0).normalize();
+    let numbers = [("coat_weight", 1.0), ("base_metalness", 1.0), ("specular_roughness", 0.0)];
+    let bsdf = at(&surface(n_shade, Vec3::Z), &numbers, Rgb::grey(0.5));
+    let wo = Vec3::new(-0.2, 0.3, 0.9).normalize();
+    let mirrored = |n: Vec3| n * (2.0 * n.dot(wo)) - wo;
+    let mut seen = [0.0f64; 2];
+    const N: u64 = 20_000;
+    for k in 0..N {
+        let (choice, u) = uniforms(77, k);
+        let sample = bsdf.sample(wo, choice, u, TransportMode::Radiance).unwrap();
+        let which = [Vec3::Z, n_shade].iter().position(|n| sample.wi.distance(mirrored(*n)) < 1e-4);
+        seen[which.expect("one of the two")] += f64::from(sample.weight.g) / N as f64;
+    }
+    // Fresnel at an index of 1.6 nearly straight on; the metal below is white but for its own half and what the coat took.
+    assert!((seen[0] - 0.0533).abs() < 0.003 && (0.42..0.5).contains(&seen[1]), "{seen:?}");
 }
 
 /// A white one in an even light: the least and the greatest of what is seen along directions steep and grazing.
@@ -193,7 +243,7 @@ fn a_coat_takes_little_from_white() {
 fn nothing_on_top_leaves_the_diffuse_base() {
     let bare = principled(&[("specular_weight", 0.0)], ORANGE);
     let spec = Spec::new("", "diffuse").with("reflectance", ORANGE);
-    let diffuse = build(&spec, &Ingredients::default()).unwrap().bsdf(&surface(Vec3::Z));
+    let diffuse = build(&spec, &Ingredients::default()).unwrap().bsdf(&surface(Vec3::Z, Vec3::Z));
     for (c, u) in (0..500).map(|k| uniforms(901, k)) {
         let wo = bilux_math::warp::sample_sphere(u);
         let found = bare.sample(wo, c, u, TransportMode::Radiance);

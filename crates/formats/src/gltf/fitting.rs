@@ -15,11 +15,6 @@ impl Gltf<'_, '_, '_> {
         self.scene.add_material(spec)
     }
 
-    pub(super) fn knows(&self, key: &str) -> bool {
-        let row = MATERIALS.iter().find(|row| row.entry.name == KIND);
-        row.is_some_and(|row| row.entry.parameters.iter().any(|parameter| parameter.name == key))
-    }
-
     fn principled(&mut self, draft: Spec) -> Spec {
         let row = MATERIALS.iter().find(|row| row.entry.name == KIND);
         let known = row.map_or(&[][..], |row| row.entry.parameters);

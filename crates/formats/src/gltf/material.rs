@@ -68,8 +68,9 @@ impl<'d> Gltf<'d, '_, '_> {
             }
         }
         let has = |key| draft.spec.parameters.find(key).is_some();
-        let has_direction = has("normal") || has("specular_roughness_anisotropy");
-        let normal = draft.spec.parameters.find("normal").map(|(value, _)| value);
+        let has_direction = has("normal") || has("coat_normal") || has("specular_roughness_anisotropy");
+        let normal = draft.spec.parameters.find("normal").or(draft.spec.parameters.find("coat_normal"));
+        let normal = normal.map(|(value, _)| value);
         let is_second = |i: &usize| self.scene.textures.get(*i).is_some_and(|texture| texture.second_uv);
         let normal_by_second = matches!(normal, Some(Value::Texture(i)) if is_second(i));
         let uv_sets = draft.uv_sets;
@@ -273,12 +274,10 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "coat_roughness", rough, picture, Channel::G, &at)?;
         draft.set("coat_ior", 1.5, at);
         if let Some(normals) = extension.get("clearcoatNormalTexture") {
-            if !self.knows("coat_normal") {
-                self.oddities.note("a coat has the normals of what it covers, not its own", || normals.at());
-                return Ok(());
-            }
             let map = self.texture(normals, Taken::VECTORS, &mut draft.uv_sets)?;
             draft.set("coat_normal", map, normals.at());
+            let scale = normals.number("scale")?.unwrap_or(1.0);
+            draft.set("coat_normal_scale", scale as f32, normals.at());
         }
         Ok(())
     }

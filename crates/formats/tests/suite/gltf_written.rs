@@ -37,6 +37,7 @@ fn values(scene: &SceneBuilder, value: &Value) -> Vec<f32> {
         Value::Number(x) => vec![*x as f32],
         Value::Integer(i) => vec![*i as f32],
         Value::Bool(b) => vec![f32::from(u8::from(*b))],
+        Value::Text(text) => text.bytes().map(f32::from).collect(),
         other => panic!("{other:?}"),
     }
 }

@@ -96,7 +96,7 @@ impl Clear {
             return tint;
         }
         let covered = |v: Vec3| v.z > 0.0 || self.glass.thin;
-        let passed = |v: Vec3| if covered(v) { self.cover.passed(v.z.abs()) } else { 1.0 };
+        let passed = |v: Vec3| if covered(v) { self.cover.passed_along(v) } else { 1.0 };
         tint * passed(wo).min(passed(wi))
     }
 

@@ -6,6 +6,7 @@
 //! none of it. [Kulla 2017]
 
 use super::{Albedo, FuzzAlbedo};
+use bilux_math::Vec3;
 
 /// What lies over a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,15 +16,17 @@ pub struct Cover {
     coat: Albedo,
     /// How much of it has fuzz on top, and how that stands.
     fuzz: Option<(f32, FuzzAlbedo)>,
+    /// The normal of all this, where what it covers has the z axis.
+    up: Vec3,
 }
 
 impl Cover {
     /// Nothing.
-    pub const NONE: Cover = Cover { coat_weight: 0.0, coat: Albedo::NONE, fuzz: None };
+    pub const NONE: Cover = Cover { coat_weight: 0.0, coat: Albedo::NONE, fuzz: None, up: Vec3::Z };
 
     /// A coat on this much of the surface, 0..=1.
     pub fn coat(weight: f32, coat: Albedo) -> Cover {
-        Cover { coat_weight: weight, coat, fuzz: None }
+        Cover { coat_weight: weight, coat, ..Cover::NONE }
     }
 
     /// The same with a coat too, below the rest.
@@ -34,6 +37,11 @@ impl Cover {
     /// The same below fuzz on this much of the surface, 0..=1.
     pub fn below(self, weight: f32, fuzz: FuzzAlbedo) -> Cover {
         Cover { fuzz: (weight > 0.0).then_some((weight, fuzz)), ..self }
+    }
+
+    /// The same about another normal than that of what it covers.
+    pub fn about(self, up: Vec3) -> Cover {
+        Cover { up, ..self }
     }
 
     /// True where there is nothing.
@@ -52,9 +60,15 @@ impl Cover {
         below_fuzz * (1.0 - self.coat_weight * self.coat.at(cos))
     }
 
+    /// The fraction that passes along a direction, as what is covered sees it.
+    #[inline]
+    pub(super) fn passed_along(&self, direction: Vec3) -> f32 {
+        if self.is_none() { 1.0 } else { self.passed(direction.dot(self.up).abs()) }
+    }
+
     /// The fraction of what is scattered between two directions that passes on its way in and out.
     #[inline]
-    pub(super) fn both(&self, cos_o: f32, cos_i: f32) -> f32 {
-        if self.is_none() { 1.0 } else { self.passed(cos_o).min(self.passed(cos_i)) }
+    pub(super) fn both(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_none() { 1.0 } else { self.passed_along(wo).min(self.passed_along(wi)) }
     }
 }

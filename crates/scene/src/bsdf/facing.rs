@@ -29,7 +29,7 @@ impl Facing<'_> {
     #[inline]
     pub fn both_ways(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
         let Facing { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;
-        if bsdf.bends {
+        if bsdf.is_special() {
             let (scattered, pdf) = bsdf.eval_and_pdf(wo, wi, mode);
             let back = || bsdf.pdf_solid_angle(wi, wo, mode.reversed());
             return (!scattered.is_black()).then(|| (scattered, pdf, back()));

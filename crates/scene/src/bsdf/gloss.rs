@@ -155,7 +155,7 @@ impl Gloss {
     /// What is left of light on its way through what covers the facets.
     #[inline]
     fn covered(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let passed = self.cover.both(wo.z.abs(), wi.z.abs());
+        let passed = self.cover.both(wo, wi);
         if wo.z < 0.0 { passed * self.from_below } else { passed }
     }
 

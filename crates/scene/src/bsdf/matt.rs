@@ -103,10 +103,16 @@ impl Matt {
         self.through.luminance() / (self.through.luminance() + self.scale.luminance())
     }
 
-    /// The fraction that gets there along a direction.
+    /// The fraction that gets there along a direction of this cosine with all normals.
     #[inline]
     fn passed(&self, cos: f32) -> f32 {
         (1.0 - self.boundary.at(cos)) * self.cover.passed(cos)
+    }
+
+    /// The same along a direction, whichever normals these are.
+    #[inline]
+    fn passed_along(&self, v: Vec3) -> f32 {
+        (1.0 - self.boundary.at(v.z.abs())) * self.cover.passed_along(v)
     }
 
     #[inline]
@@ -119,7 +125,7 @@ impl Matt {
             return Rgb::BLACK;
         };
         let cos = wi.z.abs();
-        scale * (self.passed(wo.z.abs()) * self.passed(cos) * FRAC_1_PI * cos)
+        scale * (self.passed_along(wo) * self.passed_along(wi) * FRAC_1_PI * cos)
     }
 
     #[inline]

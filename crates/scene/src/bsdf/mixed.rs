@@ -3,7 +3,8 @@
 use super::{Bsdf, MOST_LOBES};
 
 impl Bsdf {
-    /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal. Lobes beyond
+    /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal, which a coat takes on
+    /// that has its own. Lobes beyond
     /// [`MOST_LOBES`] are left out.
     pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
         let none = [0.0; MOST_LOBES];
@@ -13,6 +14,7 @@ impl Bsdf {
             total_strength: 0.0,
             rises: none,
             total_rise: 0.0,
+            apart: None,
             ..*self
         };
         let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));

@@ -9,6 +9,7 @@
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
 mod albedo;
+mod apart;
 mod bent;
 mod clear;
 mod conductor;
@@ -50,6 +51,7 @@ pub use rough_dielectric::RoughDielectric;
 pub use sample::BsdfSample;
 
 use crate::wavelength::Wavelength;
+use apart::Apart;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
 /// What is carried along a path: radiance from the lights, or importance from the camera.
@@ -92,6 +94,8 @@ pub struct Bsdf {
     total_rise: f32,
     bends: bool,
     splits: bool,
+    /// A lobe about a normal of its own.
+    apart: Option<Apart>,
 }
 
 /// So many lobes are summed at most.
@@ -113,6 +117,7 @@ impl Bsdf {
             total_rise: 0.0,
             bends: false,
             splits: false,
+            apart: None,
         }
     }
 
@@ -129,6 +134,7 @@ impl Bsdf {
             total_rise: 0.0,
             bends: false,
             splits: false,
+            apart: None,
         };
         for (i, lobe) in lobes.into_iter().flatten().take(MOST_LOBES).enumerate() {
             sum.set(i, lobe, 1.0);
@@ -152,6 +158,18 @@ impl Bsdf {
         }
         let m = (1.0 - wo.dot(self.frame.n).abs()).clamp(0.0, 1.0);
         (m * m) * (m * m) * m
+    }
+
+    /// By how much this is chosen among others, for light that is known to come along `wo`.
+    #[inline]
+    fn strength_along(&self, wo: Vec3) -> f32 {
+        self.total_strength + self.total_rise * self.risen(wo)
+    }
+
+    /// True where it is not simply a sum about one normal.
+    #[inline]
+    fn is_special(&self) -> bool {
+        self.bends || self.apart.is_some()
     }
 
     /// The lobes, each with its weight.
@@ -208,6 +226,9 @@ impl Bsdf {
 
     /// f·|wi·n_shade| of all lobes with width; for importance f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|.
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
+        if self.apart.is_some() {
+            return self.eval_and_pdf(wo, wi, mode).0;
+        }
         self.seen_along(if mode == TransportMode::Radiance { wo } else { wi }, |frame| {
             if !self.sides_agree(frame.n, wo, wi) {
                 return Rgb::BLACK;
@@ -222,6 +243,9 @@ impl Bsdf {
     pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f32 {
         if self.total_strength <= 0.0 {
             return 0.0;
+        }
+        if self.apart.is_some() {
+            return self.eval_and_pdf(wo, wi, mode).1;
         }
         if self.bends { self.bent_pdf(wo, wi, mode) } else { self.pdf_about(&self.frame, wo, wi) }
     }
@@ -240,8 +264,11 @@ impl Bsdf {
     /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
     #[inline]
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
-        if self.bends {
-            return (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi, mode));
+        if self.is_special() {
+            return match self.parts() {
+                Some(parts) => parts.eval_and_pdf(wo, wi, mode),
+                None => (self.eval(wo, wi, mode), self.pdf_solid_angle(wo, wi, mode)),
+            };
         }
         let risen = self.risen(wo);
         let (local_wo, local_wi) = (self.frame.to_local(wo), self.frame.to_local(wi));
@@ -263,6 +290,9 @@ impl Bsdf {
     /// A direction: `u_choice` picks the lobe (and reflection or refraction in it), `u` the direction.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        if let Some(parts) = self.parts() {
+            return parts.sample(wo, u_choice, u, mode);
+        }
         let (index, u_choice, share) = self.choose(wo, u_choice)?;
         let chosen = self.lobes[index].as_ref()?;
         if chosen.is_delta() {

@@ -42,7 +42,7 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 pub use conductor::straight_on;
 use glow::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
-use normal_map::{NORMAL, NORMAL_SCALE};
+use normal_map::{COAT_NORMAL, COAT_NORMAL_SCALE, NORMAL, NORMAL_SCALE};
 use opacity::OPACITY;
 use std::sync::Arc;
 use visible::VISIBLE_SIDES;

@@ -26,6 +26,14 @@ pub(super) const NORMAL_SCALE: Parameter = Parameter {
     default: "1",
 };
 
+pub(super) const COAT_NORMAL: Parameter = Parameter {
+    name: "coat_normal",
+    summary: "normals of the coat as a picture; without it the coat is as smooth as the mesh",
+    ..NORMAL
+};
+
+pub(super) const COAT_NORMAL_SCALE: Parameter = Parameter { name: "coat_normal_scale", ..NORMAL_SCALE };
+
 /// Normals of a picture.
 pub(super) struct NormalMap {
     map: Arc<Texture>,
@@ -34,18 +42,34 @@ pub(super) struct NormalMap {
 
 /// The normals that a material is given, if any.
 pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<NormalMap>, SceneError> {
-    let scale = reader.number("normal_scale");
-    let map = texture(reader, "normal", ingredients)?;
+    read_named(reader, [NORMAL.name, NORMAL_SCALE.name], ingredients)
+}
+
+/// The same of its coat.
+pub(super) fn read_of_coat(
+    reader: &Reader,
+    ingredients: &Ingredients,
+) -> Result<Option<NormalMap>, SceneError> {
+    read_named(reader, [COAT_NORMAL.name, COAT_NORMAL_SCALE.name], ingredients)
+}
+
+fn read_named(
+    reader: &Reader,
+    [map, scale]: [&str; 2],
+    ingredients: &Ingredients,
+) -> Result<Option<NormalMap>, SceneError> {
+    let scale = reader.number(scale);
+    let map = texture(reader, map, ingredients)?;
     Ok(map.filter(|_| scale > 0.0).map(|map| NormalMap { map, scale }))
 }
 
 impl NormalMap {
-    /// The shading normal at a point that has a tangent.
+    /// The normal at a point that has a tangent, on the same side as `n_geom`.
     pub(super) fn at(&self, surface: &Surface) -> Vec3 {
         let texel = self.map.at(surface.uvs());
         let lean = |c: f32| (2.0 * c - 1.0) * self.scale;
         let (x, y, z) = (lean(texel.r), lean(texel.g), 2.0 * texel.b - 1.0);
-        let n = surface.n_shade;
+        let n = surface.n_smooth;
         let Some(tangent) = (surface.tangent - n * n.dot(surface.tangent)).try_normalize() else { return n };
         let across = n.cross(tangent) * surface.handedness;
         let Some(turned) = (tangent * x + across * y + n * z).try_normalize() else { return n };

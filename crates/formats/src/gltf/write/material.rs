@@ -53,6 +53,8 @@ const ELSEWHERE: &[&str] = &[
     "transmission_dispersion_scale",
     "transmission_dispersion_abbe_number",
     "coat_ior",
+    "coat_normal",
+    "coat_normal_scale",
     "fuzz_weight",
     "fuzz_color",
     "thin_film_thickness",
@@ -93,11 +95,8 @@ impl Document<'_> {
         self.extensions(&principled, &mut out, writing)?;
         self.volume(&principled, &mut out);
         self.brushing(&principled, &mut out, writing);
-        if let Some(index) = texture(&principled, "normal").and_then(|i| self.scene.textures.get(i)).cloned()
-        {
-            let mut info = self.colours(&index, &Channel::Even(1.0), writing)?;
-            info["scale"] = json!(number(&principled, "normal_scale").unwrap_or(1.0));
-            out["normalTexture"] = info;
+        if let Some(normals) = self.normals(&principled, "normal", writing)? {
+            out["normalTexture"] = normals;
         }
         if let Some(picture) =
             texture(&principled, "emission").and_then(|i| self.scene.textures.get(i)).cloned()
@@ -191,7 +190,25 @@ impl Document<'_> {
             of["iridescenceThicknessMaximum"] = json!(thickness);
             of["iridescenceIor"] = json!(number(spec, "thin_film_ior").unwrap_or(1.4));
         }
+        if let Some(normals) = self.normals(spec, "coat_normal", writing)? {
+            let of = &mut out["extensions"][self.uses("KHR_materials_clearcoat")];
+            of["clearcoatNormalTexture"] = normals;
+        }
         Ok(())
+    }
+
+    /// A picture of normals, and how far these lean.
+    fn normals(
+        &mut self,
+        spec: &Spec,
+        key: &str,
+        writing: &mut Writing,
+    ) -> Result<Option<Json>, FormatError> {
+        let found = texture(spec, key).and_then(|i| self.scene.textures.get(i)).cloned();
+        let Some(picture) = found else { return Ok(None) };
+        let mut info = self.colours(&picture, &Channel::Even(1.0), writing)?;
+        info["scale"] = json!(number(spec, &format!("{key}_scale")).unwrap_or(1.0));
+        Ok(Some(info))
     }
 
     /// Theirs is smooth across and rougher along, ours of the mean and smoother across, by the same ratio.

@@ -1,12 +1,13 @@
 //! The parameters over a surface.
 
+use super::super::normal_map::{self, NormalMap};
 use super::super::{Ingredients, colour_map, number_map};
 use super::point::Point;
 use crate::bsdf::Film;
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::texture::{ColourMap, NumberMap, UvPair};
-use bilux_math::Rgb;
+use bilux_math::{Rgb, Vec3};
 
 /// The parameters, each a constant or a texture.
 pub(super) struct Maps {
@@ -30,6 +31,7 @@ pub(super) struct Maps {
     pub(super) coat_color: ColourMap,
     pub(super) coat_roughness: NumberMap,
     pub(super) coat_ior: NumberMap,
+    pub(super) coat_normals: Option<NormalMap>,
     pub(super) fuzz_weight: NumberMap,
     pub(super) fuzz_color: ColourMap,
     pub(super) fuzz_roughness: NumberMap,
@@ -66,6 +68,7 @@ impl Maps {
             coat_color: colour("coat_color")?,
             coat_roughness: number("coat_roughness")?,
             coat_ior: number("coat_ior")?,
+            coat_normals: normal_map::read_of_coat(reader, ingredients)?,
             fuzz_weight: number("fuzz_weight")?,
             fuzz_color: colour("fuzz_color")?,
             fuzz_roughness: number("fuzz_roughness")?,
@@ -133,6 +136,7 @@ impl Maps {
             coat_color: self.coat_color.at(uv).clamp(0.0, 1.0),
             coat_roughness: self.coat_roughness.at(uv),
             coat_ior: self.coat_ior.at(uv),
+            coat_up: Vec3::Z,
             fuzz: self.fuzz_weight.at(uv),
             fuzz_color: self.fuzz_color.at(uv).clamp(0.0, 1.0),
             fuzz_roughness: self.fuzz_roughness.at(uv),

@@ -9,8 +9,8 @@ mod point;
 
 use super::dielectric::PRIORITY;
 use super::{
-    EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY,
-    THIN, VISIBLE_SIDES, reflectance,
+    COAT_NORMAL, COAT_NORMAL_SCALE, EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry,
+    NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN, VISIBLE_SIDES, reflectance,
 };
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
@@ -18,7 +18,7 @@ use crate::error::SceneError;
 use crate::surface::Surface;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::{atan, ln};
-use bilux_math::{Rgb, Vec2};
+use bilux_math::{Frame, Rgb, Vec2, Vec3};
 use maps::{Maps, is_there};
 use point::{Lobes, Point};
 use std::sync::Arc;
@@ -91,6 +91,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             reflectance("coat_color", "what is left of light that passes the coat and comes back", "1"),
             number("coat_roughness", ROUGHNESS, 1.0, "0"),
             index("coat_ior", "refractive index of the coat", "1.6"),
+            COAT_NORMAL,
+            COAT_NORMAL_SCALE,
             number("fuzz_weight", "how much of the surface has fine fibres on top, as velvet has", 1.0, "0"),
             reflectance("fuzz_color", "colour of the fibres", "1"),
             number(
@@ -184,10 +186,36 @@ impl Principled {
         let point = self.maps.at(surface.uvs());
         Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), ..point }
     }
+
+    /// [`Material::bsdf`], with a coat about a normal of its own.
+    #[inline(never)]
+    fn below_coat(&self, surface: &Surface, n: Vec3) -> Bsdf {
+        let frame = Frame::from_normal(surface.n_shade).along(surface.tangent);
+        let [fuzz, coat, rest @ ..] = Point { coat_up: frame.to_local(n), ..self.point(surface) }.lobes();
+        let (place, is_coated) = (usize::from(fuzz.is_some()), coat.is_some());
+        let [a, b, c] = rest;
+        let bsdf = Bsdf::new(surface.n_shade, surface.n_geom, [fuzz, coat, a, b, c]).along(surface.tangent);
+        if is_coated { bsdf.with_apart(place, n, self.maps.coat_normals.is_some()) } else { bsdf }
+    }
+
+    /// The coat's normal at a point.
+    #[inline]
+    fn coat_normal(&self, surface: &Surface) -> Vec3 {
+        match &self.maps.coat_normals {
+            Some(normals) if surface.tangent != Vec3::ZERO => normals.at(surface),
+            _ => surface.n_smooth,
+        }
+    }
 }
 
 impl Material for Principled {
     fn bsdf(&self, surface: &Surface) -> Bsdf {
+        if is_there(&self.maps.coat_weight) {
+            let n = self.coat_normal(surface);
+            if n != surface.n_shade {
+                return self.below_coat(surface, n);
+            }
+        }
         let lobes = match self.even {
             Some(lobes) if surface.vertex_kd.is_none() => lobes,
             _ => self.point(surface).lobes(),
@@ -219,7 +247,7 @@ impl Material for Principled {
     }
 
     fn needs_tangents(&self) -> bool {
-        is_there(&self.maps.anisotropy)
+        is_there(&self.maps.anisotropy) || self.maps.coat_normals.is_some()
     }
 
     fn most_lobes(&self) -> usize {

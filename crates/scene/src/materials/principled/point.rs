@@ -1,7 +1,7 @@
 //! The parameters at a point, and the lobes that they come to.
 
 use crate::bsdf::{Albedo, Clear, Cover, Film, Fresnel, Fuzz, FuzzAlbedo, Ggx, Gloss, Lambert, Lobe, Matt};
-use bilux_math::Rgb;
+use bilux_math::{Rgb, Vec3};
 use std::f32::consts::TAU;
 
 /// The parameters at a point.
@@ -23,6 +23,8 @@ pub(super) struct Point {
     pub(super) coat_color: Rgb,
     pub(super) coat_roughness: f32,
     pub(super) coat_ior: f32,
+    /// Its normal, where that of the rest is the z axis.
+    pub(super) coat_up: Vec3,
     pub(super) fuzz: f32,
     pub(super) fuzz_color: Rgb,
     pub(super) fuzz_roughness: f32,
@@ -109,7 +111,7 @@ impl Point {
         let ggx = Ggx::from_roughness(self.coat_roughness, 0.0, 0.0);
         let none = Fresnel::tinted(Rgb::BLACK, Rgb::WHITE);
         let coat = Gloss::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, above);
-        let cover = above.coated(self.coat, Albedo::new(&ggx, self.coat_ior));
+        let cover = above.coated(self.coat, Albedo::new(&ggx, self.coat_ior)).about(self.coat_up);
         (Some(Lobe::Gloss(coat.from_below(self.outside()))), cover)
     }
 

@@ -1,0 +1,94 @@
+//! A lobe about a normal of its own, as a smooth coat has over a rough ground: a [`Bsdf`] in two parts, each of which is
+//! one about a single normal. All that is promised of these holds for their sum.
+
+use super::{Bsdf, BsdfSample, MOST_LOBES, TransportMode};
+use bilux_math::{Frame, Rgb, Vec2, Vec3};
+
+/// Which lobe it is, and about which normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Apart {
+    index: u8,
+    n: Vec3,
+    bends: bool,
+}
+
+/// What is about the normal that all share, and what is not.
+pub(super) struct Parts([Bsdf; 2]);
+
+impl Bsdf {
+    /// The same with one of its lobes, by its place among those that there are, about a normal of its own, which is
+    /// [bent](Bsdf::bending) where it `bends`.
+    pub fn with_apart(self, index: usize, n: Vec3, bends: bool) -> Bsdf {
+        let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
+        let apart = Apart { index: index as u8, n, bends: bends && n != self.n_geom };
+        Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
+    }
+
+    /// Its parts, where it has more than one.
+    #[inline]
+    pub(super) fn parts(&self) -> Option<Parts> {
+        self.apart.as_ref().map(|apart| self.parted(apart))
+    }
+
+    #[inline(never)]
+    fn parted(&self, apart: &Apart) -> Parts {
+        let index = usize::from(apart.index);
+        let empty = Bsdf {
+            lobes: [None; MOST_LOBES],
+            weights: [1.0; MOST_LOBES],
+            strengths: [0.0; MOST_LOBES],
+            total_strength: 0.0,
+            rises: [0.0; MOST_LOBES],
+            total_rise: 0.0,
+            apart: None,
+            ..*self
+        };
+        let mut shared = empty;
+        let mut own = Bsdf { frame: Frame::from_normal(apart.n), bends: apart.bends, ..empty };
+        let mut place = 0;
+        for (i, (weight, lobe)) in self.weighted().enumerate() {
+            if i == index {
+                own.set(0, *lobe, weight);
+            } else {
+                shared.set(place, *lobe, weight);
+                place += 1;
+            }
+        }
+        Parts([shared, own])
+    }
+}
+
+impl Parts {
+    /// [`Bsdf::eval_and_pdf`].
+    pub(super) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
+        let (mut scattered, mut pdf, mut total) = (Rgb::BLACK, 0.0, 0.0);
+        for part in &self.0 {
+            let strength = part.strength_along(wo);
+            let (f, p) = part.eval_and_pdf(wo, wi, mode);
+            scattered += f;
+            pdf += strength * p;
+            total += strength;
+        }
+        (scattered, if total > 0.0 { pdf / total } else { 0.0 })
+    }
+
+    /// [`Bsdf::sample`].
+    pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
+        let [shared, own] = &self.0;
+        let share = shared.strength_along(wo) / (shared.strength_along(wo) + own.strength_along(wo));
+        let (chosen, share, u_choice) = if u_choice < share {
+            (shared, share, u_choice / share)
+        } else {
+            (own, 1.0 - share, (u_choice - share) / (1.0 - share))
+        };
+        let mut sample = chosen.sample(wo, u_choice.clamp(0.0, 1.0 - f32::EPSILON), u, mode)?;
+        if sample.is_delta {
+            sample.weight = sample.weight / share;
+            sample.pdf_solid_angle *= share;
+            return (sample.pdf_solid_angle > 0.0).then_some(sample);
+        }
+        let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
+        (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
+        (pdf_solid_angle > 0.0).then_some(sample)
+    }
+}
