@@ -25,8 +25,9 @@ pub struct StudioArguments {
     /// What a model stands on [default: a matt cove, where the file has neither camera nor light]
     #[arg(long, value_name = "shadow|mirror|none")]
     pub ground: Option<String>,
-    /// Light all of it by a picture of its surroundings, in longitude and latitude: .hdr, .exr or any other
-    #[arg(long, value_name = "FILE")]
+    /// Light all of it by a picture of its surroundings, in longitude and latitude: .hdr, .exr or any other; none leaves a glTF's lamps
+    /// alone, which else stand in the studio's surroundings
+    #[arg(long, value_name = "FILE|none")]
     pub env: Option<PathBuf>,
     /// What is behind a model: transparent, or a colour (white, '#rrggbb', R,G,B), or a picture to be seen in place of what lights it
     #[arg(long, value_name = "transparent|COLOR|FILE")]
@@ -42,7 +43,9 @@ impl StudioArguments {
         if let Some(preset) = &self.preset {
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
-        if let Some(picture) = &self.env {
+        if self.env.as_deref() == Some(Path::new("none")) {
+            scene.surroundings_unsaid = false;
+        } else if let Some(picture) = &self.env {
             bilux::presets::surround(scene, picture, options).context("--env")?;
         }
         if let Some(picture) = self.picture_behind() {

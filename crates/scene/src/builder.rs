@@ -58,6 +58,8 @@ pub struct SceneBuilder {
     pub lights: Vec<Spec>,
     /// Where it can be seen from; the first is the default.
     pub cameras: Vec<CameraSpec>,
+    /// The file's format knows lamps, and has no word for what is around a scene.
+    pub surroundings_unsaid: bool,
     /// Settings of the render that the file wishes for, not looked at here.
     pub settings: Parameters,
     /// What was odd while reading.

@@ -235,6 +235,25 @@ fn what_is_cut_out_gets_no_cove_and_a_backdrop_is_no_lamp() {
 }
 
 #[test]
+fn lamps_of_a_format_without_surroundings_stand_in_a_studio() {
+    let names = |scene: &SceneBuilder| -> Vec<String> {
+        let mut scene = scene.clone();
+        complete(&mut scene, &Studio::default());
+        scene.lights.into_iter().map(|light| light.name).collect()
+    };
+    let mut scene = teapot();
+    scene.lights.push(Spec::new("mine", "directional"));
+    assert_eq!(names(&scene), ["mine"], "other formats could have said it");
+    scene.surroundings_unsaid = true;
+    assert_eq!(names(&scene), ["mine", "room"]);
+    scene.lights.push(Spec::new("sky", "environment"));
+    assert_eq!(names(&scene), ["mine", "sky"]);
+    scene.lights.pop();
+    scene.materials[0].parameters.set("emission", 5.0f32);
+    assert_eq!(names(&scene), ["mine"], "what glows is seen by its own light");
+}
+
+#[test]
 fn signs_are_no_lamps() {
     for (emission, lights) in [(0.6f32, 3), (1.0, 0), (20.0, 0)] {
         let mut scene = teapot();

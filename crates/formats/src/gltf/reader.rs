@@ -125,7 +125,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             source,
             file: source.name.clone(),
             reading,
-            scene: SceneBuilder::default(),
+            scene: SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() },
             oddities,
             order: Vec::new(),
             time,

@@ -2,6 +2,7 @@
 
 use crate::{read_text, refusal, warnings};
 use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::Value;
 
 /// A document with one triangle, whose parts tests replace.
 const TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
@@ -296,6 +297,25 @@ fn dispersion_is_of_what_is_solid() {
         let built = scene.build(&Default::default(), [0.0, 0.0], 1.0).unwrap();
         assert_eq!(built.disperses(), thickness == 1, "{material}");
     }
+}
+
+#[test]
+fn what_is_seen_from_one_side_glows_from_that_side_and_glass_is_seen_from_both() {
+    let sides = |material: &str| {
+        let scene = read(&with_material(material, ""));
+        let said = |key| match scene.materials[scene.objects[0].material].parameters.find(key) {
+            Some((Value::Text(side), _)) => side.clone(),
+            _ => "both".to_owned(),
+        };
+        [said("visible_sides"), said("emission_sides")]
+    };
+    assert_eq!(sides("{}"), ["front", "both"]);
+    assert_eq!(sides(r#"{"emissiveFactor":[0,0,1]}"#), ["front", "front"]);
+    assert_eq!(sides(r#"{"doubleSided":true,"emissiveFactor":[0,0,1]}"#), ["both", "both"]);
+    let glass = r#"{"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}}}"#;
+    assert_eq!(sides(glass), ["both", "both"]);
+    let unlit = r#"{"extensions":{"KHR_materials_unlit":{}}}"#;
+    assert_eq!(sides(unlit), ["front", "front"]);
 }
 
 #[test]

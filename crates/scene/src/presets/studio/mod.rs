@@ -69,6 +69,9 @@ impl Studio {
 /// The light behind the model.
 const RIM: &str = "rim";
 
+/// What is around it.
+const ROOM: &str = "room";
+
 /// What the ground's object and material are called.
 const GROUND: &str = "studio floor";
 
@@ -84,11 +87,14 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
 }
 
 /// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
-/// studio where it has neither. What is asked for in `studio` is there in any case: its camera is the first one then.
+/// studio where it has neither. Lamps of a format that has no word for surroundings stand in those of the studio: metal would
+/// mirror nothing. What is asked for in `studio` is there in any case: its camera is the first one then.
 /// Does nothing to a scene that has both where nothing is asked for.
 pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
-    let lit = scene.lights.iter().any(|light| !light.is_backdrop())
-        || scene.objects.iter().any(|o| gives_light(scene, o));
+    let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
+    let glows = scene.objects.iter().any(|o| gives_light(scene, o));
+    let has_lamps_alone = scene.surroundings_unsaid && has_lights && !glows && !has_surroundings(scene);
+    let lit = (has_lights || glows) && !has_lamps_alone;
     let seen = !scene.cameras.is_empty();
     let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
     let bare = !lit && !seen && !behind;
@@ -105,10 +111,9 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
     }
     if !lit {
         // It may be close, and have in view what stands behind the model.
-        let behind_model = |spec: &Spec| spec.name == RIM;
-        scene.lights.extend(
-            lights(&framing, ground).into_iter().filter(|spec| !seen || asked || !behind_model(spec)),
-        );
+        let is_in_view = |spec: &Spec| spec.name == RIM && seen && !asked;
+        let is_wanted = |spec: &Spec| if has_lamps_alone { spec.name == ROOM } else { !is_in_view(spec) };
+        scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
     }
     if !lit && !seen {
         of_clay(scene);
@@ -149,6 +154,12 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground) {
     scene.objects.push(Object::new(GROUND, Arc::new(cove::cove(framing)), material));
 }
 
+/// True where something lights a scene from all around.
+fn has_surroundings(scene: &SceneBuilder) -> bool {
+    let is_around = |light: &Spec| matches!(light.kind.as_str(), "environment" | "sky" | "ambient");
+    scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
+}
+
 /// True for what lights a scene: what is less bright than the white of a screen is a sign, no lamp.
 fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
     let bright = |value: &Value| match value {
@@ -176,7 +187,7 @@ fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
     [
         key.spec(framing, warm * 4.4).with("classic", warm * 0.72),
         rim.spec(framing, cool * 3.2).with("classic", cool * 0.28),
-        Spec::new("room", "environment")
+        Spec::new(ROOM, "environment")
             .with("zenith", Rgb::new(0.40, 0.42, 0.46) * bright)
             .with("horizon", Rgb::new(0.26, 0.27, 0.29) * bright)
             .with("ground", Rgb::new(0.10, 0.096, 0.092) * bright),
