@@ -255,12 +255,14 @@ impl Document<'_> {
     }
 }
 
+/// What materials of all kinds have.
+const OF_ANY: &[&str] =
+    &["emission", "emission_scale", "emission_sides", "normal", "normal_scale", "opacity", "visible_sides"];
+
 /// What any material comes to as `principled`.
 fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spec {
     let mut out = Spec::new(&spec.name, "principled");
-    for key in
-        ["emission", "emission_scale", "emission_sides", "normal", "normal_scale", "opacity", "visible_sides"]
-    {
+    for &key in OF_ANY {
         if let Some((value, at)) = spec.parameters.find(key) {
             out.parameters.set_at(key, value.clone(), at.clone());
         }
