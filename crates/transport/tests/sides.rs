@@ -2,6 +2,7 @@
 
 mod common;
 
+use bilux_math::transcendental::atan;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{AccelChoice, Mesh, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{RenderSettings, integrators};
@@ -90,8 +91,8 @@ fn a_back_is_looked_through_and_gives_shade() {
     let facing_down = quad(Vec3::new(-3.0, 1.0, -3.0), Vec3::X * 6.0, Vec3::Z * 6.0);
     assert_eq!(seen(floor(1.0, 3.0)), 0.0, "its front is black");
     // As seen from the floor's middle, the lid covers this much of the sky. [Howell 2010, C-11]
-    let leg = 10f64.sqrt();
-    let covered = 4.0 / std::f64::consts::PI * (3.0 / leg) * (3.0 / leg).atan();
+    let side = 3.0 / 10f32.sqrt();
+    let covered = f64::from(4.0 / std::f32::consts::PI * side * atan(side));
     let shaded = seen(facing_down);
     assert!((shaded - 0.5 * (1.0 - covered)).abs() < 0.003, "{shaded}, of {covered} covered");
 }
