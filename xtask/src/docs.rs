@@ -17,6 +17,7 @@ const TABLES: &[(&str, &str)] = &[
     ("accels", "Accelerators"),
     ("visibility", "Seeing without rays"),
     ("materials", "Materials"),
+    ("textures", "Textures by formula"),
     ("bsdfs", "BSDFs"),
     ("lights", "Lights"),
     ("cameras", "Cameras"),

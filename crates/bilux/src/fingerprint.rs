@@ -2,7 +2,7 @@
 
 use crate::settings::Settings;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::SceneBuilder;
+use bilux_scene::{SceneBuilder, Texture};
 use sha2::{Digest, Sha256};
 
 /// A hash of a scene and of every setting that its samples depend on, in hexadecimal. What changes no sample
@@ -26,17 +26,7 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         }
         hash.update(format!("{} {:?}", object.material, object.motion));
     }
-    for texture in &scene.textures {
-        let (width, height) = (texture.width(), texture.height());
-        hash.update(format!(
-            "{width} {height} {:?} {:?} {:?}",
-            texture.wrap, texture.filter, texture.transform
-        ));
-        if texture.second_uv {
-            hash.update("second");
-        }
-        floats(&mut hash, texture.texels().flat_map(|c| c.to_array()));
-    }
+    scene.textures.iter().for_each(|texture| hash_texture(&mut hash, texture));
     for spec in scene.materials.iter().chain(&scene.lights) {
         hash_spec(&mut hash, spec);
     }
@@ -76,6 +66,22 @@ fn floats(hash: &mut Sha256, values: impl Iterator<Item = f32>) {
         count += 1;
     }
     hash.update(count.to_le_bytes());
+}
+
+fn hash_texture(hash: &mut Sha256, texture: &Texture) {
+    let (width, height) = (texture.width(), texture.height());
+    hash.update(format!("{width} {height} {:?} {:?} {:?}", texture.wrap, texture.filter, texture.transform));
+    if texture.second_uv {
+        hash.update("second");
+    }
+    match texture.formula() {
+        None => floats(hash, texture.texels().flat_map(|c| c.to_array())),
+        Some(formula) => {
+            hash_spec(hash, formula.spec());
+            hash.update(format!("{:?} {:?} {:?}", texture.factor, texture.channel, texture.threshold));
+            formula.parts().for_each(|part| hash_texture(hash, part));
+        }
+    }
 }
 
 fn hash_spec(hash: &mut Sha256, spec: &bilux_scene::Spec) {

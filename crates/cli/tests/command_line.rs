@@ -280,6 +280,36 @@ fn pictures_that_are_only_read_become_others() {
     }
 }
 
+/// Under an even light what a board sends is what its texture says there.
+#[test]
+fn textures_by_formula_are_rendered() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/patterns.toml");
+    let render = ["render", scene.to_str().unwrap(), "--size", "110x110", "--spp", "64", "-o", "out.pfm"];
+    bilux(path).args(render).assert().success();
+    let picture = bilux::pictures::read(path.join("out.pfm")).unwrap();
+    // 4.4 m are 110 pixels; each board begins 0.05 m from the middle.
+    let at = |board: [f32; 2], u: f32, v: f32| {
+        let pixel = |x: f32| (55.0 + x * 25.0) as usize;
+        let [x, y] = [board[0] + 2.0 * u, board[1] + 2.0 * v];
+        picture.rgb(pixel(x), 109 - pixel(y)).to_array()
+    };
+    let close = |got: [f32; 3], wanted: [f32; 3]| {
+        let is_near = got.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.02 + 0.05 * b);
+        assert!(is_near, "{got:?} and not {wanted:?}");
+    };
+    let [squares, target, floor] = [[-2.05, 0.05], [0.05, 0.05], [0.05, -2.05]];
+    close(at(squares, 0.5 / 6.0, 0.5 / 6.0), [0.8, 0.75, 0.6]);
+    close(at(squares, 1.5 / 6.0, 0.5 / 6.0), [0.15, 0.05, 0.05]);
+    close(at(squares, 1.5 / 6.0, 5.5 / 6.0), [0.8, 0.75, 0.6]);
+    // The middle of a pixel; the radius is 0.57 there.
+    close(at(target, 0.505, 0.785), [0.447, 0.56, 0.787]);
+    close(at(target, 0.02, 0.02), [0.02; 3]);
+    let dark = at(floor, 1.5 / 4.0, 0.5 / 4.0);
+    assert!(dark.iter().all(|c| *c < 0.15), "{dark:?}");
+}
+
 #[test]
 fn every_shipped_scene_is_made_read_and_rendered_the_same() {
     let folder = TempDir::new().unwrap();

@@ -4,8 +4,49 @@ use crate::normals::unit_face_normal;
 use crate::reading::plain_material;
 use crate::writing::Writing;
 use bilux_math::{Transform, Vec3};
-use bilux_scene::{Mesh, Object, SceneBuilder};
+use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::borrow::Cow;
+use std::sync::Arc;
+
+/// The scene with pictures in place of textures by formula, where a format holds none of these.
+pub(crate) fn with_pictures<'a>(
+    scene: &'a SceneBuilder,
+    capabilities: &[&str],
+    writing: &mut Writing,
+) -> Cow<'a, SceneBuilder> {
+    let can = |what: &str| capabilities.contains(&what);
+    let holds_formulas = can("textures by formula") || !can("textures");
+    if holds_formulas || scene.textures.iter().all(|texture| texture.formula().is_none()) {
+        return Cow::Borrowed(scene);
+    }
+    let mut scene = scene.clone();
+    let SceneBuilder { textures, materials, .. } = &mut scene;
+    for (index, texture) in textures.iter_mut().enumerate() {
+        // What lies elsewhere than the other pictures of its material cannot be packed with them.
+        let may_move = can("moved textures") && materials.iter().all(|spec| is_only_texture(spec, index));
+        let Some((picture, is_same)) = texture.pictured(may_move) else { continue };
+        if !is_same {
+            let (name, width, height) = (&texture.name, picture.width(), picture.height());
+            writing.warn(format!(
+                "the format holds no textures by formula: '{name}' is written as a picture of {width} x {height} texels \
+                 that is repeated"
+            ));
+        }
+        *texture = Arc::new(picture);
+    }
+    Cow::Owned(scene)
+}
+
+/// True where no other texture is beside this one, or it is not there itself.
+fn is_only_texture(spec: &Spec, index: usize) -> bool {
+    let all = || {
+        spec.parameters.0.iter().filter_map(|(_, value, _)| match value {
+            Value::Texture(index) => Some(*index),
+            _ => None,
+        })
+    };
+    all().all(|other| other != index) || all().count() == 1
+}
 
 /// An object's mesh moved to its place at time 0.
 pub(crate) fn in_place<'a>(object: &'a Object, writing: &mut Writing) -> Cow<'a, Mesh> {

@@ -1,5 +1,6 @@
 //! The table of formats, and reading and writing by it.
 
+use crate::bake::with_pictures;
 use crate::reading::{Reading, Source, open};
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
@@ -135,7 +136,8 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
     let row = format_of_path(path)?;
     let mut writing = Writing::new(path, options);
     if let Some(write) = row.write {
-        write(scene, &mut writing)?;
+        let scene = with_pictures(scene, row.capabilities, &mut writing);
+        write(&scene, &mut writing)?;
     }
     write_all(path, writing)
 }

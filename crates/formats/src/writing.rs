@@ -3,9 +3,10 @@
 use crate::images::is_bright;
 use crate::{FormatError, WriteOptions};
 use bilux_pictures::{ColourSpace, Picture, write_atomically};
-use bilux_scene::{SceneBuilder, Span, Warning};
+use bilux_scene::{SceneBuilder, Span, Texture, Warning};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
 
 /// The files of a scene while they are made.
 pub(crate) struct Writing<'o> {
@@ -18,8 +19,8 @@ pub(crate) struct Writing<'o> {
     pub(crate) main: Vec<u8>,
     /// Files beside it, by name.
     pub(crate) beside: Vec<(String, Vec<u8>)>,
-    /// Textures written so far: index and file name.
-    textures: Vec<(usize, String)>,
+    /// Textures written so far, and the files of each.
+    textures: Vec<(Arc<Texture>, String)>,
     /// What the format could not hold.
     pub(crate) warnings: Vec<Warning>,
 }
@@ -46,13 +47,17 @@ impl<'o> Writing<'o> {
         scene: &SceneBuilder,
         index: usize,
     ) -> Result<Option<String>, FormatError> {
-        let Some(texture) = scene.textures.get(index) else { return Ok(None) };
-        if let Some((_, name)) = self.textures.iter().find(|(i, _)| *i == index) {
-            return Ok(Some(name.clone()));
+        scene.textures.get(index).map(|texture| self.texture_file(texture)).transpose()
+    }
+
+    /// The same of a texture that may be a part of another.
+    pub(crate) fn texture_file(&mut self, texture: &Arc<Texture>) -> Result<String, FormatError> {
+        if let Some((_, name)) = self.textures.iter().find(|(known, _)| Arc::ptr_eq(known, texture)) {
+            return Ok(name.clone());
         }
         let bright = texture.texels().any(is_bright);
         let format = if bright { "exr" } else { "png" };
-        let name = format!("{}-texture-{}.{format}", self.stem, index + 1);
+        let name = format!("{}-texture-{}.{format}", self.stem, self.textures.len() + 1);
         let mut picture = Picture::from_rgb(texture.width(), texture.height(), texture.texels().collect())?;
         if texture.is_data && !bright {
             // As the file holds them, so that no curve is laid over numbers.
@@ -60,8 +65,8 @@ impl<'o> Writing<'o> {
         }
         let bytes = bilux_pictures::write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
         self.beside.push((name.clone(), bytes));
-        self.textures.push((index, name.clone()));
-        Ok(Some(name))
+        self.textures.push((texture.clone(), name.clone()));
+        Ok(name)
     }
 
     /// Tells what could not be held, once.

@@ -43,6 +43,13 @@ pub enum ParameterKind {
     },
     /// A texture of numbers; none by default.
     Texture,
+    /// Colours of a gradient, each channel within the bounds: `[position, colour]`, one behind the other.
+    Stops {
+        /// Least channel.
+        min: f64,
+        /// Greatest channel.
+        max: f64,
+    },
     /// The name of a material.
     Material,
     /// Three coordinates.

@@ -38,5 +38,5 @@ pub use mesh::Mesh;
 pub use parameters::{Parameters, Reader, Span, Spec, Value};
 pub use scene::{Scene, Tracer};
 pub use surface::Surface;
-pub use texture::Texture;
+pub use texture::{TEXTURES, Texture};
 pub use wavelength::Wavelength;

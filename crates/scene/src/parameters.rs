@@ -232,6 +232,11 @@ impl<'a> Reader<'a> {
         triple(&self.value(key)).map_or(Rgb::WHITE, Rgb::from_array)
     }
 
+    /// The stops of a gradient, in order.
+    pub fn stops(&self, key: &str) -> Vec<(f32, Rgb)> {
+        stops(&self.value(key)).unwrap_or_default()
+    }
+
     /// The texture given in place of a colour or a number, if one is.
     pub fn texture(&self, key: &str) -> Option<usize> {
         match self.value(key) {
@@ -285,6 +290,19 @@ fn triple(value: &Value) -> Option<[f32; 3]> {
     }
 }
 
+/// Pairs of a position and a colour, if it is a list of these.
+fn stops(value: &Value) -> Option<Vec<(f32, Rgb)>> {
+    let Value::List(list) = value else { return None };
+    let stop = |value: &Value| match value {
+        Value::List(pair) => match &pair[..] {
+            [at, colour] => Some((at.as_number()? as f32, Rgb::from_array(triple(colour)?))),
+            _ => None,
+        },
+        _ => None,
+    };
+    list.iter().map(stop).collect()
+}
+
 /// What was wanted, where a value is not of its parameter's kind or out of range.
 fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
     let number_in = |v: Option<f64>, min: f64, max: f64| v.is_some_and(|x| x >= min && x <= max);
@@ -311,6 +329,16 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
             format!("a number from {min} to {max}, or {{ texture = \"FILE\" }}"),
         ),
         ParameterKind::Texture => (matches!(value, Value::Texture(_)), "{ texture = \"FILE\" }".to_owned()),
+        ParameterKind::Stops { min, max } => {
+            let is_right = |stops: Vec<(f32, Rgb)>| {
+                let within = |c: f32| number_in(Some(f64::from(c)), min, max);
+                let rise = stops.windows(2).all(|pair| pair[0].0 <= pair[1].0);
+                let all = stops.iter().all(|(at, c)| at.is_finite() && c.to_array().into_iter().all(within));
+                !stops.is_empty() && rise && all
+            };
+            let wanted = "stops [[position, [r, g, b]], …] whose positions never fall";
+            (stops(value).is_some_and(is_right), format!("{wanted}, with each channel from {min} to {max}"))
+        }
         ParameterKind::Vector => (
             triple(value).is_some_and(|t| t.iter().all(|c| c.is_finite())),
             "three numbers [x, y, z]".to_owned(),

@@ -94,7 +94,7 @@ fn as_text(scene: &SceneBuilder) -> String {
         size.y,
         size.z,
         names(scene.materials.iter().map(spec).collect()),
-        names(scene.textures.iter().map(|t| format!("{} ({}x{})", t.name, t.width(), t.height())).collect()),
+        names(scene.textures.iter().map(|t| texture(t)).collect()),
         names(scene.lights.iter().map(spec).collect()),
         names(scene.cameras.iter().map(|c| spec(&c.spec)).collect()),
         choices(scene),
@@ -117,4 +117,11 @@ fn choices(scene: &SceneBuilder) -> String {
     ];
     let line = |(what, names): (&str, Vec<String>)| format!("\n{what} {}", names.join(", "));
     rows.into_iter().filter(|(_, names)| !names.is_empty()).map(line).collect()
+}
+
+fn texture(texture: &bilux::scene::Texture) -> String {
+    match texture.formula() {
+        Some(_) => format!("{} (by formula)", texture.name),
+        None => format!("{} ({}x{})", texture.name, texture.width(), texture.height()),
+    }
 }

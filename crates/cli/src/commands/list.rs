@@ -42,6 +42,7 @@ const TABLES: &[Table] = &[
         summary: "what surfaces are made of",
         rows: rows!(bilux::scene::materials::MATERIALS),
     },
+    Table { name: "textures", summary: "pictures by formula", rows: rows!(bilux::scene::texture::TEXTURES) },
     Table { name: "bsdfs", summary: "how surfaces scatter light", rows: rows!(bilux::scene::bsdf::BSDFS) },
     Table { name: "lights", summary: "where light comes from", rows: rows!(bilux::scene::lights::LIGHTS) },
     Table {
@@ -146,6 +147,7 @@ fn kind_text(kind: ParameterKind) -> String {
         ParameterKind::ColourTexture { min, max } => format!("colour {min}..={max}, or a texture"),
         ParameterKind::NumberTexture { min, max } => format!("{min}..={max}, or a texture"),
         ParameterKind::Texture => "texture".to_owned(),
+        ParameterKind::Stops { min, max } => format!("[position, colour {min}..={max}], several"),
         ParameterKind::Vector => "x, y, z".to_owned(),
         ParameterKind::Choice(words) => words.join("|"),
         ParameterKind::Text => "text".to_owned(),

@@ -52,6 +52,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "instances",
         "materials",
         "textures",
+        "moved textures",
         "cameras",
         "lights",
         "animation",

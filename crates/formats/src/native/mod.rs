@@ -36,6 +36,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "motion",
         "materials",
         "textures",
+        "textures by formula",
         "lights",
         "cameras",
         "settings",

@@ -5,7 +5,7 @@ use super::shapes::SHAPES;
 use super::specs::CHANNELS;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::generators::GENERATORS;
-use bilux_scene::{CAMERAS, LIGHTS, MATERIALS};
+use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, TEXTURES};
 use serde_json::{Map, Value, json};
 
 /// A JSON schema (draft 2020-12) of native scene files. `settings` are the keys of `[render]`.
@@ -42,6 +42,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
             "model": list(model()),
             "replace": list(replacement()),
         },
+        "$defs": { "formula": rows(TEXTURES.iter().map(|r| &r.entry).collect(), &[], None) },
     })
 }
 
@@ -97,18 +98,29 @@ fn values(kind: ParameterKind) -> Value {
         ParameterKind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
         ParameterKind::Colour { min, max } => json!({ "oneOf": colour(min, max) }),
         ParameterKind::ColourTexture { min, max } => {
-            json!({ "oneOf": colour(min, max).into_iter().chain([texture(&[])]).collect::<Vec<_>>() })
+            let textures = [texture(&[]), formula()];
+            json!({ "oneOf": colour(min, max).into_iter().chain(textures).collect::<Vec<_>>() })
         }
         ParameterKind::NumberTexture { min, max } => {
             let number = json!({ "type": "number", "minimum": min, "maximum": max });
             let channel = json!({ "enum": CHANNELS, "description": "the channel that is read" });
-            json!({ "oneOf": [number, texture(&[("channel", channel)])] })
+            json!({ "oneOf": [number, texture(&[("channel", channel)]), formula()] })
         }
-        ParameterKind::Texture => texture(&[]),
+        ParameterKind::Texture => json!({ "oneOf": [texture(&[]), formula()] }),
+        ParameterKind::Stops { min, max } => {
+            let stop = json!([{ "type": "number" }, { "oneOf": colour(min, max) }]);
+            let stop = json!({ "type": "array", "prefixItems": stop, "minItems": 2, "maxItems": 2 });
+            json!({ "type": "array", "items": stop, "minItems": 1 })
+        }
         ParameterKind::Vector => vector(),
         ParameterKind::Choice(words) => json!({ "enum": words }),
         ParameterKind::Text | ParameterKind::Material => json!({ "type": "string" }),
     }
+}
+
+/// A texture by formula; one may be made of others.
+fn formula() -> Value {
+    json!({ "$ref": "#/$defs/formula" })
 }
 
 /// A picture in place of a value.

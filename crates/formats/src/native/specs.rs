@@ -8,7 +8,10 @@ use crate::reading::Texels;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::texture::Channel;
-use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, Value};
+use bilux_scene::{
+    CAMERAS, LIGHTS, MATERIALS, Parameters, Reader, SceneError, Spec, TEXTURES, Texture, Value,
+};
+use std::sync::Arc;
 
 /// Keys that all of them have.
 pub(super) const KEYS: [&str; 2] = ["name", "kind"];
@@ -99,21 +102,39 @@ impl Native<'_, '_> {
         part: &Part,
     ) -> Result<Option<Value>, FormatError> {
         let Node::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
+        let Some(texture) = self.texture(key, kind, Texels::Colours, table, part)? else { return Ok(None) };
+        self.scene.textures.push(texture);
+        Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
+    }
+
+    /// A texture for a parameter of this kind; where that says nothing else, it holds what the one around it does.
+    fn texture(
+        &mut self,
+        key: &str,
+        kind: Option<ParameterKind>,
+        around: Texels,
+        table: &Table,
+        part: &Part,
+    ) -> Result<Option<Arc<Texture>>, FormatError> {
+        let is_tone = matches!(kind, Some(ParameterKind::ColourTexture { .. }));
+        let is_number = matches!(kind, Some(ParameterKind::NumberTexture { .. }));
+        let has_channels = is_number || (is_tone && around != Texels::Colours);
         let holds = match kind {
-            Some(ParameterKind::NumberTexture { .. }) => Texels::Numbers(channel(table)?),
+            _ if has_channels => Texels::Numbers(channel(table)?),
             Some(ParameterKind::Texture) => Texels::Numbers(None),
-            _ => Texels::Colours,
+            _ => around,
         };
-        let has_channels = matches!(kind, Some(ParameterKind::NumberTexture { .. }));
+        if let Some(item) = table.find("kind") {
+            return self.formula(item.text("kind")?, holds, table, part).map(Some);
+        }
         let keys = ["texture", "channel"].into_iter().take(if has_channels { 2 } else { 1 });
         table.check_keys(&format!("the texture of '{key}'"), keys)?;
-        let file = table.find("texture").ok_or_else(|| missing("texture (a file)", table))?;
-        let name = file.text("texture")?;
-        match self.reading.texture(part.folder.as_deref(), name, holds, &file.at) {
-            Ok(texture) => {
-                self.scene.textures.push(texture);
-                Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
-            }
+        let file = table.find("texture").ok_or_else(|| {
+            let kinds: Vec<&str> = TEXTURES.iter().map(|row| row.entry.name).collect();
+            missing(&format!("texture (a file), or kind ({}),", kinds.join(", ")), table)
+        })?;
+        match self.reading.texture(part.folder.as_deref(), file.text("texture")?, holds, &file.at) {
+            Ok(texture) => Ok(Some(texture)),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
                 let reason = error.without_place();
@@ -122,6 +143,38 @@ impl Native<'_, '_> {
                 Ok(None)
             }
         }
+    }
+
+    /// A texture by formula, and those that it is made of.
+    fn formula(
+        &mut self,
+        kind: &str,
+        holds: Texels,
+        table: &Table,
+        part: &Part,
+    ) -> Result<Arc<Texture>, FormatError> {
+        let kinds = TEXTURES.iter().map(|row| row.entry.name);
+        let at = table.find("kind").map_or(&table.at, |item| &item.at);
+        let Some(row) = TEXTURES.iter().find(|row| row.entry.name == kind) else {
+            return Err(SceneError::unknown("texture", kind, kinds, at).into());
+        };
+        let names = row.entry.parameters.iter().map(|p| p.name);
+        table.check_keys(&format!("the texture '{kind}'"), names.chain(["kind"]))?;
+        let mut spec = Spec { span: table.at.clone(), ..Spec::new("", kind) };
+        let mut parts = Vec::new();
+        for (key, at, item) in table.entries.iter().filter(|(key, ..)| key != "kind") {
+            let value = if let Node::Table(inner) = &item.node {
+                let kind = row.entry.parameters.iter().find(|p| p.name == key).map(|p| p.kind);
+                let around = if holds == Texels::Colours { holds } else { Texels::Numbers(None) };
+                let Some(texture) = self.texture(key, kind, around, inner, part)? else { continue };
+                parts.push(texture);
+                Value::Texture(parts.len() - 1)
+            } else {
+                plain_value(key, item)?
+            };
+            spec.parameters.set_at(key, value, at.clone());
+        }
+        Ok(Arc::new(Texture::by_formula(spec, parts, holds != Texels::Colours)?))
     }
 }
 

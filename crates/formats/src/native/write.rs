@@ -7,7 +7,7 @@ use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::MotionKey;
 use bilux_scene::cameras::CameraSpec;
-use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
+use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Texture, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -159,8 +159,8 @@ fn value_text(
             let texts = texts.collect::<Result<Vec<_>, _>>()?;
             format!("[{}]", texts.into_iter().flatten().collect::<Vec<_>>().join(", "))
         }
-        Value::Texture(index) => match writing.texture(scene, *index)? {
-            Some(file) => format!("{{ texture = {} }}", quoted(&file)),
+        Value::Texture(index) => match scene.textures.get(*index) {
+            Some(texture) => texture_text(texture, scene, writing)?,
             None => return Ok(None),
         },
         Value::Material(index) => match material_names(&scene.materials).get(*index) {
@@ -168,6 +168,32 @@ fn value_text(
             None => return Ok(None),
         },
     }))
+}
+
+/// A file, or a formula with all that it is made of.
+fn texture_text(
+    texture: &Arc<Texture>,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+) -> Result<String, FormatError> {
+    let Some(formula) = texture.formula() else {
+        return Ok(format!("{{ texture = {} }}", quoted(&writing.texture_file(texture)?)));
+    };
+    let mut out = format!("{{ kind = {}", quoted(&formula.spec().kind));
+    for (key, value, _) in &formula.spec().parameters.0 {
+        let value = match value {
+            Value::Texture(index) => match formula.part(*index) {
+                Some(part) => Some(texture_text(part, scene, writing)?),
+                None => None,
+            },
+            plain => value_text(plain, scene, writing)?,
+        };
+        if let Some(value) = value {
+            out.push_str(&format!(", {key} = {value}"));
+        }
+    }
+    out.push_str(" }");
+    Ok(out)
 }
 
 /// The shortest text of a number that reads back as the same, taken as an f32 where it is one.

@@ -7,8 +7,8 @@ use super::spectra::{self, Named, Spectrum};
 use super::unknown;
 use crate::FormatError;
 use bilux_math::{Rgb, Vec2};
-use bilux_scene::texture::{Filter, Image, Texels, Wrap};
-use bilux_scene::{Texture, Value};
+use bilux_scene::texture::{Image, Texels};
+use bilux_scene::{Spec, Texture, Value};
 use std::sync::Arc;
 
 /// What a spectrum is of.
@@ -21,6 +21,9 @@ pub(super) enum Meaning {
     /// What a light shines with: colours as they are, other spectra with a luminance of 1.
     Light,
 }
+
+/// Nests of more formulas are baked, so that names of names of names take no time.
+const MOST_PARTS: usize = 16;
 
 /// A constant or a picture.
 #[derive(Clone, Debug)]
@@ -46,9 +49,14 @@ impl Ink {
         match self {
             Ink::Colour(colour) => *colour,
             Ink::Picture(picture) => {
-                let count = (picture.width() * picture.height()).max(1);
-                let sums = picture
-                    .texels()
+                let all: Vec<Rgb> = if picture.formula().is_some() {
+                    picture.spread(64).collect()
+                } else {
+                    picture.texels().collect()
+                };
+                let count = all.len().max(1);
+                let sums = all
+                    .iter()
                     .fold([0f64; 3], |sums, texel| std::array::from_fn(|c| sums[c] + f64::from(texel[c])));
                 Rgb::from_array(sums.map(|sum| (sum / count as f64) as f32))
             }
@@ -98,6 +106,36 @@ impl Pbrt<'_, '_> {
         Ok(Texture::of(name, Arc::new(image), true))
     }
 
+    /// What a texture of ours says of inks; baked by the rule where that takes other numbers, or has many parts.
+    pub(super) fn by_formula<const N: usize>(
+        &mut self,
+        kind: &str,
+        inks: [(&str, &Ink); N],
+        numbers: &[(&str, f32)],
+        rule: impl Fn(Vec2) -> Rgb,
+    ) -> Result<Ink, FormatError> {
+        let mut spec = Spec::new("", kind);
+        let mut parts = Vec::new();
+        for (key, ink) in inks {
+            let value = match ink {
+                Ink::Colour(colour) if key == "amount" => colour.r.into(),
+                Ink::Colour(colour) => (*colour).into(),
+                Ink::Picture(picture) => {
+                    parts.push(picture.clone());
+                    Value::Texture(parts.len() - 1)
+                }
+            };
+            spec.parameters.set(key, value);
+        }
+        numbers.iter().for_each(|(key, number)| spec.parameters.set(key, *number));
+        match Texture::by_formula(spec, parts, true) {
+            Ok(texture) if texture.formula().is_some_and(|formula| formula.cost() <= MOST_PARTS) => {
+                Ok(Ink::Picture(Arc::new(texture)))
+            }
+            _ => self.baked(kind, &inks.map(|(_, ink)| ink), rule),
+        }
+    }
+
     /// Two inks as one picture over texture coordinates from 0 to 1.
     pub(super) fn baked(
         &mut self,
@@ -109,7 +147,10 @@ impl Pbrt<'_, '_> {
         const LEAST: usize = 256;
         const MOST: usize = 2048;
         let side = |of: fn(&Texture) -> usize| {
-            let sides = parts.iter().map(|ink| if let Ink::Picture(p) = ink { of(p) } else { 0 });
+            let sides = parts.iter().map(|ink| match ink {
+                Ink::Picture(picture) if picture.formula().is_none() => of(picture),
+                _ => 0,
+            });
             sides.max().unwrap_or(0).clamp(LEAST, MOST)
         };
         let (width, height) = (side(Texture::width), side(Texture::height));
@@ -313,9 +354,4 @@ impl Pbrt<'_, '_> {
 
 fn of_samples(spectrum: &Spectrum, meaning: Meaning) -> Rgb {
     if meaning == Meaning::Light { spectrum.light() } else { spectrum.surface() }
-}
-
-/// A picture that is looked up without blending and repeated.
-pub(super) fn squares(texture: Texture) -> Texture {
-    Texture { filter: Filter::Nearest, wrap: [Wrap::Repeat; 2], ..texture }
 }

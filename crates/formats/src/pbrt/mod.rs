@@ -45,6 +45,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "motion",
         "materials",
         "textures",
+        "moved textures",
         "lights",
         "cameras",
         "settings",

@@ -1,6 +1,6 @@
 //! Named textures. Pictures stay pictures; what is made of others is worked out, and baked where it has to be.
 
-use super::inks::{Ink, Meaning, squares};
+use super::inks::{Ink, Meaning};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
 use super::unknown;
@@ -201,7 +201,7 @@ fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink,
     };
     match (a, b) {
         (Ink::Colour(colour), other) | (other, Ink::Colour(colour)) => Ok(other.scaled(colour)),
-        (a, b) => pbrt.baked("scale", &[&a, &b], |uv| a.at(uv) * b.at(uv)),
+        (a, b) => pbrt.by_formula("scale", [("a", &a), ("b", &b)], &[], |uv| a.at(uv) * b.at(uv)),
     }
 }
 
@@ -210,8 +210,8 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, F
     let amount = pbrt.part(list, "amount", Meaning::Number, 0.5)?;
     let blend = |a: Rgb, b: Rgb, t: Rgb| a + (b + a * -1.0) * t;
     match (a, b, amount) {
-        (Ink::Colour(a), Ink::Colour(b), amount) => pbrt.mapped(amount, |t| blend(a, b, t)),
-        (a, b, amount) => pbrt.baked("mix", &[&a, &b, &amount], |uv| {
+        (Ink::Colour(a), Ink::Colour(b), Ink::Colour(t)) => Ok(Ink::Colour(blend(a, b, t))),
+        (a, b, amount) => pbrt.by_formula("mix", [("a", &a), ("b", &b), ("amount", &amount)], &[], |uv| {
             blend(a.at(uv), b.at(uv), Rgb::grey(amount.at(uv).luminance()))
         }),
     }
@@ -236,13 +236,8 @@ fn checkerboard(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Resu
     }
     list.has("aamode");
     let [su, sv, du, dv] = pbrt.lies(list)?;
-    if let (Ink::Colour(a), Ink::Colour(b)) = (&a, &b) {
-        let board = squares(pbrt.picture("checkerboard", [2, 2], vec![*a, *b, *b, *a])?);
-        // Rows go downwards, and t upwards.
-        let transform = UvTransform::new([0.5 * du, 0.5 * (sv + dv)], 0.0, [0.5 * su, -0.5 * sv]);
-        return Ok(Ink::Picture(Arc::new(Texture { transform: Some(transform), ..board })));
-    }
-    pbrt.baked("checkerboard", &[&a, &b], |uv| {
+    let lies = [("u_scale", su), ("v_scale", sv), ("u_offset", du), ("v_offset", dv)];
+    pbrt.by_formula("checker", [("a", &a), ("b", &b)], &lies, |uv| {
         let (s, t) = ((su * uv.x + du).floor(), (sv * uv.y + dv).floor());
         if (s + t) % 2.0 == 0.0 { a.at(uv) } else { b.at(uv) }
     })
@@ -312,24 +307,4 @@ fn wrap(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Wrap, FormatError> {
             return Err(unknown("way to wrap", other, known, &list.place("wrap")));
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bilux_math::Vec2;
-
-    #[test]
-    fn boards_have_their_squares_where_they_should() {
-        let [su, sv, du, dv] = [3.0f32, 2.0, 0.0, 0.25];
-        let texels = vec![Rgb::WHITE, Rgb::BLACK, Rgb::BLACK, Rgb::WHITE];
-        let board = squares(Texture::new("", 2, 2, texels, true));
-        let transform = Some(UvTransform::new([0.5 * du, 0.5 * (sv + dv)], 0.0, [0.5 * su, -0.5 * sv]));
-        let board = Texture { transform, ..board };
-        for (i, k) in (0..40).flat_map(|i| (0..40).map(move |k| (i, k))) {
-            let uv = Vec2::new(i as f32 * 0.073 - 1.0, k as f32 * 0.0513 - 0.7);
-            let is_first = ((su * uv.x + du).floor() + (sv * uv.y + dv).floor()) % 2.0 == 0.0;
-            assert_eq!(board.at(uv), Rgb::grey(if is_first { 1.0 } else { 0.0 }), "{uv}");
-        }
-    }
 }

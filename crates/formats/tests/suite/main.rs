@@ -16,6 +16,7 @@ mod obj;
 mod off;
 mod oracles;
 mod overlay;
+mod patterns;
 mod pbrt;
 mod pbrt_written;
 mod ply;

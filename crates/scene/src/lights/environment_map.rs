@@ -55,6 +55,8 @@ const FLOOR: f64 = 1e-3;
 impl EnvironmentMap {
     /// A picture whose colours are multiplied by `scale`, turned to the right by `rotation` in radians.
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
+        // Densities are of texels.
+        let texture = texture.pictured(false).map_or(texture, |(picture, _)| Arc::new(picture));
         let (columns, rows) = (texture.width().min(MOST.0), texture.height().min(MOST.1));
         let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
         let mut map = EnvironmentMap {

@@ -57,5 +57,8 @@ pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<
 /// The greatest of each channel.
 fn brightest(picture: &Texture) -> Rgb {
     let greater = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
-    picture.texels().fold(Rgb::BLACK, greater)
+    match picture.formula() {
+        Some(_) => picture.spread(256).fold(Rgb::BLACK, greater),
+        None => picture.texels().fold(Rgb::BLACK, greater),
+    }
 }

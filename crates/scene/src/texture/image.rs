@@ -1,6 +1,7 @@
 //! The texels of pictures, held as compactly as they came.
 
 use super::Channel;
+use super::formula::{Formula, centre};
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use std::sync::LazyLock;
@@ -28,6 +29,8 @@ pub enum Texels {
         /// As many, or none where all is opaque.
         alpha: Vec<f32>,
     },
+    /// None at all: what they would be is worked out.
+    Formula(Formula),
 }
 
 /// What bytes mean as colours.
@@ -40,6 +43,7 @@ impl Image {
         let have = match &self.texels {
             Texels::Bytes(bytes) => bytes.len(),
             Texels::Floats { colours, .. } => colours.len(),
+            Texels::Formula(_) => self.width * self.height,
         };
         have != 0 && have == self.width * self.height
     }
@@ -54,6 +58,7 @@ impl Image {
         match &self.texels {
             Texels::Bytes(bytes) => size_of_val(&bytes[..]) as u64,
             Texels::Floats { colours, alpha } => (size_of_val(&colours[..]) + size_of_val(&alpha[..])) as u64,
+            Texels::Formula(_) => 0,
         }
     }
 
@@ -73,13 +78,17 @@ impl Image {
                     Some(Channel::A) => Rgb::grey(plain(a)),
                 }
             }
-            Texels::Floats { colours, alpha } => match channel {
-                None => colours[index],
-                Some(Channel::R) => Rgb::grey(colours[index].r),
-                Some(Channel::G) => Rgb::grey(colours[index].g),
-                Some(Channel::B) => Rgb::grey(colours[index].b),
-                Some(Channel::A) => Rgb::grey(alpha.get(index).copied().unwrap_or(1.0)),
-            },
+            Texels::Floats { alpha, .. } if channel == Some(Channel::A) => {
+                Rgb::grey(alpha.get(index).copied().unwrap_or(1.0))
+            }
+            Texels::Floats { colours, .. } => Channel::of(channel, colours[index]),
+            Texels::Formula(formula) => self.worked_out(formula, index, channel),
         }
+    }
+    /// The same of a formula; apart, so that looking up what is stored stays small.
+    #[cold]
+    #[inline(never)]
+    fn worked_out(&self, formula: &Formula, index: usize, channel: Option<Channel>) -> Rgb {
+        Channel::of(channel, formula.at(centre(index, self.width, self.height)))
     }
 }

@@ -1,8 +1,10 @@
-//! Pictures on surfaces.
+//! Pictures on surfaces, in texels and by formula.
 
+mod formula;
 mod image;
 mod sampling;
 
+pub use formula::{BuildPattern, Formula, Parts, Pattern, TEXTURES, TextureEntry};
 pub use image::{Image, Texels};
 pub use sampling::{Filter, UvTransform, Wrap};
 
@@ -64,6 +66,20 @@ pub enum Channel {
     B,
     /// Alpha.
     A,
+}
+
+impl Channel {
+    /// A colour without alpha, or one channel of it as a grey.
+    #[inline]
+    fn of(channel: Option<Channel>, colour: Rgb) -> Rgb {
+        match channel {
+            None => colour,
+            Some(Channel::R) => Rgb::grey(colour.r),
+            Some(Channel::G) => Rgb::grey(colour.g),
+            Some(Channel::B) => Rgb::grey(colour.b),
+            Some(Channel::A) => Rgb::WHITE,
+        }
+    }
 }
 
 impl Texture {
@@ -130,6 +146,9 @@ impl Texture {
 
     /// The same at coordinates of its own set.
     pub fn at_one(&self, uv: Vec2) -> Rgb {
+        if let Texels::Formula(formula) = &self.image.texels {
+            return self.worked_out(formula, uv);
+        }
         if !self.image.is_whole() || !uv.is_finite() {
             return Rgb::WHITE;
         }
@@ -152,6 +171,17 @@ impl Texture {
         let (above, below) =
             (self.raw(x0, y0).lerp(self.raw(x1, y0), fx), self.raw(x0, y1).lerp(self.raw(x1, y1), fx));
         self.finished(above.lerp(below, fy))
+    }
+
+    /// A formula at texture coordinates; its wrap and its filter say nothing.
+    #[inline(never)]
+    fn worked_out(&self, formula: &Formula, uv: Vec2) -> Rgb {
+        let downwards = |uv: Vec2| Vec2::new(uv.x, 1.0 - uv.y);
+        let uv = self.transform.map_or(uv, |transform| downwards(transform.apply(downwards(uv))));
+        if !uv.is_finite() {
+            return Rgb::WHITE;
+        }
+        self.finished(Channel::of(self.channel, formula.at(uv)))
     }
 
     /// A number at texture coordinates: the channel that counts, else the luminance.

@@ -1,0 +1,58 @@
+//! Squares of two colours, as on a board.
+
+use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
+use super::{Pattern, TextureEntry, tone};
+use crate::texture::{ColourMap, Filter, Texture, UvTransform};
+use bilux_math::registry::Entry;
+use bilux_math::{Rgb, Vec2};
+use std::sync::Arc;
+
+/// The row of `checker`.
+pub(super) const ENTRY: TextureEntry = TextureEntry {
+    entry: Entry {
+        name: "checker",
+        summary: "squares of two colours, as on a board",
+        source: "",
+        parameters: &[
+            tone("a", "the square at the lower left, and every second one from there", "1 1 1"),
+            tone("b", "the others", "0 0 0"),
+            u_scale("8"),
+            v_scale("8"),
+            U_OFFSET,
+            V_OFFSET,
+        ],
+    },
+    build: |reader, parts| {
+        let [a, b] = ["a", "b"].map(|key| parts.colour(reader, key));
+        Ok(Arc::new(Checker { a, b, place: Place::read(reader) }))
+    },
+};
+
+#[derive(Debug)]
+struct Checker {
+    a: ColourMap,
+    b: ColourMap,
+    place: Place,
+}
+
+impl Pattern for Checker {
+    fn at(&self, uv: Vec2) -> Rgb {
+        let at = self.place.of(uv).floor();
+        let is_even = (at.x as i64).wrapping_add(at.y as i64) & 1 == 0;
+        if is_even { self.a.at(uv) } else { self.b.at(uv) }
+    }
+
+    /// Two squares by two, repeated.
+    fn picture(&self) -> Option<Texture> {
+        if self.a.texture.is_some() || self.b.texture.is_some() {
+            return None;
+        }
+        let (a, b) = (self.a.colour, self.b.colour);
+        let Place { scale, shift } = self.place;
+        // Rows go downwards, and v upwards.
+        let offset = [0.5 * shift.x, 0.5 * (scale.y + shift.y)];
+        let transform = Some(UvTransform::new(offset, 0.0, [0.5 * scale.x, -0.5 * scale.y]));
+        let squares = Texture::new("", 2, 2, vec![a, b, b, a], true);
+        Some(Texture { transform, filter: Filter::Nearest, ..squares })
+    }
+}

@@ -1,0 +1,204 @@
+//! Pictures by formula: worked out where they are looked up. To add one: a file with its `ENTRY`, and a line in the table.
+
+mod checker;
+mod mix;
+mod noise;
+mod place;
+mod ramp;
+mod scale;
+
+use super::{ColourMap, Filter, Image, NumberMap, Texels, Texture};
+use crate::{Reader, SceneError, Spec};
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec2};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Every kind of texture by formula.
+pub const TEXTURES: &[TextureEntry] = &[checker::ENTRY, ramp::ENTRY, noise::ENTRY, mix::ENTRY, scale::ENTRY];
+
+/// A row of [`TEXTURES`].
+#[derive(Clone, Copy, Debug)]
+pub struct TextureEntry {
+    /// Name, summary, source, parameters.
+    pub entry: Entry,
+    /// Makes one from its parameters and the textures that these name by their index.
+    pub build: BuildPattern,
+}
+
+/// How a texture is made from its parameters and the textures among these.
+pub type BuildPattern = fn(&Reader, &Parts) -> Result<Arc<dyn Pattern>, SceneError>;
+
+/// What a surface looks like at its texture coordinates.
+pub trait Pattern: Debug + Send + Sync {
+    /// The colour at texture coordinates, v upwards.
+    fn at(&self, uv: Vec2) -> Rgb;
+    /// The very same as a picture, where there is one.
+    fn picture(&self) -> Option<Texture> {
+        None
+    }
+}
+
+/// A texture by formula: what was said of it, and what that makes.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    spec: Spec,
+    parts: Vec<Arc<Texture>>,
+    pattern: Arc<dyn Pattern>,
+    cost: usize,
+}
+
+impl PartialEq for Formula {
+    fn eq(&self, other: &Formula) -> bool {
+        (&self.spec, &self.parts) == (&other.spec, &other.parts)
+    }
+}
+
+/// More formulas than anybody writes within one, and so few that a surface is not slow.
+const MOST_FORMULAS: usize = 256;
+/// Texels on the sides of a picture of a formula.
+const SIDES: [usize; 2] = [1024, 4096];
+
+impl Formula {
+    /// What a spec describes. Where it says a texture, it means one of the `parts`.
+    ///
+    /// # Errors
+    /// When no row has its kind, a parameter is wrong, or hundreds of formulas are parts of it.
+    pub fn new(spec: Spec, parts: Vec<Arc<Texture>>) -> Result<Formula, SceneError> {
+        let names = TEXTURES.iter().map(|row| row.entry.name);
+        let row = TEXTURES.iter().find(|row| row.entry.name == spec.kind);
+        let row = row.ok_or_else(|| SceneError::unknown("texture", &spec.kind, names, &spec.span))?;
+        let formulas = parts.iter().filter_map(|part| part.formula());
+        let cost = formulas.fold(1, |cost: usize, formula| cost.saturating_add(formula.cost));
+        if cost > MOST_FORMULAS {
+            let message = format!("textures are made of more than {MOST_FORMULAS} others by formula");
+            return Err(SceneError::invalid(message, &spec.span));
+        }
+        let pattern = (row.build)(&Reader::new(&spec, &row.entry)?, &Parts(&parts))?;
+        Ok(Formula { spec, parts, pattern, cost })
+    }
+
+    /// What was said of it; textures are indices of its parts.
+    pub fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// The textures that it is made of.
+    pub fn parts(&self) -> impl Iterator<Item = &Arc<Texture>> {
+        self.parts.iter()
+    }
+
+    /// One of them.
+    pub fn part(&self, index: usize) -> Option<&Arc<Texture>> {
+        self.parts.get(index)
+    }
+
+    /// How many formulas are worked out for one look at it, itself among them.
+    pub fn cost(&self) -> usize {
+        self.cost
+    }
+
+    /// The colour at texture coordinates, v upwards.
+    pub fn at(&self, uv: Vec2) -> Rgb {
+        self.pattern.at(uv)
+    }
+
+    /// Texels on each side that show what there is to see.
+    fn side(&self) -> usize {
+        let sides = self.parts.iter().map(|part| part.width().max(part.height()));
+        sides.max().unwrap_or(0).clamp(SIDES[0], SIDES[1])
+    }
+}
+
+impl Texture {
+    /// A texture by formula.
+    ///
+    /// # Errors
+    /// As [`Formula::new`].
+    pub fn by_formula(spec: Spec, parts: Vec<Arc<Texture>>, is_data: bool) -> Result<Texture, SceneError> {
+        let formula = Formula::new(spec, parts)?;
+        let (name, side) = (formula.spec.kind.clone(), formula.side());
+        let image = Image { width: side, height: side, texels: Texels::Formula(formula) };
+        Ok(Texture::of(&name, Arc::new(image), is_data))
+    }
+
+    /// The formula that it is, if it is one.
+    pub fn formula(&self) -> Option<&Formula> {
+        match &self.image.texels {
+            Texels::Formula(formula) => Some(formula),
+            _ => None,
+        }
+    }
+
+    /// A picture of a formula, and whether it is the very same everywhere: it may be where a picture may lie elsewhere
+    /// than from 0 to 1 (`may_move`). None of what is a picture already.
+    pub fn pictured(&self, may_move: bool) -> Option<(Texture, bool)> {
+        let formula = self.formula()?;
+        let kept = |picture: Texture| Texture {
+            name: self.name.clone(),
+            is_data: self.is_data,
+            factor: self.factor,
+            channel: self.channel,
+            threshold: self.threshold,
+            second_uv: self.second_uv,
+            ..picture
+        };
+        if let Some(picture) = formula.pattern.picture().filter(|_| may_move && self.transform.is_none()) {
+            return Some((kept(picture), true));
+        }
+        Some((Texture { transform: self.transform, ..kept(self.sampled(formula)) }, false))
+    }
+
+    /// What is seen at so many places across and up, evenly spread from 0 to 1: for sums and extremes of formulas, which
+    /// have more texels than these need.
+    pub fn spread(&self, side: usize) -> impl Iterator<Item = Rgb> + '_ {
+        (0..side * side).map(move |i| self.at_one(centre(i, side, side)))
+    }
+
+    fn sampled(&self, formula: &Formula) -> Texture {
+        let (width, height) = (self.width(), self.height());
+        let texels = (0..width * height).map(|i| formula.at(centre(i, width, height))).collect();
+        Texture { filter: Filter::Linear, ..Texture::new(&self.name, width, height, texels, self.is_data) }
+    }
+}
+
+/// The texture coordinates of the middle of a texel.
+pub(super) fn centre(index: usize, width: usize, height: usize) -> Vec2 {
+    let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
+    Vec2::new(x / width as f32, 1.0 - y / height as f32)
+}
+
+/// The textures that the parameters of a formula name by their index.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts<'a>(&'a [Arc<Texture>]);
+
+impl Parts<'_> {
+    /// The texture under a key, if one is given.
+    fn texture(&self, reader: &Reader, key: &str) -> Option<Arc<Texture>> {
+        reader.texture(key).and_then(|index| self.0.get(index)).cloned()
+    }
+
+    /// The colour or texture under a key.
+    fn colour(&self, reader: &Reader, key: &str) -> ColourMap {
+        ColourMap { colour: reader.colour(key), texture: self.texture(reader, key) }
+    }
+
+    /// The number or texture under a key.
+    fn number(&self, reader: &Reader, key: &str) -> NumberMap {
+        let range = reader.range(key).map(|x| x as f32);
+        NumberMap { number: reader.number(key), range, texture: self.texture(reader, key) }
+    }
+}
+
+/// A colour of a formula, or another texture.
+const fn tone(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::ColourTexture { min: 0.0, max: 1e12 }, default }
+}
+
+/// The line between two colours.
+fn blend(a: Rgb, b: Rgb, amount: f32) -> Rgb {
+    a.lerp(b, amount)
+}
+
+#[cfg(test)]
+mod tests;

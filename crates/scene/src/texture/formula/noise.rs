@@ -1,0 +1,113 @@
+//! Clouds: noise of several sizes on top of each other. [Perlin 2002]
+
+use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
+use super::{Pattern, TextureEntry, blend, tone};
+use crate::texture::ColourMap;
+use bilux_math::hash::hash_words;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::transcendental::{cos, sin};
+use bilux_math::{Rgb, Vec2};
+use std::f32::consts::{SQRT_2, TAU};
+use std::sync::{Arc, LazyLock};
+
+/// The row of `noise`.
+pub(super) const ENTRY: TextureEntry = TextureEntry {
+    entry: Entry {
+        name: "noise",
+        summary: "clouds between two colours, in several sizes on top of each other",
+        source: "Perlin 2002",
+        parameters: &[
+            tone("a", "what stands for 0", "0 0 0"),
+            tone("b", "what stands for 1", "1 1 1"),
+            Parameter {
+                name: "octaves",
+                summary: "how many sizes there are, each half of the one before it",
+                unit: "",
+                kind: ParameterKind::Integer { min: 1, max: 16 },
+                default: "6",
+            },
+            Parameter {
+                name: "roughness",
+                summary: "how strong each size is against the one before it",
+                unit: "",
+                kind: ParameterKind::Number { min: 0.0, max: 1.0 },
+                default: "0.5",
+            },
+            Parameter {
+                name: "seed",
+                summary: "another number gives other clouds",
+                unit: "",
+                kind: ParameterKind::Integer { min: 0, max: i64::MAX },
+                default: "0",
+            },
+            u_scale("4"),
+            v_scale("4"),
+            U_OFFSET,
+            V_OFFSET,
+        ],
+    },
+    build: |reader, parts| {
+        let [a, b] = ["a", "b"].map(|key| parts.colour(reader, key));
+        let strength = reader.number("roughness");
+        let mut octaves = Vec::new();
+        let mut weight = 1.0;
+        for _ in 0..reader.integer("octaves") {
+            octaves.push(weight);
+            weight *= strength;
+        }
+        // The same spread for any number of octaves.
+        let spread = octaves.iter().map(|w| w * w).sum::<f32>().sqrt();
+        octaves.iter_mut().for_each(|weight| *weight *= SQRT_2 / spread);
+        let seed = reader.integer("seed") as u64;
+        Ok(Arc::new(Noise { a, b, octaves, seed, place: Place::read(reader) }))
+    },
+};
+
+#[derive(Debug)]
+struct Noise {
+    a: ColourMap,
+    b: ColourMap,
+    /// What each is multiplied by.
+    octaves: Vec<f32>,
+    seed: u64,
+    place: Place,
+}
+
+impl Pattern for Noise {
+    fn at(&self, uv: Vec2) -> Rgb {
+        let mut at = self.place.of(uv);
+        let mut sum = 0.0;
+        for (octave, weight) in self.octaves.iter().enumerate() {
+            // Far beyond where there are numbers for places between corners.
+            if !at.is_finite() {
+                break;
+            }
+            sum += weight * noise(at, hash_words([self.seed, octave as u64]));
+            // The shift keeps the zeros of all octaves from falling together.
+            at = at * 2.0 + Vec2::new(0.37, 0.71);
+        }
+        blend(self.a.at(uv), self.b.at(uv), (0.5 + 0.5 * sum).clamp(0.0, 1.0))
+    }
+}
+
+/// Directions of length 1, all around.
+static DIRECTIONS: LazyLock<[Vec2; 64]> = LazyLock::new(|| {
+    let angle = |i: usize| (i as f32 + 0.5) / 64.0 * TAU;
+    std::array::from_fn(|i| Vec2::new(cos(angle(i)), sin(angle(i))))
+});
+
+/// Slopes at the corners of a grid, blended so that the second derivative has no jumps: 0 at corners, and between
+/// -1/√2 and 1/√2. [Perlin 2002]
+fn noise(at: Vec2, seed: u64) -> f32 {
+    let corner = at.floor();
+    let inside = at - corner;
+    let (x, y) = (corner.x as i64, corner.y as i64);
+    let slope = |dx: i64, dy: i64| {
+        let hash = hash_words([seed, x.wrapping_add(dx) as u64, y.wrapping_add(dy) as u64]);
+        DIRECTIONS[(hash >> 58) as usize].dot(inside - Vec2::new(dx as f32, dy as f32))
+    };
+    let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    let (u, v) = (fade(inside.x), fade(inside.y));
+    let between = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    between(between(slope(0, 0), slope(1, 0), u), between(slope(0, 1), slope(1, 1), u), v)
+}

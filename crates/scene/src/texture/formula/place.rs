@@ -1,0 +1,38 @@
+//! Where a formula lies: what is done to texture coordinates before it is worked out.
+
+use crate::Reader;
+use bilux_math::Vec2;
+use bilux_math::registry::{Parameter, ParameterKind};
+
+/// A scale and a shift.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) scale: Vec2,
+    pub(super) shift: Vec2,
+}
+
+const fn number(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Number { min: -1e6, max: 1e6 }, default }
+}
+
+pub(super) const fn u_scale(default: &'static str) -> Parameter {
+    number("u_scale", "what u is multiplied by: how often it comes across the texture", default)
+}
+
+pub(super) const fn v_scale(default: &'static str) -> Parameter {
+    number("v_scale", "the same of v, upwards", default)
+}
+
+pub(super) const U_OFFSET: Parameter = number("u_offset", "what is added to u behind that", "0");
+pub(super) const V_OFFSET: Parameter = number("v_offset", "the same of v", "0");
+
+impl Place {
+    pub(super) fn read(reader: &Reader) -> Place {
+        let pair = |u: &str, v: &str| Vec2::new(reader.number(u), reader.number(v));
+        Place { scale: pair("u_scale", "v_scale"), shift: pair("u_offset", "v_offset") }
+    }
+
+    pub(super) fn of(&self, uv: Vec2) -> Vec2 {
+        uv * self.scale + self.shift
+    }
+}

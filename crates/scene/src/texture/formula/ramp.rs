@@ -1,0 +1,87 @@
+//! From colour to colour.
+
+use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
+use super::{Pattern, TextureEntry, blend};
+use crate::texture::Texture;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::{Rgb, Vec2};
+use std::sync::Arc;
+
+/// The row of `ramp`.
+pub(super) const ENTRY: TextureEntry = TextureEntry {
+    entry: Entry {
+        name: "ramp",
+        summary: "from colour to colour, along a line between each two",
+        source: "",
+        parameters: &[
+            Parameter {
+                name: "stops",
+                summary: "where which colour is; before the first and behind the last it stays",
+                unit: "",
+                kind: ParameterKind::Stops { min: 0.0, max: 1e12 },
+                default: "",
+            },
+            Parameter {
+                name: "along",
+                summary: "what says where: u, v, or the radius, 0 in the middle and 1 in the middle of an edge",
+                unit: "",
+                kind: ParameterKind::Choice(&["u", "v", "radius"]),
+                default: "u",
+            },
+            Parameter {
+                name: "input",
+                summary: "a texture of numbers that says where, in place of `along`",
+                unit: "",
+                kind: ParameterKind::Texture,
+                default: "none",
+            },
+            u_scale("1"),
+            v_scale("1"),
+            U_OFFSET,
+            V_OFFSET,
+        ],
+    },
+    build: |reader, parts| {
+        let along = match (parts.texture(reader, "input"), &*reader.text("along")) {
+            (Some(texture), _) => Along::Input(texture),
+            (None, "v") => Along::V,
+            (None, "radius") => Along::Radius,
+            (None, _) => Along::U,
+        };
+        Ok(Arc::new(Ramp { stops: reader.stops("stops"), along, place: Place::read(reader) }))
+    },
+};
+
+#[derive(Debug)]
+struct Ramp {
+    /// At least one; positions never fall.
+    stops: Vec<(f32, Rgb)>,
+    along: Along,
+    place: Place,
+}
+
+#[derive(Debug)]
+enum Along {
+    U,
+    V,
+    Radius,
+    Input(Arc<Texture>),
+}
+
+impl Pattern for Ramp {
+    fn at(&self, uv: Vec2) -> Rgb {
+        let at = self.place.of(uv);
+        let x = match &self.along {
+            Along::U => at.x,
+            Along::V => at.y,
+            Along::Radius => 2.0 * (at - 0.5).length(),
+            Along::Input(texture) => texture.number(uv),
+        };
+        let next = self.stops.partition_point(|(position, _)| *position <= x);
+        match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
+            (Some((from, a)), Some((to, b))) => blend(*a, *b, (x - from) / (to - from)),
+            (Some((_, colour)), None) | (None, Some((_, colour))) => *colour,
+            (None, None) => Rgb::BLACK,
+        }
+    }
+}
