@@ -198,6 +198,7 @@ fn textures_in_bytes_are_the_same_picture() {
 fn what_a_file_is_too_short_for_takes_no_memory() {
     for (format, name) in [
         ("tiff", "broken_absurd_size.tif"),
+        ("tiff", "broken_text_of_a_gigabyte.tif"),
         ("bmp", "broken_absurd_size.bmp"),
         ("bmp", "broken_absurd_runs.bmp"),
         ("tga", "broken_absurd_size.tga"),

@@ -61,8 +61,38 @@ struct Decoded {
     orientation: u16,
 }
 
+/// True when no text of the first directory says that it is longer than the file. The decoder takes memory for what it says,
+/// and complains on the terminal. [TIFF 6.0, section 2]
+fn texts_fit(bytes: &[u8]) -> bool {
+    const TEXT: u64 = 2;
+    let number = |at: usize, size: usize| -> Option<u64> {
+        let part = bytes.get(at..at.checked_add(size)?)?;
+        let join = |all: u64, byte: &u8| all << 8 | u64::from(*byte);
+        Some(if bytes.starts_with(b"II") {
+            part.iter().rev().fold(0, join)
+        } else {
+            part.iter().fold(0, join)
+        })
+    };
+    let is_big = number(2, 2) == Some(43);
+    // Sizes of an offset, of the number of entries, and of an entry.
+    let (offset, count, each) = if is_big { (8, 8, 20) } else { (4, 2, 12) };
+    let start = number(offset, offset).and_then(|start| usize::try_from(start).ok());
+    let Some(start) = start.filter(|start| *start < bytes.len()) else { return true };
+    let entries = number(start, count).unwrap_or(0).min((bytes.len() / each) as u64) as usize;
+    (0..entries).all(|entry| {
+        let at = start + count + entry * each;
+        number(at + 2, 2) != Some(TEXT) || number(at + 4, offset).is_none_or(|n| n <= bytes.len() as u64)
+    })
+}
+
 fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
-    let memory = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
+    if !texts_fit(bytes) {
+        return Err(PictureError::truncated(FORMAT, "a text"));
+    }
+    // What unpacked bytes may become at most is also what a stated length may ask for.
+    let most = u64::try_from(bytes.len()).unwrap_or(u64::MAX).saturating_mul(MOST_OF_A_BYTE);
+    let memory = usize::try_from(limits.max_bytes.min(most)).unwrap_or(usize::MAX);
     let mut own = tiff::decoder::Limits::default();
     own.decoding_buffer_size = memory;
     own.intermediate_buffer_size = memory;
@@ -94,7 +124,9 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     // A tile is unpacked whole, even where little of it is seen.
     let (across, down) = decoder.chunk_dimensions();
     limits.check(FORMAT, across.into(), down.min(height).into(), each)?;
-    if u64::from(width) * u64::from(height) * each / 8 > bytes.len() as u64 * MOST_OF_A_BYTE {
+    let pixel_bits = u64::from(channels) * u64::from(bits);
+    let stored = (u64::from(width) * u64::from(height)).saturating_mul(pixel_bits) / 8;
+    if stored > most {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
     let orientation = decoder.find_tag_unsigned::<u16>(Tag::Orientation).map_err(explain)?.unwrap_or(1);
