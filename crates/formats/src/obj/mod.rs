@@ -1,9 +1,11 @@
 //! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
 
 mod block;
+mod maps;
 mod mtl;
 mod mtl_write;
 mod read;
+mod surface;
 mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};

@@ -1,13 +1,14 @@
 //! Reading MTL: materials of the 1990s, mapped to ours as `docs/formats/obj.md` says.
 
+use super::maps::Map;
+use super::surface::{material, unit};
 use crate::FormatError;
 use crate::float::parse_f32;
-use crate::reading::{Oddities, Reading, Source, Texels};
+use crate::reading::{Oddities, Reading, Source};
 use crate::text::{Cursor, Places, name_of, quoted};
 use bilux_math::Rgb;
-use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
+use bilux_scene::{SceneBuilder, Span};
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// Adds every material of a library to the scene; `by_name` gets their indices, the first of a name wins.
 pub(super) fn read_library(
@@ -54,12 +55,12 @@ pub(super) fn read_library(
 
 /// A material while its lines are read; `None` is what no line says.
 #[derive(Default)]
-struct Draft {
-    name: String,
-    span: Span,
+pub(super) struct Draft {
+    pub(super) name: String,
+    pub(super) span: Span,
     colours: HashMap<&'static str, Rgb>,
     numbers: HashMap<&'static str, f32>,
-    maps: HashMap<&'static str, (String, Span)>,
+    pub(super) maps: HashMap<&'static str, Map>,
 }
 
 impl Draft {
@@ -67,30 +68,61 @@ impl Draft {
         Draft { name, span, ..Draft::default() }
     }
 
-    fn colour(&self, key: &str) -> Option<Rgb> {
+    pub(super) fn colour(&self, key: &str) -> Option<Rgb> {
         self.colours.get(key).copied()
     }
 
-    fn number(&self, key: &str) -> Option<f32> {
+    pub(super) fn number(&self, key: &str) -> Option<f32> {
         self.numbers.get(key).copied()
+    }
+
+    pub(super) fn illum(&self) -> i32 {
+        self.number("illum").map_or(2, |n| n as i32)
+    }
+
+    /// 0..=1.
+    pub(super) fn opacity(&self) -> f32 {
+        self.number("d").or(self.number("Tr").map(|t| 1.0 - t)).unwrap_or(1.0).clamp(0.0, 1.0)
+    }
+
+    /// The refractive index, where one is said that can be.
+    pub(super) fn eta(&self) -> Option<f32> {
+        self.number("Ni").filter(|&n| n > 0.0).map(|n| n.clamp(0.1, 10.0))
+    }
+
+    /// The diffuse colour; white below a picture of it.
+    pub(super) fn diffuse(&self) -> Option<Rgb> {
+        self.colour("Kd").map(unit).or(self.maps.contains_key("map_Kd").then_some(Rgb::WHITE))
     }
 }
 
 /// What is read, by the kind of what follows.
 const COLOURS: [&str; 6] = ["Kd", "Ks", "Ke", "Tf", "Kt", "Kr"];
-const NUMBERS: [&str; 5] = ["Ns", "Ni", "d", "Tr", "illum"];
-const MAPS: [&str; 2] = ["map_Kd", "map_Ks"];
+const NUMBERS: [&str; 12] =
+    ["Ns", "Ni", "d", "Tr", "illum", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
+const MAPS: [&str; 11] = [
+    "map_Kd", "map_Ks", "map_Ke", "map_d", "map_Pr", "map_Pm", "map_Ps", "map_Pc", "map_Pcr", "norm",
+    "map_bump",
+];
+/// The same by other words.
+const ALIASES: [(&str, &str); 4] =
+    [("bump", "map_bump"), ("map_opacity", "map_d"), ("map_Kn", "norm"), ("map_norm", "norm")];
+/// Ambient light follows kd here, and sharpness is of reflection maps.
+const WITHOUT_USE: [&str; 3] = ["Ka", "map_Ka", "sharpness"];
 
-struct Library<'a, 'o, 'r> {
-    reading: &'r mut Reading<'o>,
-    source: &'a Source<'a>,
-    cursor: Cursor<'a>,
-    places: Places<'a>,
-    oddities: Oddities,
+pub(super) struct Library<'a, 'o, 'r> {
+    pub(super) reading: &'r mut Reading<'o>,
+    pub(super) source: &'a Source<'a>,
+    pub(super) cursor: Cursor<'a>,
+    pub(super) places: Places<'a>,
+    pub(super) oddities: Oddities,
 }
 
 impl Library<'_, '_, '_> {
     fn statement(&mut self, key: &[u8], start: usize, draft: &mut Draft) -> Result<(), FormatError> {
+        let is = |name: &str| name.as_bytes().eq_ignore_ascii_case(key);
+        let alias = ALIASES.iter().find(|(other, _)| is(other)).map(|(_, name)| name.as_bytes());
+        let key = alias.unwrap_or(key);
         let known = |names: &[&'static str]| {
             names.iter().copied().find(|name| name.as_bytes().eq_ignore_ascii_case(key))
         };
@@ -106,12 +138,11 @@ impl Library<'_, '_, '_> {
                 draft.numbers.insert(name, number);
             }
         } else if let Some(name) = known(&MAPS) {
-            let file = self.map_file(start);
-            self.reading.budget.take::<u8>(2 * file.len(), self.source.name)?;
-            draft.maps.insert(name, (file, self.places.at(start)));
+            let map = self.map(start);
+            self.reading.budget.take::<u8>(2 * map.file.len(), self.source.name)?;
+            draft.maps.insert(name, map);
         } else {
-            // Ambient light follows kd here, and sharpness is of reflection maps.
-            if !key.eq_ignore_ascii_case(b"Ka") && !key.eq_ignore_ascii_case(b"sharpness") {
+            if known(&WITHOUT_USE).is_none() {
                 let places = &self.places;
                 let what = format!("{} of a material is not used", quoted(key));
                 self.oddities.note(&what, || places.at(start));
@@ -162,38 +193,6 @@ impl Library<'_, '_, '_> {
         }
     }
 
-    /// The file's name behind a map's options, which are not applied.
-    fn map_file(&mut self, start: usize) -> String {
-        let mut options = false;
-        loop {
-            let arguments = match self.cursor.peek_word() {
-                b"-o" | b"-s" | b"-t" => 1..=3,
-                b"-mm" => 2..=2,
-                b"-bm" | b"-boost" | b"-texres" => 1..=1,
-                b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-imfchan" | b"-type" | b"-colorspace" => {
-                    0..=0
-                }
-                _ => break,
-            };
-            options = true;
-            self.cursor.word();
-            if *arguments.end() == 0 {
-                self.cursor.word();
-            }
-            let mut taken = 0;
-            while taken < *arguments.end() && parse_f32(self.cursor.peek_word()).is_some() {
-                self.cursor.word();
-                taken += 1;
-            }
-        }
-        self.cursor.skip_blanks();
-        if options {
-            let places = &self.places;
-            self.oddities.note("options of a texture are not applied", || places.at(start));
-        }
-        name_of(self.cursor.rest_of_line())
-    }
-
     fn finish(
         &mut self,
         draft: Option<Draft>,
@@ -202,100 +201,9 @@ impl Library<'_, '_, '_> {
     ) -> Result<(), FormatError> {
         let Some(draft) = draft else { return Ok(()) };
         let mut spec = material(&draft);
-        for (map, tint, keys) in [("map_Kd", "Kd", ["kd", "reflectance"]), ("map_Ks", "Ks", ["ks", "ks"])] {
-            let Some((file, at)) = draft.maps.get(map) else { continue };
-            let Some(key) = keys.into_iter().find(|key| spec.parameters.find(key).is_some()) else {
-                continue;
-            };
-            if let Some(texture) = self.texture(file, at, scene)? {
-                scene.textures.push(tinted(texture, draft.colour(tint).unwrap_or(Rgb::WHITE)));
-                spec.parameters.set_at(key, Value::Texture(scene.textures.len() - 1), at.clone());
-            }
-        }
+        self.put_maps(&draft, &mut spec, scene)?;
         let index = scene.add_material(spec);
         by_name.entry(draft.name).or_insert(index);
         Ok(())
     }
-
-    /// A texture, or a warning that there is none.
-    fn texture(
-        &mut self,
-        file: &str,
-        at: &Span,
-        scene: &mut SceneBuilder,
-    ) -> Result<Option<Arc<Texture>>, FormatError> {
-        match self.reading.texture(self.source.folder, file, Texels::Colours, at) {
-            Ok(texture) => Ok(Some(texture)),
-            Err(error @ FormatError::TooLarge { .. }) => Err(error),
-            Err(error) => {
-                let reason = error.without_place();
-                scene.warn(format!("a colour stands in place of a texture: {reason}"), at.clone());
-                Ok(None)
-            }
-        }
-    }
-}
-
-/// A texture times a colour. Black is taken as white: many exporters write it beside every texture.
-fn tinted(texture: Arc<Texture>, tint: Rgb) -> Arc<Texture> {
-    if tint == Rgb::WHITE || tint.is_black() {
-        return texture;
-    }
-    Arc::new(Texture { factor: tint, ..(*texture).clone() })
-}
-
-/// Our material for an MTL one.
-fn material(draft: &Draft) -> Spec {
-    let illum = draft.number("illum").map_or(2, |n| n as i32);
-    let opacity = draft.number("d").or(draft.number("Tr").map(|t| 1.0 - t)).unwrap_or(1.0).clamp(0.0, 1.0);
-    let unit = |c: Rgb| c.clamp(0.0, 1.0);
-    let kd = draft.colour("Kd").map(unit);
-    let ks = draft.colour("Ks").map_or(Rgb::BLACK, unit);
-    let eta = draft.number("Ni").filter(|&n| n > 0.0).map(|n| n.clamp(0.1, 10.0));
-    let emission = draft.colour("Ke").map_or(Rgb::BLACK, |c| c.clamp(0.0, 1e12));
-    let kind = match illum {
-        4 | 6 | 7 | 9 => "dielectric",
-        3 | 5 | 8 if draft.colour("Kr").is_none() && kd.is_none_or(|c| c.is_black()) && !ks.is_black() => {
-            "mirror"
-        }
-        _ => "phong",
-    };
-    let mut spec = Spec { span: draft.span.clone(), ..Spec::new(&draft.name, kind) };
-    let mut set = |key: &str, value: Value| spec.parameters.set_at(key, value, draft.span.clone());
-    match kind {
-        "dielectric" => {
-            set("eta", eta.unwrap_or(1.5).into());
-            if let Some(tint) = draft.colour("Tf") {
-                set("tint", unit(tint).into());
-            }
-        }
-        "mirror" => set("reflectance", ks.into()),
-        _ => {
-            if let Some(kd) = kd.or(draft.maps.contains_key("map_Kd").then_some(Rgb::WHITE)) {
-                set("kd", (kd * opacity).into());
-            }
-            set("ks", if illum < 2 { Rgb::BLACK } else { ks }.into());
-            if let Some(exponent) = draft.number("Ns") {
-                set("exponent", exponent.clamp(0.0, 1e5).into());
-            }
-            let reflects = if matches!(illum, 3 | 5 | 8) { 1.0 } else { 0.0 };
-            set("reflectivity", draft.colour("Kr").map_or(reflects, |c| unit(c).max_channel()).into());
-            let through = draft
-                .colour("Kt")
-                .map(unit)
-                .or((opacity < 1.0).then(|| draft.colour("Tf").map_or(Rgb::WHITE, unit) * (1.0 - opacity)));
-            if let Some(kt) = through.filter(|kt| !kt.is_black()) {
-                set("kt", kt.into());
-                // Opacity says nothing of refraction: light goes straight on.
-                set("thin", (draft.colour("Kt").is_none()).into());
-            }
-            if let Some(eta) = eta {
-                set("eta", eta.into());
-            }
-        }
-    }
-    if kind != "dielectric" && !emission.is_black() {
-        set("emission", emission.into());
-    }
-    spec
 }

@@ -1,5 +1,6 @@
 //! Writing MTL, so that [`super::mtl`] reads the same material back.
 
+use super::surface::NUMBERS;
 use super::write::one_line;
 use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
@@ -38,8 +39,29 @@ pub(super) fn write_library(
     Ok(names)
 }
 
+/// What it holds of all.
+const OF_ANY: [&str; 3] = ["opacity", "normal", "normal_scale"];
+
 /// Parameters that MTL holds, by kind.
-const HELD: [(&str, &[&str]); 4] = [
+const HELD: [(&str, &[&str]); 5] = [
+    (
+        "principled",
+        &[
+            "base_color",
+            "base_metalness",
+            "specular_roughness",
+            "specular_ior",
+            "specular_roughness_anisotropy",
+            "anisotropy_rotation",
+            "fuzz_weight",
+            "coat_weight",
+            "coat_roughness",
+            "transmission_weight",
+            "transmission_color",
+            "emission",
+            "emission_scale",
+        ],
+    ),
     ("phong", &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "thin"]),
     ("diffuse", &["reflectance", "emission"]),
     ("mirror", &["reflectance", "emission"]),
@@ -57,13 +79,15 @@ fn write_material(
         writing.warn(format!("OBJ files hold no material '{}': a matt one stands in its place", spec.kind));
     }
     for (key, ..) in &spec.parameters.0 {
-        if held.is_some_and(|(_, keys)| !keys.contains(&key.as_str())) {
+        let key = key.as_str();
+        if held.is_some_and(|(_, keys)| !keys.contains(&key) && !OF_ANY.contains(&key)) {
             writing.warn(format!("OBJ files hold no '{key}' of a material: left out"));
         }
     }
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
     match spec.kind.as_str() {
         "phong" => write_phong(spec, out),
+        "principled" => write_principled(spec, scene, writing, out)?,
         "mirror" => {
             push_colour(out, "Kd", Rgb::BLACK);
             push_colour(out, "Ks", grey("reflectance", 0.95));
@@ -80,15 +104,76 @@ fn write_material(
             out.extend_from_slice(b"illum 1\n");
         }
     }
-    if let Some(emission) = colour(spec, "emission").filter(|c| !c.is_black()) {
+    let glow = if texture(spec, "emission").is_some() { "emission_scale" } else { "emission" };
+    if let Some(emission) = colour(spec, glow).filter(|c| !c.is_black()) {
         push_colour(out, "Ke", emission);
     }
-    for (map, keys) in [("map_Kd", ["kd", "reflectance"]), ("map_Ks", ["ks", "ks"])] {
+    for (map, keys) in
+        [("map_Kd", ["kd", "reflectance", "base_color"]), ("map_Ks", ["ks"; 3]), ("map_Ke", ["emission"; 3])]
+    {
         let index = keys.into_iter().find_map(|key| texture(spec, key));
-        let file = index.map(|index| writing.texture(scene, index)).transpose()?.flatten();
-        if let Some(file) = file {
-            out.extend_from_slice(format!("{map} {file}\n").as_bytes());
+        push_map(out, map, index, scene, writing)?;
+    }
+    if let Some(opacity) = number(spec, "opacity").filter(|opacity| *opacity < 1.0) {
+        push_number(out, "d", opacity);
+    }
+    push_map(out, "map_d", texture(spec, "opacity"), scene, writing)?;
+    let lean = number(spec, "normal_scale").unwrap_or(1.0);
+    push_map(out, &format!("norm -bm {lean}"), texture(spec, "normal"), scene, writing)
+}
+
+/// A line that names a picture, if there is one.
+fn push_map(
+    out: &mut Vec<u8>,
+    word: &str,
+    index: Option<usize>,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+) -> Result<(), FormatError> {
+    let Some(index) = index else { return Ok(()) };
+    let Some(file) = writing.texture(scene, index)? else { return Ok(()) };
+    let parts = scene.textures.get(index).and_then(|texture| texture.transform).map(|lies| lies.parts());
+    let mut options = String::new();
+    if let Some(([u, v], turn, [x, y])) = parts {
+        if turn != 0.0 {
+            writing.warn("OBJ files hold no turned textures: they are written upright");
         }
+        options = format!("-o {u} {} -s {x} {y} ", 1.0 - y - v);
+    }
+    out.extend_from_slice(format!("{word} {options}{file}\n").as_bytes());
+    Ok(())
+}
+
+/// In the words that other programs added.
+fn write_principled(
+    spec: &Spec,
+    scene: &SceneBuilder,
+    writing: &mut Writing,
+    out: &mut Vec<u8>,
+) -> Result<(), FormatError> {
+    push_colour(out, "Kd", colour(spec, "base_color").unwrap_or(Rgb::grey(0.8)));
+    push_number(out, "Pr", number(spec, "specular_roughness").unwrap_or(0.3));
+    for (word, map, key) in NUMBERS {
+        if let Some(number) = number(spec, key).filter(|_| word != "Pr") {
+            push_number(out, word, number);
+        }
+        push_map(out, map, texture(spec, key), scene, writing)?;
+    }
+    push_number(out, "Ni", number(spec, "specular_ior").unwrap_or(1.5));
+    if let Some(aniso) = number(spec, "specular_roughness_anisotropy") {
+        push_number(out, "aniso", aniso);
+        push_number(out, "anisor", number(spec, "anisotropy_rotation").unwrap_or(0.0));
+    }
+    match number(spec, "transmission_weight").filter(|weight| *weight > 0.0) {
+        Some(weight) => {
+            if weight < 1.0 {
+                writing
+                    .warn("OBJ files hold no material that is clear in part: all of it is written as clear");
+            }
+            push_colour(out, "Tf", colour(spec, "transmission_color").unwrap_or(Rgb::WHITE));
+            out.extend_from_slice(b"illum 7\n");
+        }
+        None => out.extend_from_slice(b"illum 2\n"),
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read};
 use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_scene::texture::Wrap;
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 
@@ -137,12 +138,151 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert_eq!(value(&scene.materials[0], "kd"), Some(&Value::Texture(0)));
     assert!(scene.textures[0].texels().eq([Rgb::BLACK, Rgb::new(0.5, 1.0, 1.0)]));
-    assert_eq!(value(&scene.materials[1], "kd"), Some(&Value::triple([0.3; 3])));
+    // Half of a picture to the right, from below up; where none can be had, a checker.
+    let texture = &scene.textures[0];
+    let moved = texture.transform.unwrap().apply(Vec2::new(0.2, 0.6));
+    assert!(moved.distance(Vec2::new(0.1 + 0.2, 0.4)) < 1e-6, "{moved}");
+    assert_eq!(value(&scene.materials[1], "kd"), Some(&Value::Texture(1)));
+    assert_eq!(scene.textures[1].texel(0, 0), Rgb::new(1.0, 0.0, 1.0) * 0.3);
     let all = warnings(&scene);
     assert!(all.contains("l.mtl:6:1") && all.contains("outside the scene's folder"), "{all}");
     assert!(all.contains("l.mtl:8:1") && all.contains("no file 'no.png'"), "{all}");
     let open = ReadOptions { allow_outside: true, ..ReadOptions::default() };
     assert_eq!(value(&read(&path, &open).unwrap().materials[1], "kd"), Some(&Value::Texture(1)));
+}
+
+/// A scene of one material, with the pictures beside it that the closure writes.
+fn of_material(library: &str, pictures: impl FnOnce(&Path)) -> SceneBuilder {
+    let folder = tempfile::tempdir().unwrap();
+    pictures(folder.path());
+    std::fs::write(folder.path().join("l.mtl"), library).unwrap();
+    let path = folder.path().join("scene.obj");
+    std::fs::write(&path, format!("mtllib l.mtl\n{SQUARE}usemtl m\nf 1 2 3\n")).unwrap();
+    read(&path, &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn words_of_metal_and_roughness_make_a_principled_surface() {
+    let library = "newmtl m\nKd .8 .4 .2\nNi 1.45\nPr .25\nPm 1\nPs .1\nPc .5\nPcr .05\naniso .7\nanisor .25\nKe 0 0 2\nd .5\n";
+    let scene = of_material(library, |_| {});
+    assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
+    let spec = &scene.materials[0];
+    assert_eq!(spec.kind, "principled");
+    for (key, wanted) in [
+        ("base_metalness", 1.0),
+        ("specular_roughness", 0.25),
+        ("specular_ior", 1.45),
+        ("fuzz_weight", 0.1),
+        ("coat_weight", 0.5),
+        ("coat_roughness", 0.05),
+        ("specular_roughness_anisotropy", 0.7),
+        ("anisotropy_rotation", 0.25),
+        ("opacity", 0.5),
+    ] {
+        assert_eq!(value(spec, key), Some(&Value::from(wanted as f32)), "{key}");
+    }
+    assert_eq!(value(spec, "base_color"), Some(&Value::triple([0.8, 0.4, 0.2])));
+    assert_eq!(value(spec, "emission"), Some(&Value::triple([0.0, 0.0, 2.0])));
+    // Without a roughness it is that of the exponent; glass is clear.
+    let glass = of_material("newmtl m\nillum 7\nNs 6\nPm 0\nTf .9 1 1\n", |_| {});
+    let said = |key| value(&glass.materials[0], key);
+    assert_eq!(said("specular_roughness"), Some(&Value::from(0.5f32.sqrt())));
+    assert_eq!(said("transmission_weight"), Some(&Value::from(1.0f32)));
+    assert_eq!(said("transmission_color"), Some(&Value::triple([0.9, 1.0, 1.0])));
+    assert!(glass.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
+}
+
+#[test]
+fn a_principled_surface_comes_back() {
+    use bilux_scene::{Texture, texture::UvTransform};
+    use std::sync::Arc;
+    let mut scene = materials("newmtl m\nPr 0\n");
+    let mut picture = Texture::new("", 2, 1, vec![Rgb::grey(0.2), Rgb::WHITE], true);
+    picture.transform = Some(UvTransform::new([0.25, -2.0], 0.0, [2.0, 3.0]));
+    scene.textures.push(Arc::new(picture));
+    let spec = Spec::new("m", "principled")
+        .with("base_color", Rgb::new(0.5, 0.25, 1.0))
+        .with("specular_roughness", Value::Texture(0))
+        .with("coat_weight", 0.5f32)
+        .with("coat_roughness", 0.25f32)
+        .with("transmission_weight", 1.0f32)
+        .with("transmission_color", Rgb::new(1.0, 0.5, 0.5))
+        .with("normal", Value::Texture(0))
+        .with("normal_scale", 0.5f32);
+    scene.materials[scene.objects[0].material] = spec.clone();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.obj");
+    let lost = bilux_formats::write(&path, &scene, &Default::default()).unwrap();
+    assert!(lost.is_empty(), "{lost:?}");
+    let back = read(&path, &ReadOptions::default()).unwrap();
+    let found = &back.materials[back.objects[0].material];
+    assert_eq!(found.kind, "principled");
+    for (key, wanted, _) in &spec.parameters.0 {
+        match (value(found, key), wanted) {
+            (Some(Value::Texture(index)), Value::Texture(_)) => {
+                let texture = &back.textures[*index];
+                for uv in [Vec2::new(0.1, 0.3), Vec2::new(0.7, 0.9)] {
+                    let (a, b) = (texture.at(uv).r, scene.textures[0].at(uv).r);
+                    assert!((a - b).abs() < 0.004, "{key}: {a} {b}");
+                }
+            }
+            (found, wanted) => assert_eq!(found, Some(wanted), "{key}"),
+        }
+    }
+}
+
+#[test]
+fn pictures_of_numbers_holes_light_and_bumps_are_read() {
+    use bilux_pictures::{Picture, write as write_picture};
+    let library = "newmtl m\nKe 3 3 3\nmap_Ke glow.png\nmap_Pr -clamp on rough.png\nmap_d -imfchan g holes.png\nbump -bm 0.5 up.png\n";
+    let scene = of_material(library, |folder| {
+        let grey =
+            |pixels: &[f32]| Picture::from_rgb(4, 1, pixels.iter().map(|x| Rgb::grey(*x)).collect()).unwrap();
+        for (name, picture) in [
+            ("glow.png", grey(&[1.0, 0.0, 1.0, 0.0])),
+            ("rough.png", grey(&[0.25; 4])),
+            ("holes.png", Picture::from_rgb(1, 1, vec![Rgb::new(1.0, 0.0, 1.0)]).unwrap()),
+            // A ramp that rises along u.
+            ("up.png", grey(&[0.0, 0.05, 0.2, 0.6])),
+        ] {
+            write_picture(&folder.join(name), &picture, &Default::default()).unwrap();
+        }
+    });
+    assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
+    let spec = &scene.materials[0];
+    let texture = |key: &str| match value(spec, key) {
+        Some(Value::Texture(index)) => &*scene.textures[*index],
+        other => panic!("{key}: {other:?}"),
+    };
+    assert_eq!(texture("emission").texel(0, 0), Rgb::WHITE);
+    assert_eq!(value(spec, "emission_scale"), Some(&Value::triple([3.0; 3])));
+    let rough = texture("specular_roughness");
+    assert!(rough.is_data && rough.wrap == [Wrap::Clamp; 2]);
+    assert!((rough.number(Vec2::splat(0.5)) - 0.537).abs() < 0.01, "as the file has it, not as light");
+    assert_eq!(texture("opacity").number(Vec2::splat(0.5)), 0.0);
+    // Where the picture rises along u the normal leans the other way; where it ends it falls.
+    let normals = texture("normal");
+    let lean = |x: usize| normals.texel(x, 0).r - 0.5;
+    assert!(lean(1) < -0.03 && lean(2) < -0.05 && lean(3) > 0.05, "{} {} {}", lean(1), lean(2), lean(3));
+    assert!((normals.texel(1, 0).g - 0.5).abs() < 0.01);
+    assert!(scene.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
+}
+
+#[test]
+fn bumps_that_are_normals_are_taken_as_such_and_alpha_as_holes() {
+    use bilux_pictures::{Picture, write as write_picture};
+    let scene = of_material("newmtl m\nKd 1 1 1\nmap_Bump -bm 2 n.png\nmap_d leaf.png\n", |folder| {
+        let blue = Picture::from_rgb(1, 1, vec![Rgb::new(0.25, 0.2, 1.0)]).unwrap();
+        write_picture(&folder.join("n.png"), &blue, &Default::default()).unwrap();
+        let mut leaf = Picture::from_rgb(1, 1, vec![Rgb::WHITE]).unwrap();
+        leaf.push_channel("A", vec![0.25]).unwrap();
+        write_picture(&folder.join("leaf.png"), &leaf, &Default::default()).unwrap();
+    });
+    let spec = &scene.materials[0];
+    assert_eq!(value(spec, "normal_scale"), Some(&Value::from(2.0f32)));
+    let Some(Value::Texture(index)) = value(spec, "opacity") else { panic!("no holes") };
+    let opacity = scene.textures[*index].number(Vec2::splat(0.5));
+    assert!((opacity - 0.25).abs() < 0.01, "{opacity}");
 }
 
 /// One row of two texels: a colour, then white.

@@ -1,0 +1,208 @@
+//! Pictures that MTL names: their options, and what they are put in place of.
+
+use super::mtl::{Draft, Library};
+use super::surface::NUMBERS;
+use crate::FormatError;
+use crate::float::parse_f32;
+use crate::reading::Texels;
+use crate::text::name_of;
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::texture::{Channel, Image, Texels as Held, UvTransform, Wrap};
+use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
+use std::sync::Arc;
+
+/// A picture as a line names it.
+pub(super) struct Map {
+    pub(super) file: String,
+    pub(super) at: Span,
+    offset: [f32; 2],
+    scale: [f32; 2],
+    is_clamped: bool,
+    /// Factor on bumps.
+    bump: f32,
+    /// The channel that is of use.
+    channel: Option<Channel>,
+}
+
+impl Map {
+    /// The texture as it lies: of texture coordinates with v upwards, scale first, then the shift.
+    fn placed(&self, texture: Texture) -> Texture {
+        let ([x, y], [u, v]) = (self.scale, self.offset);
+        let lies = (self.scale, self.offset) != ([1.0; 2], [0.0; 2]);
+        let transform = lies.then(|| UvTransform::new([u, 1.0 - y - v], 0.0, [x, y]));
+        let wrap = if self.is_clamped { [Wrap::Clamp; 2] } else { texture.wrap };
+        Texture { transform, wrap, ..texture }
+    }
+}
+
+impl Library<'_, '_, '_> {
+    /// A file's name behind its options.
+    pub(super) fn map(&mut self, start: usize) -> Map {
+        let mut map = Map {
+            file: String::new(),
+            at: self.places.at(start),
+            offset: [0.0; 2],
+            scale: [1.0; 2],
+            is_clamped: false,
+            bump: 1.0,
+            channel: None,
+        };
+        loop {
+            let option = self.cursor.peek_word();
+            let numbers = match option {
+                b"-o" | b"-s" | b"-t" => 3,
+                b"-mm" => 2,
+                b"-bm" | b"-boost" | b"-texres" => 1,
+                b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-imfchan" | b"-type" | b"-colorspace" => 0,
+                _ => break,
+            };
+            self.cursor.word();
+            let word = if numbers == 0 { self.cursor.word() } else { b"" };
+            let mut given = Vec::new();
+            while given.len() < numbers
+                && let Some(number) = parse_f32(self.cursor.peek_word())
+            {
+                given.push(if number.is_finite() { number } else { 0.0 });
+                self.cursor.word();
+            }
+            let pair = |default: f32| [0, 1].map(|i| given.get(i).copied().unwrap_or(default));
+            match (option, word) {
+                (b"-o", _) => map.offset = pair(0.0),
+                // One number is of u alone.
+                (b"-s", _) => map.scale = pair(1.0),
+                (b"-bm", _) => map.bump = given.first().copied().unwrap_or(1.0),
+                (b"-clamp", word) => map.is_clamped = word.eq_ignore_ascii_case(b"on"),
+                (b"-imfchan", b"r") => map.channel = Some(Channel::R),
+                (b"-imfchan", b"g") => map.channel = Some(Channel::G),
+                (b"-imfchan", b"b") => map.channel = Some(Channel::B),
+                (b"-imfchan", b"m") => map.channel = Some(Channel::A),
+                // What is so by itself, or only makes it faster.
+                (b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-colorspace" | b"-texres", _) => {}
+                (option, _) => {
+                    let (places, name) = (&self.places, String::from_utf8_lossy(option));
+                    self.oddities.note(&format!("{name} of a texture is not applied"), || places.at(start));
+                }
+            }
+        }
+        self.cursor.skip_blanks();
+        map.file = name_of(self.cursor.rest_of_line());
+        map
+    }
+
+    /// Puts the pictures of a material in place of its numbers and colours.
+    pub(super) fn put_maps(
+        &mut self,
+        draft: &Draft,
+        spec: &mut Spec,
+        scene: &mut SceneBuilder,
+    ) -> Result<(), FormatError> {
+        let known = |key: &str| spec.parameters.find(key).is_some();
+        let diffuse = ["kd", "reflectance", "base_color"].into_iter().find(|key| known(key));
+        let specular = Some("ks").filter(|key| known(key));
+        for (word, tint, key) in [("map_Kd", "Kd", diffuse), ("map_Ks", "Ks", specular)] {
+            if let (Some(map), Some(key)) = (draft.maps.get(word), key) {
+                let picture = self.colours(map, scene)?;
+                // Black is taken as white: many programs write it beside every picture.
+                let tint = draft.colour(tint).filter(|tint| !tint.is_black()).unwrap_or(Rgb::WHITE);
+                put(scene, spec, key, Texture { factor: tint, ..picture }, map);
+            }
+        }
+        if let Some(map) = draft.maps.get("map_Ke").filter(|_| spec.kind != "dielectric") {
+            let picture = self.colours(map, scene)?;
+            let light = draft.colour("Ke").filter(|light| !light.is_black()).unwrap_or(Rgb::WHITE);
+            put(scene, spec, "emission", picture, map);
+            spec.parameters.set_at("emission_scale", light.clamp(0.0, 1e12).into(), map.at.clone());
+        }
+        for (word, key) in NUMBERS.map(|(_, word, key)| (word, key)).into_iter().chain([("map_d", "opacity")])
+        {
+            let Some(map) = draft.maps.get(word) else { continue };
+            let Some(picture) = self.numbers(map, scene)? else { continue };
+            let is_opacity = key == "opacity";
+            let channel = match map.channel {
+                Some(channel) => channel,
+                None if is_opacity && has_alpha(&picture) => Channel::A,
+                None => Channel::R,
+            };
+            let factor = Rgb::grey(if is_opacity { draft.opacity() } else { 1.0 });
+            put(scene, spec, key, Texture { channel: Some(channel), factor, ..picture }, map);
+        }
+        for word in ["norm", "map_bump"] {
+            let Some(map) = draft.maps.get(word) else { continue };
+            let Some(picture) = self.numbers(map, scene)? else { continue };
+            let (normals, scale) = if word == "norm" || holds_normals(&picture) {
+                (picture, map.bump)
+            } else {
+                self.reading
+                    .budget
+                    .take::<[u8; 4]>(picture.image.width * picture.image.height, self.source.name)?;
+                (normals_of_heights(&picture, map.bump), 1.0)
+            };
+            put(scene, spec, "normal", normals, map);
+            spec.parameters.set_at("normal_scale", scale.clamp(0.0, 10.0).into(), map.at.clone());
+            break;
+        }
+        Ok(())
+    }
+
+    /// A picture of colours; a checker, with a warning, where it cannot be had.
+    fn colours(&mut self, map: &Map, scene: &mut SceneBuilder) -> Result<Texture, FormatError> {
+        match self.reading.texture(self.source.folder, &map.file, Texels::Colours, &map.at) {
+            Ok(texture) => Ok((*texture).clone()),
+            Err(error @ FormatError::TooLarge { .. }) => Err(error),
+            Err(error) => {
+                let reason = error.without_place();
+                scene.warn(
+                    format!("a checker of magenta stands in place of a texture: {reason}"),
+                    map.at.clone(),
+                );
+                Ok(Texture::missing(&map.file))
+            }
+        }
+    }
+
+    /// A picture of numbers; a warning, where it cannot be had.
+    fn numbers(&mut self, map: &Map, scene: &mut SceneBuilder) -> Result<Option<Texture>, FormatError> {
+        match self.reading.texture(self.source.folder, &map.file, Texels::Numbers(None), &map.at) {
+            Ok(texture) => Ok(Some((*texture).clone())),
+            Err(error @ FormatError::TooLarge { .. }) => Err(error),
+            Err(error) => {
+                let reason = error.without_place();
+                scene.warn(format!("a texture of numbers is left out: {reason}"), map.at.clone());
+                Ok(None)
+            }
+        }
+    }
+}
+
+fn put(scene: &mut SceneBuilder, spec: &mut Spec, key: &str, texture: Texture, map: &Map) {
+    scene.textures.push(Arc::new(map.placed(texture)));
+    spec.parameters.set_at(key, Value::Texture(scene.textures.len() - 1), map.at.clone());
+}
+
+fn has_alpha(texture: &Texture) -> bool {
+    Texture { channel: Some(Channel::A), ..texture.clone() }.texels().any(|alpha| alpha.r < 1.0)
+}
+
+/// True for a picture of normals, which many name as bumps: blue, with red and green in the middle.
+fn holds_normals(texture: &Texture) -> bool {
+    let count = texture.texels().count().max(1) as f32;
+    let mean = texture.texels().sum::<Rgb>() / count;
+    mean.b > 0.65 && (mean.r - 0.5).abs() < 0.15 && (mean.g - 0.5).abs() < 0.15
+}
+
+/// Normals of a relief that is `bump` texels higher where the picture is white than where it is black.
+fn normals_of_heights(texture: &Texture, bump: f32) -> Texture {
+    let (width, height) = (texture.width(), texture.height());
+    let at = |x: usize, y: usize| texture.texel(x % width, y % height).luminance() * bump;
+    let mut bytes = Vec::with_capacity(width * height);
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let along_u = 0.5 * (at(x + 1, y) - at(x + width - 1, y));
+        // Rows go down, and v goes up.
+        let along_v = 0.5 * (at(x, y + height - 1) - at(x, y + 1));
+        let n = Vec3::new(-along_u, -along_v, 1.0).normalize();
+        let [r, g, b] = (n * 0.5 + 0.5).to_array().map(|c| (c * 255.0).round() as u8);
+        bytes.push([r, g, b, 255]);
+    }
+    let image = Image { width, height, texels: Held::Bytes(bytes) };
+    Texture::of(&texture.name, Arc::new(image), true)
+}

@@ -1,0 +1,127 @@
+//! What a material of MTL comes to as one of ours, as `docs/formats/obj.md` says.
+
+use super::mtl::Draft;
+use bilux_math::Rgb;
+use bilux_scene::{Spec, Value};
+
+/// Words that other programs added, of which any one makes a material `principled`.
+const PBR: [&str; 6] = ["Pr", "Pm", "Ps", "Pc", "Pcr", "aniso"];
+const PBR_MAPS: [&str; 5] = ["map_Pr", "map_Pm", "map_Ps", "map_Pc", "map_Pcr"];
+
+/// The parameters of `principled` that are a number of MTL, or a picture of it, and that picture's word.
+pub(super) const NUMBERS: [(&str, &str, &str); 5] = [
+    ("Pm", "map_Pm", "base_metalness"),
+    ("Pr", "map_Pr", "specular_roughness"),
+    ("Ps", "map_Ps", "fuzz_weight"),
+    ("Pc", "map_Pc", "coat_weight"),
+    ("Pcr", "map_Pcr", "coat_roughness"),
+];
+
+/// Light goes into it, and is bent.
+fn is_glass(draft: &Draft) -> bool {
+    matches!(draft.illum(), 4 | 6 | 7 | 9)
+}
+
+/// Our material, without its pictures.
+pub(super) fn material(draft: &Draft) -> Spec {
+    let is_principled = PBR.iter().any(|word| draft.number(word).is_some())
+        || PBR_MAPS.iter().any(|word| draft.maps.contains_key(word));
+    let ks = draft.colour("Ks").map_or(Rgb::BLACK, unit);
+    let is_mirror = matches!(draft.illum(), 3 | 5 | 8)
+        && draft.colour("Kr").is_none()
+        && draft.colour("Kd").is_none_or(|c| unit(c).is_black())
+        && !draft.maps.contains_key("map_Kd")
+        && !ks.is_black();
+    let mut spec = if is_principled {
+        principled(draft)
+    } else if is_glass(draft) {
+        dielectric(draft)
+    } else if is_mirror {
+        Spec::new(&draft.name, "mirror").with("reflectance", ks)
+    } else {
+        phong(draft, ks)
+    };
+    spec.span = draft.span.clone();
+    let emission = draft.colour("Ke").map_or(Rgb::BLACK, |c| c.clamp(0.0, 1e12));
+    if spec.kind != "dielectric" && !emission.is_black() {
+        spec.parameters.set("emission", emission);
+    }
+    for (_, _, at) in &mut spec.parameters.0 {
+        *at = draft.span.clone();
+    }
+    spec
+}
+
+fn dielectric(draft: &Draft) -> Spec {
+    let spec = Spec::new(&draft.name, "dielectric").with("eta", draft.eta().unwrap_or(1.5));
+    match draft.colour("Tf") {
+        Some(tint) => spec.with("tint", unit(tint)),
+        None => spec,
+    }
+}
+
+fn phong(draft: &Draft, ks: Rgb) -> Spec {
+    let mut spec = Spec::new(&draft.name, "phong");
+    let mut set = |key: &str, value: Value| spec.parameters.set(key, value);
+    // A picture tells where there are holes; a number alone is of something clear.
+    let opacity = if draft.maps.contains_key("map_d") { 1.0 } else { draft.opacity() };
+    if let Some(kd) = draft.diffuse() {
+        set("kd", (kd * opacity).into());
+    }
+    set("ks", if draft.illum() < 2 { Rgb::BLACK } else { ks }.into());
+    if let Some(exponent) = draft.number("Ns") {
+        set("exponent", exponent.clamp(0.0, 1e5).into());
+    }
+    let reflects = if matches!(draft.illum(), 3 | 5 | 8) { 1.0 } else { 0.0 };
+    set("reflectivity", draft.colour("Kr").map_or(reflects, |c| unit(c).max_channel()).into());
+    let through = draft
+        .colour("Kt")
+        .map(unit)
+        .or((opacity < 1.0).then(|| draft.colour("Tf").map_or(Rgb::WHITE, unit) * (1.0 - opacity)));
+    if let Some(kt) = through.filter(|kt| !kt.is_black()) {
+        set("kt", kt.into());
+        // Opacity says nothing of refraction: light goes straight on.
+        set("thin", (draft.colour("Kt").is_none()).into());
+    }
+    if let Some(eta) = draft.eta() {
+        set("eta", eta.into());
+    }
+    spec
+}
+
+fn principled(draft: &Draft) -> Spec {
+    let mut spec = Spec::new(&draft.name, "principled");
+    let mut set = |key: &str, value: Value| spec.parameters.set(key, value);
+    if let Some(kd) = draft.diffuse() {
+        set("base_color", kd.into());
+    }
+    // Of Blinn's exponent, where nothing better is said. [Walter 2007]
+    let of_exponent = || Some((2.0 / (draft.number("Ns")?.max(0.0) + 2.0)).sqrt().sqrt());
+    for (word, _, key) in NUMBERS {
+        let number = draft.number(word).or_else(|| if word == "Pr" { of_exponent() } else { None });
+        if let Some(number) = number {
+            set(key, number.clamp(0.0, 1.0).into());
+        }
+    }
+    if let Some(aniso) = draft.number("aniso") {
+        set("specular_roughness_anisotropy", aniso.clamp(0.0, 1.0).into());
+        set("anisotropy_rotation", draft.number("anisor").unwrap_or(0.0).rem_euclid(1.0).into());
+    }
+    // 1 is what programs write that have no index.
+    if let Some(eta) = draft.eta().filter(|eta| *eta > 1.0) {
+        set("specular_ior", eta.into());
+    }
+    if draft.opacity() < 1.0 {
+        set("opacity", draft.opacity().into());
+    } else if is_glass(draft) {
+        set("transmission_weight", 1.0f32.into());
+        if let Some(tint) = draft.colour("Tf") {
+            set("transmission_color", unit(tint).into());
+        }
+    }
+    spec
+}
+
+pub(super) fn unit(c: Rgb) -> Rgb {
+    c.clamp(0.0, 1.0)
+}
