@@ -129,7 +129,7 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("inner");
     std::fs::create_dir(&folder).unwrap();
-    write_picture(&folder.join("two words.png"), Rgb::BLACK);
+    write_picture(folder.join("two words.png"), Rgb::BLACK);
     write_picture(&outer.path().join("secret.png"), Rgb::BLACK);
     let library = "newmtl m\nKd .5 1 1\nmap_Kd -blendu on -o .1 .2 -s 1 1 1 C:\\somewhere\\two words.png\nnewmtl n\nKd .3 .3 .3\nmap_Kd ../secret.png\nnewmtl o\nmap_Kd no.png\n";
     std::fs::write(folder.join("l.mtl"), library).unwrap();
@@ -245,7 +245,7 @@ fn pictures_of_numbers_holes_light_and_bumps_are_read() {
             // A ramp that rises along u.
             ("up.png", grey(&[0.0, 0.05, 0.2, 0.6])),
         ] {
-            write_picture(&folder.join(name), &picture, &Default::default()).unwrap();
+            write_picture(folder.join(name), &picture, &Default::default()).unwrap();
         }
     });
     assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
@@ -273,10 +273,10 @@ fn bumps_that_are_normals_are_taken_as_such_and_alpha_as_holes() {
     use bilux_pictures::{Picture, write as write_picture};
     let scene = of_material("newmtl m\nKd 1 1 1\nmap_Bump -bm 2 n.png\nmap_d leaf.png\n", |folder| {
         let blue = Picture::from_rgb(1, 1, vec![Rgb::new(0.25, 0.2, 1.0)]).unwrap();
-        write_picture(&folder.join("n.png"), &blue, &Default::default()).unwrap();
+        write_picture(folder.join("n.png"), &blue, &Default::default()).unwrap();
         let mut leaf = Picture::from_rgb(1, 1, vec![Rgb::WHITE]).unwrap();
         leaf.push_channel("A", vec![0.25]).unwrap();
-        write_picture(&folder.join("leaf.png"), &leaf, &Default::default()).unwrap();
+        write_picture(folder.join("leaf.png"), &leaf, &Default::default()).unwrap();
     });
     let spec = &scene.materials[0];
     assert_eq!(value(spec, "normal_scale"), Some(&Value::from(2.0f32)));
