@@ -129,7 +129,7 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("inner");
     std::fs::create_dir(&folder).unwrap();
-    write_picture(folder.join("two words.png"), Rgb::BLACK);
+    write_picture(&folder.join("two words.png"), Rgb::BLACK);
     write_picture(&outer.path().join("secret.png"), Rgb::BLACK);
     let library = "newmtl m\nKd .5 1 1\nmap_Kd -blendu on -o .1 .2 -s 1 1 1 C:\\somewhere\\two words.png\nnewmtl n\nKd .3 .3 .3\nmap_Kd ../secret.png\nnewmtl o\nmap_Kd no.png\n";
     std::fs::write(folder.join("l.mtl"), library).unwrap();
