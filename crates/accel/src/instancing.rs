@@ -23,6 +23,7 @@ use crate::ray::{Hit, Primitive, Query, Ray};
 use crate::slab::SlabRay;
 use bilux_math::glam::{DMat3, DVec3};
 use bilux_math::{Aabb, Motion, Transform, Vec3};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -83,9 +84,9 @@ enum Place {
 impl TwoLevel {
     /// Of these instances, for rays sent while the shutter is open (seconds, both ends included); a ray's
     /// time is clamped to that. Indices of instances in hits are those of the list.
-    pub fn new(instances: Vec<Instance>, shutter: [f32; 2], top: TopLevel) -> TwoLevel {
+    pub fn new(instances: &[Instance], shutter: [f32; 2], top: TopLevel) -> TwoLevel {
         let boxes: Vec<Aabb> = instances
-            .iter()
+            .par_iter()
             .map(|instance| match instance.motion.is_still_over(shutter) {
                 true if instance.motion.at(shutter[0]).is_identity() => instance.accelerator.bounds(),
                 _ => instance.motion.bounds_over(&instance.accelerator.bounds(), shutter),
@@ -98,10 +99,11 @@ impl TwoLevel {
             TopLevel::List => Top::List,
             TopLevel::Bvh => {
                 let (tree, order) = Tree::over(boxes.len(), |index| boxes[index as usize]);
-                Top::Bvh { tree, order, reach: Reach::of(&instances, &boxes, shutter) }
+                Top::Bvh { tree, order, reach: Reach::of(instances, &boxes, shutter) }
             }
         };
-        let placed = instances.into_iter().map(|instance| Placed::new(instance, shutter)).collect();
+        drop(boxes);
+        let placed = instances.par_iter().map(|instance| Placed::new(instance, shutter)).collect();
         TwoLevel { placed, shutter, bounds, top }
     }
 
@@ -265,15 +267,15 @@ fn uncounted_ray<R>(counters: &mut crate::Counters, ask: impl FnOnce(&mut crate:
 }
 
 impl Placed {
-    fn new(instance: Instance, shutter: [f32; 2]) -> Placed {
+    fn new(instance: &Instance, shutter: [f32; 2]) -> Placed {
         let Instance { accelerator, motion, mask } = instance;
         let place = if motion.is_still_over(shutter) {
             let transform = motion.at(shutter[0]);
             if transform.is_identity() { Place::Identity } else { Place::Still(IntoLocal::new(&transform)) }
         } else {
-            Place::Moving(motion)
+            Place::Moving(motion.clone())
         };
-        Placed { accelerator, place, mask }
+        Placed { accelerator: accelerator.clone(), place, mask: *mask }
     }
 }
 
@@ -372,7 +374,7 @@ mod tests {
         let shape = triangle();
         let instances: Vec<Instance> =
             motions.into_iter().map(|motion| Instance::new(Arc::clone(&shape), motion)).collect();
-        [TopLevel::List, TopLevel::Bvh].map(|top| TwoLevel::new(instances.clone(), [0.0, 1.0], top))
+        [TopLevel::List, TopLevel::Bvh].map(|top| TwoLevel::new(&instances, [0.0, 1.0], top))
     }
 
     #[test]

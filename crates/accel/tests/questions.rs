@@ -67,7 +67,7 @@ fn stack(top: TopLevel) -> TwoLevel {
     let square = square(0.0);
     let instance =
         |i: u32| Instance { mask: 1 << i, ..Instance::new(square.clone(), Motion::still(behind(i))) };
-    TwoLevel::new((0..3).map(instance).collect(), [0.0, 1.0], top)
+    TwoLevel::new(&[0, 1, 2].map(instance), [0.0, 1.0], top)
 }
 
 #[test]

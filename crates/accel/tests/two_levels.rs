@@ -82,7 +82,7 @@ fn both_top_levels_give_the_same_hits_over_every_structure() {
                 accelerator: Arc::clone(&built[*shape]),
                 motion: motion.clone(),
             };
-            TwoLevel::new(parts.iter().map(place).collect(), SHUTTER, top)
+            TwoLevel::new(&parts.iter().map(place).collect::<Vec<_>>(), SHUTTER, top)
         };
         let list = world("brute", &BuildOptions::default(), TopLevel::List);
         let around = &shapes[1 + seed as usize % 2];
@@ -111,7 +111,7 @@ fn an_identity_transform_changes_no_bit() {
     let truth = Truth::new(brute.as_ref(), &rays::nasty(&mesh, 500, 1));
     for top in [TopLevel::List, TopLevel::Bvh] {
         let motion = Motion::still(Transform::IDENTITY);
-        let world = TwoLevel::new(vec![Instance::new(brute.clone(), motion)], SHUTTER, top);
+        let world = TwoLevel::new(&[Instance::new(brute.clone(), motion)], SHUTTER, top);
         assert!(truth.differences(&world).is_empty());
     }
 }
@@ -126,7 +126,7 @@ fn a_billion_triangles_take_a_few_hundred_megabytes() {
         let matrix = DMat4::from_translation(place(i).into());
         Instance::new(tree.clone(), Motion::still(Transform::from_matrix(matrix).expect("a shift")))
     };
-    let world = TwoLevel::new((0..SIDE * SIDE).map(instance).collect(), SHUTTER, TopLevel::Bvh);
+    let world = TwoLevel::new(&(0..SIDE * SIDE).map(instance).collect::<Vec<_>>(), SHUTTER, TopLevel::Bvh);
     let triangles = mesh.len() * world.len();
     assert!(triangles > 1_000_000_000, "{triangles}");
     assert!(world.memory_bytes() < 300_000_000, "{}", world.memory_bytes());

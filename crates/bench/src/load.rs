@@ -128,7 +128,8 @@ fn one(file: &Path, options: &Options) -> Result<Value, Error> {
 /// Bytes of what a scene holds: each mesh and picture once, and its objects.
 fn decoded(scene: &SceneBuilder) -> u64 {
     let mut meshes = HashSet::new();
-    let mut bytes = size_of_val(scene.objects.as_slice()) as u64;
+    let places: usize = scene.objects.iter().map(|object| object.motion.heap_bytes()).sum();
+    let mut bytes = (size_of_val(scene.objects.as_slice()) + places) as u64;
     for object in &scene.objects {
         if meshes.insert(Arc::as_ptr(&object.mesh)) {
             let mesh = &*object.mesh;

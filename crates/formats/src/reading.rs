@@ -81,7 +81,7 @@ impl<'o> Reading<'o> {
     pub(crate) fn settle(&mut self, spent_before: u64, textures_before: u64, scene: &SceneBuilder) {
         let mut held = self.texture_bytes - textures_before;
         for object in &scene.objects {
-            held += (size_of::<Object>() + object.name.len()) as u64;
+            held += (size_of::<Object>() + object.name.len() + object.motion.heap_bytes()) as u64;
             if self.counted.insert(Arc::as_ptr(&object.mesh)) {
                 held += bytes_of(&object.mesh);
             }

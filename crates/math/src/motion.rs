@@ -3,6 +3,8 @@
 use crate::transcendental::{atan2_f64, sin_f64};
 use crate::{Aabb, Transform};
 use glam::{DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
+use std::fmt;
+use std::sync::Arc;
 
 /// A transform for every moment. Between keys, translation and scale go along straight lines and rotation
 /// along the shorter great arc at constant speed [Shoemake 1985]; before the first and after the last
@@ -25,11 +27,25 @@ pub struct MotionKey {
     pub scale: Vec3,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+/// Shared by its copies: a scene of a million instances has each several times.
+#[derive(Clone, PartialEq)]
 enum Course {
-    Still(Transform),
+    /// The identity, to the bit.
+    Rest,
+    Still(Arc<Transform>),
     /// Two poses at least, in order of time.
-    Keys(Vec<Pose>),
+    Keys(Arc<Vec<Pose>>),
+}
+
+/// The identity is written as every transform is: fingerprints of films are made of this.
+impl fmt::Debug for Course {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Course::Rest => f.debug_tuple("Still").field(&Transform::IDENTITY).finish(),
+            Course::Still(transform) => f.debug_tuple("Still").field(transform).finish(),
+            Course::Keys(poses) => f.debug_tuple("Keys").field(poses).finish(),
+        }
+    }
 }
 
 /// A key in f64, its rotation normalised.
@@ -49,9 +65,43 @@ const EXTREME: f64 = (1u64 << 60) as f64;
 const PIECES: usize = 16;
 
 impl Motion {
+    /// No motion at all, where it was made.
+    pub const REST: Motion = Motion { course: Course::Rest };
+
     /// No motion at all.
-    pub const fn still(transform: Transform) -> Motion {
-        Motion { course: Course::Still(transform) }
+    pub fn still(transform: Transform) -> Motion {
+        let bits =
+            |t: &Transform| [*t.matrix(), *t.inverse_matrix()].map(|m| m.to_cols_array().map(f32::to_bits));
+        if bits(&transform) == bits(&Transform::IDENTITY) {
+            return Motion::REST;
+        }
+        Motion { course: Course::Still(Arc::new(transform)) }
+    }
+
+    /// The transform of what has no keys, for all times.
+    #[inline]
+    pub fn resting(&self) -> Option<&Transform> {
+        match &self.course {
+            Course::Rest => Some(&Transform::IDENTITY),
+            Course::Still(transform) => Some(transform),
+            Course::Keys(_) => None,
+        }
+    }
+
+    /// Bytes that it holds beside its own, shared with its copies.
+    pub fn heap_bytes(&self) -> usize {
+        match &self.course {
+            Course::Rest => 0,
+            Course::Still(_) => size_of::<(Transform, [usize; 2])>(),
+            Course::Keys(poses) => size_of::<(Vec<Pose>, [usize; 2])>() + size_of_val(poses.as_slice()),
+        }
+    }
+
+    fn poses(&self) -> &[Pose] {
+        match &self.course {
+            Course::Keys(poses) => poses,
+            _ => &[],
+        }
     }
 
     /// Through keys; `None` when there are none, when their times do not increase, when a number is not
@@ -67,17 +117,17 @@ impl Motion {
         match poses.as_slice() {
             [] => None,
             [only] => Some(Motion::still(only.transform())),
-            _ => Some(Motion { course: Course::Keys(poses) }),
+            _ => Some(Motion { course: Course::Keys(Arc::new(poses)) }),
         }
     }
 
     /// The transform at a time in seconds. The same bits for the same time, always; a time that is not a
     /// number means the first key's.
     pub fn at(&self, time_seconds: f32) -> Transform {
-        let poses = match &self.course {
-            Course::Still(transform) => return *transform,
-            Course::Keys(poses) => poses,
-        };
+        if let Some(transform) = self.resting() {
+            return *transform;
+        }
+        let poses = self.poses();
         let time = f64::from(time_seconds);
         let next = poses.partition_point(|pose| pose.time <= time);
         match (next.checked_sub(1).map(|i| &poses[i]), poses.get(next)) {
@@ -90,18 +140,17 @@ impl Motion {
     /// First this motion, then `next`. `None` when this one moves and `next` is not a similarity (a turn, an even
     /// scaling and a shift; even and square within a thousandth), for then no keys say the same.
     pub fn then(&self, next: &Transform) -> Option<Motion> {
-        let poses = match &self.course {
-            Course::Still(transform) => return Some(Motion::still(transform.then(next))),
-            Course::Keys(poses) => poses,
-        };
+        if let Some(transform) = self.resting() {
+            return Some(Motion::still(transform.then(next)));
+        }
         let (scale, rotation, translation) = similarity(next)?;
-        let moved = poses.iter().map(|pose| Pose {
+        let moved = self.poses().iter().map(|pose| Pose {
             time: pose.time,
             translation: translation + rotation * (pose.translation * scale),
             rotation: rotation * pose.rotation,
             scale: pose.scale * scale,
         });
-        Some(Motion { course: Course::Keys(moved.collect()) })
+        Some(Motion { course: Course::Keys(Arc::new(moved.collect())) })
     }
 
     /// The keys, in order of time, rotations of unit length; none where there were none or only one.
@@ -112,18 +161,12 @@ impl Motion {
             rotation: pose.rotation.as_quat(),
             scale: pose.scale.as_vec3(),
         };
-        match &self.course {
-            Course::Still(_) => Vec::new(),
-            Course::Keys(poses) => poses.iter().map(key).collect(),
-        }
+        self.poses().iter().map(key).collect()
     }
 
     /// True when it never moves.
     pub fn is_still(&self) -> bool {
-        match &self.course {
-            Course::Still(_) => true,
-            Course::Keys(poses) => poses.windows(2).all(|pair| pair[0].same_place(&pair[1])),
-        }
+        self.poses().windows(2).all(|pair| pair[0].same_place(&pair[1]))
     }
 
     /// True when [`Motion::at`] is the same, to the bit, for all times between these, both included.
@@ -141,6 +184,9 @@ impl Motion {
         if bounds.is_empty() {
             return Aabb::EMPTY;
         }
+        if let Some(transform) = self.resting() {
+            return moved_by(transform, bounds);
+        }
         let segments = self.segments_over(seconds);
         let rests = [self.at(seconds[0]), self.at(seconds[1])].map(|t| moved_by(&t, bounds));
         segments.fold(rests[0].union(rests[1]), |all, (segment, span)| {
@@ -151,10 +197,14 @@ impl Motion {
     /// Bounds, between these times, on how much lengths grow under the transform and under its inverse
     /// (the greatest singular values of both).
     pub fn stretch_over(&self, seconds: [f32; 2]) -> [f64; 2] {
-        let still = [self.at(seconds[0]), self.at(seconds[1])].map(|transform| {
+        let stretch = |transform: &Transform| {
             let linear = DMat3::from_mat4(transform.matrix().as_dmat4());
             [frobenius(linear), frobenius(linear.inverse())]
-        });
+        };
+        if let Some(transform) = self.resting() {
+            return stretch(transform);
+        }
+        let still = [self.at(seconds[0]), self.at(seconds[1])].map(|transform| stretch(&transform));
         let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
         // Beyond the scales, 2⁻²⁰ covers what rounding the matrix to f32 changes.
         let slack = 1.0 + 1.0 / 1_048_576.0;
@@ -166,10 +216,7 @@ impl Motion {
 
     /// The segments that an interval meets, each with the part of it that is met, in `0..=1`.
     fn segments_over(&self, seconds: [f32; 2]) -> impl Iterator<Item = (Segment, [f64; 2])> {
-        let poses: &[Pose] = match &self.course {
-            Course::Still(_) => &[],
-            Course::Keys(poses) => poses,
-        };
+        let poses = self.poses();
         let [start, end] = [f64::from(seconds[0].min(seconds[1])), f64::from(seconds[0].max(seconds[1]))];
         poses.windows(2).filter(move |pair| pair[0].time <= end && pair[1].time >= start).map(move |pair| {
             let span = [start, end].map(|time| pair[0].fraction(&pair[1], time));

@@ -35,8 +35,7 @@ pub struct Object {
 impl Object {
     /// A mesh where it was modelled, with the material of this index.
     pub fn new(name: &str, mesh: Arc<Mesh>, material: usize) -> Object {
-        let motion = Motion::still(Transform::IDENTITY);
-        Object { name: name.to_owned(), mesh, material, motion, instanced: false }
+        Object { name: name.to_owned(), mesh, material, motion: Motion::REST, instanced: false }
     }
 
     /// The same, moved.
@@ -114,18 +113,16 @@ impl SceneBuilder {
             .iter()
             .map(|spec| materials::build(spec, &Ingredients::new(&self.textures, &self.materials)))
             .collect::<Result<_, _>>()?;
-        let mut objects = self.objects.clone();
-        for object in &objects {
+        for object in &self.objects {
             check_mesh(object, materials.len())?;
         }
-        let BuiltLights { lights, panels, spheres, lamps } =
-            self.build_lights(&mut objects, &mut materials)?;
+        let BuiltLights { lights, surfaces, panels, spheres, lamps } = self.build_lights(&mut materials)?;
         let cameras = self
             .cameras
             .iter()
             .map(|camera| Ok((camera.spec.name.clone(), cameras::build(camera, aspect)?)))
             .collect::<Result<Vec<_>, SceneError>>()?;
-        let placed = objects.iter().map(|object| Placed {
+        let placed = self.objects.iter().chain(&surfaces).map(|object| Placed {
             mesh: object.mesh.clone(),
             material: object.material as u32,
             motion: object.motion.clone(),
@@ -139,11 +136,7 @@ impl SceneBuilder {
     }
 
     /// Lights without a surface; those with one become objects or spheres.
-    fn build_lights(
-        &self,
-        objects: &mut Vec<Object>,
-        materials: &mut Vec<Arc<dyn Material>>,
-    ) -> Result<BuiltLights, SceneError> {
+    fn build_lights(&self, materials: &mut Vec<Arc<dyn Material>>) -> Result<BuiltLights, SceneError> {
         let mut built = BuiltLights::default();
         let mut glowing = |emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
             let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
@@ -160,9 +153,9 @@ impl SceneBuilder {
                 BuiltLight::Surface { mesh, emission, sides, classic } => {
                     let material = glowing(emission, sides)?;
                     if let Some(colour) = classic {
-                        built.panels.push((objects.len(), colour));
+                        built.panels.push((self.objects.len() + built.surfaces.len(), colour));
                     }
-                    objects.push(Object::new(&spec.name, mesh, material));
+                    built.surfaces.push(Object::new(&spec.name, mesh, material));
                 }
                 BuiltLight::Sphere { centre, radius, emission, classic } => {
                     let material = glowing(emission, Sides::Both)? as u32;
@@ -180,6 +173,8 @@ impl SceneBuilder {
 struct BuiltLights {
     /// Those without a surface.
     lights: Vec<SceneLight>,
+    /// Those with one, which come after the objects.
+    surfaces: Vec<Object>,
     /// For objects that came from lights and are given one, their colour in the classic modes.
     panels: Vec<(usize, Rgb)>,
     spheres: Vec<PlacedSphere>,

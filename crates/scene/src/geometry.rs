@@ -12,6 +12,8 @@ use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// An object with its place, as [`Geometry::build`] takes it.
@@ -40,23 +42,10 @@ pub struct Geometry {
     /// The object of each instance; that of `still` is not looked at.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
-    /// Where each object stands that does not move.
-    places: Vec<Option<Place>>,
+    /// Whether each object is mirrored, where it does not move.
+    mirrored: Vec<bool>,
     /// Numbered after the objects.
     spheres: Spheres,
-}
-
-/// Where an object stands, as its hits ask.
-#[derive(Clone, Copy)]
-struct Place {
-    to_world: Transform,
-    mirrors: bool,
-}
-
-impl Place {
-    fn new(to_world: Transform) -> Place {
-        Place { to_world, mirrors: to_world.mirrors() }
-    }
 }
 
 impl Geometry {
@@ -88,38 +77,36 @@ impl Geometry {
         } else {
             let mesh = TriangleMesh::from_corners(corners).and_then(|m| m.with_groups(groups));
             let mesh = Arc::new(mesh.map_err(|e| failed(&e))?);
-            let motion = Motion::still(Transform::IDENTITY);
-            instances.push(Instance::new(make(mesh.clone())?, motion));
+            instances.push(Instance::new(make(mesh.clone())?, Motion::REST));
             instance_objects.push(u32::MAX);
             Some(mesh)
         };
-        let mut trees: Vec<(*const Mesh, Arc<dyn Accelerator>)> = Vec::new();
+        let mut trees: HashMap<*const Mesh, Arc<dyn Accelerator>> = HashMap::new();
         for (i, object) in objects.iter().enumerate().filter(|(_, o)| in_own_tree(o)) {
             let key = Arc::as_ptr(&object.mesh);
-            let tree = match trees.iter().find(|(mesh, _)| *mesh == key) {
-                Some((_, tree)) => tree.clone(),
+            let tree = match trees.get(&key) {
+                Some(tree) => tree.clone(),
                 None => {
                     let corners = world_corners(&object.mesh, &Transform::IDENTITY).collect();
                     let mesh = TriangleMesh::from_corners(corners).map_err(|e| failed(&e))?;
                     let tree = make(Arc::new(mesh))?;
-                    trees.push((key, tree.clone()));
+                    trees.insert(key, tree.clone());
                     tree
                 }
             };
             instances.push(Instance::new(tree, object.motion.clone()));
             instance_objects.push(i as u32);
         }
-        let resting = |o: &Placed| o.motion.is_still().then(|| Place::new(o.motion.at(0.0)));
-        let places = objects.iter().map(resting).collect();
+        let mirrored = objects.iter().map(|o| o.motion.resting().is_some_and(Transform::mirrors)).collect();
         let spheres = Spheres::new(spheres, objects.len() as u32, instances.len() as u32);
         instances.extend(spheres.tree());
-        Ok(Geometry { objects, still, still_objects, instance_objects, instances, places, spheres })
+        Ok(Geometry { objects, still, still_objects, instance_objects, instances, mirrored, spheres })
     }
 
     /// The top level for a time: cheap, since every tree is shared.
     pub fn top_level(&self, accel: &AccelChoice, shutter: [f32; 2]) -> TwoLevel {
         let top = if accel.name.starts_with("brute") { TopLevel::List } else { TopLevel::Bvh };
-        TwoLevel::new(self.instances.clone(), shutter, top)
+        TwoLevel::new(&self.instances, shutter, top)
     }
 
     /// What a ray meets first of the only tree of triangles, which stands in the world as it is, and of the spheres: what
@@ -202,7 +189,7 @@ impl Geometry {
         let placed = &self.objects[object as usize];
         let is_still = self.still_objects.iter().any(|(_, o)| *o == object);
         let own = if is_still { placed.motion.at(0.0) } else { Transform::IDENTITY };
-        let motion = if is_still { Motion::still(Transform::IDENTITY) } else { placed.motion.clone() };
+        let motion = if is_still { Motion::REST } else { placed.motion.clone() };
         let triangles = world_corners(&placed.mesh, &own).map(|t| t.map(Vec3::from)).collect();
         (triangles, motion)
     }
@@ -238,6 +225,19 @@ impl Geometry {
         }
     }
 
+    /// Where an object stands at a time, and whether it is mirrored there.
+    #[inline]
+    fn place(&self, object: u32, time: f32) -> (Cow<'_, Transform>, bool) {
+        let motion = &self.objects[object as usize].motion;
+        match motion.resting() {
+            Some(to_world) => (Cow::Borrowed(to_world), self.mirrored[object as usize]),
+            None => {
+                let to_world = motion.at(time);
+                (Cow::Owned(to_world), to_world.mirrors())
+            }
+        }
+    }
+
     /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for spheres.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
         let Primitive { instance, index } = primitive;
@@ -246,8 +246,7 @@ impl Geometry {
         }
         let (object, triangle) = self.locate(primitive);
         let placed = &self.objects[object as usize];
-        let place = self.places[object as usize];
-        let Place { to_world, mirrors } = place.unwrap_or_else(|| Place::new(placed.motion.at(time)));
+        let (to_world, mirrors) = self.place(object, time);
         let baked = self.still.as_ref().filter(|_| instance == 0);
         let [a, b, c] = match baked {
             Some(still) => still.triangles()[index as usize].map(Vec3::from),
@@ -272,14 +271,8 @@ impl Geometry {
         let placed = &self.objects[object as usize];
         let mesh = &*placed.mesh;
         let indices = mesh.triangles[triangle as usize].map(|i| i as usize);
-        let moving;
-        let Place { to_world, mirrors } = match &self.places[object as usize] {
-            Some(place) => place,
-            None => {
-                moving = Place::new(placed.motion.at(ray.time));
-                &moving
-            }
-        };
+        let (to_world, mirrors) = self.place(object, ray.time);
+        let to_world = &*to_world;
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let baked = self.still.as_ref().filter(|_| hit.instance == 0);
         let corners = match baked {
@@ -294,7 +287,7 @@ impl Geometry {
         };
         let winding = {
             let [a, b, c] = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };
-            unit_or((b - a).cross(c - a), Vec3::Y) * if *mirrors { -1.0 } else { 1.0 }
+            unit_or((b - a).cross(c - a), Vec3::Y) * if mirrors { -1.0 } else { 1.0 }
         };
         let n_shade = if mesh.normals.is_empty() {
             winding
@@ -307,7 +300,7 @@ impl Geometry {
         let uv2 = if mesh.uvs2.is_empty() { uv } else { between(indices.map(|i| mesh.uvs2[i])) };
         let (tangent, handedness) = if placed.has_tangents && !mesh.tangents.is_empty() {
             let given = indices.map(|i| mesh.tangents[i]);
-            let turn = if *mirrors { -1.0 } else { 1.0 };
+            let turn = if mirrors { -1.0 } else { 1.0 };
             (to_world.vector(blend(given.map(|t| t.truncate()))), turn * 1f32.copysign(given[0].w))
         } else if placed.has_tangents {
             let corners = if baked.is_some() { corners } else { corners.map(|v| to_world.point(v)) };

@@ -8,7 +8,7 @@ use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
 use bilux_math::glam::DVec3;
 use bilux_math::motion::Motion;
 use bilux_math::transcendental::{acos, atan2};
-use bilux_math::{Transform, Vec2, Vec3};
+use bilux_math::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 use std::sync::Arc;
 
@@ -57,8 +57,7 @@ impl Spheres {
 
     /// The tree of all of them, in the world.
     pub(crate) fn tree(&self) -> Option<Instance> {
-        let still = Motion::still(Transform::IDENTITY);
-        (!self.all.is_empty()).then(|| Instance::new(self.tree.clone(), still))
+        (!self.all.is_empty()).then(|| Instance::new(self.tree.clone(), Motion::REST))
     }
 
     /// A ray as the only tree of triangles is to be asked beside spheres: one that leaves a sphere leaves none of them.

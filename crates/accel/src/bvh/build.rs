@@ -47,7 +47,7 @@ pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, V
     let root =
         subtree(Task { items: &mut items, first_item: 0, room: &mut room, first_pair: 0, depth: 1 }, planes);
     let order = items.iter().map(|item| item.index).collect();
-    (compact(root, &room), order)
+    (compact(root, room), order)
 }
 
 /// Items to put under one node, and room for the pairs below it: one less than there are items.
@@ -254,26 +254,29 @@ fn halve(items: &mut [Item]) -> (usize, [[[f32; 3]; 2]; 2]) {
     (middle, [around(&items[..middle]), around(&items[middle..])])
 }
 
-/// Leaves out the room that was not needed. Parents come before their children, left before right.
-fn compact(mut root: Node, room: &[Pair]) -> Tree {
-    let mut pairs: Vec<Pair> = Vec::new();
+/// Leaves out the room that was not needed. Parents come before their children, left before right, as they did: each pair
+/// moves forward or stays, onto one that has moved already.
+fn compact(mut root: Node, mut pairs: Vec<Pair>) -> Tree {
+    let mut count = 0;
     // Places that hold the old index of a pair: None for the root's.
     let mut waiting: Vec<(Option<(usize, usize)>, u32)> =
         if root.count == 0 { vec![(None, root.first)] } else { Vec::new() };
     while let Some((place, old)) = waiting.pop() {
-        let new = pairs.len() as u32;
+        let new = count;
+        count += 1;
         match place {
-            None => root.first = new,
-            Some((parent, side)) => pairs[parent].0[side].first = new,
+            None => root.first = new as u32,
+            Some((parent, side)) => pairs[parent].0[side].first = new as u32,
         }
-        let pair = room[old as usize];
-        pairs.push(pair);
+        let pair = pairs[old as usize];
+        pairs[new] = pair;
         for side in [1, 0] {
             if pair.0[side].count == 0 {
-                waiting.push((Some((new as usize, side)), pair.0[side].first));
+                waiting.push((Some((new, side)), pair.0[side].first));
             }
         }
     }
+    pairs.truncate(count);
     pairs.shrink_to_fit();
     Tree { root, pairs }
 }

@@ -7,11 +7,44 @@ use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::DMat4;
 
+/// The places of one mesh, each made when it is asked for.
+pub(super) struct Instances {
+    count: usize,
+    node: DMat4,
+    translations: Option<Vec<[f32; 3]>>,
+    rotations: Option<Vec<[f32; 4]>>,
+    scales: Option<Vec<[f32; 3]>>,
+}
+
+impl Instances {
+    /// One place.
+    pub(super) fn once(node: DMat4) -> Instances {
+        Instances { count: 1, node, translations: None, rotations: None, scales: None }
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = DMat4> {
+        let pick3 = |list: &Option<Vec<[f32; 3]>>, i: usize, default: f64| {
+            list.as_ref().map_or([default; 3], |list| list[i].map(f64::from))
+        };
+        let is_plain = self.translations.is_none() && self.rotations.is_none() && self.scales.is_none();
+        (0..self.count).map(move |i| {
+            if is_plain {
+                return self.node;
+            }
+            let rotation =
+                self.rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |list| list[i].map(f64::from));
+            let local = compose(pick3(&self.translations, i, 0.0), rotation, pick3(&self.scales, i, 1.0));
+            // What is broken is told where it is placed.
+            self.node * local.unwrap_or(DMat4::ZERO)
+        })
+    }
+}
+
 impl<'d> Gltf<'d, '_, '_> {
     /// Where a node's mesh stands in the world: once, or as often as the extension says.
-    pub(super) fn instances(&mut self, placed: &Placed<'d>) -> Result<Vec<DMat4>, FormatError> {
+    pub(super) fn instances(&mut self, placed: &Placed<'d>) -> Result<Instances, FormatError> {
         let Some(extension) = placed.node.extension("EXT_mesh_gpu_instancing") else {
-            return Ok(vec![placed.world]);
+            return Ok(Instances::once(placed.world));
         };
         let attributes = extension.need("attributes")?;
         let mut count = None;
@@ -31,16 +64,6 @@ impl<'d> Gltf<'d, '_, '_> {
         let scales = attributes.get("SCALE").map(|index| self.attribute::<3>(index, None));
         let (translations, rotations, scales) =
             (translations.transpose()?, rotations.transpose()?, scales.transpose()?);
-        self.reading.budget.take_bytes((count * size_of::<DMat4>()) as u64, &self.file)?;
-        let pick3 = |list: &Option<Vec<[f32; 3]>>, i: usize, default: f64| {
-            list.as_ref().map_or([default; 3], |list| list[i].map(f64::from))
-        };
-        let world = |i: usize| {
-            let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |list| list[i].map(f64::from));
-            let local = compose(pick3(&translations, i, 0.0), rotation, pick3(&scales, i, 1.0));
-            // What is broken is told where it is placed.
-            placed.world * local.unwrap_or(DMat4::ZERO)
-        };
-        Ok((0..count).map(world).collect())
+        Ok(Instances { count, node: placed.world, translations, rotations, scales })
     }
 }

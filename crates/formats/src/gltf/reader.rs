@@ -4,6 +4,7 @@ use super::animation::Pose;
 use super::container;
 use super::document::Document;
 use super::graph::Placed;
+use super::instances::Instances;
 use super::json::Node;
 use super::material::UsedMaterial;
 use super::primitive::{Part, Worn};
@@ -186,20 +187,20 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         let name = name.unwrap_or_default().to_owned();
         // What is bent by a skin stands in the world: the place of its own node says nothing. [glTF 2.0, 3.7.3.3]
         let places = match node.get("skin") {
-            Some(_) => vec![DMat4::IDENTITY],
+            Some(_) => Instances::once(DMat4::IDENTITY),
             None => self.instances(placed)?,
         };
-        for world in places {
+        for world in places.iter() {
             let Some(transform) = Transform::from_matrix(world) else {
                 self.oddities.note("a node is scaled to nothing and not drawn", || node.at());
                 continue;
             };
-            let bytes = (size_of::<[Object; 2]>() + name.len()) * parts.len();
+            let motion = Motion::still(transform);
+            let bytes = (size_of::<[Object; 2]>() + name.len()) * parts.len() + motion.heap_bytes();
             self.reading.budget.take_bytes(bytes as u64, &self.file)?;
             for part in &*parts {
-                let motion = Motion::still(transform);
                 let object = Object::new(&name, part.mesh.clone(), part.material);
-                self.scene.objects.push(Object { motion, ..object });
+                self.scene.objects.push(Object { motion: motion.clone(), ..object });
             }
         }
         Ok(())

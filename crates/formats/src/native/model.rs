@@ -55,6 +55,7 @@ impl Native<'_, '_> {
         for object in &model.objects {
             self.reading.budget.take::<[Object; 2]>(1, &table.at.file)?;
             let mut placed = moved(object, &motion, &table.at)?;
+            self.reading.budget.take_bytes(placed.motion.heap_bytes() as u64, &table.at.file)?;
             if !Arc::ptr_eq(&placed.mesh, &object.mesh) {
                 self.charge_mesh(&placed.mesh, table)?;
             }

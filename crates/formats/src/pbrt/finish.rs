@@ -81,7 +81,7 @@ impl Pbrt<'_, '_> {
         } else {
             mesh
         };
-        let bytes = size_of::<[Object; 2]>() + name.len();
+        let bytes = size_of::<[Object; 2]>() + name.len() + motion.heap_bytes();
         self.reading.budget.take_bytes(bytes as u64, &at.file)?;
         self.scene.objects.push(Object { motion, ..Object::new(name, mesh, material) });
         Ok(())
