@@ -74,6 +74,21 @@ fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
 }
 
 #[test]
+fn the_same_scene_is_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene =
+        read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n").unwrap();
+    let bytes = |name: &str| {
+        let path = folder.path().join(name);
+        write(&path, &scene, &WriteOptions::default()).unwrap();
+        std::fs::read(path).unwrap()
+    };
+    for i in 0..8 {
+        assert_eq!(bytes("a.glb"), bytes(&format!("b{i}.glb")));
+    }
+}
+
+#[test]
 fn test_models_come_back() {
     let Some(root) = scenes() else { return };
     let mut all = Vec::new();

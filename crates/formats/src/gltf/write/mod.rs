@@ -14,7 +14,7 @@ use crate::writing::Writing;
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use buffer::Buffer;
 use serde_json::{Map, Value as Json, json};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// A document while it is put together.
@@ -22,7 +22,7 @@ pub(super) struct Document<'s> {
     pub(super) scene: &'s SceneBuilder,
     buffer: Buffer,
     /// The lists of the document by their names, in the order of their indices.
-    lists: HashMap<&'static str, Vec<Json>>,
+    lists: BTreeMap<&'static str, Vec<Json>>,
     extensions: BTreeSet<&'static str>,
     /// Samplers and pictures that are there already, by what they are made of.
     pub(super) known: HashMap<String, usize>,
@@ -38,7 +38,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     let mut document = Document {
         scene,
         buffer: Buffer::default(),
-        lists: HashMap::new(),
+        lists: BTreeMap::new(),
         extensions: BTreeSet::new(),
         known: HashMap::new(),
         meshes: HashMap::new(),
