@@ -4,22 +4,36 @@ use bilux_math::Rgb;
 use bilux_pictures::{Alpha, ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
 
-/// The texels of a picture file; `None` where it has no colours. `is_data` keeps numbers as they are.
+/// What the samples of a picture file mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Means {
+    /// Colours, encoded as the file says.
+    Colours,
+    /// Colours by the sRGB curve, whatever the file says.
+    SrgbColours,
+    /// Numbers as they are.
+    Numbers,
+}
+
+/// The texels of a picture file; `None` where it has no colours.
 pub(crate) fn decoded(
     bytes: &[u8],
     hint: Option<&str>,
-    is_data: bool,
+    means: Means,
     limits: &Limits,
 ) -> Result<Option<Image>, PictureError> {
     if let Some(Rgba8 { width, height, texels }) = read_rgba8(bytes, hint, limits)? {
         return Ok(Some(Image { width, height, texels: Texels::Bytes(texels) }));
     }
-    Ok(image_of(read_bytes(bytes, hint, limits)?, is_data))
+    Ok(image_of(read_bytes(bytes, hint, limits)?, means))
 }
 
-/// The texels of a picture, in bytes where it came in bytes; `None` where it has no colours. `is_data` keeps
-/// numbers as they are.
-fn image_of(mut picture: Picture, is_data: bool) -> Option<Image> {
+/// The texels of a picture, in bytes where it came in bytes; `None` where it has no colours.
+fn image_of(mut picture: Picture, means: Means) -> Option<Image> {
+    let is_data = means == Means::Numbers;
+    if means == Means::SrgbColours && matches!(picture.colour_space, ColourSpace::Gamma(_)) {
+        picture.colour_space = ColourSpace::Srgb;
+    }
     let (width, height) = (picture.width(), picture.height());
     let alpha = |picture: &Picture| picture.channel("A").map(<[f32]>::to_vec);
     if picture.colour_space == ColourSpace::Srgb || is_data {
@@ -82,9 +96,9 @@ mod tests {
                 let limits = Limits::default();
                 let is_bytes = read_rgba8(&bytes, None, &limits).unwrap().is_some();
                 assert_eq!(is_bytes, bit_depth == BitDepth::Eight);
-                for is_data in [false, true] {
-                    let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), is_data).unwrap();
-                    let at_once = decoded(&bytes, None, is_data, &limits).unwrap().unwrap();
+                for means in [Means::Colours, Means::SrgbColours, Means::Numbers] {
+                    let by_planes = image_of(read_bytes(&bytes, None, &limits).unwrap(), means).unwrap();
+                    let at_once = decoded(&bytes, None, means, &limits).unwrap().unwrap();
                     assert_eq!(
                         format!("{at_once:?}"),
                         format!("{by_planes:?}"),
@@ -107,7 +121,7 @@ mod tests {
         for bit_depth in [BitDepth::Eight, BitDepth::Sixteen] {
             let options = WriteOptions { bit_depth, ..WriteOptions::default() };
             let bytes = write_bytes("png", &picture, &options).unwrap();
-            let image = decoded(&bytes, None, false, &Limits::default()).unwrap().unwrap();
+            let image = decoded(&bytes, None, Means::Colours, &Limits::default()).unwrap().unwrap();
             let texture = bilux_scene::Texture::of("", std::sync::Arc::new(image), false);
             assert!((texture.texel(0, 0).r - 1.0).abs() < 1e-4, "{bit_depth:?}: {:?}", texture.texel(0, 0));
         }

@@ -1,7 +1,7 @@
 //! One job of reading: what is allowed, what has been used, which files belong to it.
 
 use crate::budget::Budget;
-use crate::images::decoded;
+use crate::images::{Means, decoded};
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
 use bilux_pictures::Limits;
@@ -103,12 +103,12 @@ impl<'o> Reading<'o> {
         &mut self,
         bytes: &[u8],
         hint: Option<&str>,
-        is_data: bool,
+        means: Means,
         (name, at): (&str, &Span),
     ) -> Result<Image, FormatError> {
         // The decoder's planes and the texels are held side by side for a moment.
         let limits = Limits::new(self.budget.left() / 2);
-        let image = decoded(bytes, hint, is_data, &limits).map_err(|e| {
+        let image = decoded(bytes, hint, means, &limits).map_err(|e| {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
         })?;
         let image = image.ok_or_else(|| {
@@ -204,7 +204,8 @@ impl<'o> Reading<'o> {
         let bytes = self.load(&path)?;
         let hint = path.extension().and_then(|e| e.to_str());
         let is_data = holds != Texels::Colours;
-        let image = self.decode(&bytes, hint, is_data, (name, at))?;
+        let means = if is_data { Means::Numbers } else { Means::Colours };
+        let image = self.decode(&bytes, hint, means, (name, at))?;
         self.release(bytes);
         let channel = if let Texels::Numbers(channel) = holds { channel } else { None };
         let texture = Arc::new(Texture { channel, ..Texture::of(name, Arc::new(image), is_data) });

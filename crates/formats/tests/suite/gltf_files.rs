@@ -3,7 +3,9 @@
 use crate::shared_files::{files, scenes};
 use crate::warnings;
 use bilux_formats::{ReadOptions, read};
+use bilux_math::Rgb;
 use bilux_scene::SceneBuilder;
+use bilux_scene::texture::Channel;
 use std::path::PathBuf;
 
 /// Every `.gltf` and `.glb` below a folder of the scenes.
@@ -94,4 +96,27 @@ fn broken_files_are_refused_or_told_of() {
         broken += usize::from(seen.is_some());
     }
     assert!(count == 0 || (count >= 80 && broken >= 45), "{broken} of {count}");
+}
+
+/// glTF wants it so: a picture's own gamma and profile count for nothing.
+#[test]
+fn colours_are_srgb_whatever_their_file_says() {
+    let Some(root) = scenes() else { return };
+    let path = root.join("gltf/TextureEncodingTest/glTF-Binary/TextureEncodingTest.glb");
+    if !path.exists() {
+        println!("skipped: {} is not there", path.display());
+        return;
+    }
+    let scene = read(&path, &ReadOptions::default()).unwrap();
+    // Plain, with a gamma of 0.2 and with a profile.
+    let mut uses: Vec<(bool, Option<Channel>, Rgb)> = Vec::new();
+    let mut count = 0;
+    for texture in scene.textures.iter().filter(|texture| texture.width() < 64) {
+        let found = (texture.is_data, texture.channel, texture.texel(0, 0));
+        if !uses.contains(&found) {
+            uses.push(found);
+        }
+        count += 1;
+    }
+    assert_eq!((uses.len(), count), (3, 12), "colour, metalness and roughness: {uses:?}");
 }
