@@ -142,6 +142,12 @@ impl Bsdf {
         sum
     }
 
+    /// The same lobes about another normal; what was asked of the last one has to be asked again.
+    #[inline]
+    pub fn moved_to(&self, n_shade: Vec3, n_geom: Vec3) -> Bsdf {
+        Bsdf { frame: Frame::from_normal(n_shade), n_geom, bends: false, apart: None, ..*self }
+    }
+
     fn set(&mut self, i: usize, lobe: Lobe, weight: f32) {
         let strength = weight * lobe.strength();
         (self.lobes[i], self.weights[i], self.strengths[i]) = (Some(lobe), weight, strength);

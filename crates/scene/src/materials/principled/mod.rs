@@ -20,7 +20,7 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::transcendental::{atan, ln};
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 use maps::{Maps, is_there};
-use point::{Lobes, Point};
+use point::Point;
 use std::sync::Arc;
 
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
@@ -137,7 +137,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     build: |reader, ingredients| {
         let maps = Maps::read(reader, ingredients)?;
-        let even = maps.are_even().then(|| maps.at(Vec2::ZERO).lobes());
+        let even = maps.are_even().then(|| Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()));
         let depth = reader.number("transmission_depth");
         let is_deep = !maps.tints_surface;
         if is_deep && maps.transmission_color.texture.is_some() {
@@ -175,7 +175,7 @@ const fn number(name: &'static str, summary: &'static str, max: f64, default: &'
 struct Principled {
     maps: Maps,
     /// What it comes to where it is the same everywhere.
-    even: Option<Lobes>,
+    even: Option<Bsdf>,
     sigma_a: Rgb,
     priority: u32,
 }
@@ -216,11 +216,11 @@ impl Material for Principled {
                 return self.below_coat(surface, n);
             }
         }
-        let lobes = match self.even {
-            Some(lobes) if surface.vertex_kd.is_none() => lobes,
-            _ => self.point(surface).lobes(),
+        let bsdf = match &self.even {
+            Some(even) if surface.vertex_kd.is_none() => even.moved_to(surface.n_shade, surface.n_geom),
+            _ => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
         };
-        Bsdf::new(surface.n_shade, surface.n_geom, lobes).along(surface.tangent)
+        bsdf.along(surface.tangent)
     }
 
     fn classic(&self, surface: &Surface) -> ClassicMaterial {

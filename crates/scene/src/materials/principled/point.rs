@@ -35,7 +35,7 @@ pub(super) struct Point {
 }
 
 /// Fuzz, coat, boundary, base, clear part.
-pub(super) type Lobes = [Option<Lobe>; 5];
+type Lobes = [Option<Lobe>; 5];
 
 impl Point {
     pub(super) fn lobes(&self) -> Lobes {
