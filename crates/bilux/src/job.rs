@@ -90,12 +90,13 @@ impl Job {
     /// # Errors
     /// When anything in the scene is wrong.
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
-        let mut completed = crate::presets::completed(scene, &settings.studio);
+        let aspect = settings.width as f32 / settings.height as f32;
+        let studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
+        let mut completed = crate::presets::completed(scene, &studio);
         if settings.background.is_cut_out() {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
             crate::presets::put_behind(&mut completed, nothing);
         }
-        let aspect = settings.width as f32 / settings.height as f32;
         let triangles = completed.objects.iter().map(|object| object.mesh.triangles.len()).sum();
         let accel = settings.accel_for(triangles);
         let built = completed.build(&accel, shutter_at(&settings, settings.time), aspect)?;

@@ -27,7 +27,12 @@ fn teapot() -> SceneBuilder {
 
 /// Where the scene's camera sees a point, -1..=1 within a square picture; found from the camera's own rays.
 fn seen_at(scene: &SceneBuilder, p: Vec3) -> Option<Vec2> {
-    let camera = cameras::build(&scene.cameras[0], 1.0).unwrap();
+    seen_in(scene, p, 1.0)
+}
+
+/// Where a point is seen, from -1 to 1, in a picture so many times as wide as high.
+fn seen_in(scene: &SceneBuilder, p: Vec3, aspect: f32) -> Option<Vec2> {
+    let camera = cameras::build(&scene.cameras[0], aspect).unwrap();
     let ray = |x: f32, y: f32| {
         let ray = camera.ray(&CameraSample { film: Vec2::new(x, y), lens: Vec2::ZERO, time: 0.0 });
         (Vec3::from(ray.origin).as_dvec3(), Vec3::from(ray.direction).as_dvec3())
@@ -47,12 +52,16 @@ fn seen_at(scene: &SceneBuilder, p: Vec3) -> Option<Vec2> {
 
 /// The farthest from the middle, on either axis, that any vertex is seen, but for those of the studio's floor.
 fn reach(scene: &SceneBuilder) -> f32 {
+    reach_in(scene, 1.0)
+}
+
+fn reach_in(scene: &SceneBuilder, aspect: f32) -> f32 {
     let model = scene.objects.iter().filter(|o| o.name != "studio floor");
     let vertices = model.flat_map(|o| {
         let to_world = o.motion.at(0.0);
         o.mesh.positions.iter().map(move |&p| to_world.point(p))
     });
-    let seen = vertices.map(|p| seen_at(scene, p).map_or(f32::INFINITY, |q| q.abs().max_element()));
+    let seen = vertices.map(|p| seen_in(scene, p, aspect).map_or(f32::INFINITY, |q| q.abs().max_element()));
     seen.fold(0.0, f32::max)
 }
 
@@ -68,6 +77,13 @@ fn a_bare_model_is_framed_whole_and_fills_the_picture() {
     builds(&scene);
     let reach = reach(&scene);
     assert!((0.85..0.9).contains(&reach), "{reach}");
+    // So are a long one in a wide picture, and a broad one in a narrow.
+    for aspect in [0.4, 1.5, 3.0] {
+        let mut scene = points(&[[-3.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 1.0, 0.0]]);
+        complete(&mut scene, &Studio { aspect: Some(aspect), ..Studio::default() });
+        let reach = reach_in(&scene, aspect);
+        assert!((0.85..0.9).contains(&reach), "{aspect}: {reach}");
+    }
 }
 
 #[test]
@@ -195,8 +211,12 @@ fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
 #[test]
 fn a_studio_is_as_it_is_asked_for() {
     // From the right, at the height of its middle, through a long lens: seen whole, as big as through any other.
-    let asked =
-        Studio { ground: Some(Ground::Mirror), orbit: Some([90.0, 0.0]), focal: Some(135.0), cut_out: false };
+    let asked = Studio {
+        ground: Some(Ground::Mirror),
+        orbit: Some([90.0, 0.0]),
+        focal: Some(135.0),
+        ..Studio::default()
+    };
     let mut scene = teapot();
     complete(&mut scene, &asked);
     builds(&scene);

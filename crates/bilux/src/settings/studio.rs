@@ -37,6 +37,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         ground: Ground::named(&reader.text("ground")),
         orbit,
         focal: reader.is_given("focal").then(|| reader.number("focal")),
+        aspect: None,
         cut_out: false,
     })
 }

@@ -101,14 +101,14 @@ impl Library<'_, '_, '_> {
         let specular = Some("ks").filter(|key| known(key));
         for (word, tint, key) in [("map_Kd", "Kd", diffuse), ("map_Ks", "Ks", specular)] {
             if let (Some(map), Some(key)) = (draft.maps.get(word), key) {
-                let picture = self.colours(map, scene)?;
                 // Black is taken as white: many programs write it beside every picture.
                 let tint = draft.colour(tint).filter(|tint| !tint.is_black()).unwrap_or(Rgb::WHITE);
-                put(scene, spec, key, Texture { factor: tint, ..picture }, map);
+                let picture = self.colours(map, tint, scene)?;
+                put(scene, spec, key, picture, map);
             }
         }
         if let Some(map) = draft.maps.get("map_Ke").filter(|_| spec.kind != "dielectric") {
-            let picture = self.colours(map, scene)?;
+            let picture = self.colours(map, Rgb::WHITE, scene)?;
             let light = draft.colour("Ke").filter(|light| !light.is_black()).unwrap_or(Rgb::WHITE);
             put(scene, spec, "emission", picture, map);
             spec.parameters.set_at("emission_scale", light.clamp(0.0, 1e12).into(), map.at.clone());
@@ -144,10 +144,10 @@ impl Library<'_, '_, '_> {
         Ok(())
     }
 
-    /// A picture of colours; a checker, with a warning, where it cannot be had.
-    fn colours(&mut self, map: &Map, scene: &mut SceneBuilder) -> Result<Texture, FormatError> {
+    /// A picture of colours, tinted; a plain checker, with a warning, where it cannot be had.
+    fn colours(&mut self, map: &Map, tint: Rgb, scene: &mut SceneBuilder) -> Result<Texture, FormatError> {
         match self.reading.texture(self.source.folder, &map.file, Texels::Colours, &map.at) {
-            Ok(texture) => Ok((*texture).clone()),
+            Ok(texture) => Ok(Texture { factor: tint, ..(*texture).clone() }),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
                 let reason = error.without_place();

@@ -143,7 +143,7 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     let moved = texture.transform.unwrap().apply(Vec2::new(0.2, 0.6));
     assert!(moved.distance(Vec2::new(0.1 + 0.2, 0.4)) < 1e-6, "{moved}");
     assert_eq!(value(&scene.materials[1], "kd"), Some(&Value::Texture(1)));
-    assert_eq!(scene.textures[1].texel(0, 0), Rgb::new(1.0, 0.0, 1.0) * 0.3);
+    assert_eq!(scene.textures[1].texel(0, 0), Rgb::new(1.0, 0.0, 1.0));
     let all = warnings(&scene);
     assert!(all.contains("l.mtl:6:1") && all.contains("outside the scene's folder"), "{all}");
     assert!(all.contains("l.mtl:8:1") && all.contains("no file 'no.png'"), "{all}");

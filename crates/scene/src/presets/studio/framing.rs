@@ -45,17 +45,18 @@ impl Framing {
         let axes = axes(studio.orbit.unwrap_or(Studio::ORBIT));
         let fov = field_of_view(studio.focal.unwrap_or(Studio::FOCAL));
         let mut framing = Framing { middle, radius, lowest: low.y, axes, eye: middle, fov, distance: radius };
-        framing.stand_back(scene);
+        framing.stand_back(scene, f64::from(studio.aspect.unwrap_or(1.0)));
         framing
     }
 
-    /// Finds the nearest eye that sees all vertices within the middle `FILL` of a square picture.
+    /// Finds the nearest eye that sees all vertices within the middle `FILL` of a picture, `aspect` times as wide as high.
     ///
     /// A point at (x, y, z) from the middle, along the axes, is seen from a shift of `s` and a distance of `d`
     /// when |x - s| ≤ (d + z) k. So `d` has to be at least the greatest of x/k - z, less s/k, and the greatest
-    /// of -x/k - z, plus s/k: least where both are equal.
-    fn stand_back(&mut self, scene: &SceneBuilder) {
+    /// of -x/k - z, plus s/k: least where both are equal. Upwards k is of the height, and across it of the width.
+    fn stand_back(&mut self, scene: &SceneBuilder, aspect: f64) {
         let k = f64::from(tan(self.fov.to_radians() * 0.5)) * FILL;
+        let across = k * aspect;
         let mut reach = [f64::NEG_INFINITY; 4];
         for object in &scene.objects {
             let to_world = object.motion.at(0.0);
@@ -63,16 +64,16 @@ impl Framing {
                 let p = to_world.point(p).as_dvec3();
                 if p.is_finite() && p.abs().max_element() <= FARTHEST {
                     let [x, y, z] = self.axes.map(|axis| axis.dot(p - self.middle));
-                    let needs = [x / k - z, -x / k - z, y / k - z, -y / k - z];
+                    let needs = [x / across - z, -x / across - z, y / k - z, -y / k - z];
                     reach = std::array::from_fn(|i| reach[i].max(needs[i]));
                 }
             }
         }
         if !reach.iter().all(|r| r.is_finite()) {
-            reach = [self.radius / k; 4];
+            reach = [self.radius / k.min(across); 4];
         }
         let [right, left, up, down] = reach;
-        let shift = self.axes[0] * ((right - left) * 0.5 * k) + self.axes[1] * ((up - down) * 0.5 * k);
+        let shift = self.axes[0] * ((right - left) * 0.5 * across) + self.axes[1] * ((up - down) * 0.5 * k);
         let distance = ((right + left) * 0.5).max((up + down) * 0.5).max(self.radius * 0.5);
         self.distance = distance;
         self.eye = self.middle + shift - self.axes[2] * distance;

@@ -55,6 +55,8 @@ pub struct Studio {
     pub orbit: Option<[f32; 2]>,
     /// Focal length in mm, for a picture 24 mm high.
     pub focal: Option<f32>,
+    /// Width of the picture over its height, if it is not square.
+    pub aspect: Option<f32>,
     /// It is cut out of its surroundings, so that nothing is put around it unasked.
     pub cut_out: bool,
 }
