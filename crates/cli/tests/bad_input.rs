@@ -93,7 +93,11 @@ fn what_can_be_drawn_is_drawn_with_a_warning() {
     let textured = |file: &str| format!("mtllib a.mtl\n{}", PLAIN.replace("f ", "usemtl a\nf ") + file);
     for (texture, part) in [("brick.png", "there is no file 'brick.png'"), ("cut.png", "cut short")] {
         std::fs::write(path.join("a.mtl"), format!("newmtl a\nmap_Kd {texture}\n")).unwrap();
-        drawn("a.obj", &textured(""), &["a.mtl:2:1: a colour stands in place of a texture", part]);
+        drawn(
+            "a.obj",
+            &textured(""),
+            &["a.mtl:2:1: a checker of magenta stands in place of a texture", part],
+        );
     }
     let no_numbers = PLAIN.replace(['0', '1'], "nan").replace("f nan", "f 1");
     std::fs::write(path.join("nan.obj"), &no_numbers).unwrap();
