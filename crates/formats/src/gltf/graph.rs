@@ -1,5 +1,6 @@
 //! The nodes of the scene, each with its place in the world.
 
+use super::SURROUNDINGS;
 use super::json::Node;
 use super::place;
 use super::reader::Gltf;
@@ -61,6 +62,9 @@ impl<'d> Gltf<'d, '_, '_> {
             let what = format!("the file has {} scenes: {chosen} is shown", scenes.len());
             self.oddities.note(&what, || root.at_key("scenes"));
         }
+        // Where we have written it, it holds all that is around.
+        let around = scene.as_ref().and_then(|scene| scene.get("extras")?.get(SURROUNDINGS));
+        self.scene.surroundings_unsaid = around.is_none();
         match scene {
             Some(scene) => scene.list("nodes"),
             None => {

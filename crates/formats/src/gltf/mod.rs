@@ -35,6 +35,9 @@ mod write;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 
+/// In the extras of a scene that we write: what is around it besides what the file holds, which is "none".
+const SURROUNDINGS: &str = "surroundings";
+
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "gltf",

@@ -73,6 +73,19 @@ fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
     }
 }
 
+/// Else a dark scene would be read as one that says nothing of what is around.
+#[test]
+fn lamps_in_the_dark_come_back_in_the_dark() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    scene.lights.push(Spec::new("lamp", "point").with("intensity", 5.0f32));
+    let (mut back, _) = there(&scene, &folder.path().join("a.glb"));
+    assert!(!back.surroundings_unsaid);
+    back.surroundings_unsaid = true;
+    let (again, _) = there(&back, &folder.path().join("b.glb"));
+    assert!(again.surroundings_unsaid, "a file of others stays as it is");
+}
+
 #[test]
 fn the_same_scene_is_the_same_file() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,6 +8,7 @@ mod material;
 mod nodes;
 mod pictures;
 
+use super::SURROUNDINGS;
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::writing::Writing;
@@ -154,7 +155,10 @@ impl Document<'_> {
         let mut root = Map::new();
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "Bilux" }));
         root.insert("scene".into(), json!(0));
-        let scene = if self.roots.is_empty() { json!({}) } else { json!({ "nodes": self.roots }) };
+        let mut scene = if self.roots.is_empty() { json!({}) } else { json!({ "nodes": self.roots }) };
+        if !self.scene.surroundings_unsaid && !self.scene.lights.is_empty() {
+            scene["extras"] = json!({ SURROUNDINGS: "none" });
+        }
         root.insert("scenes".into(), json!([scene]));
         let lights = self.lists.remove("lights");
         if let Some(lights) = lights {
