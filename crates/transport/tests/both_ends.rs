@@ -6,24 +6,12 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{CameraSample, Ray, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{FILTERS, Filter, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
-use common::statistics::{agreement, blocks};
+use common::statistics::{UNLIKELY, agreement, assert_like_path, blocks};
 use common::{
     ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot, sky, still_life, without_mirrors,
 };
 use std::f32::consts::PI;
 use std::sync::Arc;
-
-/// Less likely than this by chance: a bug.
-const UNLIKELY: f64 = 1e-4;
-
-fn check(name: &str, scene: &Scene, others: &[&str]) {
-    let path = blocks(scene, &*integrator("path"), 0);
-    for (i, other) in others.iter().enumerate() {
-        let found = blocks(scene, &*integrator(other), 100 * (i as u64 + 1));
-        let p = agreement(&path, &found);
-        assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
-    }
-}
 
 #[test]
 fn every_kind_of_light_gives_the_same_from_both_ends() {
@@ -37,7 +25,7 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
     ];
     for light in lights {
         let name = light.kind.clone();
-        check(&name, &built(&without_mirrors(light)), &["light", "bdpt"]);
+        assert_like_path(&name, &built(&without_mirrors(light)), &["light", "bdpt"]);
     }
 }
 
@@ -48,7 +36,7 @@ fn lamps_of_one_side_light_what_is_in_front_of_them() {
         built(&without_mirrors(spec.with("edge_u", edge_u).with("sides", sides)))
     };
     // Its front is below, as that of a lamp in a ceiling.
-    check("lamp in front", &panel(Vec3::X, "front"), &["light", "bdpt", "vcm"]);
+    assert_like_path("lamp in front", &panel(Vec3::X, "front"), &["light", "bdpt", "vcm"]);
     let settings = RenderSettings::new(16, 16, 16);
     let lit = |scene: &Scene, name: &str| shoot(scene, &*integrator(name), &settings).film.to_rgb();
     let [front, both] = ["front", "both"].map(|sides| lit(&panel(Vec3::X, sides), "path"));
@@ -77,7 +65,7 @@ fn spheres_that_touch_what_they_light_give_the_same_from_both_ends() {
         ("small, behind the ball and close to the floor", Vec3::new(-1.0, 0.03, -1.2), 0.005),
     ];
     for (name, position, radius) in places {
-        check(name, &built(&without_mirrors(sphere(position, radius))), &["light", "bdpt"]);
+        assert_like_path(name, &built(&without_mirrors(sphere(position, radius))), &["light", "bdpt"]);
     }
 }
 
@@ -88,7 +76,7 @@ fn spheres_in_glass_and_mirrors_look_the_same_from_both_ends() {
     builder.lights.extend([sphere(Vec3::new(-1.5, 2.5, 0.5), 0.6), sphere(Vec3::new(1.4, 0.3, 1.0), 0.3)]);
     let bulb = Spec::new("", "dielectric").with("absorption", Rgb::new(0.5, 0.2, 0.1));
     put(&mut builder, "bulb", ball(Vec3::new(1.4, 0.3, 1.0), 0.5, 10, true), bulb);
-    check("glass and mirrors", &built(&builder), &["bdpt"]);
+    assert_like_path("glass and mirrors", &built(&builder), &["bdpt"]);
 }
 
 #[test]
@@ -130,7 +118,7 @@ fn layered_surfaces_look_the_same_from_both_ends() {
         ("oily glass", clear.clone().with("thin_film_weight", 1.0f32).with("thin_film_ior", 1.8f32)),
         ("clear in part", clear.with("transmission_weight", 0.5f32)),
     ] {
-        check(name, &built(&panel_over(material)), &["light", "bdpt", "vcm"]);
+        assert_like_path(name, &built(&panel_over(material)), &["light", "bdpt", "vcm"]);
     }
 }
 
@@ -144,7 +132,7 @@ fn rough_metal_and_glass_look_the_same_from_both_ends() {
     for (name, material) in [("brushed copper", brushed), ("frosted glass", frosted), ("frosted pane", pane)]
     {
         let scene = built(&panel_over(material));
-        check(name, &scene, &["light", "bdpt"]);
+        assert_like_path(name, &scene, &["light", "bdpt"]);
         let path = blocks(&scene, &*integrator("path"), 0);
         let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
         assert!(p > UNLIKELY, "{name}: path and vcm: p = {p}");
@@ -186,7 +174,7 @@ fn normal_maps_look_the_same_from_both_ends() {
         // From low above the floor, where many normals face away.
         builder.cameras.clear();
         look(&mut builder, Vec3::new(0.0, 0.6, 4.0), Vec3::new(0.0, 0.4, 0.0), 40.0);
-        check(name, &built(&builder), &["light", "bdpt"]);
+        assert_like_path(name, &built(&builder), &["light", "bdpt"]);
     }
 }
 
@@ -201,7 +189,7 @@ fn a_picture_of_the_sky_gives_the_same_from_both_ends() {
     let light = Spec::new("", "environment").with("radiance", Value::Texture(0)).with("rotation", 20.0f32);
     let mut builder = without_mirrors(light);
     builder.textures.push(Arc::new(picture));
-    check("picture", &built(&builder), &["light", "bdpt"]);
+    assert_like_path("picture", &built(&builder), &["light", "bdpt"]);
 }
 
 #[test]
@@ -220,7 +208,7 @@ fn a_mixture_with_a_mirror_in_it_looks_the_same_from_both_ends() {
     let inner = builder.materials.len() - 1;
     assert_eq!(builder.materials[inner].kind, "mix");
     let scene = built(&builder);
-    check("enamel", &scene, &["bdpt"]);
+    assert_like_path("enamel", &scene, &["bdpt"]);
     let path = blocks(&scene, &*integrator("path"), 0);
     let p = agreement(&path, &blocks(&scene, &*with_radius("vcm", 0.01), 300));
     assert!(p > UNLIKELY, "enamel: path and vcm: p = {p}");
@@ -234,8 +222,8 @@ fn without_small_lights(mut builder: SceneBuilder) -> SceneBuilder {
 
 #[test]
 fn mirrors_and_glass_under_many_lights_look_the_same_from_both_ends() {
-    check("mixed", &built(&without_small_lights(mixed())), &["bdpt"]);
-    check("still life", &built(&without_small_lights(still_life())), &["bdpt"]);
+    assert_like_path("mixed", &built(&without_small_lights(mixed())), &["bdpt"]);
+    assert_like_path("still life", &built(&without_small_lights(still_life())), &["bdpt"]);
 }
 
 #[test]
@@ -281,7 +269,7 @@ fn many_lights_of_which_one_is_chosen() {
         builder.lights.push(lamp.with("edge_u", Vec3::X * 0.2).with("edge_v", Vec3::Z * 0.2));
     }
     sky(&mut builder, 0.2);
-    check("many lights", &built(&builder), &["light", "bdpt"]);
+    assert_like_path("many lights", &built(&builder), &["light", "bdpt"]);
 }
 
 #[test]
@@ -296,7 +284,7 @@ fn lenses_and_cameras_without_perspective() {
     for spec in [lens, seen("orthographic").with("height", 3.0f32)] {
         let name = spec.kind.clone();
         builder.cameras = vec![CameraSpec { spec, keyframes: Vec::new() }];
-        check(&name, &built(&builder), &["light", "bdpt"]);
+        assert_like_path(&name, &built(&builder), &["light", "bdpt"]);
     }
 }
 

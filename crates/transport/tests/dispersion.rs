@@ -8,12 +8,9 @@ use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes;
 use bilux_scene::{Ray, Scene, SceneBuilder, Spec, Wavelength};
 use bilux_transport::{Merging, PixelIntegrator, RenderSettings, Splats, Task, Window, integrators};
-use common::statistics::{agreement, blocks, estimate};
+use common::statistics::{UNLIKELY, agreement, blocks, estimate};
 use common::{ball, built, diffuse, integrator, look, put, quad, shoot, sky, still_life};
 use std::sync::Arc;
-
-/// Less likely than this by chance: a bug.
-const UNLIKELY: f64 = 1e-4;
 
 /// Dense flint.
 const ETA: f64 = 1.728;

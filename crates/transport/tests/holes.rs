@@ -3,14 +3,11 @@
 mod common;
 
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{AccelChoice, Mesh, SceneBuilder, Spec, Texture, Value};
-use bilux_transport::{RenderSettings, integrators};
-use common::statistics::{agreement, blocks};
-use common::{built, diffuse, floor, integrator, look, put, quad, shoot, sky};
+use bilux_scene::{Mesh, SceneBuilder, Spec, Texture, Value};
+use bilux_transport::RenderSettings;
+use common::statistics::{assert_like_path, assert_unlike_path};
+use common::{assert_same_whatever_finds, built, diffuse, floor, integrator, look, put, quad, shoot, sky};
 use std::sync::Arc;
-
-/// Less likely than this by chance: a bug.
-const UNLIKELY: f64 = 1e-4;
 
 /// A square above the floor, with texture coordinates.
 fn sheet(height: f32, half: f32) -> Arc<Mesh> {
@@ -44,12 +41,7 @@ fn what_has_holes_looks_the_same_from_both_ends() {
         [("lace", lace, 12.0), ("gauze", screen, 12.0), ("sign", sign, 1.0), ("glowing gauze", glow, 1.0)]
     {
         let scene = built(&sheet_over_a_floor(material, lamp));
-        let path = blocks(&scene, &*integrator("path"), 0);
-        for (i, other) in ["light", "bdpt", "vcm", "auto"].iter().enumerate() {
-            let found = blocks(&scene, &*integrator(other), 100 * (i as u64 + 1));
-            let p = agreement(&path, &found);
-            assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
-        }
+        assert_like_path(name, &scene, &["light", "bdpt", "vcm", "auto"]);
     }
 }
 
@@ -60,12 +52,7 @@ fn what_stops_too_much_is_found_out() {
         let material = Spec::new("", "principled").with("opacity", opacity).with("base_color", 0.7f32);
         built(&sheet_over_a_floor(material, 12.0))
     };
-    let path = blocks(&gauze(0.4), &*integrator("path"), 0);
-    for (i, other) in ["bdpt", "vcm"].iter().enumerate() {
-        let found = blocks(&gauze(0.5), &*integrator(other), 100 * (i as u64 + 1));
-        let p = agreement(&path, &found);
-        assert!(p < UNLIKELY, "{other} passes: p = {p}");
-    }
+    assert_unlike_path(&gauze(0.4), &gauze(0.5), &["bdpt", "vcm"]);
 }
 
 /// A sheet before a sky lets the rest of it through, and glows by its share.
@@ -95,14 +82,5 @@ fn a_share_of_the_surface_gives_that_share_of_the_light() {
 fn holes_are_the_same_whatever_finds_them() {
     let lace = diffuse(0.6f32).with("opacity", Value::Texture(0));
     let builder = sheet_over_a_floor(lace, 12.0);
-    let picture = |accel: &str| {
-        let choice = AccelChoice { name: accel.to_owned(), ..AccelChoice::default() };
-        let scene = builder.build(&choice, [0.0, 0.0], 1.0).unwrap();
-        let settings = RenderSettings::new(24, 24, 8);
-        shoot(&scene, &*integrators::build(&Spec::new("", "path")).unwrap(), &settings).film.to_rgb()
-    };
-    let brute = picture("brute");
-    for row in bilux_accel::ACCELERATORS {
-        assert!(picture(row.entry.name) == brute, "{} sees other holes than brute", row.entry.name);
-    }
+    assert_same_whatever_finds(&builder);
 }

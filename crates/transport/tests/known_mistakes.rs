@@ -6,11 +6,8 @@ use bilux_math::glam::DVec3;
 use bilux_math::{DMat4, Motion, Rgb, Transform, Vec3};
 use bilux_scene::{Object, Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{RenderSettings, Silent, integrators, strategies};
-use common::statistics::{agreement, blocks};
+use common::statistics::{UNLIKELY, agreement, blocks};
 use common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky, without_mirrors};
-
-/// Less likely than this by chance: a bug.
-const UNLIKELY: f64 = 1e-4;
 
 /// Two matt leaves that meet at a sharp angle, with a lamp before them: where they meet, vertices of both ends lie ever closer
 /// together.

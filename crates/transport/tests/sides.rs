@@ -4,14 +4,13 @@ mod common;
 
 use bilux_math::transcendental::atan;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{AccelChoice, Mesh, SceneBuilder, Spec, Texture, Value};
-use bilux_transport::{RenderSettings, integrators};
-use common::statistics::{agreement, blocks};
-use common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky};
+use bilux_scene::{Mesh, SceneBuilder, Spec, Texture, Value};
+use bilux_transport::RenderSettings;
+use common::statistics::{assert_like_path, assert_unlike_path};
+use common::{
+    assert_same_whatever_finds, ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky,
+};
 use std::sync::Arc;
-
-/// Less likely than this by chance: a bug.
-const UNLIKELY: f64 = 1e-4;
 
 /// An upright wall that turns its back to whoever looks from +z.
 fn wall() -> Arc<Mesh> {
@@ -54,12 +53,7 @@ fn what_is_seen_from_its_front_looks_the_same_from_both_ends() {
         ("a ball around the camera", around, plain),
     ] {
         let scene = built(&behind(mesh, material));
-        let path = blocks(&scene, &*integrator("path"), 0);
-        for (i, other) in ["light", "bdpt", "vcm", "auto"].iter().enumerate() {
-            let found = blocks(&scene, &*integrator(other), 100 * (i as u64 + 1));
-            let p = agreement(&path, &found);
-            assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
-        }
+        assert_like_path(name, &scene, &["light", "bdpt", "vcm", "auto"]);
     }
 }
 
@@ -67,12 +61,8 @@ fn what_is_seen_from_its_front_looks_the_same_from_both_ends() {
 #[test]
 fn backs_that_light_paths_do_not_know_are_found_out() {
     let grey = || diffuse(0.5f32);
-    let path = blocks(&built(&behind(wall(), one_sided(grey()))), &*integrator("path"), 0);
-    for (i, other) in ["light", "bdpt"].iter().enumerate() {
-        let found = blocks(&built(&behind(wall(), grey())), &*integrator(other), 100 * (i as u64 + 1));
-        let p = agreement(&path, &found);
-        assert!(p < UNLIKELY, "{other} passes: p = {p}");
-    }
+    let (right, wrong) = (built(&behind(wall(), one_sided(grey()))), built(&behind(wall(), grey())));
+    assert_unlike_path(&right, &wrong, &["light", "bdpt"]);
 }
 
 /// What is behind the back is seen as if nothing were before it, in the shade that it gives.
@@ -100,14 +90,5 @@ fn a_back_is_looked_through_and_gives_shade() {
 #[test]
 fn backs_are_the_same_whatever_finds_them() {
     let builder = behind(wall(), one_sided(diffuse(0.6f32)));
-    let picture = |accel: &str| {
-        let choice = AccelChoice { name: accel.to_owned(), ..AccelChoice::default() };
-        let scene = builder.build(&choice, [0.0, 0.0], 1.0).unwrap();
-        let settings = RenderSettings::new(24, 24, 8);
-        shoot(&scene, &*integrators::build(&Spec::new("", "path")).unwrap(), &settings).film.to_rgb()
-    };
-    let brute = picture("brute");
-    for row in bilux_accel::ACCELERATORS {
-        assert!(picture(row.entry.name) == brute, "{} sees other backs than brute", row.entry.name);
-    }
+    assert_same_whatever_finds(&builder);
 }

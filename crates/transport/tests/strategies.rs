@@ -6,12 +6,9 @@ use bilux_math::{Rgb, Vec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Scene, SceneBuilder, Spec, Value};
 use bilux_transport::{RenderSettings, Silent, Strategies, Strategy, Window, integrators, strategies};
-use common::statistics::{agreement, channel, estimate};
+use common::statistics::{UNLIKELY, agreement, channel, estimate};
 use common::{ball, built, diffuse, floor, integrator, look, mixed, put, quad, shoot};
 use std::collections::BTreeMap;
-
-/// Less likely than this by chance: a bug.
-const UNLIKELY: f64 = 1e-4;
 
 fn of(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Strategies {
     let integrator = integrators::build(integrator).unwrap();

@@ -1,7 +1,7 @@
 //! A lobe about a normal of its own, as a smooth coat has over a rough ground: a [`Bsdf`] in two parts, each of which is
 //! one about a single normal. All that is promised of these holds for their sum.
 
-use super::{Bsdf, BsdfSample, MOST_LOBES, TransportMode};
+use super::{Bsdf, BsdfSample, TransportMode};
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
 /// Which lobe it is, and about which normal.
@@ -33,18 +33,9 @@ impl Bsdf {
     #[inline(never)]
     fn parted(&self, apart: &Apart) -> Parts {
         let index = usize::from(apart.index);
-        let empty = Bsdf {
-            lobes: [None; MOST_LOBES],
-            weights: [1.0; MOST_LOBES],
-            strengths: [0.0; MOST_LOBES],
-            total_strength: 0.0,
-            rises: [0.0; MOST_LOBES],
-            total_rise: 0.0,
-            apart: None,
-            ..*self
-        };
-        let mut shared = empty;
-        let mut own = Bsdf { frame: Frame::from_normal(apart.n), bends: apart.bends, ..empty };
+        let about = |frame, bends| Bsdf { bends, splits: self.splits, ..Bsdf::empty(frame, self.n_geom) };
+        let mut shared = about(self.frame, self.bends);
+        let mut own = about(Frame::from_normal(apart.n), apart.bends);
         let mut place = 0;
         for (i, (weight, lobe)) in self.weighted().enumerate() {
             if i == index {

@@ -123,8 +123,18 @@ impl Bsdf {
 
     /// A sum of at most [`MOST_LOBES`] lobes around a shading normal.
     pub fn new<const N: usize>(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; N]) -> Bsdf {
-        let mut sum = Bsdf {
-            frame: Frame::from_normal(n_shade),
+        let mut sum = Bsdf::empty(Frame::from_normal(n_shade), n_geom);
+        for (i, lobe) in lobes.into_iter().flatten().take(MOST_LOBES).enumerate() {
+            sum.set(i, lobe, 1.0);
+        }
+        sum
+    }
+
+    /// No lobe yet.
+    #[inline]
+    fn empty(frame: Frame, n_geom: Vec3) -> Bsdf {
+        Bsdf {
+            frame,
             n_geom,
             lobes: [None; MOST_LOBES],
             weights: [1.0; MOST_LOBES],
@@ -135,11 +145,7 @@ impl Bsdf {
             bends: false,
             splits: false,
             apart: None,
-        };
-        for (i, lobe) in lobes.into_iter().flatten().take(MOST_LOBES).enumerate() {
-            sum.set(i, lobe, 1.0);
         }
-        sum
     }
 
     /// The same lobes about another normal; what was asked of the last one has to be asked again.

@@ -26,8 +26,8 @@ pub(super) fn dress(
     let normals = normal_map::read(reader, ingredients)?;
     let glow = if has(glow::EMISSION.name) { glow::read(reader, ingredients)? } else { None };
     let opacity = opacity::read(reader, ingredients)?;
-    let is_seen = if has(VISIBLE_SIDES.name) { reader.text(VISIBLE_SIDES.name) } else { String::new() };
-    let visible = Sides::named(&is_seen);
+    let visible =
+        if has(VISIBLE_SIDES.name) { Sides::named(&reader.text(VISIBLE_SIDES.name)) } else { Sides::Both };
     if normals.is_none() && glow.is_none() && opacity.is_none() && visible == Sides::Both {
         return Ok(material);
     }

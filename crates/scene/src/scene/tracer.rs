@@ -3,7 +3,7 @@
 use super::{Scene, SceneParts};
 use crate::lights::Sides;
 use crate::surface::Surface;
-use bilux_accel::{Accelerator, Counters, Hit, Primitive, Query, Ray};
+use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
 use bilux_math::Vec3;
 use bilux_math::hash::{hash_words, unit_f32};
 
@@ -26,20 +26,21 @@ impl Scene {
         if self.parts.hides_backs { Ray { mask: TO_CAMERA, ..ray } } else { ray }
     }
 
+    /// Along the normal of a surface's front.
+    fn front(&self, surface: &Surface) -> Vec3 {
+        self.parts.geometry.front(surface.primitive, surface.time).unwrap_or(surface.n_geom)
+    }
+
     /// True when a camera that is `towards` there from a surface sees through it.
     #[inline]
     pub fn hides(&self, surface: &Surface, towards: Vec3) -> bool {
         self.parts.hides_backs
             && self.material(surface).visible_sides() == Sides::Front
-            && self.parts.front(surface.primitive, surface.time).unwrap_or(surface.n_geom).dot(towards) <= 0.0
+            && self.front(surface).dot(towards) <= 0.0
     }
 }
 
 impl SceneParts {
-    fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        self.geometry.front(primitive, time)
-    }
-
     /// What lets some rays pass.
     #[inline]
     fn is_patchy_for(&self, ray: &Ray) -> bool {
@@ -53,7 +54,7 @@ impl SceneParts {
         let material = &self.materials[material as usize];
         if ray.mask != u32::MAX && material.visible_sides() == Sides::Front {
             let outwards = || self.geometry.surface(ray, hit).n_geom;
-            let front = self.front(hit.primitive(), ray.time).unwrap_or_else(outwards);
+            let front = self.geometry.front(hit.primitive(), ray.time).unwrap_or_else(outwards);
             let along = front.dot(ray.direction.into());
             let towards_camera = if ray.mask == TO_CAMERA { along } else { -along };
             if towards_camera <= 0.0 {
@@ -82,17 +83,23 @@ impl<'s> Tracer<'s> {
         Tracer { scene, counters: Counters::default(), counting }
     }
 
+    /// Asks for a ray, past what lets it through.
+    #[inline(always)]
+    fn ask<T>(&mut self, ray: &Ray, question: impl FnOnce(&mut Self, &Ray, &Query) -> T) -> T {
+        let scene = self.scene;
+        if !scene.parts.is_patchy_for(ray) {
+            return question(self, ray, &scene.query);
+        }
+        let number = number_of(ray);
+        let stops = |hit: &Hit| scene.parts.stops(ray, number, hit);
+        question(self, ray, &Query { filter: Some(&stops), ..scene.query })
+    }
+
     /// What a ray meets first.
     #[inline]
     pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
         let scene = self.scene;
-        let hit = if scene.parts.is_patchy_for(ray) {
-            let number = number_of(ray);
-            let stops = |hit: &Hit| scene.parts.stops(ray, number, hit);
-            self.closest_hit(ray, &Query { filter: Some(&stops), ..scene.query })
-        } else {
-            self.closest_hit(ray, &scene.query)
-        }?;
+        let hit = self.ask(ray, Tracer::closest_hit)?;
         let mut surface = scene.parts.geometry.surface(ray, &hit);
         if surface.tangent != Vec3::ZERO {
             surface.n_shade = scene.material(&surface).n_shade(&surface);
@@ -116,13 +123,7 @@ impl<'s> Tracer<'s> {
     /// True when anything is between a ray's ends.
     #[inline]
     pub fn occluded(&mut self, ray: &Ray) -> bool {
-        let scene = self.scene;
-        if scene.parts.is_patchy_for(ray) {
-            let number = number_of(ray);
-            let stops = |hit: &Hit| scene.parts.stops(ray, number, hit);
-            return self.any_hit(ray, &Query { filter: Some(&stops), ..scene.query });
-        }
-        self.any_hit(ray, &scene.query)
+        self.ask(ray, Tracer::any_hit)
     }
 
     #[inline]

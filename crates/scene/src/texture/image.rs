@@ -85,6 +85,7 @@ impl Image {
             Texels::Formula(formula) => self.worked_out(formula, index, channel),
         }
     }
+
     /// The same of a formula; apart, so that looking up what is stored stays small.
     #[cold]
     #[inline(never)]

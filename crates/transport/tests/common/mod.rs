@@ -60,6 +60,19 @@ pub fn floor(y: f32, half: f32) -> Arc<Mesh> {
     quad(Vec3::new(-half, y, -half), Vec3::Z * 2.0 * half, Vec3::X * 2.0 * half)
 }
 
+/// Fails where a picture is not the same, to the bit, with every accelerator.
+pub fn assert_same_whatever_finds(builder: &SceneBuilder) {
+    let picture = |accel: &str| {
+        let choice = AccelChoice { name: accel.to_owned(), ..AccelChoice::default() };
+        let scene = builder.build(&choice, [0.0, 0.0], 1.0).unwrap();
+        shoot(&scene, &*integrator("path"), &RenderSettings::new(24, 24, 8)).film.to_rgb()
+    };
+    let brute = picture("brute");
+    for row in bilux_accel::ACCELERATORS {
+        assert!(picture(row.entry.name) == brute, "{} sees something else than brute", row.entry.name);
+    }
+}
+
 /// Adds an object of a material of its own.
 pub fn put(builder: &mut SceneBuilder, name: &str, mesh: Arc<Mesh>, material: Spec) {
     let material = builder.add_material(material);

@@ -1,6 +1,6 @@
 //! Whether two ways of making a picture have the same mean.
 
-use super::shoot;
+use super::{integrator, shoot};
 use bilux_math::Rgb;
 use bilux_scene::Scene;
 use bilux_transport::{PixelIntegrator, RenderSettings};
@@ -51,4 +51,30 @@ pub fn blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) 
 pub fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     let least = a.iter().zip(b).map(|(a, b)| welch(a, b)).fold(1.0, f64::min);
     1.0 - bilux_math::transcendental::powf_f64(1.0 - least, a.len() as f64)
+}
+
+/// Less likely than this by chance: a bug.
+pub const UNLIKELY: f64 = 1e-4;
+
+/// How likely it is, by each integrator, that what it finds in a scene has the mean of what `path` finds in another.
+fn against_path(path: &Scene, scene: &Scene, others: &[&str]) -> Vec<f64> {
+    let path = blocks(path, &*integrator("path"), 0);
+    let p = |(i, other): (usize, &&str)| {
+        agreement(&path, &blocks(scene, &*integrator(other), 100 * (i as u64 + 1)))
+    };
+    others.iter().enumerate().map(p).collect()
+}
+
+/// Fails where others find something else in a scene than `path` does.
+pub fn assert_like_path(name: &str, scene: &Scene, others: &[&str]) {
+    for (other, p) in others.iter().zip(against_path(scene, scene, others)) {
+        assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
+    }
+}
+
+/// Fails where others find the same in a scene with a bug planted as `path` does in the right one.
+pub fn assert_unlike_path(right: &Scene, wrong: &Scene, others: &[&str]) {
+    for (other, p) in others.iter().zip(against_path(right, wrong, others)) {
+        assert!(p < UNLIKELY, "{other} passes: p = {p}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Something of two.
 
-use super::{Pattern, TextureEntry, blend, tone};
+use super::{Pattern, TextureEntry, tone};
 use crate::texture::{ColourMap, NumberMap};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
@@ -39,6 +39,6 @@ struct Mix {
 
 impl Pattern for Mix {
     fn at(&self, uv: Vec2) -> Rgb {
-        blend(self.a.at(uv), self.b.at(uv), self.amount.at(uv))
+        self.a.at(uv).lerp(self.b.at(uv), self.amount.at(uv))
     }
 }

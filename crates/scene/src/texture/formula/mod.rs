@@ -195,10 +195,5 @@ const fn tone(name: &'static str, summary: &'static str, default: &'static str) 
     Parameter { name, summary, unit: "", kind: ParameterKind::ColourTexture { min: 0.0, max: 1e12 }, default }
 }
 
-/// The line between two colours.
-fn blend(a: Rgb, b: Rgb, amount: f32) -> Rgb {
-    a.lerp(b, amount)
-}
-
 #[cfg(test)]
 mod tests;

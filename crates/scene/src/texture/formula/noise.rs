@@ -1,7 +1,7 @@
 //! Clouds: noise of several sizes on top of each other. [Perlin 2002]
 
 use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
-use super::{Pattern, TextureEntry, blend, tone};
+use super::{Pattern, TextureEntry, tone};
 use crate::texture::ColourMap;
 use bilux_math::hash::hash_words;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -86,7 +86,7 @@ impl Pattern for Noise {
             // The shift keeps the zeros of all octaves from falling together.
             at = at * 2.0 + Vec2::new(0.37, 0.71);
         }
-        blend(self.a.at(uv), self.b.at(uv), (0.5 + 0.5 * sum).clamp(0.0, 1.0))
+        self.a.at(uv).lerp(self.b.at(uv), (0.5 + 0.5 * sum).clamp(0.0, 1.0))
     }
 }
 

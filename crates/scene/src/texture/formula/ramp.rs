@@ -1,7 +1,7 @@
 //! From colour to colour.
 
 use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
-use super::{Pattern, TextureEntry, blend};
+use super::{Pattern, TextureEntry};
 use crate::texture::Texture;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec2};
@@ -79,7 +79,7 @@ impl Pattern for Ramp {
         };
         let next = self.stops.partition_point(|(position, _)| *position <= x);
         match (next.checked_sub(1).and_then(|i| self.stops.get(i)), self.stops.get(next)) {
-            (Some((from, a)), Some((to, b))) => blend(*a, *b, (x - from) / (to - from)),
+            (Some((from, a)), Some((to, b))) => a.lerp(*b, (x - from) / (to - from)),
             (Some((_, colour)), None) | (None, Some((_, colour))) => *colour,
             (None, None) => Rgb::BLACK,
         }
