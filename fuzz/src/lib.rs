@@ -4,9 +4,11 @@
 #[path = "../../crates/accel/tests/support/fuzzed.rs"]
 pub mod rays;
 
-use bilux_formats::ReadOptions;
+use bilux_formats::{FormatError, ReadOptions};
 use bilux_pictures::{Limits, format_named};
-use bilux_scene::AccelChoice;
+use bilux_scene::{AccelChoice, SceneBuilder};
+use std::path::PathBuf;
+use std::sync::LazyLock;
 
 /// What a picture may take while it is decoded. With `-rss_limit_mb` and `-malloc_limit_mb` a little above
 /// it, the fuzzer finds whatever goes beyond.
@@ -28,9 +30,30 @@ pub fn read_picture(format: &str, bytes: &[u8]) {
 /// Reads the bytes as this scene format, from no folder, so that no other file is opened; and builds what
 /// was read, which may be refused.
 pub fn read_scene(format: &str, bytes: &[u8]) {
-    let options =
-        ReadOptions { max_memory: 64 << 20, time: 0.5, whole_movement: true, ..ReadOptions::default() };
-    let scene = match bilux_formats::read_bytes(bytes, format, None, "scene", &options) {
+    build(bilux_formats::read_bytes(bytes, format, None, "scene", &options()));
+}
+
+/// Reads the bytes as the materials of a triangle, from a folder that holds one picture, `t.ppm`.
+pub fn read_materials(bytes: &[u8]) {
+    static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
+        let folder = std::env::temp_dir().join(format!("bilux-fuzz-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder for temporary files");
+        std::fs::write(folder.join("t.ppm"), b"P6 2 2 255\n\xff\x80\x00012\x00\x40\x80abc")
+            .expect("room for a picture");
+        folder
+    });
+    std::fs::write(FOLDER.join("x.mtl"), bytes).expect("room for the bytes");
+    let triangle =
+        b"mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
+    build(bilux_formats::read_bytes(triangle, "obj", Some(&FOLDER), "scene", &options()));
+}
+
+fn options() -> ReadOptions {
+    ReadOptions { max_memory: 64 << 20, time: 0.5, whole_movement: true, ..ReadOptions::default() }
+}
+
+fn build(read: Result<SceneBuilder, FormatError>) {
+    let scene = match read {
         Ok(scene) => scene,
         Err(error) => {
             // Whoever reads the message needs one.

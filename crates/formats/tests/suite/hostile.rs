@@ -1,6 +1,6 @@
 //! Any bytes give a scene or an error, within bounded memory, and never a panic.
 
-use bilux_formats::{ReadOptions, SCENE_FORMATS, read, read_bytes};
+use bilux_formats::{FormatError, ReadOptions, SCENE_FORMATS, read, read_bytes};
 use bilux_scene::SceneBuilder;
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -108,6 +108,26 @@ fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
     bytes
 }
 
+/// A triangle with this library of materials, beside one picture.
+fn with_materials(library: &[u8]) -> Result<SceneBuilder, FormatError> {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
+    put("x.mtl", library);
+    put("t.ppm", b"P6 2 2 255\n\xff\x80\x00012\x00\x40\x80abc");
+    put("x.obj", b"mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    read(&folder.path().join("x.obj"), &ReadOptions::default())
+}
+
+#[test]
+fn the_corpus_of_materials_reads_and_its_broken_files_are_refused() {
+    for (path, library) in corpus("mtl") {
+        let broken = path.file_name().unwrap().to_string_lossy().starts_with("broken");
+        let read = with_materials(&library);
+        assert_eq!(read.is_err(), broken, "{}: {:?}", path.display(), read.err().map(|e| e.to_string()));
+        (0..library.len()).for_each(|length| drop(with_materials(&library[..length])));
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
@@ -129,12 +149,10 @@ proptest! {
     }
 
     #[test]
-    fn harmed_materials_are_survived(harms in prop::collection::vec(harm(), 0..6)) {
-        let library = "newmtl a\nKd .8 .4 .2\nKs 1 1 1\nNs 9\nillum 3\nd .5\nTf 1 1 1\nmap_Kd -o 1 2 3 -bm .5 x.png\nnewmtl b\nKe spectral x.rfl\nNi 1.3\nillum 7\nKe 1 2 3\n";
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("x.mtl"), harmed(library.into(), &harms)).unwrap();
-        std::fs::write(folder.path().join("x.obj"), "mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n").unwrap();
-        if let Ok(scene) = read(&folder.path().join("x.obj"), &ReadOptions::default()) {
+    fn harmed_materials_are_survived(pick: usize, harms in prop::collection::vec(harm(), 0..6)) {
+        let files = corpus("mtl");
+        let (_, library) = &files[pick % files.len()];
+        if let Ok(scene) = with_materials(&harmed(library.clone(), &harms)) {
             prop_assert!(scene.build(&Default::default(), [0.0, 0.0], 1.0).is_ok());
         }
     }
