@@ -20,7 +20,7 @@ pub(crate) struct Writing<'o> {
     /// Files beside it, by name.
     pub(crate) beside: Vec<(String, Vec<u8>)>,
     /// Textures written so far, and the files of each.
-    textures: Vec<(Arc<Texture>, String)>,
+    textures: Vec<(Texture, String)>,
     /// What the format could not hold.
     pub(crate) warnings: Vec<Warning>,
 }
@@ -51,8 +51,8 @@ impl<'o> Writing<'o> {
     }
 
     /// The same of a texture that may be a part of another.
-    pub(crate) fn texture_file(&mut self, texture: &Arc<Texture>) -> Result<String, FormatError> {
-        if let Some((_, name)) = self.textures.iter().find(|(known, _)| Arc::ptr_eq(known, texture)) {
+    pub(crate) fn texture_file(&mut self, texture: &Texture) -> Result<String, FormatError> {
+        if let Some((_, name)) = self.textures.iter().find(|(known, _)| have_one_file(known, texture)) {
             return Ok(name.clone());
         }
         let bright = texture.texels().any(is_bright);
@@ -76,6 +76,12 @@ impl<'o> Writing<'o> {
             self.warnings.push(warning);
         }
     }
+}
+
+/// True for textures of the same texels, wherever these lie.
+fn have_one_file(a: &Texture, b: &Texture) -> bool {
+    let of = |t: &Texture| (t.is_data, t.channel, t.factor, t.threshold);
+    Arc::ptr_eq(&a.image, &b.image) && of(a) == of(b)
 }
 
 /// Writes the files beside first, so that the main file never names one that is not there.

@@ -7,6 +7,7 @@ mod document;
 mod include;
 mod merge;
 mod model;
+mod pictures;
 mod place;
 mod replace;
 mod scene;

@@ -1,5 +1,6 @@
 //! A JSON schema of scene files, for editors: made from the same tables that the reader reads.
 
+use super::pictures::PICTURE;
 use super::place::KEYFRAME_KEYS;
 use super::shapes::SHAPES;
 use super::specs::CHANNELS;
@@ -127,6 +128,7 @@ fn formula() -> Value {
 fn texture(extra: &[(&str, Value)]) -> Value {
     let mut all: Map<String, Value> =
         extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+    all.extend(properties(PICTURE.parameters));
     all.insert("texture".to_owned(), described("string", "a picture, relative to this file"));
     json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["texture"] })
 }

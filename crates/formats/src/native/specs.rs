@@ -2,6 +2,7 @@
 
 use super::document::{Item, Node, Table};
 use super::include::Part;
+use super::pictures::{PICTURE, placed};
 use super::scene::Native;
 use crate::FormatError;
 use crate::reading::Texels;
@@ -128,19 +129,27 @@ impl Native<'_, '_> {
             return self.formula(item.text("kind")?, holds, table, part).map(Some);
         }
         let keys = ["texture", "channel"].into_iter().take(if has_channels { 2 } else { 1 });
-        table.check_keys(&format!("the texture of '{key}'"), keys)?;
+        let more = PICTURE.parameters.iter().map(|p| p.name);
+        table.check_keys(&format!("the texture of '{key}'"), keys.chain(more))?;
         let file = table.find("texture").ok_or_else(|| {
             let kinds: Vec<&str> = TEXTURES.iter().map(|row| row.entry.name).collect();
             missing(&format!("texture (a file), or kind ({}),", kinds.join(", ")), table)
         })?;
-        match self.reading.texture(part.folder.as_deref(), file.text("texture")?, holds, &file.at) {
-            Ok(texture) => Ok(Some(texture)),
+        let name = file.text("texture")?;
+        match self.reading.texture(part.folder.as_deref(), name, holds, &file.at) {
+            Ok(texture) if table.entries.iter().all(|(key, ..)| key == "texture" || key == "channel") => {
+                Ok(Some(texture))
+            }
+            Ok(texture) => Ok(Some(Arc::new(placed(&texture, table)?))),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
-                let reason = error.without_place();
-                let message = format!("the default of '{key}' stands in place of a texture: {reason}");
-                self.scene.warn(message, file.at.clone());
-                Ok(None)
+                let checker = (holds == Texels::Colours).then(|| Arc::new(Texture::missing(name)));
+                let stands = match checker {
+                    Some(_) => "a checker of magenta stands in place of a texture".to_owned(),
+                    None => format!("the default of '{key}' stands in place of a texture"),
+                };
+                self.scene.warn(format!("{stands}: {}", error.without_place()), file.at.clone());
+                Ok(checker)
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Writing the native scene file, its meshes beside it as PLY and its textures as PNG or EXR.
 
+use super::pictures::said_of;
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::ply::encode;
@@ -177,7 +178,15 @@ fn texture_text(
     writing: &mut Writing,
 ) -> Result<String, FormatError> {
     let Some(formula) = texture.formula() else {
-        return Ok(format!("{{ texture = {} }}", quoted(&writing.texture_file(texture)?)));
+        if texture.second_uv {
+            writing.warn(
+                "the second texture coordinates of meshes are not written: the first stand in their place",
+            );
+        }
+        let texels = Texture { threshold: None, ..Texture::clone(texture) };
+        let mut out = format!("{{ texture = {}", quoted(&writing.texture_file(&texels)?));
+        said_of(texture).into_iter().for_each(|(key, value)| out.push_str(&format!(", {key} = {value}")));
+        return Ok(out + " }");
     };
     let mut out = format!("{{ kind = {}", quoted(&formula.spec().kind));
     for (key, value, _) in &formula.spec().parameters.0 {

@@ -3,7 +3,7 @@
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, SHAPES, WriteOptions, read, toml_schema, write};
 use bilux_math::registry::{Parameter, ParameterKind};
-use bilux_math::{Rgb, Vec3};
+use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{SceneBuilder, Value};
 use std::path::Path;
@@ -359,13 +359,62 @@ fn textures_are_read_and_missing_ones_are_warnings() {
     std::fs::write(&path, material("no.png")).unwrap();
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert!(
-        warnings(&scene).contains(
-            "main.toml:4:27: the default of 'reflectance' stands in place of a texture: there is no file"
-        ),
+        warnings(&scene)
+            .contains("main.toml:4:27: a checker of magenta stands in place of a texture: there is no file"),
         "{}",
         warnings(&scene)
     );
+    assert_eq!(scene.textures[0].texel(0, 0), Rgb::new(1.0, 0.0, 1.0));
     assert!(read(&path, &ReadOptions { strict: true, ..Default::default() }).is_err());
+}
+
+#[test]
+fn pictures_lie_as_they_are_said_to_and_come_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let texels = (0..6).map(|i| Rgb::grey(i as f32 / 5.0)).collect();
+    let picture = bilux_pictures::Picture::from_rgb(3, 2, texels).unwrap();
+    bilux_pictures::write(folder.path().join("t.png"), &picture, &Default::default()).unwrap();
+    let read_with = |says: &str| {
+        let path = folder.path().join("main.toml");
+        let text = format!(
+            "[[material]]\nname = \"m\"\nkind = \"diffuse\"\nreflectance = {{ texture = \"t.png\"{says} }}\nopacity = {{ \
+             texture = \"t.png\", channel = \"g\"{says} }}\n[[model]]\nshape = \"sphere\"\nmaterial = \"m\"\n"
+        );
+        std::fs::write(&path, text).unwrap();
+        read(&path, &ReadOptions::default())
+    };
+    let turned = ", u_scale = 1.5, v_scale = -2, turn = 30, u_offset = 0.125, v_offset = 0.4";
+    for says in [
+        "",
+        turned,
+        ", wrap_u = \"mirror\", wrap_v = \"clamp\"",
+        ", filter = \"nearest\"",
+        ", threshold = 0.5",
+    ] {
+        let scene = read_with(says).unwrap();
+        let path = folder.path().join("back.toml");
+        let told = bilux_formats::write(&path, &scene, &Default::default()).unwrap();
+        assert!(told.is_empty(), "{says}: {told:?}");
+        let back = read(&path, &ReadOptions::default()).unwrap();
+        for (one, other) in scene.textures.iter().zip(&back.textures) {
+            for i in 0..100 {
+                let uv = Vec2::new(i as f32 * 0.137 - 5.0, i as f32 * 0.071 - 3.0);
+                let off = one.at(uv).g - other.at(uv).g;
+                assert!(off.abs() < 1e-4, "{says} at {uv}: {off}");
+            }
+        }
+    }
+    let plain = read_with("").unwrap();
+    let lies = read_with(turned).unwrap();
+    // A quarter of the way along u, without v: scaled, turned by 30 degrees, shifted.
+    let (c, s) = (0.75f32.sqrt(), 0.5);
+    let moved = Vec2::new(0.375 * c + 0.125, 0.375 * s + 0.4);
+    let found = lies.textures[0].at(Vec2::new(0.25, 0.0)).g - plain.textures[0].at(moved).g;
+    assert!(found.abs() < 1e-5, "{found}");
+    let refused = |says: &str| read_with(says).unwrap_err().to_string();
+    assert!(refused(", wrap_u = \"repaet\"").contains("repeat"), "{}", refused(", wrap_u = \"repaet\""));
+    assert!(refused(", uscale = 2").contains("u_scale"), "{}", refused(", uscale = 2"));
+    assert!(refused(", uv_set = 3").contains("uv_set"), "{}", refused(", uv_set = 3"));
 }
 
 #[test]

@@ -98,7 +98,7 @@ fn what_is_wrong_has_its_place() {
         let told = refusal("toml", material(lines));
         assert!(told.contains(wanted), "{lines}: {told}");
     }
-    // What is missing within one is told, and its default stands there.
+    // What is missing within one is told, and seen.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.toml");
     std::fs::write(
@@ -108,11 +108,11 @@ fn what_is_wrong_has_its_place() {
     .unwrap();
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert!(
-        warnings(&scene).contains("the default of 'b' stands in place of a texture"),
+        warnings(&scene).contains("a checker of magenta stands in place of a texture"),
         "{}",
         warnings(&scene)
     );
-    assert_eq!(texture(&scene, "reflectance").at(Vec2::ZERO), Rgb::grey(0.5));
+    assert_eq!(texture(&scene, "reflectance").at(Vec2::new(0.05, 0.95)), Rgb::new(0.5, 0.0, 0.5));
 }
 
 fn written(scene: &SceneBuilder, folder: &Path, extension: &str) -> (String, SceneBuilder) {
