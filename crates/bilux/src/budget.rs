@@ -2,6 +2,7 @@
 
 use bilux_scene::{Parameters, Value};
 use bilux_transport::integrators::INTEGRATORS;
+use std::time::Duration;
 
 /// What ends a picture of which nobody says when: so little noise, as a part of the light, or so many seconds.
 pub const DEFAULT_BUDGET: (f32, f32) = (0.02, 5.0);
@@ -26,9 +27,21 @@ pub fn with_default_budget(scene: &Parameters, user: &mut Parameters) -> bool {
     true
 }
 
+/// What is left of a time limit for rendering, where other things take so much of it: at least half.
+pub(crate) fn left_for_light(limit: Duration, others: Duration) -> Duration {
+    limit.saturating_sub(others).max(limit / 2)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_of_the_time_is_for_light_whatever_else_takes() {
+        let [limit, short, long] = [5.0, 0.5, 9.0].map(Duration::from_secs_f32);
+        assert_eq!(left_for_light(limit, short), Duration::from_secs_f32(4.5));
+        assert_eq!(left_for_light(limit, long), Duration::from_secs_f32(2.5));
+    }
 
     #[test]
     fn who_says_nothing_gets_a_budget_and_who_says_anything_does_not() {

@@ -1,6 +1,7 @@
 //! One picture to be rendered: a scene, a camera, an integrator and settings, joined and checked.
 
 use crate::Error;
+use crate::budget::left_for_light;
 use crate::fingerprint::fingerprint;
 use crate::oddities::oddities;
 use crate::settings::{Background, Settings};
@@ -39,6 +40,8 @@ pub struct Job {
     pub(crate) features: bool,
     /// The time that is going to be spent on denoising.
     pub(crate) denoising: Duration,
+    /// From when on its time limit counts; none for when it is rendered.
+    begun: Option<Instant>,
     /// No library of others may be loaded.
     pub(crate) sandboxed: bool,
     /// What it was made of; the fingerprint is of that, and takes long where textures are large.
@@ -110,6 +113,7 @@ impl Job {
             studio_lit: completed.lights.len() > scene.lights.len() && !settings.integrator.classic,
             features: false,
             denoising: Duration::ZERO,
+            begun: None,
             sandboxed: false,
             source: completed,
             fingerprint: OnceLock::new(),
@@ -130,6 +134,12 @@ impl Job {
     /// What is odd about the picture, though it can be rendered.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
+    }
+
+    /// Its time limit counts from here, as where a file was opened, and not from the first sample. Half of the limit is left to
+    /// rendering, whatever went before.
+    pub fn begun_at(&mut self, begun: Instant) {
+        self.begun = Some(begun);
     }
 
     /// Only samples `range` of each pixel, for a partial film.
@@ -176,18 +186,19 @@ impl Job {
     /// # Errors
     /// When the size or the crop makes no sense, or memory is short.
     pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
-        let begun = Instant::now();
+        let now = Instant::now();
         let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
         let mut render = self.render.clone();
+        let end = render.stop.time_limit.map(|limit| {
+            let aside = now.duration_since(self.begun.unwrap_or(now)) + self.denoising;
+            now + left_for_light(limit, aside)
+        });
         let mut features = None;
         if self.features {
-            let part = render.stop.time_limit.map(|limit| limit / FEATURES_PART);
+            let part = end.map(|end| (end - now) / FEATURES_PART);
             features = bilux_transport::features(scene, camera, integrator, &render, part, progress)?;
         }
-        if let Some(limit) = &mut render.stop.time_limit {
-            let rest = limit.saturating_sub(self.denoising).max(*limit / 2);
-            *limit = rest.saturating_sub(begun.elapsed());
-        }
+        render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
         let rendered = bilux_transport::render(scene, camera, integrator, &render, progress)?;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
         let coverage = self

@@ -144,7 +144,7 @@ pub struct Render {
     /// with --aov interval
     #[arg(long, value_name = "REL")]
     pub noise: Option<f32>,
-    /// Stop after this time
+    /// Be done after this time, reading and denoising included (half of it is kept for light)
     #[arg(long, value_name = "SECONDS")]
     pub time_limit: Option<f32>,
     /// Another number gives other noise

@@ -16,6 +16,7 @@ use crate::window::Window;
 use bilux_accel::Counters;
 use bilux_scene::{Camera, Scene};
 use std::ops::Range;
+use std::time::Instant;
 
 /// Scattering events after the camera where nothing else is said.
 pub const DEFAULT_MAX_DEPTH: u32 = 16;
@@ -190,6 +191,7 @@ pub fn render(
     progress: &dyn Progress,
 ) -> Result<Rendered, RenderError> {
     settings.check()?;
+    let begun = Instant::now();
     let scale = scale_exponent(scene);
     let film = Film::windowed(settings.width, settings.height, settings.window(), scale)?;
     let pool = threads(settings)?;
@@ -220,7 +222,7 @@ pub fn render(
     };
     let mut halves = Halves::default();
     if settings.stop.is_any() {
-        let mut watch = Watch::new(settings);
+        let mut watch = Watch::new(settings, begun.elapsed());
         while !rendered.cancelled
             && let Some(samples) = watch.next()
         {

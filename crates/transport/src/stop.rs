@@ -61,8 +61,11 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    pub(crate) fn new(settings: &RenderSettings) -> Watch {
-        let (stop, samples) = (settings.stop, settings.samples.clone());
+    /// So much time was spent before the first sample.
+    pub(crate) fn new(settings: &RenderSettings, spent: Duration) -> Watch {
+        let samples = settings.samples.clone();
+        let time_limit = settings.stop.time_limit.map(|limit| limit.saturating_sub(spent));
+        let stop = Stop { time_limit, ..settings.stop };
         Watch { stop, begun: Instant::now(), samples, done: 0, snapshots: [None, None], reached: None }
     }
 
@@ -157,9 +160,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_went_before_the_first_sample_is_in_the_time() {
+        let stop = Stop { noise: None, time_limit: Some(Duration::from_secs(1000)) };
+        let settings = RenderSettings { stop, ..RenderSettings::new(1, 1, 40) };
+        for (spent, more) in [(0, true), (1000, false)] {
+            let mut watch = Watch::new(&settings, Duration::from_secs(spent));
+            watch.done = 1;
+            assert_eq!(watch.next().is_some(), more, "{spent} s before");
+        }
+    }
+
+    #[test]
     fn passes_come_in_quarters_of_a_power_of_two() {
         let settings = RenderSettings::new(1, 1, 40);
-        let mut watch = Watch::new(&settings);
+        let mut watch = Watch::new(&settings, Duration::ZERO);
         let mut ends = Vec::new();
         while let Some(samples) = watch.next() {
             watch.done += samples.len() as u32;

@@ -11,6 +11,7 @@ pub mod list;
 pub mod manual;
 pub mod merge;
 pub mod render;
+mod stats;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};

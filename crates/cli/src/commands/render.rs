@@ -1,6 +1,6 @@
 //! `bilux render`: pictures from scenes.
 
-use super::{DONE, aov, check_choices, check_folder, denoise, read_options_with, tell_warnings};
+use super::{DONE, aov, check_choices, check_folder, denoise, read_options_with, stats, tell_warnings};
 use crate::arguments::{Common, Render};
 use crate::denoising::check_scenes;
 use crate::interrupt::Interrupt;
@@ -12,9 +12,9 @@ use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
 use bilux::scene::{Parameters, SceneBuilder};
-use bilux::transport::{Choice, Reached, Window};
+use bilux::transport::{Reached, Window};
 use bilux::{Job, Outcome};
-use serde_json::json;
+use std::cell::Cell;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -87,6 +87,8 @@ struct Input<'a> {
     piped: Option<(Vec<u8>, &'a str)>,
     arguments: &'a Render,
     common: &'a Common,
+    /// When the picture was begun that is rendered next.
+    begun: Cell<Instant>,
 }
 
 impl Input<'_> {
@@ -102,7 +104,7 @@ impl Input<'_> {
             std::io::stdin().take(common.max_memory).read_to_end(&mut bytes)?;
             piped = Some((bytes, format));
         }
-        Ok(Input { path, piped, arguments, common })
+        Ok(Input { path, piped, arguments, common, begun: Cell::new(Instant::now()) })
     }
 
     /// The scene as it is at a time in seconds, and for frames as it is at all times.
@@ -127,6 +129,7 @@ impl Input<'_> {
         if self.common.sandbox {
             job.sandbox();
         }
+        job.begun_at(self.begun.get());
         aov::prepare(arguments, &mut job)?;
         if let Some((from, to)) = arguments.samples {
             job.samples(from..to);
@@ -162,6 +165,7 @@ fn render_one(
         if status != DONE {
             return Ok(status);
         }
+        input.begun.set(Instant::now());
     }
     Ok(DONE)
 }
@@ -203,6 +207,10 @@ fn render_scene(
     };
     for frame in first..=last {
         let time = frame as f32 / job.settings().fps;
+        if frame > first {
+            input.begun.set(Instant::now());
+            job.begun_at(input.begun.get());
+        }
         if scene.inventory.moves() {
             let mut posed = input.read(time, false)?;
             posed.inventory.movement = scene.inventory.movement.clone();
@@ -249,7 +257,7 @@ fn finish(
     tell_odd_samples(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     if let Some(path) = &arguments.stats {
-        let stats = stats(job, &outcome, scene, build_seconds, seconds);
+        let stats = stats::of(job, &outcome, scene, build_seconds, seconds);
         let text = serde_json::to_string_pretty(&stats)?;
         bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
     }
@@ -351,45 +359,4 @@ fn how_far(reached: &Reached) -> String {
     let bias =
         bias.map(|bias| format!(", shifted by the rule by at most {bias:.2} of it")).unwrap_or_default();
     format!("{} samples a pixel{noise}{bias}", reached.spp)
-}
-
-/// Which ways of finding light were chosen, and what was expected of each.
-fn choice(choice: &Choice) -> serde_json::Value {
-    let rivals = choice.rivals.iter().map(|rival| {
-        json!({
-            "name": rival.name, "error": rival.error, "lost": rival.lost, "nanoseconds": rival.nanoseconds,
-        })
-    });
-    json!({ "chosen": choice.best().name, "rivals": rivals.collect::<Vec<_>>() })
-}
-
-fn stats(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds: f64) -> serde_json::Value {
-    let (s, c) = (job.settings(), &outcome.counters);
-    let trees: Vec<_> = job
-        .scene()
-        .geometry()
-        .instances()
-        .iter()
-        .take(1)
-        .map(|instance| {
-            let shape = instance.accelerator.shape();
-            json!({
-                "nodes": shape.nodes, "leaves": shape.leaves, "references": shape.references,
-                "depth": shape.depth, "imbalance": shape.imbalance(), "leaf_sizes": shape.leaf_sizes,
-                "memory_bytes": instance.accelerator.memory_bytes(),
-            })
-        })
-        .collect();
-    json!({
-        "scene": scene.to_string_lossy(), "integrator": s.integrator.entry.name, "accel": s.accel.name,
-        "width": s.width, "height": s.height, "spp": s.spp, "seed": s.seed,
-        "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
-        "triangle_tests": c.triangles, "early_outs": c.early_outs,
-        "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
-        "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
-        "tree": trees.first(), "reached": outcome.reached.map(|r| json!({
-            "spp": r.spp, "noise": r.noise, "samples_that_told_it_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
-        })),
-        "choice": outcome.choice.as_ref().map(choice),
-    })
 }

@@ -26,7 +26,7 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         source: "Dammertz 2010",
         parameters: &[],
     },
-    time: |pixels, threads| Duration::from_nanos(pixels.saturating_mul(900) / threads as u64),
+    time: |pixels, threads| Duration::from_nanos(pixels.saturating_mul(1600) / threads as u64),
     is_library: false,
     find: |threads| match Builtin::new(threads) {
         Ok(builtin) => Ok(Box::new(builtin)),

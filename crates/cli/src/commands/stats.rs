@@ -1,0 +1,48 @@
+//! What `bilux render --stats` writes.
+
+use bilux::transport::Choice;
+use bilux::{Job, Outcome};
+use serde_json::json;
+use std::path::Path;
+
+/// Which ways of finding light were chosen, and what was expected of each.
+fn choice(choice: &Choice) -> serde_json::Value {
+    let rivals = choice.rivals.iter().map(|rival| {
+        json!({
+            "name": rival.name, "error": rival.error, "lost": rival.lost, "nanoseconds": rival.nanoseconds,
+        })
+    });
+    json!({ "chosen": choice.best().name, "rivals": rivals.collect::<Vec<_>>() })
+}
+
+/// What is known of a picture once it is done.
+pub fn of(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds: f64) -> serde_json::Value {
+    let (s, c) = (job.settings(), &outcome.counters);
+    let trees: Vec<_> = job
+        .scene()
+        .geometry()
+        .instances()
+        .iter()
+        .take(1)
+        .map(|instance| {
+            let shape = instance.accelerator.shape();
+            json!({
+                "nodes": shape.nodes, "leaves": shape.leaves, "references": shape.references,
+                "depth": shape.depth, "imbalance": shape.imbalance(), "leaf_sizes": shape.leaf_sizes,
+                "memory_bytes": instance.accelerator.memory_bytes(),
+            })
+        })
+        .collect();
+    json!({
+        "scene": scene.to_string_lossy(), "integrator": s.integrator.entry.name, "accel": s.accel.name,
+        "width": s.width, "height": s.height, "spp": s.spp, "seed": s.seed,
+        "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
+        "triangle_tests": c.triangles, "early_outs": c.early_outs,
+        "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
+        "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
+        "tree": trees.first(), "reached": outcome.reached.map(|r| json!({
+            "spp": r.spp, "noise": r.noise, "samples_that_told_it_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
+        })),
+        "choice": outcome.choice.as_ref().map(choice),
+    })
+}
