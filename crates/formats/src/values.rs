@@ -1,7 +1,8 @@
 //! What the parameters of a spec say, for writers.
 
+use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::{Spec, Value};
+use bilux_scene::{MATERIALS, Spec, Value};
 
 /// A number, if one is given.
 pub(crate) fn number(spec: &Spec, key: &str) -> Option<f32> {
@@ -33,6 +34,33 @@ pub(crate) fn texture(spec: &Spec, key: &str) -> Option<usize> {
     match spec.parameters.find(key)?.0 {
         Value::Texture(index) => Some(*index),
         _ => None,
+    }
+}
+
+/// What a format holds of a kind of materials: that, and its parameters.
+pub(crate) type Held = (&'static str, &'static [&'static str]);
+
+/// Tells of what a material says that a format cannot hold: neither of its kind nor of any.
+pub(crate) fn tell_left_out(
+    spec: &Spec,
+    format: &str,
+    held: &[Held],
+    of_any: &[&str],
+    writing: &mut Writing,
+) {
+    let Some((_, of_kind)) = held.iter().find(|(kind, _)| *kind == spec.kind) else { return };
+    let Some(row) = MATERIALS.iter().find(|row| row.entry.name == spec.kind) else { return };
+    for key in spec.differing(&row.entry).filter(|key| !of_kind.contains(key) && !of_any.contains(key)) {
+        writing.warn(format!("{format} files hold no '{key}' of a {} material: left out", spec.kind));
+    }
+}
+
+/// Tells of pictures of a material where a format holds none.
+pub(crate) fn tell_pictures_left_out(spec: &Spec, format: &str, held: &[&str], writing: &mut Writing) {
+    for (key, value, _) in &spec.parameters.0 {
+        if matches!(value, Value::Texture(_)) && !held.contains(&key.as_str()) {
+            writing.warn(format!("{format} files hold no picture of '{key}': left out"));
+        }
     }
 }
 

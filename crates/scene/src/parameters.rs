@@ -262,6 +262,19 @@ impl<'a> Reader<'a> {
     }
 }
 
+impl Spec {
+    /// The keys that are given another value than their row's default.
+    pub fn differing<'s>(&'s self, entry: &'s Entry) -> impl Iterator<Item = &'s str> {
+        let is_default = |key: &str, value: &Value| {
+            let Some(row) = entry.parameters.iter().find(|p| p.name == key) else { return false };
+            let default = parse_default(row.kind, row.default);
+            *value == default || triple(value).is_some_and(|given| Some(given) == triple(&default))
+        };
+        let given = self.parameters.0.iter().filter(move |(key, value, _)| !is_default(key, value));
+        given.map(|(key, ..)| key.as_str())
+    }
+}
+
 /// A default as tables write it: `true`, `1.5`, `1 1 1` or a word.
 fn parse_default(kind: ParameterKind, text: &str) -> Value {
     match kind {

@@ -5,9 +5,10 @@ use super::write::one_line;
 use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
 use crate::reading::default_material;
-use crate::values::{colour, number, texture};
+use crate::values::{Held, colour, number, tell_left_out, tell_pictures_left_out, texture};
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
+use bilux_scene::materials::straight_on;
 use bilux_scene::{SceneBuilder, Spec, Value};
 
 /// Writes every material but the plain one into a library beside; gives the name of each.
@@ -43,7 +44,7 @@ pub(super) fn write_library(
 const OF_ANY: [&str; 3] = ["opacity", "normal", "normal_scale"];
 
 /// Parameters that MTL holds, by kind.
-const HELD: [(&str, &[&str]); 5] = [
+const HELD: [Held; 6] = [
     (
         "principled",
         &[
@@ -65,7 +66,25 @@ const HELD: [(&str, &[&str]); 5] = [
     ("phong", &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "thin"]),
     ("diffuse", &["reflectance", "emission"]),
     ("mirror", &["reflectance", "emission"]),
+    ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
     ("dielectric", &["eta", "tint"]),
+];
+
+/// Those of which it holds a picture.
+const MAPPED: [&str; 13] = [
+    "roughness",
+    "kd",
+    "reflectance",
+    "base_color",
+    "ks",
+    "emission",
+    "opacity",
+    "normal",
+    "base_metalness",
+    "specular_roughness",
+    "fuzz_weight",
+    "coat_weight",
+    "coat_roughness",
 ];
 
 fn write_material(
@@ -74,20 +93,16 @@ fn write_material(
     writing: &mut Writing,
     out: &mut Vec<u8>,
 ) -> Result<(), FormatError> {
-    let held = HELD.iter().find(|(kind, _)| *kind == spec.kind);
-    if held.is_none() {
+    if !HELD.iter().any(|(kind, _)| *kind == spec.kind) {
         writing.warn(format!("OBJ files hold no material '{}': a matt one stands in its place", spec.kind));
     }
-    for (key, ..) in &spec.parameters.0 {
-        let key = key.as_str();
-        if held.is_some_and(|(_, keys)| !keys.contains(&key) && !OF_ANY.contains(&key)) {
-            writing.warn(format!("OBJ files hold no '{key}' of a material: left out"));
-        }
-    }
+    tell_left_out(spec, "OBJ", &HELD, &OF_ANY, writing);
+    tell_pictures_left_out(spec, "OBJ", &MAPPED, writing);
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
     match spec.kind.as_str() {
         "phong" => write_phong(spec, out),
         "principled" => write_principled(spec, scene, writing, out)?,
+        "conductor" => write_principled(&metal(spec), scene, writing, out)?,
         "mirror" => {
             push_colour(out, "Kd", Rgb::BLACK);
             push_colour(out, "Ks", grey("reflectance", 0.95));
@@ -144,6 +159,17 @@ fn push_map(
     Ok(())
 }
 
+/// A metal of any name or index as one of a colour.
+fn metal(spec: &Spec) -> Spec {
+    let taken =
+        |key: &str, default: Value| spec.parameters.find(key).map_or(default, |(value, _)| value.clone());
+    let shade = straight_on(spec).unwrap_or(Rgb::grey(0.9));
+    Spec::new(&spec.name, "principled")
+        .with("base_color", taken("reflectance", shade.into()))
+        .with("base_metalness", 1.0)
+        .with("specular_roughness", taken("roughness", 0.3.into()))
+}
+
 /// In the words that other programs added.
 fn write_principled(
     spec: &Spec,
@@ -168,7 +194,7 @@ fn write_principled(
         Some(weight) => {
             if weight < 1.0 {
                 writing
-                    .warn("OBJ files hold no material that is clear in part: all of it is written as clear");
+                    .warn("OBJ files hold no parts of 'transmission_weight': what is clear in part is written as clear");
             }
             push_colour(out, "Tf", colour(spec, "transmission_color").unwrap_or(Rgb::WHITE));
             out.extend_from_slice(b"illum 7\n");

@@ -11,6 +11,7 @@ mod gltf_motion;
 mod gltf_packed;
 mod gltf_written;
 mod hostile;
+mod left_out;
 mod native;
 mod obj;
 mod off;

@@ -146,7 +146,7 @@ fn materials_come_back() {
     assert_near(&spec, "emission", &[1.0, 2.0, 3.0]);
     assert_near(&spec, "opacity", &[0.5]);
     let (told, _) = material("kind = \"diffuse\"\nroughness = 0.5");
-    assert_eq!(told, ["pbrt files hold no 'roughness' of what is matt: left out"]);
+    assert_eq!(told, ["pbrt files hold no 'roughness' of a diffuse material: left out"]);
     let (told, spec) = material("kind = \"principled\"\nfuzz_weight = 1\ncoat_weight = 0.5");
     assert_eq!((told.len(), &*spec.kind), (2, "principled"), "{told:?}");
 }

@@ -1,15 +1,16 @@
 //! Materials in the terms of glTF: what [`super::super::material`] reads, the other way round.
 
 use super::Document;
+use super::kinds::{OF_ANY, OF_OTHERS, as_principled};
 use super::pictures::Channel;
 use crate::FormatError;
-use crate::values::{colour, number, texture};
+use crate::values::{colour, number, tell_left_out, tell_pictures_left_out, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
-use bilux_math::transcendental::exp;
-use bilux_scene::{Spec, Value};
+use bilux_scene::{Spec, Texture, Value};
 use serde_json::{Value as Json, json};
 use std::f32::consts::TAU;
+use std::sync::Arc;
 
 /// Our parameters of `principled` that are an extension's: extension, key there, its texture's key and channel.
 const NUMBERS: &[(&str, &str, &str, &str, usize)] = &[
@@ -59,27 +60,32 @@ const ELSEWHERE: &[&str] = &[
     "fuzz_color",
     "thin_film_thickness",
     "thin_film_ior",
-    "emission",
-    "emission_scale",
-    "normal",
-    "normal_scale",
-    "opacity",
-    "visible_sides",
-    "emission_sides",
+];
+
+/// Of that, what it holds pictures of.
+const PICTURED: [&str; 6] = [
+    "base_color",
+    "base_metalness",
+    "specular_roughness",
+    "coat_normal",
+    "fuzz_color",
+    "thin_film_thickness",
 ];
 
 impl Document<'_> {
     /// A material of any kind.
     pub(super) fn material(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Json, FormatError> {
         let principled = as_principled(spec, self, writing);
-        for (key, ..) in &principled.parameters.0 {
-            let known = ELSEWHERE.contains(&key.as_str())
-                || NUMBERS.iter().any(|row| row.0 == key)
-                || COLOURS.iter().any(|row| row.0 == key);
-            if !known {
-                writing.warn(format!("glTF files hold no '{key}' of a material: left out"));
-            }
-        }
+        tell_left_out(spec, "glTF", &OF_OTHERS, OF_ANY, writing);
+        let of_any: Vec<&str> = OF_ANY
+            .iter()
+            .copied()
+            .chain(NUMBERS.iter().map(|row| row.0))
+            .chain(COLOURS.iter().map(|row| row.0))
+            .collect();
+        tell_left_out(&principled, "glTF", &[("principled", ELSEWHERE)], &of_any, writing);
+        let of_any = [&of_any[..], &PICTURED].concat();
+        tell_pictures_left_out(&principled, "glTF", &of_any, writing);
         let is_front =
             |key| matches!(principled.parameters.find(key), Some((Value::Text(side), _)) if side == "front");
         let is_one_sided = is_front("visible_sides");
@@ -153,6 +159,24 @@ impl Document<'_> {
         Ok(())
     }
 
+    /// A film's thickness as a picture: parts of the greatest.
+    fn thickness(&mut self, spec: &Spec, of: &mut Json) -> Result<(), FormatError> {
+        let Some(found) = texture(spec, "thin_film_thickness").and_then(|i| self.scene.textures.get(i))
+        else {
+            return Ok(());
+        };
+        let most = found.texels().fold(0.0, |most, texel| f32::max(most, texel.r));
+        let factor = found.factor * (1.0 / most.max(f32::MIN_POSITIVE));
+        let parts = Channel::Numbers(Arc::new(Texture { factor, ..Texture::clone(found) }));
+        let one = Channel::Even(1.0);
+        of["iridescenceThicknessMinimum"] = json!(0.0);
+        of["iridescenceThicknessMaximum"] = json!(most * 1000.0);
+        if let Some(info) = self.numbers([&one, &parts, &one, &one])? {
+            of["iridescenceThicknessTexture"] = info;
+        }
+        Ok(())
+    }
+
     fn extensions(&mut self, spec: &Spec, out: &mut Json, writing: &mut Writing) -> Result<(), FormatError> {
         for &(ours, extension, factor, picture, place) in NUMBERS {
             let Some((value, _)) = spec.parameters.find(ours) else { continue };
@@ -183,12 +207,23 @@ impl Document<'_> {
             let shade = colour(spec, "fuzz_color").unwrap_or(Rgb::WHITE) * weight;
             let of = &mut out["extensions"][self.uses("KHR_materials_sheen")];
             of["sheenColorFactor"] = json!(shade.to_array());
+            if let Some(found) = texture(spec, "fuzz_color").and_then(|i| self.scene.textures.get(i)).cloned()
+            {
+                out["extensions"]["KHR_materials_sheen"]["sheenColorTexture"] =
+                    self.colours(&found, &Channel::Even(1.0), writing)?;
+            }
         }
         if number(spec, "thin_film_weight").is_some() {
             let thickness = number(spec, "thin_film_thickness").unwrap_or(0.5) * 1000.0;
             let of = &mut out["extensions"][self.uses("KHR_materials_iridescence")];
             of["iridescenceThicknessMaximum"] = json!(thickness);
             of["iridescenceIor"] = json!(number(spec, "thin_film_ior").unwrap_or(1.4));
+            self.thickness(spec, of)?;
+        }
+        let has_coat = texture(spec, "coat_weight").is_some()
+            || number(spec, "coat_weight").is_some_and(|weight| weight > 0.0);
+        if has_coat && number(spec, "coat_ior") != Some(1.5) {
+            writing.warn("glTF files hold no 'coat_ior' of a material: coats there have an index of 1.5");
         }
         if let Some(normals) = self.normals(spec, "coat_normal", writing)? {
             let of = &mut out["extensions"][self.uses("KHR_materials_clearcoat")];
@@ -213,10 +248,13 @@ impl Document<'_> {
 
     /// Theirs is smooth across and rougher along, ours of the mean and smoother across, by the same ratio.
     fn brushing(&mut self, spec: &Spec, out: &mut Json, writing: &mut Writing) {
+        if ["specular_roughness_anisotropy", "anisotropy_rotation"]
+            .iter()
+            .any(|key| texture(spec, key).is_some())
+        {
+            writing.warn("anisotropy from a picture is not written");
+        }
         let Some(ours) = number(spec, "specular_roughness_anisotropy").filter(|ours| *ours > 0.0) else {
-            if texture(spec, "specular_roughness_anisotropy").is_some() {
-                writing.warn("anisotropy from a picture is not written");
-            }
             return;
         };
         let ratio = 1.0 - ours;
@@ -253,97 +291,6 @@ impl Document<'_> {
             of["attenuationColor"] = json!(shade.to_array());
         }
     }
-}
-
-/// What materials of all kinds have.
-const OF_ANY: &[&str] =
-    &["emission", "emission_scale", "emission_sides", "normal", "normal_scale", "opacity", "visible_sides"];
-
-/// What any material comes to as `principled`.
-fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spec {
-    let mut out = Spec::new(&spec.name, "principled");
-    for &key in OF_ANY {
-        if let Some((value, at)) = spec.parameters.find(key) {
-            out.parameters.set_at(key, value.clone(), at.clone());
-        }
-    }
-    let taken =
-        |key: &str, default: Value| spec.parameters.find(key).map_or(default, |(value, _)| value.clone());
-    match spec.kind.as_str() {
-        "principled" => {
-            let mut same = spec.clone();
-            // Light that goes through is tinted by the base there.
-            if number(spec, "transmission_depth").unwrap_or(0.0) == 0.0
-                && number(spec, "transmission_weight") == Some(1.0)
-            {
-                same.parameters.set("base_color", taken("transmission_color", 1.0.into()));
-            }
-            same
-        }
-        "diffuse" => {
-            if let Some((roughness, at)) = spec.parameters.find("roughness") {
-                out.parameters.set_at("base_diffuse_roughness", roughness.clone(), at.clone());
-            }
-            out.with("base_color", taken("reflectance", 0.7.into()))
-                .with("specular_weight", 0.0)
-                .with("specular_roughness", 1.0)
-        }
-        "mirror" => out
-            .with("base_color", taken("reflectance", 0.95.into()))
-            .with("base_metalness", 1.0)
-            .with("specular_roughness", 0.0),
-        "conductor" => {
-            let surface = bilux_scene::materials::straight_on(spec).unwrap_or(Rgb::grey(0.9));
-            out.with("base_color", taken("reflectance", surface.into()))
-                .with("base_metalness", 1.0)
-                .with("specular_roughness", taken("roughness", 0.3.into()))
-        }
-        "dielectric" => {
-            let absorbed = colour(spec, "absorption").unwrap_or(Rgb::BLACK);
-            let out = out
-                .with("base_color", taken("tint", 1.0.into()))
-                .with("transmission_weight", 1.0)
-                .with("specular_ior", taken("eta", 1.5.into()))
-                .with("specular_roughness", taken("roughness", 0.0.into()))
-                .with("thin_walled", taken("thin", false.into()));
-            let out = match number(spec, "dispersion") {
-                Some(dispersion) => parting(out, dispersion),
-                None => out,
-            };
-            if absorbed.is_black() {
-                out
-            } else {
-                out.with("transmission_depth", 1.0).with("transmission_color", absorbed.map(|a| exp(-a)))
-            }
-        }
-        "phong" => {
-            let exponent = number(spec, "exponent").unwrap_or(10.0).max(0.0);
-            writing.warn(
-                "a phong material becomes one of metal and roughness, which reflects a little otherwise",
-            );
-            out.with("base_color", taken("kd", 0.7.into()))
-                .with("specular_color", taken("ks", 0.2.into()))
-                .with("specular_roughness", (2.0 / (exponent + 2.0)).sqrt().sqrt())
-        }
-        other => {
-            let first = spec.parameters.find("a").and_then(|(value, _)| match value {
-                Value::Material(index) => document.scene.materials.get(*index),
-                _ => None,
-            });
-            writing
-                .warn(format!("glTF files hold no material '{other}': its first part stands in its place"));
-            match first.filter(|first| first.kind != "mix") {
-                Some(first) => Spec { name: spec.name.clone(), ..as_principled(first, document, writing) },
-                None => out,
-            }
-        }
-    }
-}
-
-/// With glTF's dispersion as OpenPBR has it: how much of what an Abbe number says, 20 where nothing else is said.
-fn parting(spec: Spec, dispersion: f32) -> Spec {
-    spec.with("transmission_dispersion_scale", dispersion.min(1.0))
-        .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0))
 }
 
 /// Light that a surface gives out: a factor of at most 1, and what is above it in an extension.

@@ -4,6 +4,7 @@
 //! surfaces that do.
 
 mod buffer;
+mod kinds;
 mod material;
 mod nodes;
 mod pictures;

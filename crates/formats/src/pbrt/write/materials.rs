@@ -1,5 +1,6 @@
 //! Our materials in their terms: what [`super::super::materials`] reads, the other way round.
 
+use super::held::tell_not_held;
 use super::looks::AS_IT_IS;
 use super::textures::{Change, Holds};
 use super::{Document, float, rgb};
@@ -19,17 +20,6 @@ const METALS: [(&str, &str); 5] =
 /// Roughness is what we write, and no root of it.
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
-/// Parts of `principled` that nothing there says.
-const LEFT_OUT: [(&str, f32); 7] = [
-    ("fuzz_weight", 0.0),
-    ("thin_film_weight", 0.0),
-    ("priority", 0.0),
-    ("normal_scale", 1.0),
-    ("dispersion", 0.0),
-    ("transmission_dispersion_scale", 0.0),
-    ("base_diffuse_roughness", 0.0),
-];
-
 impl Document<'_> {
     /// Writes a material; gives its name, and what is absorbed inside.
     pub(super) fn material(
@@ -37,21 +27,10 @@ impl Document<'_> {
         spec: &Spec,
         writing: &mut Writing,
     ) -> Result<(String, Rgb), FormatError> {
-        for (key, nothing) in LEFT_OUT {
-            let says = texture(spec, key).is_some() || number(spec, key).is_some_and(|x| x != nothing);
-            if says {
-                writing.warn(format!("pbrt files hold no '{key}' of a material: left out"));
-            }
-        }
+        tell_not_held(spec, writing);
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {
-            "diffuse" => {
-                if texture(spec, "roughness").is_some() || number(spec, "roughness").is_some_and(|x| x > 0.0)
-                {
-                    writing.warn("pbrt files hold no 'roughness' of what is matt: left out");
-                }
-                self.matt(spec, "reflectance", 0.7, writing)?
-            }
+            "diffuse" => self.matt(spec, "reflectance", 0.7, writing)?,
             "mirror" => {
                 writing.warn("mirrors are written as metal, which reflects more along the surface");
                 let reflectance = self.colour_of(spec, "reflectance", 0.95, AS_IT_IS, writing)?;
@@ -60,11 +39,6 @@ impl Document<'_> {
             "conductor" => self.metal(spec, writing)?,
             "dielectric" => {
                 absorbed = colour(spec, "absorption").unwrap_or(Rgb::BLACK);
-                if colour(spec, "tint").is_some_and(|tint| tint != Rgb::WHITE)
-                    || texture(spec, "tint").is_some()
-                {
-                    writing.warn("pbrt files hold no 'tint' of glass: left out");
-                }
                 self.glass(spec, "eta", "thin", ["roughness", "anisotropy", "rotation"], writing)?
             }
             "principled" => return self.principled(spec, writing),
@@ -189,9 +163,6 @@ impl Document<'_> {
         }
         let rough = number(spec, even).unwrap_or(default);
         let lacks = number(spec, ratio).unwrap_or(0.0);
-        if texture(spec, ratio).is_some() || texture(spec, turn).is_some() {
-            writing.warn("brushing from a picture is not written");
-        }
         if lacks <= 0.0 {
             return Ok(float(&format!("{before}roughness"), rough * rough));
         }
@@ -210,9 +181,6 @@ impl Document<'_> {
     fn principled(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(String, Rgb), FormatError> {
         let white =
             |key: &str| colour(spec, key).is_none_or(|c| c == Rgb::WHITE) && texture(spec, key).is_none();
-        if !white("specular_color") {
-            writing.warn("pbrt files hold no 'specular_color' of a material: left out");
-        }
         let given = |key: &str| texture(spec, key).is_some() || number(spec, key).is_some_and(|x| x > 0.0);
         let all = |key: &str| number(spec, key) == Some(1.0);
         let mut absorbed = Rgb::BLACK;
@@ -338,8 +306,20 @@ impl Document<'_> {
     /// The paper's material: matt, with a highlight as wide as its exponent says.
     fn shiny(&mut self, spec: &Spec, writing: &mut Writing) -> Result<String, FormatError> {
         let strongest = |key, default| colour(spec, key).unwrap_or(Rgb::grey(default)).max_channel();
-        if strongest("kt", 0.0) > 0.5 {
+        let clear = strongest("kt", 0.0);
+        let mut left_out = |keys: &[&str], of: &str| {
+            for key in keys.iter().filter(|key| spec.parameters.find(key).is_some()) {
+                writing.warn(format!("pbrt files hold no '{key}' of {of}: left out"));
+            }
+        };
+        if clear > 0.5 {
+            writing.warn(
+                "what is clear for the most part is written as glass, which reflects by its index alone",
+            );
             return self.glass(spec, "eta", "thin", ["roughness", "", ""], writing);
+        }
+        if clear > 0.0 {
+            left_out(&["kt", "eta", "thin"], "what is hardly clear");
         }
         let (kd, ks) = (strongest("kd", 0.7), strongest("ks", 0.3));
         if ks <= 0.0 {

@@ -1,5 +1,6 @@
 //! Writing pbrt-v4: meshes beside it as PLY, pictures as PNG or EXR.
 
+mod held;
 mod lights;
 mod looks;
 mod materials;

@@ -1,0 +1,127 @@
+//! Nothing is lost in silence: what a written file does not show of a material is told.
+
+use bilux_formats::{WriteOptions, write};
+use bilux_math::Rgb;
+use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_scene::{MATERIALS, Mesh, Object, SceneBuilder, Spec, Texture, Value};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Layers that are there, so that what is said of them counts.
+const BEFORE: [(&str, &[(&str, f64)]); 4] = [
+    ("conductor", &[("anisotropy", 0.5)]),
+    ("dielectric", &[("roughness", 0.4), ("anisotropy", 0.5)]),
+    (
+        "principled",
+        &[
+            ("base_metalness", 0.5),
+            ("transmission_weight", 0.5),
+            ("transmission_color", 0.5),
+            ("transmission_depth", 2.0),
+            ("transmission_dispersion_scale", 0.5),
+            ("coat_weight", 0.75),
+            ("fuzz_weight", 0.5),
+            ("thin_film_weight", 0.5),
+            ("specular_roughness_anisotropy", 0.5),
+        ],
+    ),
+    ("phong", &[("kt", 0.375)]),
+];
+
+/// What only counts beside something else, and that.
+fn beside(key: &str) -> Option<(&'static str, Value)> {
+    Some(match key {
+        "normal_scale" => ("normal", Value::Texture(0)),
+        "coat_normal_scale" => ("coat_normal", Value::Texture(0)),
+        "emission_scale" => ("emission", Value::Texture(0)),
+        "emission_sides" => ("emission", Value::Number(2.0)),
+        "edge" => ("reflectance", Value::Number(0.5)),
+        "k" => ("eta", Value::Number(2.0)),
+        "eta" => ("k", Value::Number(2.0)),
+        "diffuse_transmission_color" => ("diffuse_transmission_weight", Value::Number(0.5)),
+        _ => return None,
+    })
+}
+
+/// Of the paper's ways of rendering alone, which other programs do not have; or of no use beside another key.
+fn is_beside(key: &str) -> bool {
+    ["ka", "gloss", "translucency"].contains(&key)
+}
+
+/// Values that are not the default: a plain one, and a picture.
+fn others(parameter: &Parameter) -> Vec<Value> {
+    let within = |min: f64, max: f64| {
+        let default: f64 = parameter.default.split(' ').next().unwrap().parse().unwrap();
+        Value::Number(if default + 0.25 <= max { default + 0.25 } else { default - 0.25 }.max(min))
+    };
+    let shade = Value::from(Rgb::new(0.25, 0.5, 0.75));
+    match parameter.kind {
+        ParameterKind::Bool => vec![Value::Bool(parameter.default != "true")],
+        ParameterKind::Integer { min, .. } => vec![Value::Integer(min + 1)],
+        ParameterKind::Number { min, max } => vec![within(min, max)],
+        ParameterKind::NumberTexture { min, max } => vec![within(min, max), Value::Texture(0)],
+        ParameterKind::Colour { .. } => vec![shade],
+        ParameterKind::ColourTexture { .. } => vec![shade, Value::Texture(0)],
+        ParameterKind::Choice(words) => {
+            words.iter().filter(|word| **word != parameter.default).map(|word| Value::from(*word)).collect()
+        }
+        ParameterKind::Texture => vec![Value::Texture(0)],
+        _ => Vec::new(),
+    }
+}
+
+/// All files of a triangle of that material, by name, and what is told.
+fn written(spec: Spec, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
+    let mut scene = SceneBuilder::default();
+    scene.textures.push(Arc::new(Texture::new("t", 1, 1, vec![Rgb::new(0.5, 0.75, 1.0)], true)));
+    let material = scene.add_material(spec);
+    let mesh = Mesh {
+        positions: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Into::into).to_vec(),
+        uvs: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into).to_vec(),
+        triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
+    };
+    scene.objects.push(Object::new("m", Arc::new(mesh), material));
+    let folder = tempfile::tempdir().unwrap();
+    let told = write(&folder.path().join(format!("m.{format}")), &scene, &WriteOptions::default()).unwrap();
+    let read = |path: &Path| std::fs::read(path).unwrap();
+    let files = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap());
+    let files = files.map(|entry| (entry.file_name().to_string_lossy().into_owned(), read(&entry.path())));
+    (files.collect(), told.into_iter().map(|warning| warning.message).collect())
+}
+
+/// The keys of a material that a format loses without a word.
+fn lost(entry: &Entry, format: &str) -> Vec<String> {
+    let before = BEFORE.iter().find(|(kind, _)| *kind == entry.name).map_or(&[][..], |(_, keys)| keys);
+    let base = before
+        .iter()
+        .fold(Spec::new("m", entry.name), |spec, (key, value)| spec.with(key, Value::Number(*value)));
+    let said = entry.parameters.iter().filter(|parameter| !is_beside(parameter.name));
+    let said = said.flat_map(|parameter| others(parameter).into_iter().map(move |value| (parameter, value)));
+    let lost = said.filter(|(parameter, value)| {
+        let has = |key: &str| entry.parameters.iter().any(|parameter| parameter.name == key);
+        let beside = beside(parameter.name).filter(|(key, _)| has(key));
+        let base = beside.into_iter().fold(base.clone(), |spec, (key, value)| spec.with(key, value));
+        let (plain, told_of_plain) = written(base.clone(), format);
+        let (changed, told) = written(base.with(parameter.name, value.clone()), format);
+        // Where it, or its whole layer, is left out anyway, nothing more needs to be said.
+        let layer = |message: &String| {
+            let of = message.split('\'').nth(1).unwrap_or_default();
+            let stem = of.strip_suffix("weight").or(of.strip_suffix("scale"));
+            of == parameter.name
+                || stem.is_some_and(|stem| !stem.is_empty() && parameter.name.starts_with(stem))
+        };
+        plain == changed && told == told_of_plain && !told.iter().any(layer)
+    });
+    lost.map(|(parameter, value)| format!("{} = {value:?}", parameter.name)).collect()
+}
+
+#[test]
+fn what_a_written_material_does_not_show_is_told() {
+    let rows = || MATERIALS.iter().filter(|row| row.entry.name != "mix");
+    for format in ["toml", "glb", "pbrt", "obj"] {
+        let all: Vec<_> = rows().map(|row| (row.entry.name, lost(&row.entry, format))).collect();
+        assert!(all.iter().all(|(_, lost)| lost.is_empty()), "in {format}: {all:?}");
+    }
+}
