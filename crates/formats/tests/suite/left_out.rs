@@ -1,9 +1,9 @@
 //! Nothing is lost in silence: what a written file does not show of a material is told.
 
 use bilux_formats::{WriteOptions, write};
-use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{MATERIALS, Mesh, Object, SceneBuilder, Spec, Texture, Value};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{LIGHTS, MATERIALS, Mesh, Object, SceneBuilder, Spec, Texture, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -36,6 +36,7 @@ fn beside(key: &str) -> Option<(&'static str, Value)> {
         "coat_normal_scale" => ("coat_normal", Value::Texture(0)),
         "emission_scale" => ("emission", Value::Texture(0)),
         "emission_sides" => ("emission", Value::Number(2.0)),
+        "rotation" => ("radiance", Value::Texture(0)),
         "edge" => ("reflectance", Value::Number(0.5)),
         "k" => ("eta", Value::Number(2.0)),
         "eta" => ("k", Value::Number(2.0)),
@@ -46,7 +47,7 @@ fn beside(key: &str) -> Option<(&'static str, Value)> {
 
 /// Of the paper's ways of rendering alone, which other programs do not have; or of no use beside another key.
 fn is_beside(key: &str) -> bool {
-    ["ka", "gloss", "translucency"].contains(&key)
+    ["ka", "gloss", "translucency", "classic"].contains(&key)
 }
 
 /// Values that are not the default: a plain one, and a picture.
@@ -67,15 +68,20 @@ fn others(parameter: &Parameter) -> Vec<Value> {
             words.iter().filter(|word| **word != parameter.default).map(|word| Value::from(*word)).collect()
         }
         ParameterKind::Texture => vec![Value::Texture(0)],
+        ParameterKind::Vector => vec![Value::from(Vec3::new(3.0, 2.0, 1.0))],
         _ => Vec::new(),
     }
 }
 
-/// All files of a triangle of that material, by name, and what is told.
-fn written(spec: Spec, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
+/// Puts what is described into a scene; gives the material of its triangle.
+type Put = fn(&mut SceneBuilder, Spec) -> usize;
+
+/// All files of a triangle and what is described, by name, and what is told.
+fn written(spec: Spec, put: Put, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
     let mut scene = SceneBuilder::default();
-    scene.textures.push(Arc::new(Texture::new("t", 1, 1, vec![Rgb::new(0.5, 0.75, 1.0)], true)));
-    let material = scene.add_material(spec);
+    let texels = (1..5).map(|i| Rgb::new(0.2, 0.25, 0.2) * i as f32).collect();
+    scene.textures.push(Arc::new(Texture::new("t", 2, 2, texels, true)));
+    let material = put(&mut scene, spec);
     let mesh = Mesh {
         positions: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Into::into).to_vec(),
         uvs: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Into::into).to_vec(),
@@ -91,8 +97,8 @@ fn written(spec: Spec, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>)
     (files.collect(), told.into_iter().map(|warning| warning.message).collect())
 }
 
-/// The keys of a material that a format loses without a word.
-fn lost(entry: &Entry, format: &str) -> Vec<String> {
+/// The keys of what is described that a format loses without a word.
+fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
     let before = BEFORE.iter().find(|(kind, _)| *kind == entry.name).map_or(&[][..], |(_, keys)| keys);
     let base = before
         .iter()
@@ -103,13 +109,13 @@ fn lost(entry: &Entry, format: &str) -> Vec<String> {
         let has = |key: &str| entry.parameters.iter().any(|parameter| parameter.name == key);
         let beside = beside(parameter.name).filter(|(key, _)| has(key));
         let base = beside.into_iter().fold(base.clone(), |spec, (key, value)| spec.with(key, value));
-        let (plain, told_of_plain) = written(base.clone(), format);
-        let (changed, told) = written(base.with(parameter.name, value.clone()), format);
+        let (plain, told_of_plain) = written(base.clone(), put, format);
+        let (changed, told) = written(base.with(parameter.name, value.clone()), put, format);
         // Where it, or its whole layer, is left out anyway, nothing more needs to be said.
         let layer = |message: &String| {
             let of = message.split('\'').nth(1).unwrap_or_default();
             let stem = of.strip_suffix("weight").or(of.strip_suffix("scale"));
-            of == parameter.name
+            [parameter.name, entry.name].contains(&of)
                 || stem.is_some_and(|stem| !stem.is_empty() && parameter.name.starts_with(stem))
         };
         plain == changed && told == told_of_plain && !told.iter().any(layer)
@@ -117,11 +123,25 @@ fn lost(entry: &Entry, format: &str) -> Vec<String> {
     lost.map(|(parameter, value)| format!("{} = {value:?}", parameter.name)).collect()
 }
 
+fn assert_told<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, put: Put, formats: &[&str]) {
+    for format in formats {
+        let lost = rows.clone().map(|entry| (entry.name, lost(entry, put, format)));
+        let lost: Vec<_> = lost.filter(|(_, keys)| !keys.is_empty()).collect();
+        assert!(lost.is_empty(), "in {format}: {lost:?}");
+    }
+}
+
 #[test]
 fn what_a_written_material_does_not_show_is_told() {
-    let rows = || MATERIALS.iter().filter(|row| row.entry.name != "mix");
-    for format in ["toml", "glb", "pbrt", "obj"] {
-        let all: Vec<_> = rows().map(|row| (row.entry.name, lost(&row.entry, format))).collect();
-        assert!(all.iter().all(|(_, lost)| lost.is_empty()), "in {format}: {all:?}");
-    }
+    let rows = MATERIALS.iter().map(|row| &row.entry).filter(|entry| entry.name != "mix");
+    assert_told(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj"]);
+}
+
+#[test]
+fn what_a_written_light_does_not_show_is_told() {
+    let put: Put = |scene, light| {
+        scene.lights.push(light);
+        scene.add_material(Spec::new("m", "diffuse"))
+    };
+    assert_told(LIGHTS.iter().map(|row| &row.entry), put, &["toml", "glb", "pbrt"]);
 }

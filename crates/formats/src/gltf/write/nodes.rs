@@ -82,6 +82,11 @@ impl Document<'_> {
             }
             "directional" => {
                 let direction = vector(spec, "direction").unwrap_or(Vec3::NEG_ONE);
+                if number(spec, "diameter").is_some_and(|angle| angle > 0.0) {
+                    writing.warn(
+                        "glTF files hold no 'diameter' of a directional light: its shadows become hard",
+                    );
+                }
                 ("directional", colour(spec, "irradiance").unwrap_or(Rgb::grey(3.0)), direction)
             }
             "rect" | "sphere" => return self.glowing(spec, position, writing),

@@ -27,6 +27,11 @@ impl Document<'_> {
                 let direction = vector(spec, "direction").unwrap_or(Vec3::NEG_ONE);
                 let given = rgb("L", shine("irradiance", 3.0)) + &from_to(Vec3::ZERO, direction);
                 self.say(&format!("LightSource \"distant\"{given}"));
+                if number(spec, "diameter").is_some_and(|angle| angle > 0.0) {
+                    writing.warn(
+                        "pbrt files hold no 'diameter' of a directional light: its shadows become hard",
+                    );
+                }
             }
             "spot" => {
                 let ahead = vector(spec, "look_at").unwrap_or(Vec3::ZERO);
