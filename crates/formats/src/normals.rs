@@ -2,6 +2,7 @@
 
 use bilux_math::transcendental::cos;
 use bilux_math::{DVec3, Vec3};
+use rayon::prelude::*;
 
 /// How a face joins its neighbours: [`FLAT`], [`BY_ANGLE`], or the number of a group that is smooth.
 pub(crate) type Smoothing = u32;
@@ -10,15 +11,15 @@ pub(crate) const FLAT: Smoothing = 0;
 /// A face that is smooth towards neighbours at less than the crease angle.
 pub(crate) const BY_ANGLE: Smoothing = u32::MAX;
 
-/// Polygons over shared positions; the corners of face `f` are `ends[f - 1]..ends[f]`.
-pub(crate) struct Faces<'a, P> {
+/// Polygons over shared positions.
+pub(crate) struct Faces<'a> {
     pub(crate) positions: &'a [Vec3],
-    /// Where each face's corners end.
-    pub(crate) ends: &'a [u32],
-    /// The position of a corner; must be within `positions`.
-    pub(crate) position_of: P,
-    /// How each face joins its neighbours.
-    pub(crate) smoothing: &'a [Smoothing],
+    /// The position of each corner, one face after another; must be within `positions`.
+    pub(crate) corners: Vec<u32>,
+    /// Where each face's corners end; empty where all are triangles.
+    pub(crate) ends: Vec<u32>,
+    /// How each face joins its neighbours; one for all where all do it alike.
+    pub(crate) smoothing: Vec<Smoothing>,
 }
 
 /// Normals that corners share, and which each has.
@@ -32,6 +33,9 @@ pub(crate) struct CornerNormals {
 /// Where more faces meet than this, all are averaged: looking at every pair would take too long.
 const MOST_PAIRED: usize = 256;
 
+/// Positions that one thread looks at in one go.
+const PIECE: usize = 1 << 14;
+
 /// The normal of a face, and its area.
 #[derive(Clone, Copy)]
 struct Facing {
@@ -39,58 +43,112 @@ struct Facing {
     area: f32,
 }
 
-impl<P: Fn(usize) -> u32> Faces<'_, P> {
+/// Up to which angle faces that go by it are smooth towards each other, as cosines.
+struct Crease {
+    whole: f32,
+    half: f32,
+}
+
+/// The normals of some positions, and the index among them for each corner there.
+#[derive(Default)]
+struct Found {
+    normals: Vec<Vec3>,
+    indices: Vec<u32>,
+    any_smooth: bool,
+}
+
+impl Faces<'_> {
     /// A normal for each corner: the area-weighted mean of the faces around its position that it is smooth
     /// towards. `None` where that is each face's own normal everywhere, so that none are needed.
-    pub(crate) fn corner_normals(&self, crease_angle: f32) -> Option<CornerNormals> {
+    pub(crate) fn corner_normals(self, crease_angle: f32) -> Option<CornerNormals> {
         let (normals, any_smooth) = self.normals_and_whether_needed(crease_angle);
         any_smooth.then_some(normals)
     }
 
     /// The same, needed or not.
-    pub(crate) fn all_corner_normals(&self, crease_angle: f32) -> CornerNormals {
+    pub(crate) fn all_corner_normals(self, crease_angle: f32) -> CornerNormals {
         self.normals_and_whether_needed(crease_angle).0
     }
 
-    fn normals_and_whether_needed(&self, crease_angle: f32) -> (CornerNormals, bool) {
-        let limit = cos(crease_angle.clamp(0.0, 180.0).to_radians());
+    fn normals_and_whether_needed(mut self, crease_angle: f32) -> (CornerNormals, bool) {
+        let angle = crease_angle.clamp(0.0, 180.0).to_radians();
+        let crease = Crease { whole: cos(angle), half: cos(0.5 * angle) };
+        let face_of = self.face_of();
         let facing = self.facing();
-        let around = self.around();
+        let around = Around::of(&self.corners, self.positions.len());
+        let mut all = CornerNormals { normals: Vec::new(), of_corner: std::mem::take(&mut self.corners) };
         let mut any_smooth = false;
-        let mut result = CornerNormals { normals: Vec::new(), of_corner: vec![0; self.corner_count()] };
-        for position in 0..self.positions.len() {
-            let first = result.normals.len();
-            let here = around.of(position);
-            let weighted = |&(_, face): &(u32, u32)| facing[face as usize].unit * facing[face as usize].area;
-            let crowd: Option<Vec3> = (here.len() > MOST_PAIRED).then(|| here.iter().map(weighted).sum());
-            for &(corner, face) in here {
-                let normal = match crowd {
-                    Some(sum) if self.smoothing[face as usize] != FLAT => {
-                        sum.normalize_or(facing[face as usize].unit)
+        // In batches, so that little is kept beside what comes of it.
+        let count = self.positions.len();
+        let batch = PIECE * rayon::current_num_threads();
+        for start in (0..count).step_by(batch) {
+            let pieces = (start..(start + batch).min(count)).into_par_iter().step_by(PIECE);
+            let found: Vec<Found> = pieces
+                .map(|start| {
+                    let mut found = Found::default();
+                    let mut here = Vec::new();
+                    for position in start..(start + PIECE).min(count) {
+                        here.clear();
+                        let faces = around.corners_at(position).iter().map(|&corner| match &face_of[..] {
+                            [] => corner / 3,
+                            each => each[corner as usize],
+                        });
+                        here.extend(faces);
+                        self.add_position(&here, &facing, &crease, &mut found);
                     }
-                    _ => self.normal_at(&here[..here.len().min(MOST_PAIRED)], face, &facing, limit),
-                };
-                let own = facing[face as usize].unit;
-                any_smooth |= own != Vec3::ZERO && normal.dot(own) < ALIKE;
-                let known = result.normals[first..].iter().take(MOST_PAIRED).position(|&n| n == normal);
-                let index = first + known.unwrap_or(result.normals.len() - first);
-                if index == result.normals.len() {
-                    result.normals.push(normal);
+                    found
+                })
+                .collect();
+            for (found, start) in found.into_iter().zip((start..count).step_by(PIECE)) {
+                let first = all.normals.len() as u32;
+                let corners = around.corners_from(start);
+                for (&corner, index) in corners.iter().zip(found.indices) {
+                    all.of_corner[corner as usize] = first + index;
                 }
-                result.of_corner[corner as usize] = index as u32;
+                all.normals.extend(found.normals);
+                any_smooth |= found.any_smooth;
             }
         }
-        (result, any_smooth)
+        (all, any_smooth)
     }
 
-    /// The normal of a face at a position, among the corners there.
-    fn normal_at(&self, here: &[(u32, u32)], face: u32, facing: &[Facing], limit: f32) -> Vec3 {
+    /// The normals of the corners at a position, which are of these faces.
+    fn add_position(&self, here: &[u32], facing: &[Facing], crease: &Crease, found: &mut Found) {
+        let first = found.normals.len();
+        let weighted = |&face: &u32| facing[face as usize].unit * facing[face as usize].area;
+        let sum: Vec3 = here.iter().map(weighted).sum();
+        let is_crowd = here.len() > MOST_PAIRED;
+        let are_all_joined = !is_crowd && {
+            let middle = sum.normalize_or_zero();
+            // Who is within half of the angle of the middle is within it of all others.
+            let near = |&face: &u32| facing[face as usize].unit.dot(middle) > crease.half + 1e-5;
+            here.iter().all(|&face| self.smoothing_of(face) == BY_ANGLE) && here.iter().all(near)
+        };
+        for &face in here {
+            let own = facing[face as usize].unit;
+            let normal = if are_all_joined || (is_crowd && self.smoothing_of(face) != FLAT) {
+                sum.normalize_or(own)
+            } else {
+                self.normal_at(&here[..here.len().min(MOST_PAIRED)], face, facing, crease.whole)
+            };
+            found.any_smooth |= own != Vec3::ZERO && normal.dot(own) < ALIKE;
+            let known = found.normals[first..].iter().take(MOST_PAIRED).position(|&n| n == normal);
+            let index = first + known.unwrap_or(found.normals.len() - first);
+            if index == found.normals.len() {
+                found.normals.push(normal);
+            }
+            found.indices.push(index as u32);
+        }
+    }
+
+    /// The normal of a face at a position, among the faces there.
+    fn normal_at(&self, here: &[u32], face: u32, facing: &[Facing], limit: f32) -> Vec3 {
         let own = facing[face as usize];
-        let smoothing = self.smoothing[face as usize];
+        let smoothing = self.smoothing_of(face);
         let mut sum = Vec3::ZERO;
-        for &(_, other) in here {
+        for &other in here {
             let theirs = facing[other as usize];
-            let joined = match (smoothing, self.smoothing[other as usize]) {
+            let joined = match (smoothing, self.smoothing_of(other)) {
                 (BY_ANGLE, BY_ANGLE) => other == face || own.unit.dot(theirs.unit) > limit,
                 (a, b) => other == face || (a == b && a != FLAT),
             };
@@ -101,59 +159,71 @@ impl<P: Fn(usize) -> u32> Faces<'_, P> {
         sum.normalize_or(own.unit)
     }
 
-    fn corner_count(&self) -> usize {
-        self.ends.last().map_or(0, |&end| end as usize)
-    }
-
-    fn corners(&self, face: usize) -> std::ops::Range<usize> {
-        let start = if face == 0 { 0 } else { self.ends[face - 1] };
-        start as usize..self.ends[face] as usize
+    fn smoothing_of(&self, face: u32) -> Smoothing {
+        if let [all] = self.smoothing[..] { all } else { self.smoothing[face as usize] }
     }
 
     fn facing(&self) -> Vec<Facing> {
-        let at = |corner| self.positions[(self.position_of)(corner) as usize];
-        let facing = |face| {
-            let normal = newell(self.corners(face).map(at)).as_vec3();
+        let at = |&corner: &u32| self.positions[corner as usize];
+        let facing = |corners: &[u32]| {
+            let normal = newell(corners.iter().map(at)).as_vec3();
             Facing { unit: normal.normalize_or_zero(), area: normal.length() }
         };
-        (0..self.ends.len()).map(facing).collect()
+        if self.ends.is_empty() {
+            return self.corners.par_chunks_exact(3).map(facing).collect();
+        }
+        let start = |face: usize| if face == 0 { 0 } else { self.ends[face - 1] as usize };
+        let faces = (0..self.ends.len()).into_par_iter();
+        faces.map(|face| facing(&self.corners[start(face)..self.ends[face] as usize])).collect()
     }
 
-    /// For each position the corners there, with their faces.
-    fn around(&self) -> Around {
-        let mut starts = vec![0u32; self.positions.len() + 2];
-        for corner in 0..self.corner_count() {
-            starts[(self.position_of)(corner) as usize + 2] += 1;
+    /// The face of each corner; none where all are triangles.
+    fn face_of(&self) -> Vec<u32> {
+        let mut face_of = Vec::with_capacity(if self.ends.is_empty() { 0 } else { self.corners.len() });
+        for (face, &end) in self.ends.iter().enumerate() {
+            face_of.resize(end as usize, face as u32);
+        }
+        face_of
+    }
+}
+
+/// For each position the corners there.
+struct Around {
+    /// Where each position's corners start.
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl Around {
+    fn of(position_of: &[u32], positions: usize) -> Around {
+        let mut starts = vec![0u32; positions + 2];
+        for &position in position_of {
+            starts[position as usize + 2] += 1;
         }
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut corners = vec![(0u32, 0u32); self.corner_count()];
-        for face in 0..self.ends.len() {
-            for corner in self.corners(face) {
-                let slot = &mut starts[(self.position_of)(corner) as usize + 1];
-                corners[*slot as usize] = (corner as u32, face as u32);
-                *slot += 1;
-            }
+        let mut corners = vec![0u32; position_of.len()];
+        for (corner, &position) in position_of.iter().enumerate() {
+            let slot = &mut starts[position as usize + 1];
+            corners[*slot as usize] = corner as u32;
+            *slot += 1;
         }
         Around { starts, corners }
+    }
+
+    fn corners_at(&self, position: usize) -> &[u32] {
+        &self.corners[self.starts[position] as usize..self.starts[position + 1] as usize]
+    }
+
+    /// Those of a position and of all behind it.
+    fn corners_from(&self, position: usize) -> &[u32] {
+        &self.corners[self.starts[position] as usize..]
     }
 }
 
 /// A cosine from which on two directions count as one: about a twelfth of a degree.
 const ALIKE: f32 = 1.0 - 1e-6;
-
-struct Around {
-    /// Where each position's corners start.
-    starts: Vec<u32>,
-    corners: Vec<(u32, u32)>,
-}
-
-impl Around {
-    fn of(&self, position: usize) -> &[(u32, u32)] {
-        &self.corners[self.starts[position] as usize..self.starts[position + 1] as usize]
-    }
-}
 
 /// The normal of a polygon, as long as twice its area, by the right-hand rule. [Newell 1972]
 pub(crate) fn newell(points: impl Iterator<Item = Vec3>) -> DVec3 {
@@ -184,8 +254,8 @@ mod tests {
         let (s, c) = (bilux_math::transcendental::sin(angle), cos(angle));
         let far = Vec3::new(-c, 0.0, s);
         let positions = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, far, far + Vec3::Y];
-        let corners = [0u32, 1, 2, 3, 4, 0, 3, 5];
-        Faces { positions: &positions, ends: &[4, 8], position_of: |c| corners[c], smoothing: &smoothing }
+        let corners = vec![0u32, 1, 2, 3, 4, 0, 3, 5];
+        Faces { positions: &positions, corners, ends: vec![4, 8], smoothing: smoothing.to_vec() }
             .corner_normals(40.0)
             .map(|found| found.of_corner.iter().map(|&i| found.normals[i as usize]).collect())
     }
@@ -202,6 +272,31 @@ mod tests {
                 < 1e-6
         );
         assert_eq!(normals[0], normals[5]);
+    }
+
+    #[test]
+    fn normals_are_the_same_on_any_number_of_threads() {
+        let n = 200u32;
+        let height = |x: u32, y: u32| 0.3 * f32::from((x * 7919 + y * 104_729) as u8) / 255.0;
+        let positions: Vec<Vec3> =
+            (0..n * n).map(|i| Vec3::new((i % n) as f32, (i / n) as f32, height(i % n, i / n))).collect();
+        assert!(positions.len() > 2 * PIECE);
+        let quad = |x: u32, y: u32| [y * n + x, y * n + x + 1, (y + 1) * n + x + 1, (y + 1) * n + x];
+        let of = |threads: usize, as_triangles: bool| {
+            let quads = (0..(n - 1) * (n - 1)).map(|i| quad(i % (n - 1), i / (n - 1)));
+            let corners: Vec<u32> = match as_triangles {
+                true => quads.flat_map(|[a, b, c, d]| [a, b, c, a, c, d]).collect(),
+                false => quads.flatten().collect(),
+            };
+            let ends =
+                (0..if as_triangles { 0 } else { corners.len() as u32 / 4 }).map(|i| 4 * i + 4).collect();
+            let faces = Faces { positions: &positions, corners, ends, smoothing: vec![BY_ANGLE] };
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| faces.all_corner_normals(30.0))
+        };
+        for as_triangles in [true, false] {
+            assert_eq!(of(1, as_triangles), of(3, as_triangles));
+        }
     }
 
     #[test]

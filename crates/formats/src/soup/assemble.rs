@@ -117,25 +117,21 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
     if angle <= 0.0 {
         soup.smoothing = vec![(0, FLAT)];
     }
-    // Each corner its position, its neighbours, its index and at most a normal; each face its own.
-    let needed = 28 * soup.faces.corner_count() + 24 * (soup.faces.len() + soup.positions.len());
+    // Each corner its position, its place among its neighbours, its face and at most a normal; each face its own, and each
+    // position its neighbours.
+    let needed = 24 * soup.faces.corner_count() + 24 * (soup.faces.len() + soup.positions.len());
     reading.budget.take_bytes(needed as u64, source.name)?;
-    let position_of: Vec<u32> = soup.faces.iter().flatten().map(|corner| corner[0]).collect();
-    let mut end = 0;
-    let ends: Vec<u32> = soup
-        .faces
-        .iter()
-        .map(|corners| {
+    let mut corners = Vec::with_capacity(soup.faces.corner_count());
+    corners.extend(soup.faces.iter().flatten().map(|corner| corner[0]));
+    let mut ends = Vec::new();
+    if soup.faces.iter().any(|corners| corners.len() != 3) {
+        let mut end = 0;
+        ends.extend(soup.faces.iter().map(|corners| {
             end += corners.len() as u32;
             end
-        })
-        .collect();
-    let faces = Faces {
-        positions: &soup.positions,
-        ends: &ends,
-        position_of: |corner: usize| position_of[corner],
-        smoothing: &soup.smoothing_of_each(),
-    };
+        }));
+    }
+    let faces = Faces { positions: &soup.positions, corners, ends, smoothing: soup.smoothing_of_each() };
     let found = if mixed { Some(faces.all_corner_normals(angle)) } else { faces.corner_normals(angle) };
     let Some(found) = found else { return Ok(()) };
     let given = soup.normals.len() as u32;

@@ -53,8 +53,11 @@ impl Soup {
         }
     }
 
-    /// How each face joins its neighbours.
+    /// How each face joins its neighbours; one for all where all do it alike.
     fn smoothing_of_each(&self) -> Vec<Smoothing> {
+        if let [(_, all)] = self.smoothing[..] {
+            return vec![all];
+        }
         let mut of_each = Vec::with_capacity(self.faces.len());
         let ends = self.smoothing.iter().skip(1).map(|(first, _)| *first).chain([self.faces.len()]);
         for ((_, smoothing), end) in self.smoothing.iter().zip(ends) {
