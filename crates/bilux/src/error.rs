@@ -1,5 +1,6 @@
 //! What can go wrong, from any part of Bilux.
 
+use crate::memory::Memory;
 use bilux_formats::FormatError;
 use bilux_pictures::PictureError;
 use bilux_scene::SceneError;
@@ -24,7 +25,23 @@ pub enum Error {
     /// A film, or a part of one.
     #[error(transparent)]
     Film(#[from] FilmError),
+    /// A picture that would take more memory than it may.
+    #[error(
+        "this would take about {} MB of memory ({} the scene, {} what finds hits, {} the picture), and {} MB are \
+         allowed: make the picture smaller, or allow more memory",
+        mega(.needed.total()), mega(.needed.scene), mega(.needed.trees), mega(.needed.picture), .most / 1_000_000
+    )]
+    TooLarge {
+        /// What it would take.
+        needed: Memory,
+        /// How many bytes are allowed.
+        most: u64,
+    },
     /// Settings that do not go together.
     #[error("{0}")]
     Settings(String),
+}
+
+fn mega(bytes: u64) -> u64 {
+    bytes.div_ceil(1_000_000)
 }

@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::budget::left_for_light;
 use crate::fingerprint::fingerprint;
+use crate::memory::joined;
 use crate::oddities::oddities;
 use crate::settings::{Background, Settings};
 use bilux_math::Rgb;
@@ -79,11 +80,7 @@ impl Job {
     /// # Errors
     /// When a setting or anything in the scene is wrong.
     pub fn new(scene: &SceneBuilder, user: &Parameters) -> Result<Job, Error> {
-        let mut all = scene.settings.clone();
-        for (key, value, span) in &user.0 {
-            all.set_at(key, value.clone(), span.clone());
-        }
-        let mut job = Job::with_settings(scene, Settings::resolve(&all)?)?;
+        let mut job = Job::with_settings(scene, Settings::resolve(&joined(scene, user))?)?;
         job.warnings.extend(job.settings.without_use(user));
         Ok(job)
     }

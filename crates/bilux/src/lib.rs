@@ -20,6 +20,7 @@ pub mod error;
 pub mod fingerprint;
 pub mod job;
 mod layers;
+pub mod memory;
 mod oddities;
 pub mod presets;
 pub mod settings;

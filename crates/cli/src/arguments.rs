@@ -40,7 +40,7 @@ pub struct Common {
     /// Progress: a bar on a terminal, lines elsewhere
     #[arg(long, global = true, value_enum, default_value = "auto", value_name = "HOW")]
     pub progress: ProgressStyle,
-    /// Most memory that reading a file may take
+    /// Most memory that reading a file may take, and about that of rendering it
     #[arg(long, global = true, default_value = "8G", value_name = "SIZE", value_parser = parse_bytes)]
     pub max_memory: u64,
     /// Turn warnings into errors

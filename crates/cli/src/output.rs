@@ -45,16 +45,19 @@ pub fn message(error: &anyhow::Error) -> String {
             _ => text += &format!(": {cause}"),
         }
     }
-    text + error.chain().find_map(flag_that_helps).unwrap_or_default()
+    text + &error.chain().find_map(flag_that_helps).unwrap_or_default()
 }
 
 /// The flag by which to allow what the library says has to be allowed.
-fn flag_that_helps(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
-    match cause.downcast_ref::<bilux::Error>()? {
-        bilux::Error::Format(FormatError::TooLarge { .. }) => Some(" (--max-memory 16G)"),
-        bilux::Error::Format(FormatError::Outside { .. }) => Some(" (--allow-outside)"),
-        _ => None,
-    }
+fn flag_that_helps(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
+    Some(match cause.downcast_ref::<bilux::Error>()? {
+        bilux::Error::TooLarge { needed, .. } => {
+            format!(" (--max-memory {}G)", needed.total().div_ceil(1 << 30))
+        }
+        bilux::Error::Format(FormatError::TooLarge { .. }) => " (--max-memory 16G)".to_owned(),
+        bilux::Error::Format(FormatError::Outside { .. }) => " (--allow-outside)".to_owned(),
+        _ => return None,
+    })
 }
 
 /// Bold and coloured on a terminal, unless `NO_COLOR` is set.

@@ -144,6 +144,13 @@ fn little_memory_is_enough_or_is_told() {
     std::fs::write(path.join("large.obj"), PLAIN.repeat(40_000)).unwrap();
     let (code, said) = render(path, "large.obj", &["--max-memory", "1M"]);
     assert_told((code, said), 1, &["large.obj: reading it takes more than", "--max-memory"]);
+    std::fs::write(path.join("small.obj"), PLAIN).unwrap();
+    let (code, said) = render(path, "small.obj", &["--size", "40000x40000"]);
+    assert_told(
+        (code, said),
+        1,
+        &["would take about 320001 MB", "320000 the picture", "(--max-memory 299G)"],
+    );
 }
 
 #[test]

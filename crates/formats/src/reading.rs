@@ -83,7 +83,7 @@ impl<'o> Reading<'o> {
         for object in &scene.objects {
             held += (size_of::<Object>() + object.name.len() + object.motion.heap_bytes()) as u64;
             if self.counted.insert(Arc::as_ptr(&object.mesh)) {
-                held += bytes_of(&object.mesh);
+                held += object.mesh.size();
             }
         }
         held += (scene.materials.len() * size_of::<[Spec; 4]>()) as u64;
@@ -224,14 +224,6 @@ pub(crate) fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
         return Err(FormatError::malformed("this is a folder: name a scene file in it", at));
     }
     Ok((file, metadata.len()))
-}
-
-/// What a mesh holds, in bytes.
-pub(crate) fn bytes_of(mesh: &Mesh) -> u64 {
-    let triples = mesh.positions.len() + mesh.normals.len() + mesh.triangles.len();
-    let colours = mesh.vertex_kd.len() + mesh.vertex_ks.len();
-    let uvs = mesh.uvs.len() + mesh.uvs2.len();
-    4 * (3 * (triples + colours) + 2 * uvs + 4 * mesh.tangents.len()) as u64
 }
 
 fn non_empty(folder: &Path) -> &Path {

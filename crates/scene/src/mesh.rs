@@ -29,6 +29,14 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Bytes that it holds.
+    pub fn size(&self) -> u64 {
+        let triples = self.positions.len() + self.normals.len() + self.triangles.len();
+        let colours = self.vertex_kd.len() + self.vertex_ks.len();
+        let uvs = self.uvs.len() + self.uvs2.len();
+        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len()) as u64
+    }
+
     /// The box around all vertices that triangles name.
     pub fn bounds(&self) -> Aabb {
         let named = self.triangles.iter().flatten().filter_map(|&i| self.positions.get(i as usize));

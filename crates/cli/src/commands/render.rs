@@ -125,7 +125,7 @@ impl Input<'_> {
     /// The job of a scene, with all that the command line says of it.
     fn job(&self, scene: &SceneBuilder, user: &Parameters) -> anyhow::Result<Job> {
         let arguments = self.arguments;
-        let mut job = Job::new(scene, user)?;
+        let mut job = Job::within(scene, user, self.common.max_memory)?;
         if self.common.sandbox {
             job.sandbox();
         }

@@ -9,7 +9,6 @@ use super::shapes::SHAPES;
 use super::specs::{missing, plain_value};
 use crate::FormatError;
 use crate::formats::{format_named, read_file, unknown};
-use crate::reading::bytes_of;
 use bilux_math::registry::{Entry, ParameterKind};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value};
@@ -189,7 +188,7 @@ impl Native<'_, '_> {
     }
 
     fn charge_mesh(&mut self, mesh: &Mesh, table: &Table) -> Result<(), FormatError> {
-        self.reading.budget.take_bytes(bytes_of(mesh), &table.at.file)
+        self.reading.budget.take_bytes(mesh.size(), &table.at.file)
     }
 
     /// `with = ["lights", "cameras"]`: what else of a model's scene is wanted.

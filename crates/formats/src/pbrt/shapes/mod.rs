@@ -12,7 +12,6 @@ use super::parameters::ParameterList;
 use super::reader::{Alpha, Dress, Entity, Form, Pbrt, Piece};
 use super::unknown;
 use crate::FormatError;
-use crate::reading::bytes_of;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{Mesh, SceneError};
 use std::collections::HashMap;
@@ -80,7 +79,7 @@ impl Pbrt<'_, '_> {
 
     /// A mesh as the state has it: turned inside out or not, and counted in the budget.
     fn finished(&mut self, mesh: Mesh, list: &ParameterList) -> Result<Option<Form>, FormatError> {
-        self.reading.budget.take_bytes(bytes_of(&mesh), &list.at.file)?;
+        self.reading.budget.take_bytes(mesh.size(), &list.at.file)?;
         if mesh.positions.iter().any(|p| !p.is_finite()) {
             let what = "positions have numbers that are infinite or no numbers; they are kept";
             self.oddities.note(what, || list.place("P"));
