@@ -26,6 +26,9 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         }
         hash.update(format!("{} {:?}", object.material, object.motion));
     }
+    if settings.filters_textures && !scene.textures.is_empty() {
+        hash.update("footprint");
+    }
     scene.textures.iter().for_each(|texture| hash_texture(&mut hash, texture));
     for spec in scene.materials.iter().chain(&scene.lights) {
         hash_spec(&mut hash, spec);

@@ -103,6 +103,8 @@ impl Job {
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
         let integrator = (settings.integrator.build)(&reader)?;
         let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
+        let filters = settings.filters_textures;
+        let built = if filters { built.filtered(camera.clone(), settings.height) } else { built };
         Ok(Job {
             warnings: oddities(scene, &built, &*camera),
             camera,

@@ -39,7 +39,8 @@ impl Memory {
         }
         let mut images = HashSet::new();
         let new_images = scene.textures.iter().filter(|texture| images.insert(Arc::as_ptr(&texture.image)));
-        held += new_images.map(|texture| texture.image.size()).sum::<u64>();
+        // With its coarser levels.
+        held += new_images.map(|texture| texture.image.size() / 3 * 4).sum::<u64>();
         let picture = u64::from(settings.width) * u64::from(settings.height) * PIXEL;
         Memory { scene: held, trees, picture }
     }

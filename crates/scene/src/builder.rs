@@ -2,6 +2,7 @@
 
 use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
+use crate::footprint;
 use crate::geometry::{Geometry, Placed};
 use crate::inventory::Inventory;
 use crate::lights::{self, BuiltLight, Sides};
@@ -122,6 +123,8 @@ impl SceneBuilder {
             .iter()
             .map(|camera| Ok((camera.spec.name.clone(), cameras::build(camera, aspect)?)))
             .collect::<Result<Vec<_>, SceneError>>()?;
+        let filtered_of = |material| footprint::filtered(material, &self.materials, &self.textures);
+        let filtered: Vec<Vec<Arc<Texture>>> = self.materials.iter().map(filtered_of).collect();
         let placed = self.objects.iter().chain(&surfaces).map(|object| Placed {
             mesh: object.mesh.clone(),
             material: object.material as u32,
@@ -129,9 +132,10 @@ impl SceneBuilder {
             instanced: object.instanced,
             gives_light: !materials[object.material].emission().is_black(),
             has_tangents: materials[object.material].needs_tangents(),
+            is_filtered: filtered.get(object.material).is_some_and(|textures| !textures.is_empty()),
         });
         let geometry = Geometry::build(placed.collect(), spheres, accel)?;
-        let parts = SceneParts::new(geometry, materials, lights, &panels, &lamps, cameras);
+        let parts = SceneParts::new(geometry, materials, lights, &panels, &lamps, cameras, filtered);
         Ok(Scene::new(Arc::new(parts), accel, shutter))
     }
 

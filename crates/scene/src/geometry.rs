@@ -30,6 +30,8 @@ pub struct Placed {
     pub gives_light: bool,
     /// Its material asks for tangents.
     pub has_tangents: bool,
+    /// It has textures that are filtered.
+    pub is_filtered: bool,
 }
 
 /// All triangles, and the trees over them.
@@ -240,23 +242,26 @@ impl Geometry {
 
     /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for spheres.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        let Primitive { instance, index } = primitive;
-        if instance == self.spheres.instance() {
+        if primitive.instance == self.spheres.instance() {
             return None;
         }
-        let (object, triangle) = self.locate(primitive);
-        let placed = &self.objects[object as usize];
-        let (to_world, mirrors) = self.place(object, time);
-        let baked = self.still.as_ref().filter(|_| instance == 0);
-        let [a, b, c] = match baked {
-            Some(still) => still.triangles()[index as usize].map(Vec3::from),
-            None => placed.mesh.triangles[triangle as usize]
-                .map(|i| to_world.point(placed.mesh.positions[i as usize])),
-        };
+        let (_, [a, b, c], mirrors) = self.in_world(primitive, time);
         Some((b - a).cross(c - a) * if mirrors { -1.0 } else { 1.0 })
     }
 
-    /// All that shading needs to know of a hit.
+    /// A triangle's number in its mesh, its corners in the world at a time, and whether it is mirrored there.
+    pub(crate) fn in_world(&self, primitive: Primitive, time: f32) -> (u32, [Vec3; 3], bool) {
+        let (object, triangle) = self.locate(primitive);
+        let mesh = &*self.objects[object as usize].mesh;
+        let (to_world, mirrors) = self.place(object, time);
+        let corners = match self.still.as_ref().filter(|_| primitive.instance == 0) {
+            Some(still) => still.triangles()[primitive.index as usize].map(Vec3::from),
+            None => mesh.triangles[triangle as usize].map(|i| to_world.point(mesh.positions[i as usize])),
+        };
+        (triangle, corners, mirrors)
+    }
+
+    /// All that shading needs to know of a hit, footprints apart.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         if hit.instance == self.spheres.instance() {
@@ -328,6 +333,7 @@ impl Geometry {
             handedness,
             uv,
             uv2,
+            uv_width: [Vec2::ZERO; 2],
             vertex_kd: vertex_colour(&mesh.vertex_kd),
             vertex_ks: vertex_colour(&mesh.vertex_ks),
             primitive: hit.primitive(),
@@ -338,7 +344,7 @@ impl Geometry {
 }
 
 /// The texture coordinates of a triangle's corners: where a mesh has none, the weights of the second and the third.
-fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
+pub(crate) fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
     if mesh.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y] } else { triangle.map(|i| mesh.uvs[i as usize]) }
 }
 

@@ -11,6 +11,7 @@ pub mod builder;
 pub mod cameras;
 pub mod classic;
 pub mod error;
+mod footprint;
 pub mod generators;
 pub mod geometry;
 pub mod inventory;

@@ -136,6 +136,7 @@ impl Spheres {
             handedness: 1.0,
             uv,
             uv2: uv,
+            uv_width: [Vec2::ZERO; 2],
             vertex_kd: None,
             vertex_ks: None,
             primitive: hit.primitive(),

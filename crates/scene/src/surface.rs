@@ -2,7 +2,7 @@
 
 use crate::classic::ClassicLight;
 use crate::lights::LightSample;
-use crate::texture::UvPair;
+use crate::texture::{Patch, UvPair};
 use bilux_accel::{Primitive, Ray};
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -31,6 +31,9 @@ pub struct Surface {
     pub uv: Vec2,
     /// The second set of these; the first where the mesh has no other.
     pub uv2: Vec2,
+    /// How far a pixel that sees this point straight from the camera goes in either coordinate, for each set; 0 where textures
+    /// are not filtered.
+    pub uv_width: [Vec2; 2],
     /// Diffuse reflectance of the vertices, if the mesh has one.
     pub vertex_kd: Option<Rgb>,
     /// Specular reflectance of the vertices, if the mesh has one.
@@ -44,9 +47,15 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Where textures are looked up.
+    /// Where textures are looked up, as far as a pixel sees.
     #[inline]
-    pub fn uvs(&self) -> UvPair {
+    pub fn uvs(&self) -> Patch {
+        Patch { at: self.uv_pair(), width: self.uv_width }
+    }
+
+    /// The same of a point alone.
+    #[inline]
+    pub fn uv_pair(&self) -> UvPair {
         UvPair([self.uv, self.uv2])
     }
 

@@ -224,6 +224,7 @@ fn flat_surface() -> Surface {
         handedness: 1.0,
         uv: Vec2::ZERO,
         uv2: Vec2::ZERO,
+        uv_width: [Vec2::ZERO; 2],
         vertex_kd: None,
         vertex_ks: None,
         primitive: Primitive { instance: 0, index: 0 },

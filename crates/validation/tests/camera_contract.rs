@@ -76,6 +76,10 @@ impl Camera for Spoilt {
         self.camera.density(ray, t)
     }
 
+    fn height_at(&self, p: Vec3, time: f32) -> f32 {
+        self.camera.height_at(p, time)
+    }
+
     fn has_lens(&self) -> bool {
         self.camera.has_lens()
     }

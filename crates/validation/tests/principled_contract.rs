@@ -19,6 +19,7 @@ fn surface(n_shade: Vec3, n_smooth: Vec3) -> Surface {
         handedness: 1.0,
         uv: Vec2::ZERO,
         uv2: Vec2::ZERO,
+        uv_width: [Vec2::ZERO; 2],
         vertex_kd: None,
         vertex_ks: None,
         primitive: Primitive { instance: 0, index: 0 },

@@ -70,6 +70,12 @@ pub const RENDER: Entry = Entry {
         number("shutter", "how long light is let in", "s", 0.0, 1e9, "0"),
         number("fps", "frames a second, for --frames", "1/s", 1e-6, 1e6, "24"),
         text("filter", "how samples are spread over a pixel", "box"),
+        choice(
+            "texture_filter",
+            "pictures on surfaces: as coarse as half a pixel, for less noise, or as fine as they come",
+            &["footprint", "none"],
+            "footprint",
+        ),
         choice("pixel_anchor", "where pixel (0, 0) is sampled", &["centre", "corner"], "centre"),
         number("exposure", "brightens by powers of two, in pictures for a display", "EV", -64.0, 64.0, "0"),
         Parameter {
@@ -195,6 +201,8 @@ pub struct Settings {
     pub fps: f32,
     /// Name of the pixel filter.
     pub filter: String,
+    /// Pictures on surfaces are as coarse as half a pixel.
+    pub filters_textures: bool,
     /// Pixels are sampled from their corner, not from their middle.
     pub corner_anchor: bool,
     /// Stops by which display pictures are brightened.
@@ -259,6 +267,7 @@ impl Settings {
             shutter: reader.number("shutter"),
             fps: reader.number("fps"),
             filter: reader.text("filter"),
+            filters_textures: reader.text("texture_filter") == "footprint",
             corner_anchor: reader.text("pixel_anchor") == "corner",
             exposure: reader.number("exposure"),
             auto_exposure: reader.bool("auto_exposure"),

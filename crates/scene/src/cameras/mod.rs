@@ -52,6 +52,9 @@ pub trait Camera: Send + Sync {
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
     /// [`CameraConnection::density`] where one of its rays (of unit direction) has come to `t`.
     fn density(&self, ray: &Ray, t: f32) -> f32;
+    /// Height of what the film shows where a point is, in metres across its axis, at a time in seconds: over the film's rows
+    /// of pixels it is how wide a pixel is there.
+    fn height_at(&self, p: Vec3, time: f32) -> f32;
     /// True when its rays depend on [`CameraSample::lens`].
     fn has_lens(&self) -> bool;
     /// Where it looks, a unit vector, at a time in seconds.

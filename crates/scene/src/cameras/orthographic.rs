@@ -103,6 +103,10 @@ impl Camera for Orthographic {
         self.density_of(&self.key_at(ray.time))
     }
 
+    fn height_at(&self, _p: Vec3, time: f32) -> f32 {
+        2.0 * self.key_at(time).half_height
+    }
+
     fn has_lens(&self) -> bool {
         false
     }

@@ -202,6 +202,11 @@ impl Camera for Perspective {
         if cos > 0.0 { key.density(self.aspect, cos, t * t) } else { 0.0 }
     }
 
+    fn height_at(&self, p: Vec3, time: f32) -> f32 {
+        let (key, [_, _, forward]) = self.key_at(time);
+        2.0 * key.tan_half_fov * (p - key.position).dot(forward).abs()
+    }
+
     fn has_lens(&self) -> bool {
         self.keys.iter().any(|(_, key)| key.aperture != 0.0)
     }

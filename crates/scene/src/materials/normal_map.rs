@@ -66,7 +66,8 @@ fn read_named(
 impl NormalMap {
     /// The normal at a point that has a tangent, on the same side as `n_geom`.
     pub(super) fn at(&self, surface: &Surface) -> Vec3 {
-        let texel = self.map.at(surface.uvs());
+        // Those of single texels: their mean would be a smoother surface.
+        let texel = self.map.at(surface.uv_pair());
         let lean = |c: f32| (2.0 * c - 1.0) * self.scale;
         let (x, y, z) = (lean(texel.r), lean(texel.g), 2.0 * texel.b - 1.0);
         let n = surface.n_smooth;

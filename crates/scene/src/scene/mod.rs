@@ -4,11 +4,12 @@ mod tracer;
 
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
+use crate::footprint::View;
 use crate::geometry::{Geometry, corner_uvs};
 use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
-use crate::texture::ColourMap;
+use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, Query};
 use bilux_math::{Aabb, Rgb, Vec3};
@@ -40,6 +41,8 @@ pub(crate) struct SceneParts {
     /// For each object the light that it is, spheres after them.
     object_lights: Vec<Option<u32>>,
     cameras: Vec<(String, Arc<dyn Camera>)>,
+    /// Of each material those that can be filtered.
+    textures: Vec<Vec<Arc<Texture>>>,
     classic_ambient: Rgb,
     has_backdrop: bool,
     has_surroundings: bool,
@@ -57,6 +60,7 @@ impl SceneParts {
         panels: &[(usize, Rgb)],
         lamps: &[(String, Option<Rgb>)],
         cameras: Vec<(String, Arc<dyn Camera>)>,
+        textures: Vec<Vec<Arc<Texture>>>,
     ) -> SceneParts {
         let mut object_lights = vec![None; geometry.objects().len()];
         for (i, object) in geometry.objects().iter().enumerate().filter(|(_, o)| o.gives_light) {
@@ -112,6 +116,7 @@ impl SceneParts {
             lights,
             object_lights,
             cameras,
+            textures,
             classic_ambient,
             has_backdrop,
             has_surroundings,
@@ -132,6 +137,8 @@ pub struct Scene {
     alone: Option<Arc<dyn Accelerator>>,
     query: Query<'static>,
     shutter: [f32; 2],
+    /// For whom textures are filtered.
+    view: Option<View>,
 }
 
 impl Scene {
@@ -143,12 +150,31 @@ impl Scene {
             }
             _ => None,
         };
-        Scene { parts, accelerator, alone, query: accel.query, shutter }
+        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None }
     }
 
     /// The same scene at another time: only the top level is built anew.
     pub fn at(&self, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
-        Scene::new(self.parts.clone(), accel, shutter)
+        let scene = Scene::new(self.parts.clone(), accel, shutter);
+        match &self.view {
+            Some(view) => scene.seen_by(view.clone()),
+            None => scene,
+        }
+    }
+
+    /// The same scene with its textures filtered for pictures by a camera, of so many rows of pixels: what is finer than half
+    /// a pixel is not told apart, so that fewer samples show the mean. Emission and opacity stay as they are.
+    pub fn filtered(self, camera: Arc<dyn Camera>, rows: u32) -> Scene {
+        self.seen_by(View { camera, rows: rows as f32 })
+    }
+
+    fn seen_by(self, view: View) -> Scene {
+        let SceneParts { geometry, textures, .. } = &*self.parts;
+        if textures.iter().all(Vec::is_empty) {
+            return self;
+        }
+        levels::build(&view.needed(geometry, textures, self.shutter));
+        Scene { view: Some(view), ..self }
     }
 
     /// When light is let in, in seconds.
@@ -212,7 +238,8 @@ impl Scene {
     pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
         let material = self.material(surface);
         let emission = match material.emission_map() {
-            Some(map) => map.at(surface.uvs()),
+            // As lights have it that are sampled, to the last texel.
+            Some(map) => map.at(surface.uv_pair()),
             None => material.emission(),
         };
         let shines = || match self.light_index_of(surface.object) {

@@ -101,6 +101,9 @@ impl<'s> Tracer<'s> {
         let scene = self.scene;
         let hit = self.ask(ray, Tracer::closest_hit)?;
         let mut surface = scene.parts.geometry.surface(ray, &hit);
+        if let Some(view) = &scene.view {
+            view.put_on(&mut surface, &scene.parts.geometry);
+        }
         if surface.tangent != Vec3::ZERO {
             surface.n_shade = scene.material(&surface).n_shade(&surface);
         }

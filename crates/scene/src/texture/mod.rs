@@ -2,10 +2,12 @@
 
 mod formula;
 mod image;
+pub(crate) mod levels;
 mod sampling;
 
 pub use formula::{BuildPattern, Formula, Parts, Pattern, TEXTURES, TextureEntry};
 pub use image::{Image, Texels};
+pub use levels::Levels;
 pub use sampling::{Filter, UvTransform, Wrap};
 
 use bilux_math::{Rgb, Vec2};
@@ -34,6 +36,8 @@ pub struct Texture {
     pub threshold: Option<f32>,
     /// It lies as the second set of texture coordinates says.
     pub second_uv: bool,
+    /// The picture with fewer texels, once a render has asked for that.
+    pub levels: Levels,
 }
 
 /// Where textures are looked up: texture coordinates, v upwards, and the second set of these. Meshes with one set have it
@@ -52,6 +56,22 @@ impl UvPair {
 impl From<Vec2> for UvPair {
     fn from(uv: Vec2) -> UvPair {
         UvPair([uv; 2])
+    }
+}
+
+/// What of a texture a pixel sees at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patch {
+    /// Where it is.
+    pub at: UvPair,
+    /// How wide it is along either coordinate, for each set; 0 for a point.
+    pub width: [Vec2; 2],
+}
+
+impl<T: Into<UvPair>> From<T> for Patch {
+    #[inline]
+    fn from(at: T) -> Patch {
+        Patch { at: at.into(), width: [Vec2::ZERO; 2] }
     }
 }
 
@@ -96,6 +116,7 @@ impl Texture {
             channel: None,
             threshold: None,
             second_uv: false,
+            levels: Levels::default(),
         }
     }
 
@@ -129,7 +150,7 @@ impl Texture {
     /// When there is none.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> Rgb {
-        self.finished(self.raw(x, y))
+        self.finished(self.raw(&self.image, x, y))
     }
 
     /// All texels in rows, the top one first.
@@ -138,23 +159,56 @@ impl Texture {
         (0..count).map(|i| self.texel(i % self.width(), i / self.width()))
     }
 
-    /// The colour at texture coordinates, v upwards; white where there is no picture.
+    /// The colour at texture coordinates, v upwards; white where there is no picture. Of a patch that is wide, and where there
+    /// are coarser levels, it is that of texels at most half as wide: they are not told apart, and fewer samples show their mean.
     #[inline]
-    pub fn at(&self, uv: impl Into<UvPair>) -> Rgb {
-        self.at_one(uv.into().0[usize::from(self.second_uv)])
+    pub fn at(&self, patch: impl Into<Patch>) -> Rgb {
+        self.seen_in(&patch.into())
+    }
+
+    #[inline(never)]
+    fn seen_in(&self, patch: &Patch) -> Rgb {
+        let set = usize::from(self.second_uv);
+        self.look_up(self.level_for(patch.width[set]), patch.at.0[set])
     }
 
     /// The same at coordinates of its own set.
     pub fn at_one(&self, uv: Vec2) -> Rgb {
-        if let Texels::Formula(formula) = &self.image.texels {
+        self.look_up(&self.image, uv)
+    }
+
+    /// The picture with as few texels as do for a patch so wide.
+    #[inline(always)]
+    fn level_for(&self, width: Vec2) -> &Image {
+        if width == Vec2::ZERO {
+            return &self.image;
+        }
+        self.levels.with_texels_of(self.half_in_texels(width)).unwrap_or(&self.image)
+    }
+
+    /// Half of a patch so wide, in texels, along the axis that has fewer.
+    #[inline(always)]
+    fn half_in_texels(&self, width: Vec2) -> f32 {
+        let width = self.transform.map_or(width, |transform| transform.widen(width));
+        (width.x * self.width() as f32).min(width.y * self.height() as f32) * 0.5
+    }
+
+    /// True where a patch may be so wide that a coarser level does for it.
+    pub(crate) fn has_level_for(&self, widths: [Vec2; 2]) -> bool {
+        self.half_in_texels(widths[usize::from(self.second_uv)]) >= 2.0
+    }
+
+    #[inline]
+    fn look_up(&self, image: &Image, uv: Vec2) -> Rgb {
+        if let Texels::Formula(formula) = &image.texels {
             return self.worked_out(formula, uv);
         }
-        if !self.image.is_whole() || !uv.is_finite() {
+        if !image.is_whole() || !uv.is_finite() {
             return Rgb::WHITE;
         }
         let uv = Vec2::new(uv.x, 1.0 - uv.y);
         let uv = self.transform.map_or(uv, |transform| transform.apply(uv));
-        let (width, height) = (self.width(), self.height());
+        let (width, height) = (image.width, image.height);
         let [wrap_x, wrap_y] = self.wrap;
         let (x, y) = (uv.x * width as f32, uv.y * height as f32);
         if !(x.is_finite() && y.is_finite()) {
@@ -163,13 +217,13 @@ impl Texture {
         if self.filter == Filter::Nearest {
             let [x, _] = wrap_x.pair(x, width);
             let [y, _] = wrap_y.pair(y, height);
-            return self.texel(x, y);
+            return self.finished(self.raw(image, x, y));
         }
         let (x, y) = (x - 0.5, y - 0.5);
         let (fx, fy) = (x - x.floor(), y - y.floor());
         let ([x0, x1], [y0, y1]) = (wrap_x.pair(x, width), wrap_y.pair(y, height));
-        let (above, below) =
-            (self.raw(x0, y0).lerp(self.raw(x1, y0), fx), self.raw(x0, y1).lerp(self.raw(x1, y1), fx));
+        let raw = |x: usize, y: usize| self.raw(image, x, y);
+        let (above, below) = (raw(x0, y0).lerp(raw(x1, y0), fx), raw(x0, y1).lerp(raw(x1, y1), fx));
         self.finished(above.lerp(below, fy))
     }
 
@@ -186,14 +240,14 @@ impl Texture {
 
     /// A number at texture coordinates: the channel that counts, else the luminance.
     #[inline]
-    pub fn number(&self, uv: impl Into<UvPair>) -> f32 {
-        let colour = self.at(uv);
+    pub fn number(&self, patch: impl Into<Patch>) -> f32 {
+        let colour = self.at(patch);
         if self.channel.is_some() { colour.r } else { colour.luminance() }
     }
 
     #[inline]
-    fn raw(&self, x: usize, y: usize) -> Rgb {
-        self.image.texel(y * self.image.width + x, self.channel, self.is_data)
+    fn raw(&self, image: &Image, x: usize, y: usize) -> Rgb {
+        image.texel(y * image.width + x, self.channel, self.is_data)
     }
 
     #[inline]
@@ -220,11 +274,12 @@ pub struct NumberMap {
 
 impl NumberMap {
     /// The number at texture coordinates.
-    #[inline]
-    pub fn at(&self, uv: impl Into<UvPair>) -> f32 {
+    #[inline(always)]
+    pub fn at(&self, patch: impl Into<Patch>) -> f32 {
         match &self.texture {
             // What is not a number becomes the least one.
-            Some(texture) => texture.number(uv).max(self.range[0]).min(self.range[1]),
+            // At the point: few numbers of a material are in proportion to the light.
+            Some(texture) => texture.number(patch.into().at).max(self.range[0]).min(self.range[1]),
             None => self.number,
         }
     }
@@ -241,9 +296,10 @@ pub struct ColourMap {
 
 impl ColourMap {
     /// The colour at texture coordinates.
-    pub fn at(&self, uv: impl Into<UvPair>) -> Rgb {
+    #[inline(always)]
+    pub fn at(&self, patch: impl Into<Patch>) -> Rgb {
         match &self.texture {
-            Some(texture) => self.colour * texture.at(uv),
+            Some(texture) => self.colour * texture.at(patch),
             None => self.colour,
         }
     }

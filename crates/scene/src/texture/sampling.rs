@@ -72,4 +72,11 @@ impl UvTransform {
     pub fn apply(&self, uv: Vec2) -> Vec2 {
         self.u * uv.x + self.v * uv.y + self.offset
     }
+
+    /// How wide along either coordinate is what was so wide.
+    #[inline]
+    pub(super) fn widen(&self, width: Vec2) -> Vec2 {
+        let (u, v) = (self.u * width.x, self.v * width.y);
+        Vec2::new(Vec2::new(u.x, v.x).length(), Vec2::new(u.y, v.y).length())
+    }
 }

@@ -6,7 +6,7 @@ use super::point::Point;
 use crate::bsdf::Film;
 use crate::error::SceneError;
 use crate::parameters::Reader;
-use crate::texture::{ColourMap, NumberMap, UvPair};
+use crate::texture::{ColourMap, NumberMap, Patch};
 use bilux_math::{Rgb, Vec3};
 
 /// The parameters, each a constant or a texture.
@@ -112,7 +112,7 @@ impl Maps {
         colours.iter().all(|map| map.texture.is_none()) && numbers.iter().all(|map| map.texture.is_none())
     }
 
-    pub(super) fn at(&self, uv: impl Into<UvPair>) -> Point {
+    pub(super) fn at(&self, uv: impl Into<Patch>) -> Point {
         let uv = uv.into();
         Point {
             base_color: self.base_color.at(uv).clamp(0.0, 1.0),
