@@ -189,8 +189,16 @@ impl<'d> Gltf<'d, '_, '_> {
         let weight = extension.number("specularFactor")?.unwrap_or(1.0);
         self.scalar(draft, "specular_weight", weight, extension.get("specularTexture"), Channel::A, &at)?;
         let [r, g, b] = extension.numbers::<3>("specularColorFactor")?.unwrap_or([1.0; 3]).map(|c| c as f32);
-        let picture = extension.get("specularColorTexture");
-        self.colour(draft, "specular_color", Rgb::new(r, g, b), picture, &at)
+        let (mut shade, picture) = (Rgb::new(r, g, b), extension.get("specularColorTexture"));
+        let greatest = shade.max_channel();
+        if greatest > 1.0 && node.extension("KHR_materials_transmission").is_none() {
+            // More than the index has it: a greater one.
+            let ior = draft.number("specular_ior").unwrap_or(1.5) as f32;
+            let root = ((ior - 1.0) / (ior + 1.0) * greatest.sqrt()).min(9.0 / 11.0);
+            draft.set("specular_ior", (1.0 + root) / (1.0 - root), at.clone());
+            shade *= 1.0 / greatest;
+        }
+        self.colour(draft, "specular_color", shade, picture, &at)
     }
 
     /// Theirs is rougher along a direction, and ours smoother across it, by the same ratio.

@@ -8,7 +8,7 @@ use crate::reading::default_material;
 use crate::values::{Held, colour, number, tell_left_out, tell_pictures_left_out, texture};
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
-use bilux_scene::materials::straight_on;
+use bilux_scene::materials::{straight_on, with_indices};
 use bilux_scene::{SceneBuilder, Spec, Value};
 
 /// Writes every material but the plain one into a library beside; gives the name of each.
@@ -93,6 +93,7 @@ fn write_material(
     writing: &mut Writing,
     out: &mut Vec<u8>,
 ) -> Result<(), FormatError> {
+    let spec = &*with_indices(spec);
     if !HELD.iter().any(|(kind, _)| *kind == spec.kind) {
         writing.warn(format!("OBJ files hold no material '{}': a matt one stands in its place", spec.kind));
     }

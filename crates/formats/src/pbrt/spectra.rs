@@ -4,6 +4,7 @@ use super::colours::{from_xyz, of_chromaticity, of_unit_luminance};
 use bilux_math::Rgb;
 use bilux_math::glam::DVec3;
 use bilux_math::transcendental::exp_f64;
+use bilux_scene::materials::glass_indices;
 
 /// A spectrum, from the shortest wavelength (nm) to the longest; between its samples straight, beyond them nothing.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,15 +59,15 @@ const LIGHTS: &[(&str, [f64; 2])] = &[
     ("illum-acesD60", [0.32168, 0.33767]),
 ];
 
-/// Glasses by name, with their refractive index at 587.6 nm and Abbe's number. [Schott 2023]
-const GLASSES: &[(&str, f32, f32)] = &[
-    ("glass-BK7", 1.5168, 64.17),
-    ("glass-BAF10", 1.6700, 47.11),
-    ("glass-FK51A", 1.4866, 84.47),
-    ("glass-LASF9", 1.8503, 32.17),
-    ("glass-F5", 1.6727, 32.25),
-    ("glass-F10", 1.7283, 28.53),
-    ("glass-F11", 1.7847, 25.68),
+/// Glasses by name, as our own table calls them.
+pub(super) const GLASSES: &[(&str, &str)] = &[
+    ("glass-BK7", "bk7"),
+    ("glass-BAF10", "baf10"),
+    ("glass-FK51A", "fk51a"),
+    ("glass-LASF9", "lasf9"),
+    ("glass-F5", "sf5"),
+    ("glass-F10", "sf10"),
+    ("glass-F11", "sf11"),
 ];
 
 /// Metals by the beginning of their names, as our own table calls them.
@@ -99,7 +100,8 @@ pub(super) fn named(name: &str) -> Option<Named> {
     if let Some((_, xy)) = LIGHTS.iter().find(|(known, _)| *known == name) {
         return Some(Named::Light(of_chromaticity(*xy)));
     }
-    if let Some(&(_, index, abbe_number)) = GLASSES.iter().find(|(known, ..)| *known == name) {
+    let glass = GLASSES.iter().find(|(known, _)| *known == name);
+    if let Some((index, abbe_number)) = glass.and_then(|(_, ours)| glass_indices(ours)) {
         return Some(Named::Glass { index, abbe_number });
     }
     let (element, part) = name.rsplit_once('-')?;

@@ -319,6 +319,30 @@ fn what_is_seen_from_one_side_glows_from_that_side_and_glass_is_seen_from_both()
 }
 
 #[test]
+fn colours_of_highlights_above_one_are_a_greater_index() {
+    let of = |factor: f32| {
+        let material = format!(
+            r#"{{"pbrMetallicRoughness":{{"metallicFactor":0}},
+            "extensions":{{"KHR_materials_specular":{{"specularColorFactor":[{factor},{},0]}}}}}}"#,
+            0.5 * factor
+        );
+        let scene = read(&with_material(&material, ""));
+        let spec = &scene.materials[scene.objects[0].material];
+        let ior = match spec.parameters.find("specular_ior") {
+            Some((Value::Number(ior), _)) => *ior,
+            _ => 1.5f64,
+        };
+        let root = (ior - 1.0) / (ior + 1.0);
+        (root * root, spec.parameters.find("specular_color").unwrap().0.clone())
+    };
+    for (factor, straight_on) in [(1.0, 0.04), (4.0, 0.16), (25.0, 0.669)] {
+        let (found, colour) = of(factor);
+        assert!((found - straight_on).abs() < 1e-3, "{factor}: {found}");
+        assert_eq!(colour, Rgb::new(1.0, 0.5, 0.0).into(), "{factor}");
+    }
+}
+
+#[test]
 fn every_extension_gives_a_material_that_can_be_built() {
     let extensions = [
         r#""KHR_materials_transmission":{"transmissionFactor":1}"#,

@@ -418,6 +418,24 @@ fn pictures_lie_as_they_are_said_to_and_come_back() {
 }
 
 #[test]
+fn glass_has_a_name_or_numbers_and_not_both() {
+    for (lines, wanted) in [
+        ("glass = \"bk7\"\neta = 1.4", "'glass' and 'eta' both say what this is"),
+        ("glass = \"bk7\"\ndispersion = 1", "'glass' and 'dispersion' both say"),
+        ("glass = \"bk8\"", "did you mean 'bk7'?"),
+    ] {
+        let glass = format!(
+            "[[material]]\nname = \"m\"\nkind = \"dielectric\"\n{lines}\n[[model]]\nshape = \"sphere\"\nmaterial = \"m\"\n"
+        );
+        let told = match read_text("toml", &glass) {
+            Ok(scene) => scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap_err().to_string(),
+            Err(error) => error.to_string(),
+        };
+        assert!(told.contains(wanted), "{lines}: {told}");
+    }
+}
+
+#[test]
 fn textures_of_numbers_are_read_as_they_are_and_come_back() {
     let folder = tempfile::tempdir().unwrap();
     let mut picture = bilux_pictures::Picture::from_rgb(1, 1, vec![Rgb::new(0.2, 0.4, 0.6)]).unwrap();

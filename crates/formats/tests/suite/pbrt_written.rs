@@ -145,6 +145,12 @@ fn materials_come_back() {
     let spec = quiet("kind = \"diffuse\"\nreflectance = 0.5\nemission = [1, 2, 3]\nopacity = 0.5");
     assert_near(&spec, "emission", &[1.0, 2.0, 3.0]);
     assert_near(&spec, "opacity", &[0.5]);
+    let spec = quiet("kind = \"dielectric\"\nglass = \"sf11\"");
+    assert_near(&spec, "eta", &[1.7847]);
+    assert_near(&spec, "dispersion", &[20.0 / 25.68]);
+    let (told, spec) = material("kind = \"dielectric\"\nglass = \"diamond\"");
+    assert_near(&spec, "eta", &[2.4175]);
+    assert_eq!(told, ["pbrt files hold no 'dispersion' of a dielectric material: left out"]);
     let (told, _) = material("kind = \"diffuse\"\nroughness = 0.5");
     assert_eq!(told, ["pbrt files hold no 'roughness' of a diffuse material: left out"]);
     let (told, spec) = material("kind = \"principled\"\nfuzz_weight = 1\ncoat_weight = 0.5");

@@ -1,5 +1,6 @@
 //! `dielectric`: smooth glass, water, diamond.
 
+use super::glasses::{NAMES, glass_indices};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
 use super::{
     ABSORPTION, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, THIN, colour_map,
@@ -7,10 +8,13 @@ use super::{
 };
 use crate::bsdf::{Bsdf, RoughDielectric};
 use crate::classic::ClassicMaterial;
+use crate::error::SceneError;
+use crate::parameters::{Spec, Value};
 use crate::surface::Surface;
 use crate::texture::ColourMap;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
@@ -19,6 +23,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         summary: "glass, water, diamond; frosted where it is rough",
         source: "Fresnel 1823",
         parameters: &[
+            GLASS,
             ETA,
             DISPERSION,
             reflectance("tint", "factor on all light; white for real glass", "1"),
@@ -36,9 +41,19 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         ],
     },
     build: |reader, ingredients| {
+        let name = reader.text("glass");
+        if let (Some(_), Some(key)) =
+            (glass_indices(&name), ["eta", "dispersion"].into_iter().find(|key| reader.is_given(key)))
+        {
+            let message = format!("'glass' and '{key}' both say what this is: take one of them out");
+            return Err(SceneError::invalid(message, reader.span(key)));
+        }
+        let said = (reader.number("eta"), reader.number("dispersion") / 20.0);
+        let (eta, dispersion) =
+            glass_indices(&name).map_or(said, |(eta, abbe_number)| (eta, 1.0 / abbe_number));
         Ok(Arc::new(Glass {
-            eta: reader.number("eta"),
-            dispersion: if reader.bool("thin") { 0.0 } else { reader.number("dispersion") / 20.0 },
+            eta,
+            dispersion: if reader.bool("thin") { 0.0 } else { dispersion },
             tint: colour_map(reader, "tint", ingredients)?,
             sigma_a: reader.colour("absorption"),
             priority: reader.integer("priority") as u32,
@@ -59,6 +74,14 @@ pub(super) const PRIORITY: Parameter = Parameter {
     default: "0",
 };
 
+const GLASS: Parameter = Parameter {
+    name: "glass",
+    summary: "in place of eta and dispersion: what it is, as it was measured",
+    unit: "",
+    kind: ParameterKind::Choice(NAMES),
+    default: "none",
+};
+
 const DISPERSION: Parameter = Parameter {
     name: "dispersion",
     summary: "how far colours are parted: 20 over Abbe's number, so 0.31 for window glass, 0.55 for flint glass, 0.36 for \
@@ -67,6 +90,21 @@ const DISPERSION: Parameter = Parameter {
     kind: ParameterKind::Number { min: 0.0, max: 20.0 },
     default: "0",
 };
+
+/// The same with numbers for a name, for formats that know none.
+pub fn with_indices(spec: &Spec) -> Cow<'_, Spec> {
+    let name = spec.parameters.find("glass").map(|(value, _)| value);
+    let Some(Value::Text(name)) = name.filter(|_| spec.kind == ENTRY.entry.name) else {
+        return Cow::Borrowed(spec);
+    };
+    let mut spec = spec.clone();
+    spec.parameters.0.retain(|(key, ..)| key != "glass");
+    if let Some((eta, abbe_number)) = glass_indices(name) {
+        spec.parameters.set("eta", eta);
+        spec.parameters.set("dispersion", 20.0 / abbe_number);
+    }
+    Cow::Owned(spec)
+}
 
 struct Glass {
     eta: f32,

@@ -5,6 +5,7 @@ use crate::values::{Held, colour, number};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_math::transcendental::exp;
+use bilux_scene::materials::with_indices;
 use bilux_scene::{Spec, Value};
 
 /// What other kinds come to as `principled` with.
@@ -12,7 +13,7 @@ pub(super) const OF_OTHERS: [Held; 5] = [
     ("diffuse", &["reflectance", "roughness"]),
     ("mirror", &["reflectance"]),
     ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
-    ("dielectric", &["eta", "dispersion", "tint", "absorption", "thin", "roughness"]),
+    ("dielectric", &["glass", "eta", "dispersion", "tint", "absorption", "thin", "roughness"]),
     ("phong", &["kd", "ks", "exponent"]),
 ];
 
@@ -22,6 +23,7 @@ pub(super) const OF_ANY: &[&str] =
 
 /// What any material comes to as `principled`.
 pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spec {
+    let spec = &*with_indices(spec);
     let mut out = Spec::new(&spec.name, "principled");
     for &key in OF_ANY {
         if let Some((value, at)) = spec.parameters.find(key) {

@@ -9,7 +9,7 @@ const HELD: [Held; 7] = [
     ("diffuse", &["reflectance"]),
     ("mirror", &["reflectance"]),
     ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "anisotropy", "rotation"]),
-    ("dielectric", &["eta", "absorption", "thin", "roughness", "anisotropy", "rotation"]),
+    ("dielectric", &["glass", "eta", "absorption", "thin", "roughness", "anisotropy", "rotation"]),
     (
         "principled",
         &[

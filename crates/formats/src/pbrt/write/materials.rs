@@ -6,11 +6,12 @@ use super::textures::{Change, Holds};
 use super::{Document, float, rgb};
 use crate::FormatError;
 use crate::pbrt::materials::{extinction_of, reflected_inside};
+use crate::pbrt::spectra::GLASSES;
 use crate::values::{colour, number, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
-use bilux_scene::materials::metal_indices;
+use bilux_scene::materials::{metal_indices, with_indices};
 use bilux_scene::{Spec, Value};
 
 /// Metals that pbrt knows by name.
@@ -27,6 +28,8 @@ impl Document<'_> {
         spec: &Spec,
         writing: &mut Writing,
     ) -> Result<(String, Rgb), FormatError> {
+        let plain = with_indices(spec);
+        let spec = if GLASSES.iter().any(|(_, ours)| is_of(spec, ours)) { spec } else { &*plain };
         tell_not_held(spec, writing);
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {
@@ -136,7 +139,11 @@ impl Document<'_> {
         keys: [&str; 3],
         writing: &mut Writing,
     ) -> Result<String, FormatError> {
-        let index = float("eta", number(spec, index).unwrap_or(1.5));
+        let named = GLASSES.iter().find(|(_, ours)| is_of(spec, ours));
+        let index = match named {
+            Some((theirs, _)) => format!(" \"spectrum eta\" \"{theirs}\""),
+            None => float("eta", number(spec, index).unwrap_or(1.5)),
+        };
         if matches!(spec.parameters.find(thin), Some((Value::Bool(true), _))) {
             return Ok(format!(" \"string type\" \"thindielectric\"{index}"));
         }
@@ -346,6 +353,11 @@ impl Document<'_> {
         let amount = float("amount", share);
         Ok(format!(" \"string type\" \"mix\" \"string materials\" [ \"{first}\" \"{second}\" ]{amount}"))
     }
+}
+
+/// True for what is said to be of that glass.
+fn is_of(spec: &Spec, glass: &str) -> bool {
+    matches!(spec.parameters.find("glass"), Some((Value::Text(name), _)) if name == glass)
 }
 
 /// A parameter under its own name.
