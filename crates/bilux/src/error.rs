@@ -27,9 +27,9 @@ pub enum Error {
     Film(#[from] FilmError),
     /// A picture that would take more memory than it may.
     #[error(
-        "this would take about {} MB of memory ({} the scene, {} what finds hits, {} the picture), and {} MB are \
+        "this would take about {} MB of memory ({} meshes, {} textures, {} what finds hits, {} the picture), and {} MB are \
          allowed: make the picture smaller, or allow more memory",
-        mega(.needed.total()), mega(.needed.scene), mega(.needed.trees), mega(.needed.picture), .most / 1_000_000
+        mega(.needed.total()), mega(.needed.meshes), mega(.needed.textures + .needed.levels), mega(.needed.trees), mega(.needed.picture), .most / 1_000_000
     )]
     TooLarge {
         /// What it would take.

@@ -13,10 +13,14 @@ const INSTANCE: u64 = 450;
 const PIXEL: u64 = 200;
 
 /// About how many bytes it takes to render a scene, at most.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// Meshes and textures.
-    pub scene: u64,
+    /// Meshes as they are held, each once.
+    pub meshes: u64,
+    /// Textures as they are held, each picture once.
+    pub textures: u64,
+    /// Their coarser levels, where a render makes them.
+    pub levels: u64,
     /// What finds hits.
     pub trees: u64,
     /// The picture while it is made.
@@ -24,30 +28,37 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// What these settings ask for.
-    pub fn of(scene: &SceneBuilder, settings: &Settings) -> Memory {
+    /// What a scene takes, whatever the picture.
+    pub fn of_scene(scene: &SceneBuilder) -> Memory {
+        let mut all = Memory::default();
         let mut meshes = HashSet::new();
-        let (mut held, mut trees) = (0, 0);
         for object in &scene.objects {
             let (mesh, is_new) = (&object.mesh, meshes.insert(Arc::as_ptr(&object.mesh)));
             if is_new {
-                held += mesh.size();
+                all.meshes += mesh.size();
             }
             // What stands still goes into one tree, as often as it is there.
             let is_still = !object.instanced && object.motion.is_still();
-            trees += INSTANCE + if is_new || is_still { mesh.triangles.len() as u64 * TRIANGLE } else { 0 };
+            all.trees +=
+                INSTANCE + if is_new || is_still { mesh.triangles.len() as u64 * TRIANGLE } else { 0 };
         }
         let mut images = HashSet::new();
         let new_images = scene.textures.iter().filter(|texture| images.insert(Arc::as_ptr(&texture.image)));
-        // With its coarser levels.
-        held += new_images.map(|texture| texture.image.size() / 3 * 4).sum::<u64>();
+        all.textures = new_images.map(|texture| texture.image.size()).sum();
+        all.levels = all.textures / 3;
+        all
+    }
+
+    /// What a picture of it takes with these settings.
+    pub fn of(scene: &SceneBuilder, settings: &Settings) -> Memory {
         let picture = u64::from(settings.width) * u64::from(settings.height) * PIXEL;
-        Memory { scene: held, trees, picture }
+        Memory { picture, ..Memory::of_scene(scene) }
     }
 
     /// All of it.
     pub fn total(&self) -> u64 {
-        self.scene.saturating_add(self.trees).saturating_add(self.picture)
+        let Memory { meshes, textures, levels, trees, picture } = *self;
+        [meshes, textures, levels, trees, picture].into_iter().fold(0, u64::saturating_add)
     }
 }
 

@@ -258,6 +258,9 @@ fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
     let json: serde_json::Value = serde_json::from_slice(&info.get_output().stdout).unwrap();
     assert_eq!(json["triangles"], 3);
     assert_eq!(json["bounds"]["max"][0], 9.0);
+    // Nine corners with a position, a normal and texture coordinates, and the triangles' indices.
+    assert_eq!(json["memory"]["meshes"], 9 * (12 + 12 + 8) + 3 * 12);
+    assert_eq!(json["memory"]["textures"], 0);
     run(&["convert", "three.asc", "-o", "three.obj"]);
     run(&["convert", "three.obj", "-o", "again.asc"]);
     run(&["convert", "again.asc", "-o", "again.obj"]);

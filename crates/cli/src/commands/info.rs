@@ -4,8 +4,11 @@ use super::{DONE, check_choices, read_options_with, tell_warnings};
 use crate::arguments::{Common, Info};
 use crate::output;
 use crate::usage;
-use bilux::scene::SceneBuilder;
+use bilux::memory::Memory;
+use bilux::scene::{Mesh, SceneBuilder, Texture};
 use serde_json::json;
+use std::collections::HashSet;
+use std::sync::Arc;
 
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
@@ -21,21 +24,16 @@ pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
 }
 
 /// Meshes that several objects share are counted once.
-fn meshes(scene: &SceneBuilder) -> Vec<&bilux::scene::Mesh> {
-    let mut seen: Vec<*const bilux::scene::Mesh> = Vec::new();
-    let new = |mesh: &std::sync::Arc<bilux::scene::Mesh>| {
-        let pointer = std::sync::Arc::as_ptr(mesh);
-        let is_new = !seen.contains(&pointer);
-        seen.push(pointer);
-        is_new
-    };
-    let mut new = new;
-    scene.objects.iter().map(|o| &o.mesh).filter(|mesh| new(mesh)).map(|mesh| &**mesh).collect()
+fn meshes(scene: &SceneBuilder) -> Vec<&Mesh> {
+    let mut seen = HashSet::new();
+    let meshes = scene.objects.iter().map(|object| &object.mesh);
+    meshes.filter(|mesh| seen.insert(Arc::as_ptr(mesh))).map(|mesh| &**mesh).collect()
 }
 
 fn as_json(scene: &SceneBuilder) -> serde_json::Value {
     let bounds = scene.bounds(0.0);
     let own = meshes(scene);
+    let memory = Memory::of_scene(scene);
     json!({
         "meshes": own.len(),
         "vertices": own.iter().map(|m| m.positions.len()).sum::<usize>(),
@@ -52,7 +50,7 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         })).collect::<Vec<_>>(),
         "materials": scene.materials.iter().map(|m| json!({ "name": m.name, "kind": m.kind })).collect::<Vec<_>>(),
         "textures": scene.textures.iter().map(|t| json!({
-            "name": t.name, "width": t.width(), "height": t.height(),
+            "name": t.name, "width": t.width(), "height": t.height(), "bytes": t.image.size(),
         })).collect::<Vec<_>>(),
         "lights": scene.lights.iter().map(|l| json!({ "name": l.name, "kind": l.kind })).collect::<Vec<_>>(),
         "cameras": scene.cameras.iter().map(|c| json!({
@@ -63,6 +61,10 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         })).collect::<Vec<_>>(),
         "variants": scene.inventory.variants,
         "skins": scene.inventory.skins,
+        "memory": {
+            "meshes": memory.meshes, "textures": memory.textures, "coarser_textures_at_most": memory.levels,
+            "trees_at_most": memory.trees,
+        },
         "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
@@ -81,7 +83,8 @@ fn as_text(scene: &SceneBuilder) -> String {
          materials  {}\n\
          textures   {}\n\
          lights     {}\n\
-         cameras    {}{}",
+         cameras    {}\n\
+         memory     {}{}",
         scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
         scene.objects.len(),
         own.len(),
@@ -97,7 +100,19 @@ fn as_text(scene: &SceneBuilder) -> String {
         names(scene.textures.iter().map(|t| texture(t)).collect()),
         names(scene.lights.iter().map(spec).collect()),
         names(scene.cameras.iter().map(|c| spec(&c.spec)).collect()),
+        memory(&Memory::of_scene(scene)),
         choices(scene),
+    )
+}
+
+/// What is held, and what comes to it when it is rendered.
+fn memory(memory: &Memory) -> String {
+    let mega = |bytes: u64| bytes as f64 / 1e6;
+    format!(
+        "{:.1} MB of meshes, {:.1} MB of textures; at most {:.1} MB more to render, the picture apart",
+        mega(memory.meshes),
+        mega(memory.textures),
+        mega(memory.levels + memory.trees),
     )
 }
 
@@ -119,7 +134,7 @@ fn choices(scene: &SceneBuilder) -> String {
     rows.into_iter().filter(|(_, names)| !names.is_empty()).map(line).collect()
 }
 
-fn texture(texture: &bilux::scene::Texture) -> String {
+fn texture(texture: &Texture) -> String {
     match texture.formula() {
         Some(_) => format!("{} (by formula)", texture.name),
         None => format!("{} ({}x{})", texture.name, texture.width(), texture.height()),
