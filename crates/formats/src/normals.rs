@@ -118,15 +118,20 @@ impl Faces<'_> {
         let weighted = |&face: &u32| facing[face as usize].unit * facing[face as usize].area;
         let sum: Vec3 = here.iter().map(weighted).sum();
         let is_crowd = here.len() > MOST_PAIRED;
-        let are_all_joined = !is_crowd && {
-            let middle = sum.normalize_or_zero();
-            // Who is within half of the angle of the middle is within it of all others.
-            let near = |&face: &u32| facing[face as usize].unit.dot(middle) > crease.half + 1e-5;
-            here.iter().all(|&face| self.smoothing_of(face) == BY_ANGLE) && here.iter().all(near)
-        };
+        let middle = sum.normalize_or_zero();
+        // Who is within half of the angle of the middle is within it of all others.
+        let near = |&face: &u32| facing[face as usize].unit.dot(middle) > crease.half + 1e-5;
+        let goes_by_angle = |&face: &u32| self.smoothing_of(face) == BY_ANGLE;
+        if !is_crowd && here.iter().all(near) && here.iter().all(goes_by_angle) {
+            let leans = |&face: &u32| middle.dot(facing[face as usize].unit) < ALIKE;
+            found.any_smooth = found.any_smooth || here.iter().any(leans);
+            found.indices.extend(here.iter().map(|_| first as u32));
+            found.normals.extend((!here.is_empty()).then_some(middle));
+            return;
+        }
         for &face in here {
             let own = facing[face as usize].unit;
-            let normal = if are_all_joined || (is_crowd && self.smoothing_of(face) != FLAT) {
+            let normal = if is_crowd && self.smoothing_of(face) != FLAT {
                 sum.normalize_or(own)
             } else {
                 self.normal_at(&here[..here.len().min(MOST_PAIRED)], face, facing, crease.whole)
