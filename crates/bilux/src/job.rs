@@ -3,11 +3,11 @@
 use crate::Error;
 use crate::budget::left_for_light;
 use crate::fingerprint::fingerprint;
-use crate::memory::joined;
+use crate::memory::Memory;
 use crate::oddities::oddities;
-use crate::settings::{Background, Settings};
+use crate::settings::Settings;
 use bilux_math::Rgb;
-use bilux_pictures::{Picture, WriteOptions};
+use bilux_pictures::Picture;
 use bilux_scene::{
     AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Spec, Warning,
 };
@@ -17,15 +17,11 @@ use bilux_transport::{
     RenderSettings, Replay, SamplePlace, Stop, Strategies, Window, coverage,
 };
 use std::ops::Range;
-use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Where time ends the picture, the first look at surfaces takes at most this part of it.
 const FEATURES_PART: u32 = 12;
-
-/// The curve where the studio lights a model.
-const STUDIO_TONEMAP: &str = "neutral";
 
 /// A picture to be rendered.
 pub struct Job {
@@ -36,7 +32,7 @@ pub struct Job {
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
     /// The studio's lights are on.
-    studio_lit: bool,
+    pub(crate) studio_lit: bool,
     /// Albedo and the like are wanted.
     pub(crate) features: bool,
     /// The time that is going to be spent on denoising.
@@ -80,7 +76,20 @@ impl Job {
     /// # Errors
     /// When a setting or anything in the scene is wrong.
     pub fn new(scene: &SceneBuilder, user: &Parameters) -> Result<Job, Error> {
-        let mut job = Job::with_settings(scene, Settings::resolve(&joined(scene, user))?)?;
+        Job::within(scene, user, u64::MAX)
+    }
+
+    /// The same, if so many bytes are enough for it.
+    ///
+    /// # Errors
+    /// As there; and before anything is built, when the picture is going to take more.
+    pub fn within(scene: &SceneBuilder, user: &Parameters, most: u64) -> Result<Job, Error> {
+        let settings = Settings::of(scene, user)?;
+        let needed = Memory::of(scene, &settings);
+        if needed.total() > most {
+            return Err(Error::TooLarge { needed, most });
+        }
+        let mut job = Job::with_settings(scene, settings)?;
         job.warnings.extend(job.settings.without_use(user));
         Ok(job)
     }
@@ -264,45 +273,6 @@ impl Job {
             let plain = fingerprint(&self.source, &self.settings);
             if self.render.interval { plain + "-replicates" } else { plain }
         })
-    }
-
-    /// How a picture of this job is written, exposed as it asks for where that is wanted.
-    ///
-    /// # Errors
-    /// When no tone curve has the name.
-    pub fn write_options_for(&self, picture: &Picture) -> Result<WriteOptions, Error> {
-        let mut options = self.write_options()?;
-        if self.settings.auto_exposure {
-            options.exposure += bilux_pictures::auto_exposure(picture);
-        }
-        Ok(options)
-    }
-
-    /// How pictures of this job are written, whatever they show.
-    ///
-    /// # Errors
-    /// When no tone curve has the name.
-    pub fn write_options(&self) -> Result<WriteOptions, Error> {
-        let name = match self.settings.tonemap.as_str() {
-            "auto" if self.studio_lit => STUDIO_TONEMAP,
-            "auto" => "none",
-            name => name,
-        };
-        let tone_map = bilux_pictures::tonemap::tone_map(name)?;
-        let behind = match self.settings.background {
-            Background::Colour(colour) => Some(colour),
-            Background::Surroundings | Background::Transparent => None,
-        };
-        Ok(WriteOptions { exposure: self.settings.exposure, tone_map, behind, ..WriteOptions::default() })
-    }
-
-    /// Writes the picture, or for a partial one its film.
-    ///
-    /// # Errors
-    /// When the file cannot be written, or its format cannot hold a partial film.
-    pub fn write(&self, outcome: &Outcome, path: &Path) -> Result<(), Error> {
-        let picture = outcome.picture()?;
-        Ok(bilux_pictures::write(path, &picture, &self.write_options_for(&picture)?)?)
     }
 
     /// The film with its exact sums, as a picture that `.exr` can hold and `merge` can join.

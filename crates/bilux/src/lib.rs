@@ -25,6 +25,7 @@ mod oddities;
 pub mod presets;
 pub mod settings;
 pub mod strategies;
+mod writing;
 
 pub use bilux_accel as accel;
 pub use bilux_formats as formats;

@@ -1,14 +1,14 @@
 //! How much memory a picture is going to take, so that none is begun that cannot be held.
 
-use crate::{Error, Job, Settings};
-use bilux_scene::{Parameters, SceneBuilder};
+use crate::Settings;
+use bilux_scene::SceneBuilder;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// A triangle in trees of its own, while they are built; measured up to 150.
-const TRIANGLE: u64 = 160;
-/// An object that repeats another, with its place in the tree of all; measured up to 400.
-const INSTANCE: u64 = 450;
+/// A triangle in trees of its own, while they are built; measured up to 157.
+const TRIANGLE: u64 = 170;
+/// An object that repeats another, with its place in the tree of all; measured at 295.
+const INSTANCE: u64 = 350;
 /// A pixel, with its sums, its layers, and what tells noise and takes it away; measured up to 180.
 const PIXEL: u64 = 200;
 
@@ -60,27 +60,4 @@ impl Memory {
         let Memory { meshes, textures, levels, trees, picture } = *self;
         [meshes, textures, levels, trees, picture].into_iter().fold(0, u64::saturating_add)
     }
-}
-
-impl Job {
-    /// As [`Job::new`], if so many bytes are enough for it.
-    ///
-    /// # Errors
-    /// As there; and before anything is built, when the picture is going to take more.
-    pub fn within(scene: &SceneBuilder, user: &Parameters, most: u64) -> Result<Job, Error> {
-        let needed = Memory::of(scene, &Settings::resolve(&joined(scene, user))?);
-        if needed.total() > most {
-            return Err(Error::TooLarge { needed, most });
-        }
-        Job::new(scene, user)
-    }
-}
-
-/// The scene file's own settings and the user's, which win.
-pub(crate) fn joined(scene: &SceneBuilder, user: &Parameters) -> Parameters {
-    let mut all = scene.settings.clone();
-    for (key, value, span) in &user.0 {
-        all.set_at(key, value.clone(), span.clone());
-    }
-    all
 }

@@ -2,6 +2,7 @@
 
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};
+use bilux_scene::materials::straight_on;
 use bilux_scene::{MATERIALS, Spec, Value};
 
 /// A number, if one is given.
@@ -37,31 +38,40 @@ pub(crate) fn texture(spec: &Spec, key: &str) -> Option<usize> {
     }
 }
 
-/// What a format holds of a kind of materials: that, and its parameters.
-pub(crate) type Held = (&'static str, &'static [&'static str]);
+/// What a format holds of materials.
+pub(crate) struct Holds<'a> {
+    pub(crate) format: &'static str,
+    /// The parameters of each kind; other kinds are told elsewhere.
+    pub(crate) of_kinds: &'a [(&'a str, &'a [&'a str])],
+    /// Those of every kind.
+    pub(crate) of_any: &'a [&'a str],
+    /// Of which of all these it holds pictures; `None` where that is told elsewhere.
+    pub(crate) pictured: Option<&'a [&'a str]>,
+}
 
-/// Tells of what a material says that a format cannot hold: neither of its kind nor of any.
-pub(crate) fn tell_left_out(
-    spec: &Spec,
-    format: &str,
-    held: &[Held],
-    of_any: &[&str],
-    writing: &mut Writing,
-) {
-    let Some((_, of_kind)) = held.iter().find(|(kind, _)| *kind == spec.kind) else { return };
-    let Some(row) = MATERIALS.iter().find(|row| row.entry.name == spec.kind) else { return };
-    for key in spec.differing(&row.entry).filter(|key| !of_kind.contains(key) && !of_any.contains(key)) {
-        writing.warn(format!("{format} files hold no '{key}' of a {} material: left out", spec.kind));
+impl Holds<'_> {
+    /// Tells of what a material says that is not held.
+    pub(crate) fn tell(&self, spec: &Spec, writing: &mut Writing) {
+        let Holds { format, of_kinds, of_any, pictured } = self;
+        let Some((kind, of_kind)) = of_kinds.iter().find(|(kind, _)| *kind == spec.kind) else { return };
+        let Some(row) = MATERIALS.iter().find(|row| row.entry.name == *kind) else { return };
+        for key in spec.differing(&row.entry) {
+            if !of_kind.contains(&key) && !of_any.contains(&key) {
+                writing.warn(format!("{format} files hold no '{key}' of a {kind} material: left out"));
+            } else if texture(spec, key).is_some() && pictured.is_some_and(|held| !held.contains(&key)) {
+                writing.warn(format!("{format} files hold no picture of '{key}': left out"));
+            }
+        }
     }
 }
 
-/// Tells of pictures of a material where a format holds none.
-pub(crate) fn tell_pictures_left_out(spec: &Spec, format: &str, held: &[&str], writing: &mut Writing) {
-    for (key, value, _) in &spec.parameters.0 {
-        if matches!(value, Value::Texture(_)) && !held.contains(&key.as_str()) {
-            writing.warn(format!("{format} files hold no picture of '{key}': left out"));
-        }
-    }
+/// A metal of any name or index as one of a colour: what `out` is with it.
+pub(crate) fn coloured_metal(out: Spec, metal: &Spec) -> Spec {
+    let shade = Value::from(straight_on(metal).unwrap_or(Rgb::grey(0.9)));
+    let taken = |key: &str, default| metal.parameters.find(key).map_or(default, |(value, _)| value.clone());
+    out.with("base_color", taken("reflectance", shade))
+        .with("base_metalness", 1.0)
+        .with("specular_roughness", taken("roughness", 0.3.into()))
 }
 
 fn as_number(value: &Value) -> Option<f32> {

@@ -75,6 +75,27 @@ pub struct Parameter {
     pub default: &'static str,
 }
 
+/// One of these words.
+pub const fn choice(
+    name: &'static str,
+    summary: &'static str,
+    words: &'static [&'static str],
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
+}
+
+/// A whole number, both bounds inclusive.
+pub const fn integer(
+    name: &'static str,
+    summary: &'static str,
+    min: i64,
+    max: i64,
+    default: &'static str,
+) -> Parameter {
+    Parameter { name, summary, unit: "", kind: ParameterKind::Integer { min, max }, default }
+}
+
 /// What every row of every table tells about itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {

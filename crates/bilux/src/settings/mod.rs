@@ -10,8 +10,8 @@ pub use background::Background;
 use background::background;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
-use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneError, Span, Spec, Warning};
+use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Warning};
 use bilux_transport::Stop;
 use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
@@ -130,25 +130,6 @@ const fn switch(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }
 }
 
-const fn choice(
-    name: &'static str,
-    summary: &'static str,
-    words: &'static [&'static str],
-    default: &'static str,
-) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
-}
-
-const fn integer(
-    name: &'static str,
-    summary: &'static str,
-    min: i64,
-    max: i64,
-    default: &'static str,
-) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Integer { min, max }, default }
-}
-
 const fn number(
     name: &'static str,
     summary: &'static str,
@@ -220,6 +201,18 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// What a scene wishes, and what the user says, which wins.
+    ///
+    /// # Errors
+    /// As [`Settings::resolve`].
+    pub fn of(scene: &SceneBuilder, user: &Parameters) -> Result<Settings, Error> {
+        let mut all = scene.settings.clone();
+        for (key, value, span) in &user.0 {
+            all.set_at(key, value.clone(), span.clone());
+        }
+        Settings::resolve(&all)
+    }
+
     /// Checks what a file, a preset and the command line say together.
     ///
     /// # Errors

@@ -194,7 +194,11 @@ impl<'d> Gltf<'d, '_, '_> {
         if greatest > 1.0 && node.extension("KHR_materials_transmission").is_none() {
             // More than the index has it: a greater one.
             let ior = draft.number("specular_ior").unwrap_or(1.5) as f32;
-            let root = ((ior - 1.0) / (ior + 1.0) * greatest.sqrt()).min(9.0 / 11.0);
+            let (root, most) = ((ior - 1.0) / (ior + 1.0) * greatest.sqrt(), 9.0 / 11.0);
+            if root > most {
+                self.oddities.note("a highlight reflects at most 0.67 straight on", || extension.at());
+            }
+            let root = root.min(most);
             draft.set("specular_ior", (1.0 + root) / (1.0 - root), at.clone());
             shade *= 1.0 / greatest;
         }

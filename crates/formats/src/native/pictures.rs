@@ -4,22 +4,13 @@ use super::document::Table;
 use super::specs::plain_value;
 use crate::FormatError;
 use bilux_math::Vec2;
-use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_math::transcendental::{cos, sin};
 use bilux_scene::texture::{Filter, UvTransform, Wrap};
 use bilux_scene::{Reader, Spec, Texture};
 
 const fn number(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Number { min: -1e6, max: 1e6 }, default }
-}
-
-const fn choice(
-    name: &'static str,
-    summary: &'static str,
-    words: &'static [&'static str],
-    default: &'static str,
-) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
 }
 
 const WRAPS: [(&str, Wrap); 3] = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
@@ -41,10 +32,7 @@ pub(super) const PICTURE: Entry = Entry {
         choice("wrap_u", "what lies beyond the left and the right edge", WRAP_WORDS, "repeat"),
         choice("wrap_v", "what lies beyond the lower and the upper edge", WRAP_WORDS, "repeat"),
         choice("filter", "what lies between texels", FILTER_WORDS, "linear"),
-        Parameter {
-            kind: ParameterKind::Integer { min: 1, max: 2 },
-            ..number("uv_set", "which texture coordinates of the mesh count", "1")
-        },
+        integer("uv_set", "which texture coordinates of the mesh count", 1, 2, "1"),
         Parameter {
             kind: ParameterKind::Number { min: 0.0, max: 1.0 },
             ..number("threshold", "what is less becomes 0, and all else 1; 0 for none", "0")
@@ -68,9 +56,9 @@ pub(super) fn placed(texture: &Texture, table: &Table) -> Result<Texture, Format
         FILTERS.iter().find(|(name, _)| *name == word("filter")).map_or(Filter::Linear, |found| found.1);
     let places = ["u_scale", "v_scale", "turn", "u_offset", "v_offset"];
     let [u_scale, v_scale, turn, u, v] = places.map(|key| said.number(key));
-    let lies = Lies { scale: [u_scale, v_scale], turn: turn.to_radians(), offset: [u, v] };
+    let placement = Placement { scale: [u_scale, v_scale], turn: turn.to_radians(), offset: [u, v] };
     Ok(Texture {
-        transform: places.iter().any(|key| said.is_given(key)).then(|| lies.transform()),
+        transform: places.iter().any(|key| said.is_given(key)).then(|| placement.transform()),
         wrap: ["wrap_u", "wrap_v"].map(wrap),
         filter,
         second_uv: said.integer("uv_set") == 2,
@@ -83,10 +71,10 @@ pub(super) fn placed(texture: &Texture, table: &Table) -> Result<Texture, Format
 pub(super) fn said_of(texture: &Texture) -> Vec<(&'static str, String)> {
     let mut said = Vec::new();
     if let Some(transform) = &texture.transform {
-        let lies = Lies::of(transform);
+        let placement = Placement::of(transform);
         let keys = ["u_scale", "v_scale", "turn", "u_offset", "v_offset"];
-        let [[u_scale, v_scale], [u, v]] = [lies.scale, lies.offset];
-        let numbers = [u_scale, v_scale, lies.turn.to_degrees(), u, v];
+        let [[u_scale, v_scale], [u, v]] = [placement.scale, placement.offset];
+        let numbers = [u_scale, v_scale, placement.turn.to_degrees(), u, v];
         said.extend(keys.into_iter().zip(numbers.map(|x| format!("{x:?}"))));
     }
     let quoted = |word: &str| format!("\"{word}\"");
@@ -110,13 +98,13 @@ pub(super) fn said_of(texture: &Texture) -> Vec<(&'static str, String)> {
 
 /// Texture coordinates, v upwards, are scaled, turned (in radians) and shifted. [`UvTransform`] is of v downwards; both turn
 /// the same way, about other corners.
-struct Lies {
+struct Placement {
     scale: [f32; 2],
     turn: f32,
     offset: [f32; 2],
 }
 
-impl Lies {
+impl Placement {
     /// Where the upper left corner comes to, from the lower left one.
     fn corner(&self) -> Vec2 {
         Vec2::new(-sin(self.turn), cos(self.turn)) * self.scale[1]
@@ -127,11 +115,11 @@ impl Lies {
         UvTransform::new([corner.x, 1.0 - corner.y], self.turn, self.scale)
     }
 
-    fn of(transform: &UvTransform) -> Lies {
+    fn of(transform: &UvTransform) -> Placement {
         let ([x, y], turn, scale) = transform.parts();
-        let lies = Lies { scale, turn, offset: [0.0; 2] };
-        let offset = Vec2::new(x, 1.0 - y) - lies.corner();
-        Lies { offset: offset.to_array(), ..lies }
+        let placement = Placement { scale, turn, offset: [0.0; 2] };
+        let offset = Vec2::new(x, 1.0 - y) - placement.corner();
+        Placement { offset: offset.to_array(), ..placement }
     }
 }
 
@@ -141,17 +129,21 @@ mod tests {
 
     #[test]
     fn a_picture_lies_as_it_is_said_with_v_upwards() {
-        let lies = Lies { scale: [2.0, -3.0], turn: 0.5, offset: [0.25, -0.5] };
-        let (transform, uv) = (lies.transform(), Vec2::new(0.3, 0.8));
+        let placement = Placement { scale: [2.0, -3.0], turn: 0.5, offset: [0.25, -0.5] };
+        let (transform, uv) = (placement.transform(), Vec2::new(0.3, 0.8));
         let (s, c) = (sin(0.5), cos(0.5));
-        let scaled = uv * Vec2::from(lies.scale);
-        let wanted =
-            Vec2::new(c * scaled.x - s * scaled.y, s * scaled.x + c * scaled.y) + Vec2::from(lies.offset);
+        let scaled = uv * Vec2::from(placement.scale);
+        let wanted = Vec2::new(c * scaled.x - s * scaled.y, s * scaled.x + c * scaled.y)
+            + Vec2::from(placement.offset);
         let found = transform.apply(Vec2::new(uv.x, 1.0 - uv.y));
         assert!((Vec2::new(found.x, 1.0 - found.y) - wanted).length() < 1e-5, "{found}");
-        let back = Lies::of(&transform);
+        let back = Placement::of(&transform);
         let same = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5);
-        assert!(same(&back.scale, &lies.scale) && same(&back.offset, &lies.offset), "{:?}", back.offset);
+        assert!(
+            same(&back.scale, &placement.scale) && same(&back.offset, &placement.offset),
+            "{:?}",
+            back.offset
+        );
         assert!(same(&[back.turn], &[0.5]));
     }
 }

@@ -5,10 +5,10 @@ use super::write::one_line;
 use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
 use crate::reading::default_material;
-use crate::values::{Held, colour, number, tell_left_out, tell_pictures_left_out, texture};
+use crate::values::{Holds, colour, coloured_metal, number, texture};
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
-use bilux_scene::materials::{straight_on, with_indices};
+use bilux_scene::materials::with_indices;
 use bilux_scene::{SceneBuilder, Spec, Value};
 
 /// Writes every material but the plain one into a library beside; gives the name of each.
@@ -40,52 +40,51 @@ pub(super) fn write_library(
     Ok(names)
 }
 
-/// What it holds of all.
-const OF_ANY: [&str; 3] = ["opacity", "normal", "normal_scale"];
-
-/// Parameters that MTL holds, by kind.
-const HELD: [Held; 6] = [
-    (
-        "principled",
-        &[
-            "base_color",
-            "base_metalness",
-            "specular_roughness",
-            "specular_ior",
-            "specular_roughness_anisotropy",
-            "anisotropy_rotation",
-            "fuzz_weight",
-            "coat_weight",
-            "coat_roughness",
-            "transmission_weight",
-            "transmission_color",
-            "emission",
-            "emission_scale",
-        ],
-    ),
-    ("phong", &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "thin"]),
-    ("diffuse", &["reflectance", "emission"]),
-    ("mirror", &["reflectance", "emission"]),
-    ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
-    ("dielectric", &["eta", "tint"]),
-];
-
-/// Those of which it holds a picture.
-const MAPPED: [&str; 13] = [
-    "roughness",
-    "kd",
-    "reflectance",
-    "base_color",
-    "ks",
-    "emission",
-    "opacity",
-    "normal",
-    "base_metalness",
-    "specular_roughness",
-    "fuzz_weight",
-    "coat_weight",
-    "coat_roughness",
-];
+/// What MTL holds of materials.
+const HOLDS: Holds = Holds {
+    format: "OBJ",
+    of_kinds: &[
+        (
+            "principled",
+            &[
+                "base_color",
+                "base_metalness",
+                "specular_roughness",
+                "specular_ior",
+                "specular_roughness_anisotropy",
+                "anisotropy_rotation",
+                "fuzz_weight",
+                "coat_weight",
+                "coat_roughness",
+                "transmission_weight",
+                "transmission_color",
+                "emission",
+                "emission_scale",
+            ],
+        ),
+        ("phong", &["kd", "ks", "kt", "exponent", "reflectivity", "eta", "emission", "thin"]),
+        ("diffuse", &["reflectance", "emission"]),
+        ("mirror", &["reflectance", "emission"]),
+        ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
+        ("dielectric", &["eta", "tint"]),
+    ],
+    of_any: &["opacity", "normal", "normal_scale"],
+    pictured: Some(&[
+        "roughness",
+        "kd",
+        "reflectance",
+        "base_color",
+        "ks",
+        "emission",
+        "opacity",
+        "normal",
+        "base_metalness",
+        "specular_roughness",
+        "fuzz_weight",
+        "coat_weight",
+        "coat_roughness",
+    ]),
+};
 
 fn write_material(
     spec: &Spec,
@@ -94,16 +93,17 @@ fn write_material(
     out: &mut Vec<u8>,
 ) -> Result<(), FormatError> {
     let spec = &*with_indices(spec);
-    if !HELD.iter().any(|(kind, _)| *kind == spec.kind) {
+    if !HOLDS.of_kinds.iter().any(|(kind, _)| *kind == spec.kind) {
         writing.warn(format!("OBJ files hold no material '{}': a matt one stands in its place", spec.kind));
     }
-    tell_left_out(spec, "OBJ", &HELD, &OF_ANY, writing);
-    tell_pictures_left_out(spec, "OBJ", &MAPPED, writing);
+    HOLDS.tell(spec, writing);
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
     match spec.kind.as_str() {
         "phong" => write_phong(spec, out),
         "principled" => write_principled(spec, scene, writing, out)?,
-        "conductor" => write_principled(&metal(spec), scene, writing, out)?,
+        "conductor" => {
+            write_principled(&coloured_metal(Spec::new(&spec.name, "principled"), spec), scene, writing, out)?
+        }
         "mirror" => {
             push_colour(out, "Kd", Rgb::BLACK);
             push_colour(out, "Ks", grey("reflectance", 0.95));
@@ -158,17 +158,6 @@ fn push_map(
     }
     out.extend_from_slice(format!("{word} {options}{file}\n").as_bytes());
     Ok(())
-}
-
-/// A metal of any name or index as one of a colour.
-fn metal(spec: &Spec) -> Spec {
-    let taken =
-        |key: &str, default: Value| spec.parameters.find(key).map_or(default, |(value, _)| value.clone());
-    let shade = straight_on(spec).unwrap_or(Rgb::grey(0.9));
-    Spec::new(&spec.name, "principled")
-        .with("base_color", taken("reflectance", shade.into()))
-        .with("base_metalness", 1.0)
-        .with("specular_roughness", taken("roughness", 0.3.into()))
 }
 
 /// In the words that other programs added.

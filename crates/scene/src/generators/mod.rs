@@ -27,7 +27,7 @@ pub use copies::copies;
 use crate::builder::SceneBuilder;
 use crate::error::SceneError;
 use crate::parameters::{Reader, Spec};
-use bilux_math::registry::{Entry, Parameter, ParameterKind};
+use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 
 /// A row of [`GENERATORS`].
 #[derive(Clone, Copy, Debug)]
@@ -70,16 +70,6 @@ pub fn generate(spec: &Spec) -> Result<SceneBuilder, SceneError> {
     (row.generate)(&Reader::new(spec, &row.entry)?)
 }
 
-const fn integer(
-    name: &'static str,
-    summary: &'static str,
-    min: i64,
-    max: i64,
-    default: &'static str,
-) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Integer { min, max }, default }
-}
-
 const fn switch(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default }
 }
@@ -91,13 +81,4 @@ const fn length(name: &'static str, summary: &'static str, default: &'static str
 
 const fn vector(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "m", kind: ParameterKind::Vector, default }
-}
-
-const fn choice(
-    name: &'static str,
-    summary: &'static str,
-    words: &'static [&'static str],
-    default: &'static str,
-) -> Parameter {
-    Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
 }

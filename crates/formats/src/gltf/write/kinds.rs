@@ -1,21 +1,26 @@
 //! What materials of any kind come to in glTF, which has one kind: our `principled`.
 
 use super::Document;
-use crate::values::{Held, colour, number};
+use crate::values::{Holds, colour, coloured_metal, number};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_math::transcendental::exp;
 use bilux_scene::materials::with_indices;
 use bilux_scene::{Spec, Value};
 
-/// What other kinds come to as `principled` with.
-pub(super) const OF_OTHERS: [Held; 5] = [
-    ("diffuse", &["reflectance", "roughness"]),
-    ("mirror", &["reflectance"]),
-    ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
-    ("dielectric", &["glass", "eta", "dispersion", "tint", "absorption", "thin", "roughness"]),
-    ("phong", &["kd", "ks", "exponent"]),
-];
+/// With what other kinds come to that; of their pictures `principled` tells.
+pub(super) const OTHERS: Holds = Holds {
+    format: "glTF",
+    of_kinds: &[
+        ("diffuse", &["reflectance", "roughness"]),
+        ("mirror", &["reflectance"]),
+        ("conductor", &["metal", "eta", "k", "reflectance", "roughness"]),
+        ("dielectric", &["glass", "eta", "dispersion", "tint", "absorption", "thin", "roughness"]),
+        ("phong", &["kd", "ks", "exponent"]),
+    ],
+    of_any: OF_ANY,
+    pictured: None,
+};
 
 /// What materials of all kinds have.
 pub(super) const OF_ANY: &[&str] =
@@ -55,12 +60,7 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
             .with("base_color", taken("reflectance", 0.95.into()))
             .with("base_metalness", 1.0)
             .with("specular_roughness", 0.0),
-        "conductor" => {
-            let surface = bilux_scene::materials::straight_on(spec).unwrap_or(Rgb::grey(0.9));
-            out.with("base_color", taken("reflectance", surface.into()))
-                .with("base_metalness", 1.0)
-                .with("specular_roughness", taken("roughness", 0.3.into()))
-        }
+        "conductor" => coloured_metal(out, spec),
         "dielectric" => {
             let absorbed = colour(spec, "absorption").unwrap_or(Rgb::BLACK);
             let out = out

@@ -1,10 +1,10 @@
 //! Materials in the terms of glTF: what [`super::super::material`] reads, the other way round.
 
 use super::Document;
-use super::kinds::{OF_ANY, OF_OTHERS, as_principled};
+use super::kinds::{OF_ANY, OTHERS, as_principled};
 use super::pictures::Channel;
 use crate::FormatError;
-use crate::values::{colour, number, tell_left_out, tell_pictures_left_out, texture};
+use crate::values::{Holds, colour, number, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::{Spec, Texture, Value};
@@ -76,16 +76,13 @@ impl Document<'_> {
     /// A material of any kind.
     pub(super) fn material(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Json, FormatError> {
         let principled = as_principled(spec, self, writing);
-        tell_left_out(spec, "glTF", &OF_OTHERS, OF_ANY, writing);
-        let of_any: Vec<&str> = OF_ANY
-            .iter()
-            .copied()
-            .chain(NUMBERS.iter().map(|row| row.0))
-            .chain(COLOURS.iter().map(|row| row.0))
-            .collect();
-        tell_left_out(&principled, "glTF", &[("principled", ELSEWHERE)], &of_any, writing);
-        let of_any = [&of_any[..], &PICTURED].concat();
-        tell_pictures_left_out(&principled, "glTF", &of_any, writing);
+        OTHERS.tell(spec, writing);
+        let in_tables = NUMBERS.iter().map(|row| row.0).chain(COLOURS.iter().map(|row| row.0));
+        let of_any: Vec<&str> = in_tables.chain(OF_ANY.iter().copied()).collect();
+        let pictured = [&of_any[..], &PICTURED].concat();
+        let of_kinds = &[("principled", ELSEWHERE)];
+        Holds { format: "glTF", of_kinds, of_any: &of_any, pictured: Some(&pictured) }
+            .tell(&principled, writing);
         let is_front =
             |key| matches!(principled.parameters.find(key), Some((Value::Text(side), _)) if side == "front");
         let is_one_sided = is_front("visible_sides");
@@ -100,7 +97,7 @@ impl Document<'_> {
         self.base(&principled, &mut out, writing)?;
         self.extensions(&principled, &mut out, writing)?;
         self.volume(&principled, &mut out);
-        self.brushing(&principled, &mut out, writing);
+        self.brushing(&principled, &mut out);
         if let Some(normals) = self.normals(&principled, "normal", writing)? {
             out["normalTexture"] = normals;
         }
@@ -159,15 +156,17 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// A film's thickness as a picture: parts of the greatest.
+    /// A film's thickness; as a picture, in parts of the greatest.
     fn thickness(&mut self, spec: &Spec, of: &mut Json) -> Result<(), FormatError> {
-        let Some(found) = texture(spec, "thin_film_thickness").and_then(|i| self.scene.textures.get(i))
-        else {
+        let picture = texture(spec, "thin_film_thickness").and_then(|i| self.scene.textures.get(i));
+        let Some(picture) = picture else {
+            let thickness = number(spec, "thin_film_thickness").unwrap_or(0.5) * 1000.0;
+            of["iridescenceThicknessMaximum"] = json!(thickness);
             return Ok(());
         };
-        let most = found.texels().fold(0.0, |most, texel| f32::max(most, texel.r));
-        let factor = found.factor * (1.0 / most.max(f32::MIN_POSITIVE));
-        let parts = Channel::Numbers(Arc::new(Texture { factor, ..Texture::clone(found) }));
+        let most = picture.texels().fold(0.0, |most, texel| f32::max(most, texel.r));
+        let factor = picture.factor * (1.0 / most.max(f32::MIN_POSITIVE));
+        let parts = Channel::Numbers(Arc::new(Texture { factor, ..Texture::clone(picture) }));
         let one = Channel::Even(1.0);
         of["iridescenceThicknessMinimum"] = json!(0.0);
         of["iridescenceThicknessMaximum"] = json!(most * 1000.0);
@@ -214,9 +213,7 @@ impl Document<'_> {
             }
         }
         if number(spec, "thin_film_weight").is_some() {
-            let thickness = number(spec, "thin_film_thickness").unwrap_or(0.5) * 1000.0;
             let of = &mut out["extensions"][self.uses("KHR_materials_iridescence")];
-            of["iridescenceThicknessMaximum"] = json!(thickness);
             of["iridescenceIor"] = json!(number(spec, "thin_film_ior").unwrap_or(1.4));
             self.thickness(spec, of)?;
         }
@@ -247,13 +244,7 @@ impl Document<'_> {
     }
 
     /// Theirs is smooth across and rougher along, ours of the mean and smoother across, by the same ratio.
-    fn brushing(&mut self, spec: &Spec, out: &mut Json, writing: &mut Writing) {
-        if ["specular_roughness_anisotropy", "anisotropy_rotation"]
-            .iter()
-            .any(|key| texture(spec, key).is_some())
-        {
-            writing.warn("anisotropy from a picture is not written");
-        }
+    fn brushing(&mut self, spec: &Spec, out: &mut Json) {
         let Some(ours) = number(spec, "specular_roughness_anisotropy").filter(|ours| *ours > 0.0) else {
             return;
         };

@@ -1,6 +1,6 @@
 //! Our materials in their terms: what [`super::super::materials`] reads, the other way round.
 
-use super::held::tell_not_held;
+use super::held::HOLDS;
 use super::looks::AS_IT_IS;
 use super::textures::{Change, Holds};
 use super::{Document, float, rgb};
@@ -30,7 +30,7 @@ impl Document<'_> {
     ) -> Result<(String, Rgb), FormatError> {
         let plain = with_indices(spec);
         let spec = if GLASSES.iter().any(|(_, ours)| is_of(spec, ours)) { spec } else { &*plain };
-        tell_not_held(spec, writing);
+        HOLDS.tell(spec, writing);
         let mut absorbed = Rgb::BLACK;
         let given = match spec.kind.as_str() {
             "diffuse" => self.matt(spec, "reflectance", 0.7, writing)?,
