@@ -274,7 +274,9 @@ fn mean<T: Copy>(texels: Covered<T>, number: impl Fn(T) -> f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Patch, UvPair, Wrap};
     use super::*;
+    use bilux_math::Vec2;
 
     /// Numbers from 0 to 1 that look like noise.
     fn noise(i: usize) -> f32 {
@@ -368,5 +370,20 @@ mod tests {
         let widths = [0.0, 1.9, 2.0, 3.9, 4.0, 8.0, 15.0, 16.0, 1e9, f32::INFINITY];
         assert_eq!(widths.map(side), [16, 16, 8, 8, 4, 2, 2, 1, 1, 1]);
         assert_eq!([f32::NAN, -1.0].map(side), [16, 16]);
+    }
+
+    #[test]
+    fn beyond_a_clamped_edge_is_that_edge_alone() {
+        // White but for a black column on the left.
+        let texels = (0..32 * 32).map(|i| Rgb::grey(if i % 32 == 0 { 0.0 } else { 1.0 })).collect();
+        let edge = Texture { wrap: [Wrap::Clamp, Wrap::Repeat], ..Texture::new("", 32, 32, texels, false) };
+        let edge = Arc::new(edge);
+        build(&[&edge]);
+        let seen = |u: f32| {
+            let at = UvPair::from(Vec2::new(u, 0.3));
+            edge.at(Patch { at, width: [Vec2::splat(0.5); 2] }).r
+        };
+        assert_eq!([-3.0, -0.01, 1.01, 2.0].map(seen), [0.0, 0.0, 1.0, 1.0]);
+        assert!((0.5..1.0).contains(&seen(0.1)), "{}", seen(0.1));
     }
 }

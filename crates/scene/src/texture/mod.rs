@@ -169,7 +169,23 @@ impl Texture {
     #[inline(never)]
     fn seen_in(&self, patch: &Patch) -> Rgb {
         let set = usize::from(self.second_uv);
-        self.look_up(self.level_for(patch.width[set]), patch.at.0[set])
+        let (uv, level) = (patch.at.0[set], self.level_for(patch.width[set]));
+        let is_picture = std::ptr::eq(level, &*self.image);
+        self.look_up(if is_picture || self.is_beyond_clamped_edge(uv) { &self.image } else { level }, uv)
+    }
+
+    /// True where its edge is drawn on and on: a coarser level has what is behind the edge in it, too.
+    fn is_beyond_clamped_edge(&self, uv: Vec2) -> bool {
+        let at = self.placed(uv);
+        let beyond = |wrap: Wrap, x: f32| wrap == Wrap::Clamp && !(0.0..=1.0).contains(&x);
+        beyond(self.wrap[0], at.x) || beyond(self.wrap[1], at.y)
+    }
+
+    /// Where coordinates are in the picture, downwards from its upper left corner.
+    #[inline(always)]
+    fn placed(&self, uv: Vec2) -> Vec2 {
+        let uv = Vec2::new(uv.x, 1.0 - uv.y);
+        self.transform.map_or(uv, |transform| transform.apply(uv))
     }
 
     /// The same at coordinates of its own set.
@@ -206,8 +222,7 @@ impl Texture {
         if !image.is_whole() || !uv.is_finite() {
             return Rgb::WHITE;
         }
-        let uv = Vec2::new(uv.x, 1.0 - uv.y);
-        let uv = self.transform.map_or(uv, |transform| transform.apply(uv));
+        let uv = self.placed(uv);
         let (width, height) = (image.width, image.height);
         let [wrap_x, wrap_y] = self.wrap;
         let (x, y) = (uv.x * width as f32, uv.y * height as f32);
