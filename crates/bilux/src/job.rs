@@ -106,6 +106,8 @@ impl Job {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
             crate::presets::put_behind(&mut completed, nothing);
         }
+        let size = [settings.width, settings.height];
+        bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
         let triangles = completed.objects.iter().map(|object| object.mesh.triangles.len()).sum();
         let accel = settings.accel_for(triangles);
         let built = completed.build(&accel, shutter_at(&settings, settings.time), aspect)?;

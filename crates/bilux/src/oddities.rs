@@ -8,8 +8,8 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
     let mut warnings = Vec::new();
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
-    if !given.objects.iter().any(|object| has_finite_triangle(&object.mesh)) {
-        warn("there is nothing to be seen: no triangle has corners that are all numbers");
+    if !given.objects.iter().any(|object| shows_something(&object.mesh)) {
+        warn("there is nothing to be seen: no triangle, point or line has corners that are all numbers");
     } else if is_in_glass(scene, camera) {
         warn(
             "the camera is inside of something transparent, and sees all through it: move the camera out, \
@@ -24,9 +24,11 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
     warnings
 }
 
-fn has_finite_triangle(mesh: &Mesh) -> bool {
+fn shows_something(mesh: &Mesh) -> bool {
     let is_finite = |&i: &u32| mesh.positions.get(i as usize).is_some_and(|p| p.is_finite());
     mesh.triangles.iter().any(|triangle| triangle.iter().all(is_finite))
+        || mesh.points.iter().any(is_finite)
+        || mesh.lines.iter().any(|line| line.iter().all(is_finite))
 }
 
 /// True when the camera would see something of a scene's first objects if it did not see through their backs.

@@ -2,9 +2,10 @@
 
 use crate::bake::with_pictures;
 use crate::reading::{Reading, Source, open};
+use crate::strokes::as_triangles;
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
-use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, native, obj, off, pbrt, ply, stl};
+use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, las, native, obj, off, pbrt, ply, stl, xyz};
 use bilux_math::registry::Entry;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, Warning};
@@ -13,8 +14,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Every format that there is.
-pub const SCENE_FORMATS: &[SceneFormatEntry] =
-    &[asc::ENTRY, gltf::ENTRY, pbrt::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY, off::ENTRY, native::ENTRY];
+pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
+    asc::ENTRY,
+    gltf::ENTRY,
+    pbrt::ENTRY,
+    obj::ENTRY,
+    ply::ENTRY,
+    stl::ENTRY,
+    off::ENTRY,
+    las::ENTRY,
+    xyz::ENTRY,
+    native::ENTRY,
+];
 
 /// A row of [`SCENE_FORMATS`].
 #[derive(Clone, Copy, Debug)]
@@ -137,6 +148,7 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
     let mut writing = Writing::new(path, options);
     if let Some(write) = row.write {
         let scene = with_pictures(scene, row.capabilities, &mut writing);
+        let scene = as_triangles(scene, row.capabilities, &mut writing);
         write(&scene, &mut writing)?;
     }
     write_all(path, writing)

@@ -38,13 +38,16 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         "meshes": own.len(),
         "vertices": own.iter().map(|m| m.positions.len()).sum::<usize>(),
         "triangles": scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
+        "points": scene.objects.iter().map(|o| o.mesh.points.len()).sum::<usize>(),
+        "lines": scene.objects.iter().map(|o| o.mesh.lines.len()).sum::<usize>(),
         "instances": scene.objects.iter().filter(|o| o.instanced).count(),
         "moving": scene.objects.iter().filter(|o| !o.motion.is_still()).count(),
         "bounds": if bounds.is_empty() { json!(null) } else {
             json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })
         },
         "objects": scene.objects.iter().map(|o| json!({
-            "name": o.name, "triangles": o.mesh.triangles.len(), "material": o.material,
+            "name": o.name, "triangles": o.mesh.triangles.len(), "points": o.mesh.points.len(),
+            "lines": o.mesh.lines.len(), "material": o.material,
             "normals": !o.mesh.normals.is_empty(), "uvs": !o.mesh.uvs.is_empty(),
             "vertex_colours": !o.mesh.vertex_kd.is_empty(),
         })).collect::<Vec<_>>(),
@@ -78,13 +81,14 @@ fn as_text(scene: &SceneBuilder) -> String {
     };
     let size = bounds.extent();
     format!(
-        "triangles  {} in {} objects ({} meshes with {} vertices; {} instanced, {} moving)\n\
+        "{}triangles  {} in {} objects ({} meshes with {} vertices; {} instanced, {} moving)\n\
          bounds     {:?} to {:?}, {} x {} x {} m\n\
          materials  {}\n\
          textures   {}\n\
          lights     {}\n\
          cameras    {}\n\
          memory     {}{}",
+        strokes(scene),
         scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
         scene.objects.len(),
         own.len(),
@@ -103,6 +107,15 @@ fn as_text(scene: &SceneBuilder) -> String {
         memory(&Memory::of_scene(scene)),
         choices(scene),
     )
+}
+
+/// How many points and lines there are, in a line of its own; nothing where there are none.
+fn strokes(scene: &SceneBuilder) -> String {
+    let sum = |count: fn(&Mesh) -> usize| scene.objects.iter().map(|o| count(&o.mesh)).sum::<usize>();
+    match (sum(|mesh| mesh.points.len()), sum(|mesh| mesh.lines.len())) {
+        (0, 0) => String::new(),
+        (points, lines) => format!("points     {points}, and {lines} lines\n"),
+    }
 }
 
 /// What is held, and what comes to it when it is rendered.

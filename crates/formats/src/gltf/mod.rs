@@ -26,7 +26,6 @@ mod skin;
 mod soundness;
 mod tangents;
 mod textures;
-mod thin;
 mod topology;
 mod uri;
 mod variants;
@@ -47,6 +46,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["gltf", "glb"],
     capabilities: &[
+        "points and lines",
         "triangles",
         "normals",
         "uv",

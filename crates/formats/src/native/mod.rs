@@ -31,6 +31,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["toml"],
     capabilities: &[
+        "points and lines",
         "models",
         "instances",
         "transforms",

@@ -5,6 +5,7 @@ mod maps;
 mod mtl;
 mod mtl_write;
 mod read;
+mod strokes;
 mod surface;
 mod write;
 
@@ -20,7 +21,16 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         parameters: &[],
     },
     extensions: &["obj"],
-    capabilities: &["polygons", "normals", "uv", "vertex-kd", "objects", "materials", "textures"],
+    capabilities: &[
+        "points and lines",
+        "polygons",
+        "normals",
+        "uv",
+        "vertex-kd",
+        "objects",
+        "materials",
+        "textures",
+    ],
     sniff,
     read: Some(ReadFormat::Flowing(read::read)),
     write: Some(write::write),

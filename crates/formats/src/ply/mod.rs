@@ -20,7 +20,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         parameters: &[],
     },
     extensions: &["ply"],
-    capabilities: &["polygons", "normals", "uv", "vertex-kd", "vertex-ks"],
+    capabilities: &["points and lines", "polygons", "normals", "uv", "vertex-kd", "vertex-ks"],
     sniff: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply "),
     read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),

@@ -5,8 +5,10 @@
 
 mod course;
 mod paper;
+mod stroke_widths;
 mod studio;
 
+pub use stroke_widths::set_stroke_widths;
 pub use studio::{Ground, Studio, complete};
 
 use crate::builder::SceneBuilder;
