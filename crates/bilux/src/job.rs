@@ -9,7 +9,8 @@ use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_scene::{
-    AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Spec, Warning,
+    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, SceneError, Span,
+    Spec, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
@@ -41,6 +42,8 @@ pub struct Job {
     begun: Option<Instant>,
     /// No library of others may be loaded.
     pub(crate) sandboxed: bool,
+    /// How a model was turned.
+    orientation: Option<Orientation>,
     /// What it was made of; the fingerprint is of that, and takes long where textures are large.
     source: SceneBuilder,
     fingerprint: OnceLock<String>,
@@ -101,7 +104,7 @@ impl Job {
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
         let aspect = settings.width as f32 / settings.height as f32;
         let studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
-        let mut completed = crate::presets::completed(scene, &studio);
+        let (mut completed, orientation) = crate::presets::oriented(scene, &studio);
         if settings.background.is_cut_out() {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
             crate::presets::put_behind(&mut completed, nothing);
@@ -125,6 +128,7 @@ impl Job {
             denoising: Duration::ZERO,
             begun: None,
             sandboxed: false,
+            orientation,
             source: completed,
             fingerprint: OnceLock::new(),
             accel,
@@ -144,6 +148,11 @@ impl Job {
     /// What is odd about the picture, though it can be rendered.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
+    }
+
+    /// How a model was turned that came without a camera, or that was asked to be turned.
+    pub fn orientation(&self) -> Option<Orientation> {
+        self.orientation
     }
 
     /// Its time limit counts from here, as where a file was opened, and not from the first sample. Half of the limit is left to

@@ -3,15 +3,20 @@
 use crate::Error;
 use bilux_formats::ReadOptions;
 pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply};
-use bilux_scene::{SceneBuilder, Spec, Value};
+use bilux_scene::{Orientation, SceneBuilder, Spec, Value};
 use std::path::Path;
 
 /// A copy of the scene in which a missing camera and missing light are made up for, and what is asked of the studio is
 /// there.
 pub fn completed(scene: &SceneBuilder, studio: &Studio) -> SceneBuilder {
+    oriented(scene, studio).0
+}
+
+/// The same, and how the model was turned, if it was.
+pub fn oriented(scene: &SceneBuilder, studio: &Studio) -> (SceneBuilder, Option<Orientation>) {
     let mut scene = scene.clone();
-    bilux_scene::presets::complete(&mut scene, studio);
-    scene
+    let orientation = bilux_scene::presets::complete(&mut scene, studio);
+    (scene, orientation)
 }
 
 /// Shows a picture, in longitude and latitude, where the camera sees nothing else, whatever lights the scene.

@@ -64,6 +64,8 @@ pub struct SceneBuilder {
     pub surroundings_unsaid: bool,
     /// Which way is up, as far as the file or its format says.
     pub up: UpHint,
+    /// Metres in a unit of length of the file; 0 for one, as in all scenes that say nothing of it.
+    pub unit: f64,
     /// What all positions of the file have in common and is left out of ours, so that 32-bit floats hold the rest.
     pub origin: DVec3,
     /// How wide points and lines are.

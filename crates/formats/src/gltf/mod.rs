@@ -33,6 +33,7 @@ mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 /// In the extras of a scene that we write: what is around it besides what the file holds, which is "none".
 const SURROUNDINGS: &str = "surroundings";
@@ -62,6 +63,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "variants",
     ],
     sniff,
+    up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
     write: Some(write::write),
 };

@@ -5,6 +5,7 @@ mod read;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -17,6 +18,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     extensions: &["las", "laz"],
     capabilities: &["points", "vertex-kd"],
     sniff: |bytes| bytes.starts_with(header::SIGNATURE),
+    up: UpHint::Is(Axis::Z),
     read: Some(ReadFormat::Whole(read::read)),
     write: None,
 };

@@ -6,7 +6,7 @@ use crate::cloud::Cloud;
 use crate::reading::{Reading, Source};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
-use bilux_scene::{Axis, SceneBuilder, UpHint};
+use bilux_scene::SceneBuilder;
 
 /// Where the intensity of a point stands, in all formats.
 const INTENSITY: usize = 12;
@@ -26,8 +26,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         cloud.push(position(record));
         cloud.colours.extend(colour_of.as_ref().map(|of| of(record)));
     }
-    // Heights are along z. [LAS 1.4 R15]
-    Ok(SceneBuilder { up: UpHint::Is(Axis::Z), ..cloud.into_scene(source.stem()) })
+    Ok(cloud.into_scene(source.stem()))
 }
 
 /// The colour of a record, where they have any; else its intensity as a grey, where these differ. Some programs write bytes into

@@ -12,6 +12,7 @@ mod write;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::text::Cursor;
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -32,6 +33,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "textures",
     ],
     sniff,
+    up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Flowing(read::read)),
     write: Some(write::write),
 };

@@ -5,6 +5,7 @@ mod read;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -16,6 +17,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     extensions: &["xyz", "pts", "txt", "xyzrgb", "xyzn", "xyzi"],
     capabilities: &["points", "vertex-kd"],
     sniff: columns::looks_like_points,
+    up: UpHint::Usually(Axis::Z),
     read: Some(ReadFormat::Whole(read::read)),
     write: None,
 };

@@ -8,7 +8,7 @@ use crate::reading::{Oddities, Reading, Source};
 use crate::text::{Cursor, Places, no_text, quoted};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
-use bilux_scene::{Axis, SceneBuilder, UpHint};
+use bilux_scene::SceneBuilder;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let places = Places::new(source.name, source.bytes);
@@ -76,7 +76,7 @@ impl Xyz<'_, '_, '_> {
                         self.point(&row, columns)?;
                     }
                 }
-                Line::Words(names) if columns.is_none() && lines < 4 => columns = Columns::named(&names),
+                Line::Words(names) if lines == 0 => columns = Columns::named(&names),
                 Line::Words(_) => {
                     let words = "a line is no point: it has words in place of numbers, and is left out";
                     let places = self.places;
@@ -122,10 +122,15 @@ impl Xyz<'_, '_, '_> {
     /// A count alone begins PTS files, and those of chemists, in which letters follow.
     fn refuse_molecule(&mut self) -> Result<(), FormatError> {
         let mut ahead = self.cursor.clone();
-        ahead.rest_of_line();
         ahead.end_line();
-        let at = ahead.offset();
-        let words = words_of(ahead.rest_of_line());
+        let mut at = ahead.offset();
+        let mut words = words_of(ahead.rest_of_line());
+        if words.len() < 4 || parse_f64(words[1]).is_none() {
+            // A line of words of their own comes first.
+            ahead.end_line();
+            at = ahead.offset();
+            words = words_of(ahead.rest_of_line());
+        }
         let is_atom = |word: &[u8]| word.first().is_some_and(u8::is_ascii_alphabetic) && word.len() <= 3;
         let are_numbers = |words: &[&[u8]]| words.iter().take(3).all(|word| parse_f64(word).is_some());
         match words.split_first() {
@@ -197,7 +202,6 @@ impl Xyz<'_, '_, '_> {
             self.cloud.colours = grey;
         }
         let mut scene = self.cloud.into_scene(self.source.stem());
-        scene.up = UpHint::Usually(Axis::Z);
         self.oddities.into_warnings(&mut scene);
         Ok(scene)
     }

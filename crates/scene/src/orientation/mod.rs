@@ -1,6 +1,10 @@
 //! Which way a model is up, and where its front is.
 
-use bilux_math::DVec3;
+mod shape;
+
+use crate::builder::SceneBuilder;
+use bilux_math::{DMat3, DVec3};
+use shape::Shape;
 
 /// A direction along one of the axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -23,9 +27,6 @@ impl Axis {
     /// All six.
     pub const ALL: [Axis; 6] = [Axis::X, Axis::Y, Axis::Z, Axis::NegX, Axis::NegY, Axis::NegZ];
 
-    /// As users name them, `auto` first: what [`Axis::named`] knows, and no axis.
-    pub const NAMES: &'static [&'static str] = &["auto", "x", "y", "z", "-x", "-y", "-z"];
-
     /// By its name; a `+` may stand before it.
     pub fn named(name: &str) -> Option<Axis> {
         let name = name.trim().to_lowercase();
@@ -43,6 +44,11 @@ impl Axis {
             Axis::NegY => "-y",
             Axis::NegZ => "-z",
         }
+    }
+
+    /// The other way.
+    pub fn opposite(self) -> Axis {
+        Axis::ALL[(self as usize + 3) % 6]
     }
 
     /// 0 for x, 1 for y, 2 for z.
@@ -78,5 +84,84 @@ impl Default for UpHint {
     /// As scenes have it that are made here.
     fn default() -> UpHint {
         UpHint::Is(Axis::Y)
+    }
+}
+
+/// How a model stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Orientation {
+    /// Which of its axes is up.
+    pub up: Axis,
+    /// Which of them is its front.
+    pub front: Axis,
+    /// Whence this is known.
+    pub because: Because,
+}
+
+/// Whence it is known how a model stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Because {
+    /// The user says it.
+    Asked,
+    /// The file's format says it.
+    Format,
+    /// Most files of its format have it so, and nothing in the shape speaks against it.
+    Usual,
+    /// The shape speaks for it.
+    Shape,
+}
+
+impl Because {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Because::Asked => "as asked",
+            Because::Format => "as its format says",
+            Because::Usual => "as is usual in its format",
+            Because::Shape => "judged by its shape",
+        }
+    }
+}
+
+impl Orientation {
+    /// How a scene stands, as far as it is not asked for; `None` where front and up are along one axis.
+    pub fn of(scene: &SceneBuilder, up: Option<Axis>, front: Option<Axis>) -> Option<Orientation> {
+        let (usual, is_open) = match scene.up {
+            UpHint::Is(axis) => (axis, false),
+            UpHint::Usually(axis) => (axis, true),
+        };
+        let shape = if is_open && (up.is_none() || front.is_none()) { Shape::of(scene) } else { None };
+        let allowed = |axis: &Axis| front.is_none_or(|front| front.index() != axis.index());
+        let judged = || {
+            let shape = shape.as_ref()?;
+            let score = |axis: &Axis| shape.upright(*axis, usual);
+            Axis::ALL.into_iter().filter(allowed).max_by(|a, b| score(a).total_cmp(&score(b)))
+        };
+        let usual = if allowed(&usual) { usual } else { Axis::ALL.into_iter().find(allowed)? };
+        let found = up.or_else(judged).unwrap_or(usual);
+        let before = front_of(found);
+        let looks_back = || shape.as_ref().is_some_and(|shape| shape.looks_back(found, before));
+        let turned = front.unwrap_or_else(|| if looks_back() { before.opposite() } else { before });
+        let because = match (up.is_some() || front.is_some(), is_open) {
+            (true, _) => Because::Asked,
+            (false, false) => Because::Format,
+            (false, true) if found == usual && turned == before => Because::Usual,
+            (false, true) => Because::Shape,
+        };
+        (turned.index() != found.index()).then_some(Orientation { up: found, front: turned, because })
+    }
+
+    /// The rotation that turns up to +y and the front to +z.
+    pub fn upright(self) -> DMat3 {
+        let (up, front) = (self.up.direction(), self.front.direction());
+        DMat3::from_cols(up.cross(front), up, front).transpose()
+    }
+}
+
+/// Where the front is by custom: +z where y is up, -y where z is, as modelling programs have it.
+fn front_of(up: Axis) -> Axis {
+    match up {
+        Axis::Z | Axis::NegZ => Axis::NegY,
+        _ => Axis::Z,
     }
 }

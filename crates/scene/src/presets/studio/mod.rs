@@ -2,11 +2,13 @@
 
 mod cove;
 mod framing;
+mod standing;
 
 use super::PresetEntry;
 use crate::builder::{Object, SceneBuilder};
 use crate::cameras::{self, CameraSample};
 use crate::error::SceneError;
+use crate::orientation::{Axis, Orientation};
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{asin, atan2};
@@ -53,6 +55,10 @@ pub struct Studio {
     pub ground: Option<Ground>,
     /// From where it is seen: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
+    /// Which of the model's axes is up.
+    pub up: Option<Axis>,
+    /// Which of them is its front.
+    pub front: Option<Axis>,
     /// Focal length in mm, for a picture 24 mm high.
     pub focal: Option<f32>,
     /// Width of the picture over its height, if it is not square.
@@ -81,6 +87,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     scene.cameras.clear();
     scene.lights.clear();
     let studio = Studio::default();
+    standing::set_upright(scene, &studio);
     let framing = Framing::of(scene, &studio);
     scene.cameras.push(framing.camera());
     scene.lights.extend(lights(&framing, Ground::Shadow));
@@ -91,8 +98,14 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
 /// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
 /// studio where it has neither. Lamps of a format that has no word for surroundings stand in those of the studio: metal would
 /// mirror nothing. What is asked for in `studio` is there in any case: its camera is the first one then.
-/// Does nothing to a scene that has both where nothing is asked for.
-pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
+/// Does nothing to a scene that has both where nothing is asked for. Gives how the model was turned, if it was.
+pub fn complete(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
+    let orientation = standing::set_upright(scene, studio);
+    add_what_lacks(scene, studio);
+    orientation
+}
+
+fn add_what_lacks(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
     let has_lamps_alone = scene.surroundings_unsaid && has_lights && !glows && !has_surroundings(scene);
@@ -100,7 +113,8 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
     let seen = !scene.cameras.is_empty();
     let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
     let bare = !lit && !seen && !behind;
-    let asked = studio.orbit.is_some() || studio.focal.is_some();
+    let asked =
+        studio.orbit.is_some() || studio.focal.is_some() || studio.up.is_some() || studio.front.is_some();
     let ground = studio.ground.unwrap_or(if bare { Ground::Shadow } else { Ground::None });
     if lit && seen && !asked && ground == Ground::None {
         return;
