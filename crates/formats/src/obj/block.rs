@@ -2,12 +2,12 @@
 
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::float::parse_f32;
+use crate::float::{parse_f32, parse_f64};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::Oddities;
 use crate::soup::{Corner, NONE};
 use crate::text::{Cursor, Place, name_of, quoted};
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
 
@@ -102,9 +102,14 @@ impl Block {
 }
 
 /// Reads a block of whole lines into one that is empty.
-pub(super) fn read_block(text: &[u8], file: &Arc<str>, budget: &Budget, block: Block) -> Block {
+pub(super) fn read_block(
+    text: &[u8],
+    (file, origin): (&Arc<str>, DVec3),
+    budget: &Budget,
+    block: Block,
+) -> Block {
     let cursor = Cursor::joining_lines(text);
-    let mut reader = Reader { cursor, file, budget: budget.clone(), block };
+    let mut reader = Reader { cursor, file, origin, budget: budget.clone(), block };
     let failure = reader.statements().err();
     let spent = reader.budget.spent() - budget.spent();
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
@@ -124,6 +129,8 @@ pub(super) fn bad_corner(word: &[u8], at: Span) -> FormatError {
 struct Reader<'a> {
     cursor: Cursor<'a>,
     file: &'a Arc<str>,
+    /// What positions are counted from.
+    origin: DVec3,
     budget: Budget,
     block: Block,
 }
@@ -196,7 +203,15 @@ impl<'a> Reader<'a> {
     /// `v x y z [w]` or `v x y z r g b`.
     fn vertex(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 8];
+        let mut again = (self.origin != DVec3::ZERO).then(|| self.cursor.clone());
         let count = self.numbers(&mut numbers, 3)?;
+        if let Some(again) = &mut again {
+            // With all of their digits.
+            for axis in 0..3 {
+                let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
+                numbers[axis] = (wide - self.origin[axis]) as f32;
+            }
+        }
         self.budget.take::<Vec3>(1, self.file)?;
         let block = &mut self.block;
         block.positions.push(Vec3::from_slice(&numbers));

@@ -84,9 +84,9 @@ impl Obj<'_, '_, '_> {
                 self.reading.budget.take_bytes(text.len() as u64, file)?;
                 texts.push(text);
             }
-            let budget = &self.reading.budget;
+            let (budget, origin) = (&self.reading.budget, self.reading.origin);
             spare.resize_with(texts.len(), Block::default);
-            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, file, budget, block);
+            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, (file, origin), budget, block);
             let parts: Vec<Block> = match texts.len() {
                 0 => return Ok(()),
                 1 => spare.drain(..).zip(&texts).map(parse).collect(),

@@ -10,7 +10,7 @@ use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -141,7 +141,9 @@ impl Ply<'_, '_, '_> {
         // As many as the bytes that are left can hold, so that all room is made at once.
         self.reading.budget.take_bytes(element.count * 4 * floats as u64, self.source.name)?;
         self.make_room(&slots, element.count as usize);
-        let plain = slots.offsets(element).filter(|_| self.body.is_little());
+        let origin = self.reading.origin;
+        let is_far = origin != DVec3::ZERO;
+        let plain = slots.offsets(element).filter(|_| self.body.is_little() && !is_far);
         for _ in 0..element.count {
             let start = self.body.offset();
             let mut values = [0f32; MEANINGS.len()];
@@ -158,6 +160,9 @@ impl Ply<'_, '_, '_> {
             }
             for (property, meaning) in element.properties.iter().zip(&slots.meaning) {
                 match meaning {
+                    Some(slot @ 0..3) if is_far => {
+                        values[*slot] = (self.body.wide_number(property.scalar)? - origin[*slot]) as f32;
+                    }
                     Some(slot) => values[*slot] = self.body.number(property.scalar)?,
                     None => self.skip(property)?,
                 }
