@@ -1,5 +1,7 @@
 //! The lines of one block of an OBJ file, read by themselves: what earlier blocks say is added when they are joined.
 
+use super::index::{Index, index};
+use super::strokes::Stroke;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::float::{parse_f32, parse_f64};
@@ -49,26 +51,6 @@ pub(super) struct Backward {
     pub(super) index: i64,
     /// Where in the block the corner is written.
     pub(super) offset: usize,
-}
-
-/// A point, or a line between two vertices.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke {
-    /// How many turns stand before it.
-    pub(super) turns: usize,
-    /// Twice the same of a point.
-    pub(super) ends: [End; 2],
-    pub(super) is_point: bool,
-    pub(super) place: Place,
-}
-
-/// A vertex of a point or a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum End {
-    /// Counted from 0.
-    Whole(u32),
-    /// From the first vertex of the block, negative before it.
-    OfBlock(i64),
 }
 
 /// What changes between two faces.
@@ -126,13 +108,13 @@ pub(super) fn bad_corner(word: &[u8], at: Span) -> FormatError {
     FormatError::malformed(message, at)
 }
 
-struct Reader<'a> {
-    cursor: Cursor<'a>,
-    file: &'a Arc<str>,
+pub(super) struct Reader<'a> {
+    pub(super) cursor: Cursor<'a>,
+    pub(super) file: &'a Arc<str>,
     /// What positions are counted from.
     origin: DVec3,
-    budget: Budget,
-    block: Block,
+    pub(super) budget: Budget,
+    pub(super) block: Block,
 }
 
 impl<'a> Reader<'a> {
@@ -175,11 +157,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Where a byte of this line stands.
-    fn at(&self, offset: usize) -> Span {
+    pub(super) fn at(&self, offset: usize) -> Span {
         self.cursor.place(offset).in_file(self.file)
     }
 
-    fn note(&mut self, what: &str, at: Place) {
+    pub(super) fn note(&mut self, what: &str, at: Place) {
         let file = self.file;
         self.block.oddities.note(what, || at.in_file(file));
     }
@@ -308,44 +290,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
-    fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
-        let mut last = None;
-        let mut count = 0;
-        loop {
-            let word = self.cursor.word();
-            if word.is_empty() || word.starts_with(b"#") {
-                break;
-            }
-            let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
-            let end = match index(digits) {
-                Some(Index::Forward(index)) => End::Whole(index),
-                Some(Index::Backward(back)) => End::OfBlock(self.block.positions.len() as i64 - back),
-                None => {
-                    let at = self.at(self.cursor.offset() - word.len());
-                    let message = format!(
-                        "{} is no vertex of a point or a line: it has to be a number, counted from 1, or backwards \
-                         from -1",
-                        quoted(word)
-                    );
-                    return Err(FormatError::malformed(message, at));
-                }
-            };
-            let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
-            if let Some(ends) = ends {
-                self.budget.take::<Stroke>(1, self.file)?;
-                let turns = self.block.turns.len();
-                self.block.strokes.push(Stroke { turns, ends, is_point: are_points, place });
-            }
-            last = Some(end);
-            count += 1;
-        }
-        if count < 2 - usize::from(are_points) {
-            self.note("a line with fewer than 2 vertices, or a point without one, is left out", place);
-        }
-        Ok(())
-    }
-
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[inline]
     fn corner(&mut self, word: &[u8]) -> Result<Corner, FormatError> {
@@ -427,55 +371,5 @@ impl<'a> Reader<'a> {
         self.note(&what, start);
         self.pass_line();
         Ok(())
-    }
-}
-
-/// An index as OBJ counts, as one from 0, or how far back it lies.
-#[derive(Debug, PartialEq)]
-enum Index {
-    Forward(u32),
-    Backward(i64),
-}
-
-/// An index as OBJ counts, from 1, or backwards from -1; whether it exists is looked at when that is known.
-#[inline]
-fn index(text: &[u8]) -> Option<Index> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
-    };
-    if digits.is_empty() || digits.len() > 10 {
-        return None;
-    }
-    let mut number = 0i64;
-    for &digit in digits {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        number = number * 10 + i64::from(digit - b'0');
-    }
-    if number == 0 {
-        return None;
-    }
-    if negative {
-        return Some(Index::Backward(number));
-    }
-    u32::try_from(number - 1).ok().filter(|&i| i != NONE).map(Index::Forward)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn indices_count_from_one_or_backwards() {
-        assert_eq!(index(b"1"), Some(Index::Forward(0)));
-        assert_eq!(index(b"+7"), Some(Index::Forward(6)));
-        assert_eq!(index(b"-1"), Some(Index::Backward(1)));
-        assert_eq!(index(b"-8"), Some(Index::Backward(8)));
-        for bad in ["0", "-0", "", "-", "1.5", "4294967296", "99999999999"] {
-            assert_eq!(index(bad.as_bytes()), None, "{bad}");
-        }
     }
 }

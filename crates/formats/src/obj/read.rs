@@ -1,8 +1,8 @@
 //! Reading an OBJ file, block by block.
 
-use super::block::{Block, Stroke, Turn, bad_corner, read_block};
+use super::block::{Block, Turn, bad_corner, read_block};
 use super::mtl::read_library;
-use super::strokes::Strokes;
+use super::strokes::{Stroke, Strokes};
 use crate::FormatError;
 use crate::blocks::Blocks;
 use crate::normals::{BY_ANGLE, Smoothing};
