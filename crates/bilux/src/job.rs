@@ -144,8 +144,7 @@ impl Job {
         &self.warnings
     }
 
-    /// Its time limit counts from here, as where a file was opened, and not from the first sample. Half of the limit is left to
-    /// rendering, whatever went before.
+    /// Its time limit counts from here, as where a file was opened, and not from the first sample.
     pub fn begun_at(&mut self, begun: Instant) {
         self.begun = Some(begun);
     }

@@ -60,7 +60,7 @@ fn relative_error(picture: &[Rgb]) -> f64 {
 }
 
 fn task(threads: usize) -> Task {
-    Task { pixels: (SIZE * SIZE) as u64, threads, ..Task::default() }
+    Task { size: (SIZE, SIZE), threads, ..Task::default() }
 }
 
 /// All that can be had here; the others are told.

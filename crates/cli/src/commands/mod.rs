@@ -12,6 +12,7 @@ pub mod manual;
 pub mod merge;
 pub mod render;
 mod stats;
+mod time_limit;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
