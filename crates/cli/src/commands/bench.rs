@@ -35,6 +35,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &tell)?,
         BenchKind::Render => render(arguments, &tell)?,
         BenchKind::Load => load(arguments, common, &tell)?,
+        BenchKind::Models => models(arguments, &tell)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?);
@@ -101,6 +102,18 @@ fn load(arguments: &Bench, common: &Common, tell: bilux_bench::Tell) -> anyhow::
         let _ = std::fs::remove_dir_all(&folder);
     }
     Ok(report(rows?))
+}
+
+/// `bench models`, by this program itself.
+fn models(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+    use bilux_bench::models::{Options, SECONDS, run};
+    let options = Options {
+        program: std::env::current_exe()?,
+        files: arguments.scenes.clone(),
+        seconds: arguments.seconds.last().copied().unwrap_or(SECONDS),
+        references: arguments.references.clone(),
+    };
+    Ok(run(&options, tell)?)
 }
 
 /// What a reference takes of each integrator where nothing is said, in seconds.

@@ -3,7 +3,7 @@
 //! linear in these within a few pixels: a first-order fit to the smooth pixels around tells what light belongs to the mixture.
 //! [Moon 2014; Bitterli 2016, eq. 4]
 
-use super::guides::{ALBEDO, Guides, INVERSE, NORMAL};
+use super::guides::{ALBEDO, Guides, INVERSE, NORMAL, WITHIN};
 use super::planes::Planes;
 use bilux_math::Rgb;
 use rayon::prelude::*;
@@ -15,9 +15,6 @@ const SIDE: usize = 2 * RADIUS + 1;
 /// Weights of pixels by how far they are away along each axis: a bell of standard deviation 1.4.
 const NEAR: [f32; SIDE] = [0.36, 0.775, 1.0, 0.775, 0.36];
 
-/// What pixels on edges weigh beside others: their own light is noisy.
-const OF_EDGES: f32 = 0.1;
-
 /// From this difference on, in the square, surfaces of neighbours are apart.
 const APART: f32 = 0.01;
 /// What differences of normals and of inverse depths count beside those of albedo, in the square.
@@ -25,10 +22,10 @@ const OF_NORMALS: f32 = 0.25;
 const OF_DEPTHS: f32 = 9.0;
 
 /// By this part of the weights slopes are held down, so that a fit is well-defined where there is but one surface.
-const RIDGE: f32 = 1e-3;
+const RIDGE: f32 = 3e-3;
 
 /// Of the square by which a fit misses the light around, so much is taken to be its own fault: the rest is noise of that light.
-const OF_MISSED: f32 = 0.03;
+const OF_MISSED: f32 = 0.2;
 
 /// Columns of a fit: albedo, normal, inverse depth, and 1.
 const COLUMNS: usize = 8;
@@ -41,11 +38,7 @@ pub(super) fn rebuilt(colours: &Planes, guides: &Guides) -> Vec<Rgb> {
         let at = |x: usize| {
             let i = colours.index(x, y);
             let own = colours.rgb(y * width + x);
-            if is_edge[i] {
-                Fit::around(colours, guides, &is_edge, i).blended(own, colours.planes[3][i])
-            } else {
-                own
-            }
+            if is_edge[i] { Fit::around(colours, guides, i).blended(own, colours.planes[3][i]) } else { own }
         };
         (0..width).map(at).collect::<Vec<_>>()
     };
@@ -102,7 +95,7 @@ struct Fit {
 }
 
 impl Fit {
-    fn around(colours: &Planes, guides: &Guides, is_edge: &[bool], middle: usize) -> Fit {
+    fn around(colours: &Planes, guides: &Guides, middle: usize) -> Fit {
         let planes = &guides.planes.planes;
         let mut fit = Fit {
             matrix: [[0.0; COLUMNS]; COLUMNS],
@@ -125,8 +118,8 @@ impl Fit {
                 let [x, y, z] = [0, 1, 2].map(|c| feature(NORMAL + c));
                 let features = [r, g, b, x, y, z, feature(INVERSE) * by_depth, 1.0];
                 let light = [0, 1, 2].map(|c| colours.planes[c][q]);
-                let weight = down * across * if is_edge[q] { OF_EDGES } else { 1.0 };
-                fit.add(&features, light, weight * planes[super::guides::WITHIN][q]);
+                let weight = down * across * planes[WITHIN][q];
+                fit.add(&features, light, weight);
             }
         }
         fit
