@@ -44,11 +44,14 @@ pub(super) fn all(program: &Path, folder: &Path) -> Result<Vec<PathBuf>, Error> 
 
 /// Waits for a command that has to end well.
 pub(super) fn finish(mut command: Command) -> Result<(), Error> {
-    let failed =
-        |why: String| Error::Settings(format!("{command:?}: {why}", command = command.get_program()));
-    match command.output() {
+    let output = command.output();
+    let failed = |why: &str| {
+        let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy()).collect();
+        Error::Settings(format!("bilux {}: {why}", arguments.join(" ")))
+    };
+    match output {
         Ok(output) if output.status.success() => Ok(()),
-        Ok(output) => Err(failed(String::from_utf8_lossy(&output.stderr).into_owned())),
-        Err(why) => Err(failed(why.to_string())),
+        Ok(output) => Err(failed(&String::from_utf8_lossy(&output.stderr))),
+        Err(why) => Err(failed(&why.to_string())),
     }
 }
