@@ -24,7 +24,7 @@ fn picture(scene: &SceneBuilder, settings: &[(&str, &str)]) -> Picture {
 }
 
 fn alpha(picture: &Picture) -> Vec<f32> {
-    picture.channel("A").expect("a picture without surroundings has alpha").samples.clone()
+    picture.channel("A").expect("a picture without surroundings has alpha").to_vec()
 }
 
 #[test]
