@@ -113,6 +113,9 @@ impl Job {
         studio.lit = own.as_ref().map(|own| own.is_enough);
         let mut completed = crate::presets::completed(scene, &studio);
         let objects = completed.objects.len() as u32;
+        let has_ground = completed.objects.len() > scene.objects.len();
+        let has_backdrop = completed.lights.iter().any(Spec::is_backdrop);
+        let of_ground = oddities::of_ground(&studio, has_ground, has_backdrop);
         let catcher = crate::presets::shadow_catcher(&completed, &studio)
             .map(|ground| ShadowCatcher { ground: ground as u32, objects });
         if settings.background.is_cut_out() {
@@ -120,7 +123,7 @@ impl Job {
             crate::presets::put_behind(&mut completed, nothing);
         }
         let accel = accel_of(&completed);
-        let notes = own.iter().map(|own| own.decision.clone()).collect();
+        let notes = own.iter().filter_map(|own| own.decision.clone()).collect();
         let built = match own.map(|own| own.alone) {
             Some((alone, built)) if is_as_large(&alone, &completed) => built,
             _ => completed.build(&accel, shutter_at(&settings, settings.time), aspect)?,
@@ -131,7 +134,7 @@ impl Job {
         let filters = settings.filters_textures;
         let built = if filters { built.filtered(camera.clone(), settings.height) } else { built };
         Ok(Job {
-            warnings: oddities(scene, &built, &*camera),
+            warnings: oddities(scene, &built, &*camera).into_iter().chain(of_ground).collect(),
             camera,
             render: render_settings(&settings)?,
             studio_lit: completed.lights.len() > scene.lights.len() && !settings.integrator.classic,

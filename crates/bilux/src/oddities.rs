@@ -1,5 +1,6 @@
 //! What is odd about a picture before it is rendered, though it can be.
 
+use crate::presets::{Ground, Studio};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{
     Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
@@ -22,6 +23,20 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
         );
     }
     warnings
+}
+
+/// What is odd about the ground that was asked for.
+pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -> Option<Warning> {
+    let message = match studio.ground? {
+        Ground::None => return None,
+        _ if !has_ground => "--ground: there is no ground, since the camera looks up from below it",
+        Ground::Mirror if studio.cut_out => {
+            "--ground mirror is opaque, and hides the background: --ground shadow lets it through"
+        }
+        _ if has_backdrop => "the ground hides the picture behind the model: leave --ground out",
+        _ => return None,
+    };
+    Some(Warning { message: message.to_owned(), at: Span::default() })
 }
 
 /// Kinds of light that are seen themselves.

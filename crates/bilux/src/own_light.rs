@@ -14,8 +14,8 @@ const ENOUGH: f32 = 0.5;
 pub(crate) struct OwnLight {
     /// It lights what is seen.
     pub(crate) is_enough: bool,
-    /// What was decided, for people.
-    pub(crate) decision: String,
+    /// What was decided, for people; none where nobody would expect anything else.
+    pub(crate) decision: Option<String>,
     /// The scene with nothing but its own light, and the trees over it.
     pub(crate) alone: (SceneBuilder, Scene),
 }
@@ -40,7 +40,9 @@ pub(crate) fn measure(
     let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
     let measured = illumination(&built, &*camera);
     let is_enough = measured.surfaces > 0.0 && measured.lit >= ENOUGH;
-    Ok(Some(OwnLight { is_enough, decision: decision(&measured, is_enough), alone: (framed, built) }))
+    let is_said = is_enough || bilux_scene::presets::seems_lit(scene);
+    let decision = is_said.then(|| decision(&measured, is_enough));
+    Ok(Some(OwnLight { is_enough, decision, alone: (framed, built) }))
 }
 
 fn decision(measured: &Illumination, is_enough: bool) -> String {
@@ -51,7 +53,9 @@ fn decision(measured: &Illumination, is_enough: bool) -> String {
             .to_owned();
     }
     match is_enough {
-        true => format!("its own light alone lights it: {percent}% of what is seen (--preset studio: the studio)"),
+        true => {
+            format!("its own light alone lights it: {percent}% of what is seen (--preset studio: the studio)")
+        }
         false => format!(
             "the studio lights it: its own light reaches {percent}% of what is seen (--env none: no studio)"
         ),

@@ -33,7 +33,10 @@ fn a_ground_that_is_not_seen_has_its_shadow_as_alpha() {
         let has_lamp = lamp.is_some();
         let cut = picture(&slab(lamp), &[("background", "transparent")]);
         let (alpha, light) = (alpha(&cut), cut.to_rgb().unwrap());
-        assert!(alpha.iter().filter(|a| **a == 0.0).count() > 48 * 48 / 20 || !has_lamp, "nothing is left of the background");
+        assert!(
+            alpha.iter().filter(|a| **a == 0.0).count() > 48 * 48 / 20 || !has_lamp,
+            "nothing is left of the background"
+        );
         assert!(alpha.iter().filter(|a| **a == 1.0).count() > 48 * 48 / 10, "the model is opaque");
         let shaded = alpha.iter().zip(&light).filter(|(a, l)| **a > 0.2 && l.is_black()).count();
         assert!(shaded > 48 * 48 / 50, "no shadow: {shaded}");

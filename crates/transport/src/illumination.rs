@@ -41,8 +41,7 @@ pub fn illumination(scene: &Scene, camera: &dyn Camera) -> Illumination {
             Some(light) => (seen + 1, lit + u32::from(light >= DARK)),
         })
     };
-    let (seen, lit) =
-        (0..GRID).into_par_iter().map(of_row).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    let (seen, lit) = (0..GRID).into_par_iter().map(of_row).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     Illumination { surfaces: seen as f32 / (GRID * GRID) as f32, lit: lit as f32 / seen.max(1) as f32 }
 }
 
@@ -99,7 +98,8 @@ fn direct(
     let scene = tracer.scene;
     let mut sum = 0.0;
     for index in lights.sample(sampler.next_1d()) {
-        let (u, probability, light) = (sampler.next_2d(), lights.probability(index), &scene.lights()[index].light);
+        let (u, probability, light) =
+            (sampler.next_2d(), lights.probability(index), &scene.lights()[index].light);
         if probability == 0.0 {
             continue;
         }

@@ -80,7 +80,8 @@ pub fn shadow_alpha(
 
 /// Lights that would be there without the model, and the probability of each.
 fn lamps(scene: &Scene, catcher: ShadowCatcher) -> Vec<usize> {
-    let of_model: Vec<usize> = (0..catcher.objects).filter_map(|object| scene.light_index_of(object)).collect();
+    let of_model: Vec<usize> =
+        (0..catcher.objects).filter_map(|object| scene.light_index_of(object)).collect();
     let choice = LightChoice::new(scene);
     (0..scene.lights().len()).filter(|i| !of_model.contains(i) && choice.probability(*i) > 0.0).collect()
 }
@@ -97,12 +98,14 @@ impl Sums {
             self.model += 1;
             return;
         }
-        let Some(ground) = tracer.closest(&Ray { mask: u32::MAX, ..*ray }).filter(|s| s.object == catcher.ground)
+        let Some(ground) =
+            tracer.closest(&Ray { mask: u32::MAX, ..*ray }).filter(|s| s.object == catcher.ground)
         else {
             return;
         };
         self.ground += 1;
-        let n = if ground.n_geom.dot(Vec3::from(ray.direction)) > 0.0 { -ground.n_geom } else { ground.n_geom };
+        let n =
+            if ground.n_geom.dot(Vec3::from(ray.direction)) > 0.0 { -ground.n_geom } else { ground.n_geom };
         for _ in 0..tries {
             // One of them, each as likely: they are few in a studio.
             let picked = (sampler.next_1d() * lights.len() as f32) as usize;
@@ -130,7 +133,12 @@ impl Sums {
 }
 
 /// The part of a light that the model lets through to the ground; `None` where a lamp is in its way, model or not.
-fn passed(tracer: &mut Tracer, ground: &Surface, sample: &LightSample, catcher: ShadowCatcher) -> Option<f32> {
+fn passed(
+    tracer: &mut Tracer,
+    ground: &Surface,
+    sample: &LightSample,
+    catcher: ShadowCatcher,
+) -> Option<f32> {
     let mut ray = ground.spawn_to_light(sample);
     let (direction, mut left) = (Vec3::from(ray.direction), 1.0);
     for _ in 0..MAX_PANES {

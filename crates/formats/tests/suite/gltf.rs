@@ -349,7 +349,7 @@ fn directions_and_thicknesses_come_from_their_textures() {
     // Along x, along y, against x, against y; of the least thickness, the greatest, and between.
     let texels = [[255, 128, 255, 255], [128, 255, 255, 255], [0, 128, 255, 255], [128, 0, 255, 255]];
     let plane = |c: usize| texels.iter().map(|t: &[u8; 4]| f32::from(t[c]) / 255.0).collect::<Vec<f32>>();
-    let mut picture = bilux_pictures::Picture::new(4, 1);
+    let mut picture = bilux_pictures::Picture::new(4, 1).unwrap();
     for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
         picture.push_channel(name, plane(c)).unwrap();
     }

@@ -11,10 +11,10 @@ use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, Texture, levels};
-use sheets::Sheets;
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, Query};
 use bilux_math::{Aabb, Rgb, Vec3};
+use sheets::Sheets;
 use std::sync::Arc;
 pub use tracer::Tracer;
 

@@ -129,7 +129,8 @@ impl SceneParts {
     /// Along the normal of a triangle's front, where a ray meets the back of what is seen from its front alone.
     fn is_back(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
         let object = self.geometry.object_of(hit);
-        let front = self.geometry.front(hit.primitive(), ray.time).filter(|_| self.is_one_sided_object(object))?;
+        let front =
+            self.geometry.front(hit.primitive(), ray.time).filter(|_| self.is_one_sided_object(object))?;
         (front.dot(ray.direction.into()) > 0.0).then_some(front)
     }
 
@@ -159,7 +160,8 @@ impl SceneParts {
         let near = along < 0.0 && hit.t * -along <= gap * front.length();
         let back = |p| Back { p, front, gap };
         if near {
-            let Some(begins) = self.geometry.front(ray.exclude, ray.time).and_then(Vec3::try_normalize) else {
+            let Some(begins) = self.geometry.front(ray.exclude, ray.time).and_then(Vec3::try_normalize)
+            else {
                 return false;
             };
             let one_sided = ray.exclude != Primitive::NONE
@@ -182,12 +184,7 @@ impl Scene {
     /// What a ray meets behind the backs of sheets: their other shell, where `hit` is the back of one; else `hit`. `next` asks
     /// for what comes first.
     #[inline]
-    pub(super) fn behind_shells(
-        &self,
-        ray: &Ray,
-        hit: Hit,
-        next: impl FnMut(&Ray) -> Option<Hit>,
-    ) -> Hit {
+    pub(super) fn behind_shells(&self, ray: &Ray, hit: Hit, next: impl FnMut(&Ray) -> Option<Hit>) -> Hit {
         match &self.sheets {
             Some(sheets) => self.behind(sheets, ray, hit, next).unwrap_or(hit),
             None => hit,

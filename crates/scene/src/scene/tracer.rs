@@ -51,7 +51,13 @@ impl SceneParts {
     /// True when the surface is there for a ray that hits it: not where the camera sees through its back, nor where the ray begins or
     /// ends on the other shell of a sheet; and where it has holes each ray decides for itself, by a `number` that depends on nothing but the
     /// ray and the hit.
-    fn stops(&self, ray: &Ray, number: u64, hit: &Hit, (sheets, end): (Option<&Sheets>, Option<End>)) -> bool {
+    fn stops(
+        &self,
+        ray: &Ray,
+        number: u64,
+        hit: &Hit,
+        (sheets, end): (Option<&Sheets>, Option<End>),
+    ) -> bool {
         let (material, uv) = self.geometry.material_and_uv(hit);
         let material = &self.materials[material as usize];
         if (ray.mask != u32::MAX || sheets.is_some()) && material.visible_sides() == Sides::Front {

@@ -97,7 +97,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
 pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
-    let has_light = studio.lit.unwrap_or(has_lights || glows);
+    let has_light = studio.lit.unwrap_or_else(|| seems_lit(scene));
     let has_lamps_alone =
         has_light && scene.surroundings_unsaid && has_lights && !glows && !has_surroundings(scene);
     let lit = has_light && !has_lamps_alone;
@@ -116,8 +116,8 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
         scene.cameras.insert(0, framing.camera());
     }
     if !lit {
-        // It may be close, and have in view what stands behind the model.
-        let is_in_view = |spec: &Spec| spec.name == RIM && seen && !asked;
+        // It may be close, and have in view what stands behind the model; a mirror shows that.
+        let is_in_view = |spec: &Spec| spec.name == RIM && (seen && !asked || ground == Ground::Mirror);
         let is_wanted = |spec: &Spec| if has_lamps_alone { spec.name == ROOM } else { !is_in_view(spec) };
         scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
     }
@@ -134,6 +134,12 @@ pub fn may_be_lit(scene: &SceneBuilder) -> bool {
     let emission = |o: &Object| scene.materials.get(o.material).and_then(|m| m.parameters.find("emission"));
     let glows = || scene.objects.iter().any(|o| emission(o).is_some());
     scene.surroundings_unsaid && !has_surroundings(scene) && (has_lights || glows())
+}
+
+/// True where a scene has lamps, or parts that are at least as bright as the white of a screen.
+pub fn seems_lit(scene: &SceneBuilder) -> bool {
+    scene.lights.iter().any(|light| !light.is_backdrop())
+        || scene.objects.iter().any(|o| gives_light(scene, o))
 }
 
 /// Gives a scene the camera that [`complete`] would give it, and nothing else.
@@ -168,7 +174,9 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out:
     }
     let paper = Spec::new(GROUND, "diffuse").with("reflectance", Rgb::new(0.72, 0.71, 0.70));
     let (material, mesh) = match ground {
-        Ground::Mirror => (Spec::new(GROUND, "mirror").with("reflectance", 0.85f32), cove::level(framing, false)),
+        Ground::Mirror => {
+            (Spec::new(GROUND, "mirror").with("reflectance", 0.85f32), cove::level(framing, false))
+        }
         // It is there for light alone: the camera looks through its back, and the picture is given the shadow on it.
         _ if cut_out => (paper.with("visible_sides", "front"), cove::level(framing, true)),
         _ => (paper, cove::cove(framing)),
