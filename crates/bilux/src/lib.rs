@@ -22,6 +22,7 @@ pub mod job;
 mod layers;
 pub mod memory;
 mod oddities;
+mod own_light;
 pub mod presets;
 pub mod settings;
 pub mod strategies;

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use bilux_formats::ReadOptions;
-pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply};
+pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply, frame, shadow_catcher};
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 

@@ -101,10 +101,29 @@ fn what_can_be_drawn_is_drawn_with_a_warning() {
     }
     let no_numbers = PLAIN.replace(['0', '1'], "nan").replace("f nan", "f 1");
     std::fs::write(path.join("nan.obj"), &no_numbers).unwrap();
-    assert_told(render(path, "nan.obj", &[]), 0, &["infinite or no numbers", "nothing to be seen"]);
+    assert_told(render(path, "nan.obj", &[]), 1, &["infinite or no numbers", "nothing to be seen"]);
     let inside = "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\n[[material]]\nname = 'glass'\n\
                   kind = 'dielectric'\n[[model]]\nshape = 'sphere'\nmaterial = 'glass'\n";
     drawn("inside.toml", inside, &["the camera is inside of something transparent"]);
+}
+
+#[test]
+fn an_empty_scene_is_an_error() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let light = r#"{"asset":{"version":"2.0"},"scenes":[{}],"scene":0}"#;
+    for (name, text) in [
+        ("empty.gltf", light),
+        ("empty.toml", "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n"),
+        ("empty.pbrt", "WorldBegin\nLightSource \"point\"\n"),
+    ] {
+        std::fs::write(path.join(name), text).unwrap();
+        for flags in [&[][..], &["--ground", "mirror"], &["--background", "transparent"]] {
+            let (code, said) = render(path, name, flags);
+            assert!(!said.contains("NaN") && !said.contains("inf "), "{name}: {said}");
+            assert_told((code, said), 1, &["the scene is empty"]);
+        }
+    }
 }
 
 #[test]

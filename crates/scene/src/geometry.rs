@@ -198,7 +198,12 @@ impl Geometry {
 
     /// Which object a hit belongs to.
     pub fn object_of(&self, hit: &Hit) -> u32 {
-        self.locate(hit.primitive()).0
+        self.object_of_primitive(hit.primitive())
+    }
+
+    /// Which object a triangle or sphere belongs to, as rays number it.
+    pub(crate) fn object_of_primitive(&self, primitive: Primitive) -> u32 {
+        self.locate(primitive).0
     }
 
     /// The object and the triangle within its mesh, or the sphere.
@@ -242,7 +247,7 @@ impl Geometry {
 
     /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for spheres.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        if primitive.instance == self.spheres.instance() {
+        if primitive == Primitive::NONE || primitive.instance == self.spheres.instance() {
             return None;
         }
         let (_, [a, b, c], mirrors) = self.in_world(primitive, time);

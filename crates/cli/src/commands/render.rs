@@ -199,6 +199,9 @@ fn render_scene(
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
+    if !common.quiet {
+        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", output.display())));
+    }
     if let Some([x, y, sample]) = arguments.replay {
         output::print(job.replay(x, y, sample)?);
         return Ok(DONE);

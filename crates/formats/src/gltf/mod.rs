@@ -22,6 +22,7 @@ mod meshopt;
 mod place;
 mod primitive;
 mod reader;
+mod remapped;
 mod skin;
 mod soundness;
 mod tangents;

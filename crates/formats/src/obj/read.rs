@@ -38,7 +38,7 @@ fn read_in_blocks(
         source,
         lines: 0,
         soup: Soup { first_vertex: 1, ..Soup::default() },
-        scene: SceneBuilder::default(),
+        scene: SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() },
         materials: HashMap::new(),
         oddities: Oddities::default(),
         name: String::new(),

@@ -7,7 +7,7 @@ mod course;
 mod paper;
 mod studio;
 
-pub use studio::{Ground, Studio, complete};
+pub use studio::{Ground, Studio, complete, frame, may_be_lit, seems_lit, shadow_catcher};
 
 use crate::builder::SceneBuilder;
 use crate::error::SceneError;
