@@ -46,8 +46,10 @@ pub(crate) struct Reading<'o> {
     pub(crate) budget: Budget,
     /// [`ReadOptions::crease_angle`], unless a scene has its own.
     pub(crate) crease_angle: f32,
-    /// Nothing outside this folder is opened.
+    /// Nothing outside this folder is opened, but for what is found in [`Reading::working_folder`].
     root: Option<PathBuf>,
+    /// Where the format that is being read looks for files too.
+    pub(crate) working_folder: Option<PathBuf>,
     textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
     texture_bytes: u64,
     /// Scenes put into other scenes, each read once.
@@ -69,6 +71,7 @@ impl<'o> Reading<'o> {
             budget: Budget::new(options.max_memory),
             crease_angle: options.crease_angle,
             root,
+            working_folder: None,
             textures: HashMap::new(),
             texture_bytes: 0,
             models: HashMap::new(),
@@ -145,6 +148,17 @@ impl<'o> Reading<'o> {
         name: &str,
         at: &Span,
     ) -> Result<PathBuf, FormatError> {
+        self.locate_besides(folder, name, &[], at)
+    }
+
+    /// The same; one of `open`, the files that are being read, is found only where it is named with its folder.
+    pub(crate) fn locate_besides(
+        &self,
+        folder: Option<&Path>,
+        name: &str,
+        open: &[PathBuf],
+        at: &Span,
+    ) -> Result<PathBuf, FormatError> {
         let Some(folder) = folder.map(non_empty) else {
             let message = format!("'{name}' cannot be looked for: the scene did not come from a folder");
             return Err(FormatError::malformed(message, at.clone()));
@@ -157,9 +171,15 @@ impl<'o> Reading<'o> {
         if beside.is_empty() || name.contains('\0') {
             return Err(missing());
         }
-        let found = [folder.join(name), folder.join(&portable), folder.join(beside)]
-            .into_iter()
-            .find_map(|path| fs::canonicalize(path).ok())
+        let there = |path: PathBuf| fs::canonicalize(path).ok();
+        let named = [folder.join(name), folder.join(&portable)].into_iter().find_map(there);
+        if named.is_none()
+            && let Some(found) = self.in_working_folder(&portable)
+        {
+            return Ok(found);
+        }
+        let found = named
+            .or_else(|| there(folder.join(beside)).filter(|path| !open.contains(path)))
             // Whatever else it may be, a pipe would never end.
             .filter(|path| path.is_file())
             .ok_or_else(missing)?;
@@ -168,6 +188,13 @@ impl<'o> Reading<'o> {
             None if self.options.allow_outside => Ok(found),
             _ => Err(FormatError::Outside { name: name.to_owned(), at: at.clone() }),
         }
+    }
+
+    /// A file of this name in the working folder, or below it.
+    fn in_working_folder(&self, name: &str) -> Option<PathBuf> {
+        let folder = fs::canonicalize(non_empty(self.working_folder.as_deref()?)).ok()?;
+        let found = fs::canonicalize(folder.join(name)).ok()?;
+        (found.starts_with(&folder) && found.is_file()).then_some(found)
     }
 
     /// A file's bytes. They count as held until [`Reading::release`].
