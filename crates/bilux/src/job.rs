@@ -10,7 +10,8 @@ use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_scene::{
-    AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Spec, Warning,
+    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, SceneError, Span,
+    Spec, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
@@ -42,6 +43,8 @@ pub struct Job {
     begun: Option<Instant>,
     /// No library of others may be loaded.
     pub(crate) sandboxed: bool,
+    /// How a model was turned.
+    orientation: Option<Orientation>,
     /// What it was made of; the fingerprint is of that, and takes long where textures are large.
     source: SceneBuilder,
     fingerprint: OnceLock<String>,
@@ -109,9 +112,11 @@ impl Job {
         let accel_of = |scene: &SceneBuilder| {
             settings.accel_for(scene.objects.iter().map(|object| object.mesh.triangles.len()).sum())
         };
-        let own = own_light::measure(scene, &studio, &settings, &accel_of(scene))?;
+        let mut completed = scene.clone();
+        let orientation = crate::presets::set_upright(&mut completed, &studio);
+        let own = own_light::measure(&completed, &studio, &settings, &accel_of(scene))?;
         studio.lit = own.as_ref().map(|own| own.is_enough);
-        let mut completed = crate::presets::completed(scene, &studio);
+        crate::presets::add_missing(&mut completed, &studio);
         let objects = completed.objects.len() as u32;
         let has_ground = completed.objects.len() > scene.objects.len();
         let has_backdrop = completed.lights.iter().any(Spec::is_backdrop);
@@ -122,6 +127,8 @@ impl Job {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
             crate::presets::put_behind(&mut completed, nothing);
         }
+        let size = [settings.width, settings.height];
+        bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
         let accel = accel_of(&completed);
         let notes = own.iter().filter_map(|own| own.decision.clone()).collect();
         let built = match own.map(|own| own.alone) {
@@ -142,6 +149,7 @@ impl Job {
             denoising: Duration::ZERO,
             begun: None,
             sandboxed: false,
+            orientation,
             source: completed,
             notes,
             catcher,
@@ -168,6 +176,11 @@ impl Job {
     /// What was decided for a scene that leaves it open, such as what lights it.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// How a model was turned that came without a camera, or that was asked to be turned.
+    pub fn orientation(&self) -> Option<Orientation> {
+        self.orientation
     }
 
     /// Its time limit counts from here, as where a file was opened, and not from the first sample.

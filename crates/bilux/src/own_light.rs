@@ -35,6 +35,8 @@ pub(crate) fn measure(
     }
     let mut framed = scene.clone();
     presets::frame(&mut framed, studio);
+    let size = [settings.width, settings.height];
+    bilux_scene::presets::set_stroke_widths(&mut framed, &settings.camera, size, settings.time);
     let aspect = settings.width as f32 / settings.height as f32;
     let built = framed.build(accel, shutter_at(settings, settings.time), aspect)?;
     let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;

@@ -2,7 +2,9 @@
 
 use crate::Error;
 use bilux_formats::ReadOptions;
-pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply, frame, shadow_catcher};
+pub use bilux_scene::presets::{
+    Ground, PRESETS, PresetEntry, Studio, add_missing, apply, frame, set_upright, shadow_catcher,
+};
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 

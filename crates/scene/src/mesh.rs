@@ -1,9 +1,9 @@
-//! Triangles with what shading needs of them.
+//! Triangles, points and lines with what shading needs of them.
 
 use bilux_math::glam::Vec4;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 
-/// A triangle mesh in its own space. Attributes are per vertex and either absent (empty) or as many as
+/// Triangles, points and lines in their own space. Attributes are per vertex and either absent (empty) or as many as
 /// positions; [`crate::SceneBuilder::build`] checks that.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -26,6 +26,10 @@ pub struct Mesh {
     pub vertex_ks: Vec<Rgb>,
     /// Triples of vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// Vertices that are points: balls of the scene's width of points.
+    pub points: Vec<u32>,
+    /// Pairs of vertices that lines join: tubes of the scene's width of lines.
+    pub lines: Vec<[u32; 2]>,
 }
 
 impl Mesh {
@@ -34,12 +38,29 @@ impl Mesh {
         let triples = self.positions.len() + self.normals.len() + self.triangles.len();
         let colours = self.vertex_kd.len() + self.vertex_ks.len();
         let uvs = self.uvs.len() + self.uvs2.len();
-        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len()) as u64
+        let strokes = self.points.len() + 2 * self.lines.len();
+        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len() + strokes) as u64
     }
 
-    /// The box around all vertices that triangles name.
+    /// How many points and lines there are.
+    pub fn stroke_count(&self) -> usize {
+        self.points.len() + self.lines.len()
+    }
+
+    /// True when there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty() && self.stroke_count() == 0
+    }
+
+    /// The vertices that triangles, points and lines name, as often as they do.
+    pub fn named_vertices(&self) -> impl Iterator<Item = u32> {
+        let strokes = self.points.iter().chain(self.lines.iter().flatten());
+        self.triangles.iter().flatten().chain(strokes).copied()
+    }
+
+    /// The box around all vertices that are named by a triangle, a point or a line, without the width of these.
     pub fn bounds(&self) -> Aabb {
-        let named = self.triangles.iter().flatten().filter_map(|&i| self.positions.get(i as usize));
+        let named = self.named_vertices().filter_map(|i| self.positions.get(i as usize));
         Aabb::of_points(named.copied().filter(|p| p.is_finite()))
     }
 

@@ -238,6 +238,21 @@ fn render_scene(
     Ok(DONE)
 }
 
+/// Says which way is up where that was decided here; once, however many pictures there are.
+fn say_orientation(job: &Job, scene: &Path) {
+    static SAID: std::sync::Once = std::sync::Once::new();
+    if let Some(orientation) = job.orientation() {
+        let (up, front) = (orientation.up.name(), orientation.front.name());
+        let because = orientation.because.words();
+        SAID.call_once(|| {
+            output::say(format_args!(
+                "{}: up is {up}, front is {front}, {because} (--up, --front)",
+                scene.display()
+            ));
+        });
+    }
+}
+
 /// `{frame}` filled in with four digits; put before the extension where it is missing.
 fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
     let text = pattern.to_string_lossy();
@@ -277,6 +292,7 @@ fn finish(
         bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
     }
     if !common.quiet {
+        say_orientation(job, scene);
         if let Some(choice) = &outcome.choice {
             output::say(format_args!(
                 "{}: {} chose {choice}",

@@ -27,7 +27,6 @@ mod skin;
 mod soundness;
 mod tangents;
 mod textures;
-mod thin;
 mod topology;
 mod uri;
 mod variants;
@@ -35,6 +34,7 @@ mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 /// In the extras of a scene that we write: what is around it besides what the file holds, which is "none".
 const SURROUNDINGS: &str = "surroundings";
@@ -48,6 +48,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["gltf", "glb"],
     capabilities: &[
+        "points and lines",
         "triangles",
         "normals",
         "uv",
@@ -63,6 +64,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "variants",
     ],
     sniff,
+    up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
     write: Some(write::write),
 };

@@ -5,8 +5,8 @@ use super::json::Node;
 use super::material::UsedMaterial;
 use super::reader::Gltf;
 use super::skin::Joints;
+use super::tangents;
 use super::topology::Mode;
-use super::{tangents, thin};
 use crate::FormatError;
 use bilux_math::glam::Vec4;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -27,8 +27,6 @@ pub(super) struct Worn<'a> {
     /// Of morph targets.
     pub(super) weights: &'a [f64],
     pub(super) joints: Option<&'a Joints>,
-    /// By which lengths grow from the mesh to the world.
-    pub(super) scale: f64,
 }
 
 /// Attributes that are read, or told of elsewhere.
@@ -69,10 +67,10 @@ impl<'d> Gltf<'d, '_, '_> {
         self.note_unused(attributes, material);
         match mode {
             Mode::Triangles | Mode::Strip | Mode::Fan => self.add_tangents(material, &mut mesh)?,
-            thin => mesh = self.thickened(node, thin, &mesh, worn.scale)?,
+            thin => self.add_strokes(node, thin, &mut mesh)?,
         }
-        if mesh.triangles.is_empty() {
-            self.oddities.note("a primitive has no triangle and is left out", || node.at());
+        if mesh.is_empty() {
+            self.oddities.note("a primitive has nothing to draw and is left out", || node.at());
             return Ok(None);
         }
         Ok(Some(Part { mesh: Arc::new(mesh), material: material.index }))
@@ -225,24 +223,14 @@ impl<'d> Gltf<'d, '_, '_> {
         }
     }
 
-    /// Points and lines with a body.
-    fn thickened(
-        &mut self,
-        node: Node<'d>,
-        mode: Mode,
-        bare: &Mesh,
-        scale: f64,
-    ) -> Result<Mesh, FormatError> {
-        let corners = self.corners(node, bare.positions.len())?;
-        let (balls, tubes) = mode.balls_and_tubes(&corners);
-        let size = self.size_of_scene()?;
-        let share = if tubes.is_empty() { 1.0 / 300.0 } else { 1.0 / 600.0 };
-        let what = if tubes.is_empty() { "points are balls" } else { "lines are tubes" };
-        let what =
-            format!("{what} with a radius of 1/{:.0} of the scene, since they have no surface", 1.0 / share);
-        self.oddities.note(&what, || node.at());
-        self.reading.budget.take_bytes(thin::bytes(balls.len(), tubes.len()), &self.file)?;
-        Ok(thin::solid(bare, &balls, &tubes, (size * share / scale) as f32))
+    /// The points or the lines of a primitive.
+    fn add_strokes(&mut self, node: Node<'d>, mode: Mode, mesh: &mut Mesh) -> Result<(), FormatError> {
+        let corners = self.corners(node, mesh.positions.len())?;
+        self.reading.budget.take_bytes(corners.len() as u64 * 8, &self.file)?;
+        (mesh.points, mesh.lines) = mode.points_and_lines(corners);
+        // They are round, so that these say nothing.
+        (mesh.normals, mesh.tangents) = (Vec::new(), Vec::new());
+        Ok(())
     }
 }
 

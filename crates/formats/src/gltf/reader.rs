@@ -13,8 +13,7 @@ use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
 use crate::sharing::share_trees;
 use bilux_math::motion::Motion;
-use bilux_math::transcendental::powf_f64;
-use bilux_math::{DMat4, DVec3, Transform};
+use bilux_math::{DMat4, Transform};
 use bilux_scene::texture::Image;
 use bilux_scene::{Object, SceneBuilder, Span};
 use std::collections::HashMap;
@@ -221,13 +220,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             return Ok(parts.clone());
         }
         let joints = skin.map(|skin| self.joints(skin)).transpose()?;
-        let scale = if joints.is_some() { 1.0 } else { powf_f64(user.world.determinant().abs(), 1.0 / 3.0) };
-        let worn = Worn {
-            name: mesh.name(),
-            weights: &weights,
-            joints: joints.as_ref(),
-            scale: if scale > 0.0 && scale.is_finite() { scale } else { 1.0 },
-        };
+        let worn = Worn { name: mesh.name(), weights: &weights, joints: joints.as_ref() };
         let mut parts = Vec::new();
         for primitive in mesh.need("primitives")?.items()? {
             parts.extend(self.primitive(primitive, &worn)?);
@@ -235,31 +228,6 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         let parts = Arc::new(parts);
         self.meshes.insert(key, parts.clone());
         Ok(parts)
-    }
-
-    /// From corner to corner of the box around all that is placed, as its accessors say.
-    pub(super) fn size_of_scene(&self) -> Result<f64, FormatError> {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for placed in &self.nodes {
-            let Some(index) = placed.node.get("mesh") else { continue };
-            for primitive in self.document.named("meshes", index)?.list("primitives")? {
-                let Some(position) = primitive.get("attributes").and_then(|a| a.get("POSITION")) else {
-                    continue;
-                };
-                let accessor = self.document.named("accessors", position)?;
-                let (Some(min), Some(max)) = (accessor.numbers::<3>("min")?, accessor.numbers::<3>("max")?)
-                else {
-                    continue;
-                };
-                for corner in 0..8 {
-                    let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
-                    let p = placed.world.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
-                    (low, high) = (low.min(p), high.max(p));
-                }
-            }
-        }
-        let size = (high - low).length();
-        Ok(if size > 0.0 && size.is_finite() { size } else { 1.0 })
     }
 }
 

@@ -25,6 +25,8 @@ pub(super) struct Block {
     pub(super) places: Vec<Place>,
     /// Corners that count backwards from where they stand.
     pub(super) backward: Vec<Backward>,
+    /// Points and lines.
+    pub(super) strokes: Vec<Stroke>,
     /// What changes between faces, in order.
     pub(super) turns: Vec<(usize, Turn)>,
     pub(super) oddities: Oddities,
@@ -47,6 +49,26 @@ pub(super) struct Backward {
     pub(super) index: i64,
     /// Where in the block the corner is written.
     pub(super) offset: usize,
+}
+
+/// A point, or a line between two vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke {
+    /// How many turns stand before it.
+    pub(super) turns: usize,
+    /// Twice the same of a point.
+    pub(super) ends: [End; 2],
+    pub(super) is_point: bool,
+    pub(super) place: Place,
+}
+
+/// A vertex of a point or a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum End {
+    /// Counted from 0.
+    Whole(u32),
+    /// From the first vertex of the block, negative before it.
+    OfBlock(i64),
 }
 
 /// What changes between two faces.
@@ -74,6 +96,7 @@ impl Block {
         self.places.clear();
         self.backward.clear();
         self.turns.clear();
+        self.strokes.clear();
         Block { oddities: Oddities::default(), failure: None, ..self }
     }
 }
@@ -115,6 +138,8 @@ impl<'a> Reader<'a> {
                 b"vt" => self.texture_coordinates()?,
                 b"vn" => self.normal()?,
                 b"f" | b"fo" => self.face(start)?,
+                b"l" => self.strokes(start, false)?,
+                b"p" => self.strokes(start, true)?,
                 b"o" | b"g" => {
                     let name = name_of(self.cursor.rest_of_line());
                     self.turn(Turn::Name(name));
@@ -154,9 +179,11 @@ impl<'a> Reader<'a> {
 
     fn turn(&mut self, turn: Turn) {
         let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
+        let is_drawn_with = self.block.strokes.last().is_some_and(|stroke| stroke.turns == turns.len());
         // Of several of a kind that no face stands between the last one counts.
         if let Some((before, last)) = turns.last_mut()
             && *before == faces
+            && !is_drawn_with
             && !matches!(turn, Turn::Libraries(..))
             && std::mem::discriminant(last) == std::mem::discriminant(&turn)
         {
@@ -266,6 +293,44 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
+    fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
+        let mut last = None;
+        let mut count = 0;
+        loop {
+            let word = self.cursor.word();
+            if word.is_empty() || word.starts_with(b"#") {
+                break;
+            }
+            let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
+            let end = match index(digits) {
+                Some(Index::Forward(index)) => End::Whole(index),
+                Some(Index::Backward(back)) => End::OfBlock(self.block.positions.len() as i64 - back),
+                None => {
+                    let at = self.at(self.cursor.offset() - word.len());
+                    let message = format!(
+                        "{} is no vertex of a point or a line: it has to be a number, counted from 1, or backwards \
+                         from -1",
+                        quoted(word)
+                    );
+                    return Err(FormatError::malformed(message, at));
+                }
+            };
+            let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
+            if let Some(ends) = ends {
+                self.budget.take::<Stroke>(1, self.file)?;
+                let turns = self.block.turns.len();
+                self.block.strokes.push(Stroke { turns, ends, is_point: are_points, place });
+            }
+            last = Some(end);
+            count += 1;
+        }
+        if count < 2 - usize::from(are_points) {
+            self.note("a line with fewer than 2 vertices, or a point without one, is left out", place);
+        }
+        Ok(())
+    }
+
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[inline]
     fn corner(&mut self, word: &[u8]) -> Result<Corner, FormatError> {
@@ -327,7 +392,6 @@ impl<'a> Reader<'a> {
 
     fn other_statement(&mut self, word: &[u8], start: Place) -> Result<(), FormatError> {
         let what = match word {
-            b"l" | b"p" => "lines and points are not drawn".to_owned(),
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
                 "free-form curves and surfaces are not drawn".to_owned()

@@ -1,7 +1,8 @@
 //! Reading an OBJ file, block by block.
 
-use super::block::{Block, Turn, bad_corner, read_block};
+use super::block::{Block, Stroke, Turn, bad_corner, read_block};
 use super::mtl::read_library;
+use super::strokes::Strokes;
 use crate::FormatError;
 use crate::blocks::Blocks;
 use crate::normals::{BY_ANGLE, Smoothing};
@@ -45,6 +46,7 @@ fn read_in_blocks(
         material: None,
         smoothing: BY_ANGLE,
         in_run: false,
+        strokes: Strokes::default(),
     };
     reader.blocks(&mut Blocks::new(from, size)).map_err(|error| no_text(error, source))?;
     reader.finish()
@@ -65,6 +67,7 @@ struct Obj<'a, 'o, 'r> {
     smoothing: Smoothing,
     /// False when the next face begins a new run.
     in_run: bool,
+    strokes: Strokes,
 }
 
 impl Obj<'_, '_, '_> {
@@ -104,13 +107,14 @@ impl Obj<'_, '_, '_> {
         self.turn_round(block, text)?;
         self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
         self.add_colours(block)?;
+        let before = self.soup.positions.len();
         let soup = &mut self.soup;
         soup.positions.append(&mut block.positions);
         soup.uvs.append(&mut block.uvs);
         soup.normals.append(&mut block.normals);
         let corners = soup.faces.corner_count() + block.corners.len();
         let most = [soup.positions.len(), soup.uvs.len(), soup.normals.len(), corners];
-        self.add_faces(block)?;
+        self.add_faces(block, before)?;
         let end = Place { line: 1, column: 1 }.after(self.lines).after(block.lines);
         self.lines = self.lines.saturating_add(block.lines);
         match block.failure.take() {
@@ -163,10 +167,14 @@ impl Obj<'_, '_, '_> {
         Ok(())
     }
 
-    fn add_faces(&mut self, block: &mut Block) -> Result<(), FormatError> {
-        let mut next = 0;
-        for (face, turn) in std::mem::take(&mut block.turns) {
+    /// Adds faces, points and lines, which stand behind so many vertices of earlier blocks.
+    fn add_faces(&mut self, block: &mut Block, before: usize) -> Result<(), FormatError> {
+        let (mut next, mut strokes) = (0, block.strokes.iter().peekable());
+        for (turns, (face, turn)) in std::mem::take(&mut block.turns).into_iter().enumerate() {
             self.faces_up_to(face, &mut next, block)?;
+            while let Some(stroke) = strokes.next_if(|stroke| stroke.turns <= turns) {
+                self.add_stroke(stroke, before)?;
+            }
             match turn {
                 Turn::Name(name) => (self.name, self.in_run) = (name, false),
                 Turn::Material(name, place) => {
@@ -179,7 +187,18 @@ impl Obj<'_, '_, '_> {
                 }
             }
         }
-        self.faces_up_to(block.ends.len(), &mut next, block)
+        self.faces_up_to(block.ends.len(), &mut next, block)?;
+        strokes.try_for_each(|stroke| self.add_stroke(stroke, before))
+    }
+
+    fn add_stroke(&mut self, stroke: &Stroke, before: usize) -> Result<(), FormatError> {
+        self.reading.budget.take::<[u32; 2]>(1, self.source.name)?;
+        let place = stroke.place.after(self.lines);
+        let run = || Run { first_face: 0, name: self.name.clone(), material: self.material.clone() };
+        self.strokes.add(stroke, before, run, place.key()).ok_or_else(|| {
+            let message = "this point or line names a vertex that the file does not have";
+            FormatError::malformed(message, place.in_file(self.source.name))
+        })
     }
 
     fn faces_up_to(&mut self, end: usize, next: &mut usize, block: &Block) -> Result<(), FormatError> {
@@ -243,16 +262,22 @@ impl Obj<'_, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, materials, mut oddities, soup, .. } = self;
-        if soup.faces.is_empty() {
-            let message = if soup.positions.is_empty() {
-                "there is no face in it: is this an OBJ file?"
-            } else {
-                "there is no face in it, only points or lines, which are not drawn"
-            };
+        let Obj { reading, source, mut scene, mut materials, mut oddities, soup, mut strokes, .. } = self;
+        if soup.positions.is_empty() {
+            let message = "there is no face in it, and no vertex: is this an OBJ file?";
             return Err(FormatError::malformed(message, whole_file(source.name)));
         }
+        if soup.faces.is_empty() && strokes.is_empty() {
+            // What has vertices alone is a cloud of points.
+            reading.budget.take::<u32>(soup.positions.len(), source.name)?;
+            strokes.add_all(soup.positions.len(), source.stem());
+        }
         let place = |key: u64| Place::of_key(key).in_file(source.name);
+        strokes.into_objects(reading, source, &place, &soup, &mut materials, &mut scene, &mut oddities)?;
+        if soup.faces.is_empty() {
+            oddities.into_warnings(&mut scene);
+            return Ok(scene);
+        }
         assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)

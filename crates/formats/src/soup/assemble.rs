@@ -143,7 +143,8 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
     Ok(())
 }
 
-fn material_of(
+/// The material of a run: one that was read, or a plain one in its place.
+pub(crate) fn material_of(
     run: &Run,
     soup: &Soup,
     materials: &mut HashMap<String, usize>,

@@ -3,7 +3,7 @@
 mod assemble;
 mod faces;
 
-pub(crate) use assemble::assemble;
+pub(crate) use assemble::{assemble, material_of};
 pub(crate) use faces::{FaceList, Steps};
 
 use crate::normals::Smoothing;

@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
 mod asc;
+mod clouds;
 mod gltf;
 mod gltf_choices;
 mod gltf_files;

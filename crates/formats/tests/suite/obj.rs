@@ -349,7 +349,7 @@ fn broken_files_are_refused_with_their_place() {
         ("v 0 0 0\nf 99999999999999999999 1 1\n", "is no corner"),
         ("v 0 0 0\ns maybe\n", "scene.obj:2:1: 'maybe' is no smoothing group"),
         ("v 0 0 0\n\u{1}\u{2}\u{3}\n", "is no statement"),
-        ("# nothing\n", "there is no face in it: is this an OBJ file?"),
+        ("# nothing\n", "there is no face in it, and no vertex: is this an OBJ file?"),
     ];
     for (text, part) in cases {
         let message = refusal("obj", text);

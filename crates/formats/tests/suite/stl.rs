@@ -76,3 +76,19 @@ fn broken_files_are_refused_with_their_place() {
         assert!(message.contains(part), "{text:?}: {message}");
     }
 }
+
+#[test]
+fn lengths_are_millimetres_unless_the_first_line_says_otherwise() {
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    for (name, unit) in [
+        ("part", 0.001),
+        ("part UNITS=inch", 0.0254),
+        ("unit: cm", 0.01),
+        ("Units = m", 1.0),
+        ("unity", 0.001),
+    ] {
+        let scene = crate::read_text("stl", format!("solid {name}\n{facet}")).unwrap();
+        assert_eq!(scene.unit, unit, "{name}");
+        assert_eq!(scene.up, bilux_scene::UpHint::Usually(bilux_scene::Axis::Z));
+    }
+}

@@ -149,7 +149,7 @@ impl Scene {
     pub(crate) fn new(parts: Arc<SceneParts>, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
         let accelerator = parts.geometry.top_level(accel, shutter);
         let alone = match parts.geometry.triangle_instances() {
-            [only] if only.mask == u32::MAX && only.motion.is_still() => {
+            [only] if only.mask == u32::MAX && only.motion.is_still() && !parts.geometry.has_strokes() => {
                 only.motion.at(0.0).is_identity().then(|| only.accelerator.clone())
             }
             _ => None,

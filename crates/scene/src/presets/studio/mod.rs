@@ -2,16 +2,19 @@
 
 mod cove;
 mod framing;
+mod standing;
 
 use super::PresetEntry;
 use crate::builder::{Object, SceneBuilder};
 use crate::cameras::{self, CameraSample};
 use crate::error::SceneError;
+use crate::orientation::{Axis, Orientation};
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use framing::Framing;
+pub use standing::set_upright;
 use std::sync::Arc;
 
 pub(super) const ENTRY: PresetEntry = PresetEntry {
@@ -53,6 +56,10 @@ pub struct Studio {
     pub ground: Option<Ground>,
     /// From where it is seen: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
+    /// Which of the model's axes is up.
+    pub up: Option<Axis>,
+    /// Which of them is its front.
+    pub front: Option<Axis>,
     /// Focal length in mm, for a picture 24 mm high.
     pub focal: Option<f32>,
     /// Width of the picture over its height, if it is not square.
@@ -68,6 +75,11 @@ impl Studio {
     pub const ORBIT: [f32; 2] = [26.5, 17.8];
     /// The lens of portraits, or a little more.
     pub const FOCAL: f32 = 45.0;
+
+    /// True where the studio's own camera is asked for, whatever cameras the scene has.
+    fn has_camera(&self) -> bool {
+        self.orbit.is_some() || self.focal.is_some() || self.up.is_some() || self.front.is_some()
+    }
 }
 
 /// The light behind the model.
@@ -83,6 +95,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     scene.cameras.clear();
     scene.lights.clear();
     let studio = Studio::default();
+    standing::set_upright(scene, &studio);
     let framing = Framing::of(scene, &studio);
     scene.cameras.push(framing.camera());
     scene.lights.extend(lights(&framing, Ground::Shadow));
@@ -93,8 +106,15 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
 /// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
 /// studio where it has neither. Lamps of a format that has no word for surroundings stand in those of the studio: metal would
 /// mirror nothing. What is asked for in `studio` is there in any case: its camera is the first one then.
-/// Does nothing to a scene that has both where nothing is asked for.
-pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
+/// Does nothing to a scene that has both where nothing is asked for. Gives how the model was turned, if it was.
+pub fn complete(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
+    let orientation = standing::set_upright(scene, studio);
+    add_missing(scene, studio);
+    orientation
+}
+
+/// Does what [`complete`] does, to a scene that stands upright already ([`set_upright`]).
+pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
     let has_light = studio.lit.unwrap_or_else(|| seems_lit(scene));
@@ -104,7 +124,7 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
     let seen = !scene.cameras.is_empty();
     let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
     let bare = !lit && !seen && !behind;
-    let asked = studio.orbit.is_some() || studio.focal.is_some();
+    let asked = studio.has_camera();
     let ground = studio.ground.unwrap_or(if bare { Ground::Shadow } else { Ground::None });
     if lit && seen && !asked && ground == Ground::None {
         return;
@@ -144,7 +164,7 @@ pub fn seems_lit(scene: &SceneBuilder) -> bool {
 
 /// Gives a scene the camera that [`complete`] would give it, and nothing else.
 pub fn frame(scene: &mut SceneBuilder, studio: &Studio) {
-    if scene.cameras.is_empty() || studio.orbit.is_some() || studio.focal.is_some() {
+    if scene.cameras.is_empty() || studio.has_camera() {
         let camera = Framing::of(scene, studio).camera();
         scene.cameras.insert(0, camera);
     }
