@@ -24,6 +24,7 @@ pub mod scene;
 pub mod spheres;
 pub mod surface;
 pub mod texture;
+pub mod typed;
 pub mod wavelength;
 
 pub use bilux_accel::{Counters, Primitive, Query, Ray};
