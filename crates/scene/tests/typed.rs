@@ -1,7 +1,7 @@
 //! The types of `bilux_scene::typed` are those of the tables, parameter by parameter.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
-use bilux_scene::{LIGHTS, MATERIALS, SceneBuilder, Spec, Value};
+use bilux_scene::{LIGHTS, MATERIALS};
 use std::fmt::Write;
 
 /// `cargo xtask docs` sets it: files are written instead of compared.
@@ -54,11 +54,11 @@ fn rust_type(kind: ParameterKind) -> &'static str {
         ParameterKind::Bool => "bool",
         ParameterKind::Integer { .. } => "i32",
         ParameterKind::Number { .. } => "f32",
-        ParameterKind::Colour { .. } => "Rgb",
-        ParameterKind::Vector => "Vec3",
+        ParameterKind::Colour { .. } => "bilux_math::Rgb",
+        ParameterKind::Vector => "bilux_math::Vec3",
         ParameterKind::Choice(_) | ParameterKind::Text => "&str",
         // A colour or a number, or a texture in its place; of the others, what readers of files make.
-        _ => "impl Into<Value>",
+        _ => "impl Into<crate::Value>",
     }
 }
 
@@ -77,16 +77,4 @@ fn every_material_and_light_has_its_type() {
     compare("materials.rs", include_str!("../src/typed/materials.rs"), &materials);
     let lights = source("Lights", LIGHTS.iter().map(|row| row.entry));
     compare("lights.rs", include_str!("../src/typed/lights.rs"), &lights);
-}
-
-#[test]
-fn what_is_typed_is_what_is_written_by_hand() {
-    use bilux_scene::typed::lights::Point;
-    use bilux_scene::typed::materials::Dielectric;
-    let typed: Spec = Dielectric::new("pane").eta(1.5).thin(true).priority(2).glass("none").into();
-    let by_hand = Spec::new("pane", "dielectric").with("eta", 1.5).with("thin", true);
-    assert_eq!(typed, by_hand.with("priority", Value::Integer(2)).with("glass", "none"));
-    let mut builder = SceneBuilder::default();
-    builder.add_light(Point::new("bulb").position(bilux_math::Vec3::Y));
-    assert_eq!(builder.lights, [Spec::new("bulb", "point").with("position", bilux_math::Vec3::Y)]);
 }

@@ -23,8 +23,7 @@ macro_rules! typed {
             $($(#[$what:meta])* $key:ident: $value:ty,)*
         }
     )*) => {
-        use crate::parameters::{Spec, Value};
-        use bilux_math::{Rgb, Vec3};
+        use crate::parameters::Spec;
         $(
             $(#[$about])*
             #[derive(Clone, Debug, PartialEq)]
