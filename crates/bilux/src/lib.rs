@@ -48,6 +48,8 @@ pub mod prelude {
     pub use crate::{Error, Job, Outcome, Quiet, Settings};
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
     pub use bilux_pictures::Picture;
+    pub use bilux_scene::cameras::CameraSpec;
+    pub use bilux_scene::typed::{lights, materials};
     pub use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
 }
 

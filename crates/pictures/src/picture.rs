@@ -207,6 +207,18 @@ impl Picture {
         Some((0..self.pixel_count()).map(|i| Rgb::new(r[i], g[i], b[i])).collect())
     }
 
+    /// The main picture as bytes for a display, four to a pixel in rows, the top one first: red, green, blue and alpha,
+    /// sRGB-encoded, alpha not multiplied in, 255 where the picture has none. `None` where it has no colour. Light above 1
+    /// becomes 255: see [`crate::to_display`] for exposure and tone curves.
+    pub fn to_rgba8(&self) -> Option<Vec<u8>> {
+        let shown = self.main().into_srgb();
+        let [r, g, b] = shown.rgb_planes()?;
+        let alpha = shown.channel("A");
+        let byte = |sample: f32| crate::formats::quantise(sample, 255.0) as u8;
+        let pixel = |i: usize| [byte(r[i]), byte(g[i]), byte(b[i]), alpha.map_or(255, |a| byte(a[i]))];
+        Some((0..self.pixel_count()).flat_map(pixel).collect())
+    }
+
     /// The colour of one pixel as stored, black where the picture has no colour. Panics beyond the edges,
     /// as slices do; for whole pictures [`Picture::to_rgb`] is faster.
     pub fn rgb(&self, x: usize, y: usize) -> Rgb {
