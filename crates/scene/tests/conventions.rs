@@ -5,9 +5,10 @@ use bilux_math::glam::DQuat;
 use bilux_math::motion::{Motion, MotionKey};
 use bilux_math::transcendental::{acos_f64, atan2_f64, cos_f64, sin_cos_f64, sin_f64};
 use bilux_math::{DMat4, DVec3, Rgb, Transform, Vec2, Vec3};
+use bilux_scene::cameras::CameraSpec;
 use bilux_scene::generators::shapes::uv_sphere;
 use bilux_scene::{
-    AccelChoice, Light, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Surface, Texture, Tracer,
+    AccelChoice, CameraSample, Light, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Surface, Texture, Tracer,
     TransportMode, Value,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -160,6 +161,75 @@ fn a_spot_falls_off_smoothly_between_the_cosines_of_its_angles() {
         let from = DVec3::new(2.0 * sin, 3.0 - 2.0 * cos, 0.0).as_vec3();
         let found = light.sample_li(from, 0.0, Vec2::ZERO).map_or(0.0, |sample| f64::from(sample.li.g));
         assert!((found - wanted * 7.0 / 4.0).abs() < 1e-4, "{} degrees: {found}", angle.to_degrees());
+    }
+}
+
+/// From afar every lamp of an intensity I is one point of it: E = I / d² on a surface that faces it, whatever its size.
+#[test]
+fn an_intensity_is_what_arrives_from_afar_times_the_square_of_the_distance() {
+    let lamp = |kind: &str| Spec::new("", kind).with("position", Vec3::ZERO).with("intensity", 8.0f32);
+    let panel = lamp("rect").with("edge_u", Vec3::X * 0.5).with("edge_v", Vec3::Z * 0.3);
+    for spec in
+        [lamp("point"), lamp("spot").with("look_at", -Vec3::Y), lamp("sphere").with("radius", 0.2f32), panel]
+    {
+        let kind = spec.kind.clone();
+        let light = with_light(spec);
+        let from = Vec3::new(0.0, -40.0, 0.0);
+        let at = |i: u32| {
+            let u = Vec2::new(((i % 16) as f32 + 0.5) / 16.0, ((i / 16) as f32 + 0.5) / 16.0);
+            light.sample_li(from, 0.0, u).map_or(0.0, |s| s.li.g * s.wi.y / s.pdf_solid_angle)
+        };
+        let irradiance = (0..256).map(at).sum::<f32>() / 256.0;
+        assert!((irradiance / (8.0 / 1600.0) - 1.0).abs() < 2e-3, "{kind}: {irradiance}");
+    }
+}
+
+fn camera_rays(spec: Spec, aspect: f32) -> impl Fn(f32, f32) -> (Vec3, Vec3) {
+    let spec = spec.with("position", Vec3::new(0.0, 0.0, 5.0)).with("look_at", Vec3::ZERO);
+    let builder =
+        SceneBuilder { cameras: vec![CameraSpec { spec, keyframes: Vec::new() }], ..SceneBuilder::default() };
+    let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], aspect).unwrap();
+    move |x: f32, y: f32| {
+        let sample = CameraSample { film: Vec2::new(x, y), lens: Vec2::ZERO, time: 0.0 };
+        let ray = scene.cameras()[0].1.ray(&sample);
+        (ray.origin.into(), ray.direction.into())
+    }
+}
+
+#[test]
+fn cameras_measure_upwards_and_the_first_row_is_on_top() {
+    // Twice as wide as high: 60 degrees from the lower to the upper edge.
+    let ray = camera_rays(Spec::new("", "perspective").with("fov", 60.0f32), 2.0);
+    let half = 1.0 / 3f32.sqrt();
+    for (x, y, wanted) in [
+        (0.5, 0.0, Vec3::new(0.0, half, -1.0)),
+        (0.5, 1.0, Vec3::new(0.0, -half, -1.0)),
+        (1.0, 0.5, Vec3::new(2.0 * half, 0.0, -1.0)),
+        (0.0, 0.0, Vec3::new(-2.0 * half, half, -1.0)),
+    ] {
+        let (_, direction) = ray(x, y);
+        assert!((direction - wanted.normalize()).length() < 1e-5, "{x}, {y}: {direction}");
+    }
+    let ray = camera_rays(Spec::new("", "orthographic").with("height", 3.0f32), 2.0);
+    for (x, y, wanted) in [(0.5, 0.0, Vec3::new(0.0, 1.5, 5.0)), (1.0, 1.0, Vec3::new(3.0, -1.5, 5.0))] {
+        let (origin, direction) = ray(x, y);
+        assert!((origin - wanted).length() < 1e-5 && direction == -Vec3::Z, "{x}, {y}: {origin} {direction}");
+    }
+    let mirrored = camera_rays(Spec::new("", "perspective").with("fov", 60.0f32).with("mirrored", true), 2.0);
+    assert!(mirrored(1.0, 0.5).1.x < -0.5 && mirrored(0.5, 0.0).1.y > 0.4);
+}
+
+#[test]
+fn what_is_clear_has_its_colour_at_its_depth() {
+    // After two metres a half, a quarter and all of the light are left, by Beer's law.
+    let spec =
+        Spec::new("", "principled").with("transmission_weight", 1.0f32).with("transmission_depth", 2.0f32);
+    let spec = spec.with("transmission_color", Rgb::new(0.5, 0.25, 1.0));
+    let (scene, surface) = brushed(spec, UPRIGHT, DMat4::IDENTITY);
+    let sigma = scene.material(&surface).sigma_a();
+    let ln_2 = std::f32::consts::LN_2;
+    for (found, wanted) in sigma.to_array().into_iter().zip([ln_2 / 2.0, ln_2, 0.0]) {
+        assert!((found - wanted).abs() < 1e-5, "{sigma:?}");
     }
 }
 

@@ -8,7 +8,7 @@ use bilux_math::glam::DQuat;
 use bilux_math::transcendental::{acos_f64, atan2_f64, cos_f64, sin_cos_f64};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_pictures::{Picture, WriteOptions, write_bytes};
-use bilux_scene::{AccelChoice, Ray, Scene, SceneBuilder, Surface, Tracer, TransportMode};
+use bilux_scene::{AccelChoice, Ray, Scene, SceneBuilder, Surface, Tracer, TransportMode, Value};
 use std::f64::consts::{PI, TAU};
 
 fn read(text: &str) -> SceneBuilder {
@@ -224,6 +224,168 @@ fn normals_of_a_skin_that_is_scaled_unevenly_are_those_of_the_ellipsoid() {
             assert!((found - wanted).length() < 1e-4, "{scale}: {found}, not {wanted}");
             assert!((mesh.positions[i].as_dvec3() - turn * (*d * scale)).length() < 1e-5);
         }
+    }
+}
+
+/// A texel of four channels as a data URI of a PNG.
+fn texel([r, g, b, a]: [u8; 4]) -> String {
+    let light = |byte: u8| srgb_decode(f32::from(byte) / 255.0);
+    let alpha = f32::from(a) / 255.0;
+    let mut picture = Picture::from_rgb(1, 1, vec![Rgb::new(light(r), light(g), light(b)) * alpha]).unwrap();
+    picture.push_channel("A", vec![alpha]).unwrap();
+    let bytes = write_bytes("png", &picture, &WriteOptions::default()).unwrap();
+    format!("data:image/png,{}", bytes.iter().map(|b| format!("%{b:02x}")).collect::<String>())
+}
+
+/// Where the specification says that a number stands in a picture.
+#[test]
+fn numbers_are_in_the_channels_that_the_specification_says() {
+    const RED: f32 = 51.0 / 255.0;
+    const GREEN: f32 = 102.0 / 255.0;
+    const BLUE: f32 = 153.0 / 255.0;
+    const ALPHA: f32 = 204.0 / 255.0;
+    let metal = r#""pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}}"#;
+    let glass = r#""pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"#;
+    let cases = [
+        ("base_metalness", metal.to_owned(), BLUE),
+        ("specular_roughness", metal.to_owned(), GREEN),
+        (
+            "opacity",
+            r#""alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}"#.to_owned(),
+            ALPHA,
+        ),
+        (
+            "specular_weight",
+            format!(r#"{glass}"KHR_materials_specular":{{"specularTexture":{{"index":0}}}}}}"#),
+            ALPHA,
+        ),
+        (
+            "transmission_weight",
+            format!(
+                r#"{glass}"KHR_materials_transmission":{{"transmissionFactor":1,"transmissionTexture":{{"index":0}}}}}}"#
+            ),
+            RED,
+        ),
+        (
+            "coat_weight",
+            format!(
+                r#"{glass}"KHR_materials_clearcoat":{{"clearcoatFactor":1,"clearcoatTexture":{{"index":0}}}}}}"#
+            ),
+            RED,
+        ),
+        (
+            "coat_roughness",
+            format!(
+                r#"{glass}"KHR_materials_clearcoat":{{"clearcoatFactor":1,"clearcoatRoughnessFactor":1,"clearcoatRoughnessTexture":{{"index":0}}}}}}"#
+            ),
+            GREEN,
+        ),
+        (
+            "fuzz_roughness",
+            format!(
+                r#"{glass}"KHR_materials_sheen":{{"sheenColorFactor":[1,1,1],"sheenRoughnessFactor":1,"sheenRoughnessTexture":{{"index":0}}}}}}"#
+            ),
+            ALPHA,
+        ),
+        (
+            "thin_film_weight",
+            format!(
+                r#"{glass}"KHR_materials_iridescence":{{"iridescenceFactor":1,"iridescenceTexture":{{"index":0}}}}}}"#
+            ),
+            RED,
+        ),
+        (
+            "thin_film_thickness",
+            format!(
+                r#"{glass}"KHR_materials_iridescence":{{"iridescenceFactor":1,"iridescenceThicknessMinimum":0,"iridescenceThicknessMaximum":1000,"iridescenceThicknessTexture":{{"index":0}}}}}}"#
+            ),
+            GREEN,
+        ),
+        (
+            "diffuse_transmission_weight",
+            format!(
+                r#"{glass}"KHR_materials_diffuse_transmission":{{"diffuseTransmissionFactor":1,"diffuseTransmissionTexture":{{"index":0}}}}}}"#
+            ),
+            ALPHA,
+        ),
+    ];
+    let more =
+        format!(r#""textures":[{{"source":0}}],"images":[{{"uri":"{}"}}],"#, texel([51, 102, 153, 204]));
+    for (key, material, wanted) in cases {
+        let scene = read(&Square::of(&format!("{{{material}}}"), &more).text());
+        let spec = &scene.materials[scene.objects[0].material];
+        let found = match spec.parameters.find(key) {
+            Some((Value::Texture(index), _)) => scene.textures[*index].number(Vec2::splat(0.5)),
+            other => panic!("{key}: {other:?}"),
+        };
+        assert!((found - wanted).abs() < 0.01, "{key}: {found}, not {wanted}");
+    }
+}
+
+#[test]
+fn factors_count_beside_pictures_and_without() {
+    let value = |material: &str, key: &str| {
+        let more = one_picture(1, &[[255, 255, 255]], "");
+        let scene = read(&Square::of(material, &more).text());
+        let spec = &scene.materials[scene.objects[0].material];
+        match spec.parameters.find(key).unwrap_or_else(|| panic!("{material}: no {key}")).0.clone() {
+            Value::Number(x) => Rgb::grey(x as f32),
+            Value::Texture(index) => scene.textures[index].at(Vec2::splat(0.5)),
+            Value::List(c) => {
+                let channel = |i: usize| if let Value::Number(x) = c[i] { x as f32 } else { f32::NAN };
+                Rgb::new(channel(0), channel(1), channel(2))
+            }
+            other => panic!("{material}: {key} is {other:?}"),
+        }
+    };
+    let strong = r#""emissiveFactor":[0.5,1,0],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":6}}"#;
+    let cases = [
+        (format!("{{{strong}}}"), "emission", Rgb::new(3.0, 6.0, 0.0)),
+        (format!(r#"{{"emissiveTexture":{{"index":0}},{strong}}}"#), "emission", Rgb::new(3.0, 6.0, 0.0)),
+        (r#"{"normalTexture":{"index":0,"scale":0.25}}"#.to_owned(), "normal_scale", Rgb::grey(0.25)),
+        (
+            r#"{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"baseColorTexture":{"index":0}}}"#.to_owned(),
+            "base_color",
+            Rgb::new(0.5, 0.25, 1.0),
+        ),
+        (
+            r#"{"pbrMetallicRoughness":{"roughnessFactor":0.5,"metallicRoughnessTexture":{"index":0}}}"#.to_owned(),
+            "specular_roughness",
+            Rgb::grey(0.5),
+        ),
+        (
+            r#"{"alphaMode":"MASK","alphaCutoff":0.75,"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.7]}}"#.to_owned(),
+            "opacity",
+            Rgb::BLACK,
+        ),
+        (
+            r#"{"alphaMode":"MASK","alphaCutoff":0.25,"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.3],"baseColorTexture":{"index":0}}}"#
+                .to_owned(),
+            "opacity",
+            Rgb::WHITE,
+        ),
+    ];
+    for (material, key, wanted) in cases {
+        let found = value(&material, key);
+        assert!((found - wanted).map(f32::abs).max_channel() < 1e-3, "{material}: {key} is {found:?}");
+    }
+}
+
+#[test]
+fn a_picture_that_is_turned_lies_as_the_extension_says() {
+    // Coordinates are turned counter-clockwise about the upper left corner, and so the picture clockwise.
+    // [KHR_texture_transform]
+    let texels = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [188, 188, 188]];
+    let more = one_picture(2, &texels, r#""magFilter":9728"#);
+    let material = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":
+        {"rotation":1.5707963267948966,"offset":[0,1]}}}}}"#;
+    let scene = read(&Square::of(material, &more).text());
+    let texture = &scene.textures[0];
+    // By a quarter, and one down: (u, v) is looked up at (v, 1 - u).
+    for (u, v, wanted) in [(0.25, 0.25, 2), (0.75, 0.25, 0), (0.25, 0.75, 3), (0.75, 0.75, 1)] {
+        let found = texture.at(Vec2::new(u, 1.0 - v));
+        let wanted = texels[wanted].map(|b: u8| srgb_decode(f32::from(b) / 255.0));
+        assert_eq!(found.to_array(), wanted, "{u}, {v}");
     }
 }
 
