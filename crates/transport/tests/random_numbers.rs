@@ -70,8 +70,8 @@ fn nor_does_it_where_light_goes_to_and_fro() {
     builder.lights.push(lamp.with("radiance", 10.0f32));
     look(&mut builder, Vec3::new(0.0, 2.0, 4.0), Vec3::new(0.0, 0.5, 0.0), 40.0);
     let scene = built(&builder);
-    let path = found(&scene, "path", "", &RenderSettings::new(12, 12, 256));
-    for (kind, spp) in [("path scattering", 256), ("bdpt", 128), ("vcm", 128)] {
+    let path = found(&scene, "path", "", &RenderSettings::new(12, 12, 128));
+    for (kind, spp) in [("path scattering", 128), ("bdpt", 64), ("vcm", 64)] {
         let (kind, sampling) = kind.split_once(' ').unwrap_or((kind, ""));
         let other = found(&scene, kind, sampling, &RenderSettings::new(12, 12, spp));
         for (c, (a, b)) in other.into_iter().zip(path).enumerate() {

@@ -25,7 +25,7 @@ fn picture(width: usize, texels: &[[u8; 3]]) -> String {
 }
 
 /// A square of 2 by 2 towards +z with given tangents and two sets of texture coordinates: in the first, v grows downwards
-/// as glTF has it; in the second the picture is turned by a quarter to the left.
+/// as glTF has it; in the second the picture is turned by a quarter to the right.
 struct Square {
     /// The fourth number of its tangents.
     hand: f32,
@@ -168,8 +168,8 @@ fn a_texture_of_the_second_set_is_looked_up_there() {
     let [red, green, blue, grey] = texels.map(|t| t.map(|b| srgb_decode(f32::from(b) / 255.0)));
     // By the corners of the square, from the upper left to the lower right.
     let upright = [red, green, blue, grey];
-    // A quarter to the left: what was on the right is on top.
-    let turned = [green, grey, red, blue];
+    // A quarter to the right: what was on the left is on top.
+    let turned = [blue, red, grey, green];
     let by_first = r#","normalTexture":{"index":0},"occlusionTexture":{"index":0}}"#;
     let cases = [
         (base(r#"{"index":0}"#), upright),
@@ -188,6 +188,30 @@ fn a_texture_of_the_second_set_is_looked_up_there() {
             let found = scene.material(&surface).classic(&surface).kd;
             let off = (found - Rgb::from_array(wanted)).map(f32::abs).max_channel();
             assert!(off < 1e-3, "{material} at {x}, {y}: {found:?}, not {wanted:?}");
+        }
+    }
+}
+
+#[test]
+fn two_textures_of_one_material_are_looked_up_by_two_sets() {
+    let texels = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [188, 188, 188]];
+    let more = one_picture(2, &texels, r#""magFilter":9728"#);
+    let light = |i: usize| Rgb::from_array(texels[i].map(|b| srgb_decode(f32::from(b) / 255.0)));
+    let (upright, turned) = ([0, 1, 2, 3], [2, 0, 3, 1]);
+    for (sets, [base, glow]) in [([0, 1], [upright, turned]), ([1, 0], [turned, upright])] {
+        let material = format!(
+            r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0,"texCoord":{}}},"metallicFactor":0}},
+            "emissiveFactor":[1,1,1],"emissiveTexture":{{"index":0,"texCoord":{}}}}}"#,
+            sets[0], sets[1]
+        );
+        let scene = Square::of(&material, &more).built();
+        for (i, (x, y)) in [(-0.5, 0.5), (0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)].into_iter().enumerate() {
+            let surface = seen(&scene, x, y);
+            let found = [scene.material(&surface).classic(&surface).kd, scene.emission(&surface, Vec3::Z)];
+            for (found, wanted) in found.into_iter().zip([light(base[i]), light(glow[i])]) {
+                let off = (found - wanted).map(f32::abs).max_channel();
+                assert!(off < 1e-3, "sets {sets:?} at {x}, {y}: {found:?}, not {wanted:?}");
+            }
         }
     }
 }
@@ -409,9 +433,9 @@ fn direction_of_highlight(scene: &Scene) -> f64 {
 fn an_anisotropic_highlight_reaches_along_its_direction() {
     // Along the tangent, turned by the rotation towards the bitangent. [KHR_materials_anisotropy]
     for (hand, node, turned) in
-        [(1.0f32, "", 1.0), (-1.0, "", -1.0), (1.0, MIRRORED, -1.0), (-1.0, MIRRORED, 1.0)]
+        [(1.0f32, "", 1.0f64), (-1.0, "", -1.0), (1.0, MIRRORED, -1.0), (-1.0, MIRRORED, 1.0)]
     {
-        for rotation in [0.0, 0.5] {
+        for rotation in [0.0f64, 0.5] {
             let material = format!(
                 r#"{{"pbrMetallicRoughness":{{"metallicFactor":1,"roughnessFactor":0.3}},"extensions":
                 {{"KHR_materials_anisotropy":{{"anisotropyStrength":0.6,"anisotropyRotation":{rotation}}}}}}}"#

@@ -98,6 +98,9 @@ fn vertex_colours_and_weights() {
     let scene =
         read_text("obj", "v 0 0 0 1 .5 .25\nv 1 0 0\nv 0 1 0 2\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
     assert_eq!(scene.objects[0].mesh.vertex_kd, [Rgb::new(1.0, 0.5, 0.25), Rgb::WHITE, Rgb::WHITE]);
+    // Behind a weight the colour is one further on.
+    let scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
+    assert_eq!(scene.objects[0].mesh.vertex_kd[2], Rgb::new(0.1, 0.2, 0.3));
 }
 
 #[test]
