@@ -8,6 +8,7 @@ mod dist;
 mod docs;
 mod instructions;
 mod licences;
+mod mutants;
 mod package;
 mod process;
 mod test;
@@ -41,6 +42,11 @@ const CHORES: &[Chore] = &[
         name: "cpu-levels",
         summary: "the same pictures at every CPU level (minutes)",
         run: cpu_levels::run,
+    },
+    Chore {
+        name: "mutants",
+        summary: "which bugs, planted in changed lines, no test notices (minutes to hours)",
+        run: mutants::run,
     },
 ];
 

@@ -6,6 +6,7 @@ mod asc;
 mod clouds;
 mod gltf;
 mod gltf_choices;
+mod gltf_conventions;
 mod gltf_files;
 mod gltf_motion;
 #[cfg(all(feature = "draco", feature = "ktx2"))]
@@ -22,6 +23,7 @@ mod patterns;
 mod pbrt;
 mod pbrt_written;
 mod ply;
+mod ply_types;
 mod round_trips;
 mod shared_files;
 mod stl;

@@ -36,6 +36,22 @@ fn indices_forward_backward_and_with_every_part() {
 }
 
 #[test]
+fn texture_coordinates_may_be_negative_and_are_counted_backwards_too() {
+    // The second face counts back from where it stands, past what has come in between.
+    let text = format!(
+        "{SQUARE}vt -0.25 0.5\nvt 1.5 -2\nvt .1 -.2\nvn 0 0 1\nvn 0 1 0\nf 1/-3/-2 2/-2/-2 3/-1/-2\nvt 7 7\nvn 1 0 0\n\
+         f -4/-4/-2 -3/-3/-2 -2/-2/-2\nf 1/-1/-1 2/4/3 3/-4/1\n"
+    );
+    let mesh = read_text("obj", text).unwrap().objects[0].mesh.clone();
+    let uvs = |face: usize| mesh.triangles[face].map(|i| mesh.uvs[i as usize]);
+    let normals = |face: usize| mesh.triangles[face].map(|i| mesh.normals[i as usize]);
+    let [a, b, c] = [Vec2::new(-0.25, 0.5), Vec2::new(1.5, -2.0), Vec2::new(0.1, -0.2)];
+    assert_eq!((uvs(0), normals(0)), ([a, b, c], [Vec3::Z; 3]));
+    assert_eq!((uvs(1), normals(1)), ([a, b, c], [Vec3::Y; 3]));
+    assert_eq!((uvs(2), normals(2)), ([Vec2::splat(7.0), Vec2::splat(7.0), a], [Vec3::X, Vec3::X, Vec3::Z]));
+}
+
+#[test]
 fn corners_alike_share_a_vertex_and_others_do_not() {
     let scene = read_text(
         "obj",
@@ -82,6 +98,9 @@ fn vertex_colours_and_weights() {
     let scene =
         read_text("obj", "v 0 0 0 1 .5 .25\nv 1 0 0\nv 0 1 0 2\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
     assert_eq!(scene.objects[0].mesh.vertex_kd, [Rgb::new(1.0, 0.5, 0.25), Rgb::WHITE, Rgb::WHITE]);
+    // Behind a weight the colour is one further on.
+    let scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
+    assert_eq!(scene.objects[0].mesh.vertex_kd[2], Rgb::new(0.1, 0.2, 0.3));
 }
 
 #[test]
