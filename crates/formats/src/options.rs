@@ -9,6 +9,8 @@ pub struct ReadOptions {
     pub allow_outside: bool,
     /// Whether what would be a warning is an error.
     pub strict: bool,
+    /// Whether all that a file holds is checked, shown or not, and each fault becomes a warning (glTF).
+    pub validate: bool,
     /// Faces of a mesh without normals look smooth where they meet at less than this angle, in degrees;
     /// at 0 nothing is added to the mesh, and its faces look flat.
     pub crease_angle: f32,
@@ -33,6 +35,7 @@ impl Default for ReadOptions {
             max_memory: 4 << 30,
             allow_outside: false,
             strict: false,
+            validate: false,
             crease_angle: 40.0,
             time: 0.0,
             whole_movement: false,

@@ -110,6 +110,11 @@ impl<'a> Document<'a> {
         self.has_binary
     }
 
+    /// How many bytes a buffer has.
+    pub(super) fn buffer_length(&self, index: usize) -> usize {
+        self.buffers.get(index).map_or(0, |bytes| bytes.len())
+    }
+
     /// What is odd about a buffer view that can be read.
     ///
     /// # Errors

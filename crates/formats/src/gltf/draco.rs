@@ -73,21 +73,33 @@ fn decoded(document: &Document, extension: Node, budget: &mut Budget) -> Result<
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
     };
     let broken = |what: &str| {
-        extension
-            .error(format!("the packed bytes of this primitive are broken: {what}; export the file again"))
+        extension.error(format!(
+            "the packed bytes of this primitive cannot be unpacked: {what}; export the file again"
+        ))
     };
     match guarded_decoding(decode) {
         None => Err(broken("they contradict each other")),
         Some(Err(error)) if error.kind() == ErrorKind::LimitExceeded => {
             budget.take_bytes(u64::MAX, &extension.at().file)?;
-            Err(broken(error.message()))
+            Err(broken(fault(error.kind())))
         }
-        Some(Err(error)) => Err(broken(error.message())),
+        Some(Err(error)) => Err(broken(fault(error.kind()))),
         Some(Ok(mesh)) => {
             // Counted for good, although it is gone soon: that bounds how often a short file can ask for it.
             budget.take_bytes(mesh.num_faces() as u64 * 12, &extension.at().file)?;
             Ok(mesh)
         }
+    }
+}
+
+/// What a kind of error of the decoder means.
+fn fault(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::LimitExceeded => "they become more than there is memory for",
+        ErrorKind::UnsupportedFeature | ErrorKind::UnsupportedVersion => {
+            "they are packed in a way that is not known here"
+        }
+        _ => "they are damaged",
     }
 }
 

@@ -29,6 +29,7 @@ mod textures;
 mod thin;
 mod topology;
 mod uri;
+mod validate;
 mod variants;
 mod write;
 

@@ -137,7 +137,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(decoded)
     }
 
-    fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
+    pub(super) fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
         let at = image.at();
         let (name, bytes) = self.encoded(image)?;
         let kind = image.text("mimeType")?.unwrap_or_default();

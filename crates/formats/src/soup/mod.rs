@@ -33,6 +33,8 @@ pub(crate) struct Soup {
     pub(crate) runs: Vec<Run>,
     /// What the format calls its first vertex: 1 in OBJ, 0 elsewhere.
     pub(crate) first_vertex: u32,
+    /// Faces that name vertices which do not exist are left out, with a warning.
+    pub(crate) leaves_out: bool,
 }
 
 /// Faces one after another that have the same name and material.

@@ -1,5 +1,6 @@
 //! KTX2, read only: textures of glTF files come in it, packed by Basis Universal. [KTX 2.0]
 
+use super::faults::ktx2::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, Rgba8};
@@ -148,8 +149,6 @@ impl<'a> Header<'a> {
     }
 
     fn unpacked(&self, bytes: &[u8]) -> Result<Interleaved, PictureError> {
-        let explain =
-            |error: basisu::Error| PictureError::invalid(FORMAT, format!("it cannot be unpacked: {error:?}"));
         let samples = match self.pixels {
             Pixels::Plain(bytes) => bytes.to_vec(),
             Pixels::Packed { has_alpha } => {

@@ -82,7 +82,7 @@ pub(super) fn unpacked(extension: Node, bytes: &[u8], budget: &mut Budget) -> Re
         Mode::Indices => indices::unpack_sequence(bytes, stride, &mut elements),
     };
     done.map_err(|Broken| {
-        extension.error("the packed bytes of this view are broken: export the file again")
+        extension.error("the packed bytes of this buffer view cannot be unpacked: export the file again")
     })?;
     filter.undo(stride, &mut elements);
     Ok(elements)
