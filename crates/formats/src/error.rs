@@ -49,7 +49,7 @@ pub enum FormatError {
     },
     /// More memory is needed than is allowed.
     #[error(
-        "{file}: reading this file takes more than the {limit} bytes that are allowed: raise the memory limit if you trust it"
+        "{file}: reading this takes more than the {limit} bytes that are allowed: raise the memory limit if you trust it"
     )]
     TooLarge {
         /// Which file.

@@ -25,7 +25,7 @@ pub(super) fn unpack(document: &Document, budget: &mut Budget) -> Result<HashMap
         for primitive in mesh.list("primitives")? {
             let Some(extension) = primitive.extension(NAME) else { continue };
             if Mode::of(primitive)? != Mode::Triangles {
-                return Err(primitive.error("only triangles can be packed by Draco: mode has to be 4"));
+                return Err(primitive.error("only triangles can be packed by Draco: mode must be 4"));
             }
             let wanted = wanted(primitive, extension)?;
             if wanted.iter().all(|(number, _)| drawn.contains_key(number)) {
@@ -128,7 +128,8 @@ fn of_accessor(
     };
     let number = attribute.as_count()?;
     let packed = u32::try_from(number).ok().and_then(|id| mesh.attribute_by_unique_id(id));
-    let packed = packed.ok_or_else(|| attribute.error(format!("nothing packed is called {number}")))?;
+    let packed =
+        packed.ok_or_else(|| attribute.error(format!("the packed data have no attribute {number}")))?;
     let count = mesh.num_points();
     let bytes = if component_of(packed.data_type()) == Some(kind) {
         raw(packed, count).ok_or_else(|| attribute.error("this attribute has fewer values than points"))?

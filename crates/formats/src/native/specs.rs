@@ -145,7 +145,7 @@ impl Native<'_, '_> {
             Err(error) => {
                 let checker = (holds == Texels::Colours).then(|| Arc::new(Texture::missing(name)));
                 let stands = match checker {
-                    Some(_) => "a checker of magenta stands in place of a texture".to_owned(),
+                    Some(_) => "a texture is replaced by a magenta checker".to_owned(),
                     None => format!("the default of '{key}' stands in place of a texture"),
                 };
                 self.scene.warn(format!("{stands}: {}", error.without_place()), file.at.clone());

@@ -359,7 +359,7 @@ impl<'a> Reader<'a> {
             }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
             | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
-                format!("the statement {} is left out", quoted(word))
+                format!("the statement {} is ignored", quoted(word))
             }
             _ => {
                 let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
@@ -367,7 +367,7 @@ impl<'a> Reader<'a> {
                     let message = format!("{} is not a statement of an OBJ file", quoted(word));
                     return Err(FormatError::malformed(message, start.in_file(self.file)));
                 }
-                format!("the unknown statement {} is left out", quoted(word))
+                format!("the unknown statement {} is ignored", quoted(word))
             }
         };
         self.note(&what, start);

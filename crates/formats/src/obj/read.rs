@@ -41,7 +41,6 @@ fn read_in_blocks(
         scene: SceneBuilder::default(),
         materials: HashMap::new(),
         oddities: Oddities::default(),
-        fault: None,
         name: String::new(),
         material: None,
         smoothing: BY_ANGLE,
@@ -61,8 +60,6 @@ struct Obj<'a, 'o, 'r> {
     /// Index of each material, by its name.
     materials: HashMap<String, usize>,
     oddities: Oddities,
-    /// The first element that is left out.
-    fault: Option<FormatError>,
     name: String,
     material: Option<(String, u64)>,
     smoothing: Smoothing,
@@ -137,8 +134,8 @@ impl Obj<'_, '_, '_> {
             FormatError::Malformed { at, .. } => at.line,
             _ => 0,
         };
-        if self.fault.as_ref().is_none_or(|first| line(&fault) < line(first)) {
-            self.fault = Some(fault);
+        if self.soup.first_fault.as_ref().is_none_or(|first| line(&fault) < line(first)) {
+            self.soup.first_fault = Some(fault);
         }
     }
 
@@ -264,8 +261,8 @@ impl Obj<'_, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, materials, mut oddities, fault, soup, .. } = self;
-        if let Some(fault) = fault.filter(|_| soup.faces.is_empty()) {
+        let Obj { reading, source, mut scene, materials, mut oddities, mut soup, .. } = self;
+        if let Some(fault) = soup.first_fault.take_if(|_| soup.faces.is_empty()) {
             return Err(fault);
         }
         if soup.faces.is_empty() {

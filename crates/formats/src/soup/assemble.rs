@@ -122,7 +122,7 @@ fn check_indices(
         }
     }
     if left_out.len() == soup.faces.len() {
-        return first_fault.map_or(Ok(()), Err);
+        return soup.first_fault.take().or(first_fault).map_or(Ok(()), Err);
     }
     // A face whose corners are all one has no area.
     let mut left_out = left_out.into_iter().peekable();

@@ -140,7 +140,10 @@ fn each_fault_is_reported_where_it_is() {
         assert!(sound.contains(from), "{from}");
         let said = reported(&sound.replacen(from, to, 1));
         if !said.lines().any(|line| line == *expected) {
-            wrong.push(format!("{to}\n  wanted: {expected}\n  got:    {}", said.replace('\n', "\n          ")));
+            wrong.push(format!(
+                "{to}\n  wanted: {expected}\n  got:    {}",
+                said.replace('\n', "\n          ")
+            ));
         }
     }
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), FAULTS.len(), wrong.join("\n"));
@@ -162,7 +165,9 @@ fn faults_that_the_khronos_validator_knows_are_reported() {
         let path = report.to_string_lossy().trim_end_matches(".report.json").to_owned();
         let text: serde_json::Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
         let severities = text["issues"]["messages"].as_array().unwrap().iter();
-        let Some(severity @ 0..=1) = severities.filter_map(|m| m["severity"].as_u64()).min() else { continue };
+        let Some(severity @ 0..=1) = severities.filter_map(|m| m["severity"].as_u64()).min() else {
+            continue;
+        };
         let is_reported = match bilux_formats::read(Path::new(&path), &options) {
             Ok(scene) => scene.warnings.iter().any(|w| !w.message.contains("nothing to see")),
             Err(_) => true,

@@ -96,7 +96,7 @@ impl<'a> Header<'a> {
         };
         let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
         if depth > 1 || layers > 1 || faces != 1 {
-            return invalid("it has layers, faces or a depth: only flat pictures are read".to_owned());
+            return invalid("it has layers, faces or a depth, and only flat pictures can be read".to_owned());
         }
         if levels > 32 {
             return invalid(format!("it has {levels} levels, and there cannot be more than 32"));
@@ -116,7 +116,7 @@ impl<'a> Header<'a> {
             // A level unpacks to a byte a pixel, in whole blocks of 4 x 4.
             let most = (u64::from(width) + 3) * (u64::from(height) + 3) * 4;
             if u64_at(bytes, at + 16)? > most {
-                return invalid(format!("level {level} says that it has more than its pixels"));
+                return invalid(format!("level {level} has more bytes than its pixels can have"));
             }
             if level == 0 {
                 first = packed;
@@ -139,8 +139,8 @@ impl<'a> Header<'a> {
             }
             _ => {
                 return invalid(format!(
-                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} are not read: Basis Universal \
-                     (ETC1S and UASTC) and plain ones of 8 bits are"
+                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} cannot be read; Basis Universal (ETC1S \
+                     and UASTC) and plain pixels of 8 bits can"
                 ));
             }
         };

@@ -121,7 +121,10 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         other => return Err(unsupported(colours(other).to_owned())),
     };
     if channels > MOST_CHANNELS || usize::from(channels) < colours + usize::from(opacity != Opacity::None) {
-        return Err(PictureError::invalid(FORMAT, format!("there is no picture of {channels} channels")));
+        return Err(PictureError::invalid(
+            FORMAT,
+            format!("it has {channels} channels, which no picture has"),
+        ));
     }
     let each = u64::from(channels) * u64::from(bits.div_ceil(8));
     // Samples as they are stored, again where they are unpacked, and four planes of ours.
