@@ -61,7 +61,9 @@ pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
         return Ok(());
     }
     let message = match (has_shapes, scene.lights.iter().any(is_seen)) {
-        (true, _) => "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers",
+        (true, _) => {
+            "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers"
+        }
         // A sky alone is a picture, where a format can say so.
         (false, true) if !scene.surroundings_unsaid => return Ok(()),
         (false, _) => {

@@ -14,6 +14,8 @@ pub struct ReadOptions {
     pub working_folder: Option<PathBuf>,
     /// Whether what would be a warning is an error.
     pub strict: bool,
+    /// Whether all that a file holds is checked, shown or not, and each fault becomes a warning (glTF).
+    pub validate: bool,
     /// Faces of a mesh without normals look smooth where they meet at less than this angle, in degrees;
     /// at 0 nothing is added to the mesh, and its faces look flat.
     pub crease_angle: f32,
@@ -39,6 +41,7 @@ impl Default for ReadOptions {
             allow_outside: false,
             working_folder: None,
             strict: false,
+            validate: false,
             crease_angle: 40.0,
             time: 0.0,
             whole_movement: false,

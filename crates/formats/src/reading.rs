@@ -276,43 +276,65 @@ pub(crate) fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
 /// Counts odd things by kind, so that a file with a million of them gives one warning.
 #[derive(Debug, Default)]
 pub(crate) struct Oddities {
-    kinds: Vec<(String, u64, Span)>,
+    kinds: Vec<Oddity>,
+}
+
+#[derive(Debug)]
+struct Oddity {
+    /// What all of the kind share.
+    what: String,
+    /// What of the first stands in front of it in a message.
+    first: String,
+    count: u64,
+    at: Span,
 }
 
 /// Kinds beyond this are not told apart: a file of garbage has thousands.
-const MOST_KINDS: usize = 40;
+const MAX_KINDS: usize = 40;
 
 impl Oddities {
     /// Takes over what was noted in a part of the file before which so many lines stand.
     pub(crate) fn append(&mut self, part: Oddities, lines: u32) {
-        for (what, count, mut at) in part.kinds {
+        for Oddity { what, first, count, mut at } in part.kinds {
             at.line = at.line.saturating_add(lines);
-            self.note(&what, || at);
-            if let Some((_, counted, _)) = self.kinds.iter_mut().find(|(kind, ..)| *kind == what) {
-                *counted += count - 1;
+            self.note_first(&what, || first, || at);
+            if let Some(known) = self.kinds.iter_mut().find(|kind| kind.what == what) {
+                known.count += count - 1;
             }
         }
     }
 
     /// Notes one more of a kind; `at` is asked only for the first.
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
+        self.note_first(what, String::new, at);
+    }
+
+    /// The same with words about the first of the kind, which stand in front of what all share.
+    pub(crate) fn note_first(
+        &mut self,
+        what: &str,
+        first: impl FnOnce() -> String,
+        at: impl FnOnce() -> Span,
+    ) {
         let kinds = self.kinds.len();
-        match self.kinds.iter_mut().find(|(kind, ..)| kind == what) {
-            Some((_, count, _)) => *count += 1,
-            None if kinds > MOST_KINDS => {}
-            None if kinds == MOST_KINDS => {
-                self.kinds.push(("there is more that is odd from here on".to_owned(), 1, at()));
+        match self.kinds.iter_mut().find(|kind| kind.what == what) {
+            Some(kind) => kind.count += 1,
+            None if kinds > MAX_KINDS => {}
+            None if kinds == MAX_KINDS => {
+                let what = "further faults from here on are not listed".to_owned();
+                self.kinds.push(Oddity { what, first: String::new(), count: 1, at: at() });
             }
-            None => self.kinds.push((what.to_owned(), 1, at())),
+            None => self.kinds.push(Oddity { what: what.to_owned(), first: first(), count: 1, at: at() }),
         }
     }
 
     /// Turns them into warnings, each with its count and the place of the first.
-    pub(crate) fn into_warnings(self, scene: &mut SceneBuilder) {
-        for (what, count, at) in self.kinds {
+    pub(crate) fn into_warnings(mut self, scene: &mut SceneBuilder) {
+        self.kinds.sort_by_key(|kind| (kind.at.line, kind.at.column));
+        for Oddity { what, first, count, at } in self.kinds {
             let times =
                 if count > 1 { format!(" ({count} times; this is the first)") } else { String::new() };
-            scene.warn(format!("{what}{times}"), at);
+            scene.warn(format!("{first}{what}{times}"), at);
         }
     }
 }

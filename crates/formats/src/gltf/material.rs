@@ -144,7 +144,11 @@ impl<'d> Gltf<'d, '_, '_> {
             "OPAQUE" => return Ok(()),
             "BLEND" => None,
             "MASK" => Some(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
-            other => return Err(node.error(format!("'{other}' is no alphaMode: OPAQUE, MASK and BLEND are"))),
+            other => {
+                return Err(
+                    node.error(format!("'{other}' is not an alphaMode, which are OPAQUE, MASK and BLEND"))
+                );
+            }
         };
         let opacity = match (picture, threshold) {
             (Some(info), _) => {

@@ -29,6 +29,7 @@ mod tangents;
 mod textures;
 mod topology;
 mod uri;
+mod validate;
 mod variants;
 mod write;
 

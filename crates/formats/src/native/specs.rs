@@ -145,13 +145,19 @@ impl Native<'_, '_> {
             Err(error) => {
                 // Magenta light would colour all of the scene.
                 let (stands_in, texture) = match holds {
-                    Texels::Colours if key == "radiance" => {
-                        ("an even grey of 0.5".to_owned(), Some(Texture::missing_light(name)))
+                    Texels::Colours if key == "radiance" => (
+                        "a texture is replaced by an even grey of 0.5".to_owned(),
+                        Some(Texture::missing_light(name)),
+                    ),
+                    Texels::Colours => (
+                        "a texture is replaced by a magenta checker".to_owned(),
+                        Some(Texture::missing(name)),
+                    ),
+                    Texels::Numbers(_) => {
+                        (format!("the default of '{key}' stands in place of a texture"), None)
                     }
-                    Texels::Colours => ("a checker of magenta".to_owned(), Some(Texture::missing(name))),
-                    Texels::Numbers(_) => (format!("the default of '{key}'"), None),
                 };
-                let message = format!("{stands_in} stands in place of a texture: {}", error.without_place());
+                let message = format!("{stands_in}: {}", error.without_place());
                 self.scene.warn(message, file.at.clone());
                 Ok(texture.map(Arc::new))
             }

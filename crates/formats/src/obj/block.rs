@@ -34,6 +34,8 @@ pub(super) struct Block {
     pub(super) lines: u32,
     /// What reading the block has taken of the budget.
     pub(super) spent: u64,
+    /// The first element that is left out because of what is wrong with it.
+    pub(super) fault: Option<FormatError>,
     /// What ended it early.
     pub(super) failure: Option<FormatError>,
 }
@@ -97,7 +99,7 @@ impl Block {
         self.backward.clear();
         self.turns.clear();
         self.strokes.clear();
-        Block { oddities: Oddities::default(), failure: None, ..self }
+        Block { oddities: Oddities::default(), fault: None, failure: None, ..self }
     }
 }
 
@@ -110,16 +112,22 @@ pub(super) fn read_block(text: &[u8], file: &Arc<str>, budget: &Budget, block: B
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
 }
 
-/// What is wrong with a corner; `at` is where it stands.
+/// What is wrong with a corner.
 #[cold]
-pub(super) fn bad_corner(word: &[u8], at: Span) -> FormatError {
-    let message = format!(
-        "{} is no corner of a face: it has to be a vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
+pub(super) fn bad_corner(word: &[u8]) -> String {
+    format!(
+        "{} is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
          counted from 1, or backwards from -1",
         quoted(word)
-    );
-    FormatError::malformed(message, at)
+    )
 }
+
+/// What becomes of elements that cannot be read.
+const VERTEX_LEFT_OUT: &str = ": this vertex is left out, and with it the faces that it is a corner of";
+const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is taken as 0";
+const FACE_LEFT_OUT: &str = ": this face is left out";
+/// Of these it is known only when blocks are joined.
+pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
 
 struct Reader<'a> {
     cursor: Cursor<'a>,
@@ -196,7 +204,11 @@ impl<'a> Reader<'a> {
     /// `v x y z [w]` or `v x y z r g b`.
     fn vertex(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 8];
-        let count = self.numbers(&mut numbers, 3)?;
+        let mut count = self.numbers(&mut numbers, 3, VERTEX_LEFT_OUT);
+        if count == 0 {
+            // Its number is kept, so that the faces after it name the right ones.
+            (numbers, count) = ([f32::NAN; 8], 3);
+        }
         self.budget.take::<Vec3>(1, self.file)?;
         let block = &mut self.block;
         block.positions.push(Vec3::from_slice(&numbers));
@@ -214,7 +226,7 @@ impl<'a> Reader<'a> {
 
     fn texture_coordinates(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 1)?;
+        self.numbers(&mut numbers, 1, ATTRIBUTE_LEFT_OUT);
         self.budget.take::<Vec2>(1, self.file)?;
         self.block.uvs.push(Vec2::from_slice(&numbers));
         Ok(())
@@ -222,15 +234,15 @@ impl<'a> Reader<'a> {
 
     fn normal(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 3)?;
+        self.numbers(&mut numbers, 3, ATTRIBUTE_LEFT_OUT);
         self.budget.take::<Vec3>(1, self.file)?;
         self.block.normals.push(Vec3::from_slice(&numbers));
         Ok(())
     }
 
-    /// The numbers of a statement, `least` of them or more; how many there are.
+    /// The numbers of a statement, `least` of them or more; how many there are, or 0 where they cannot be read.
     #[inline]
-    fn numbers(&mut self, numbers: &mut [f32], least: usize) -> Result<usize, FormatError> {
+    fn numbers(&mut self, numbers: &mut [f32], least: usize, left_out: &str) -> usize {
         let mut count = 0;
         let mut odd = false;
         while count < numbers.len() {
@@ -244,22 +256,35 @@ impl<'a> Reader<'a> {
                 None if word.is_empty() || word.starts_with(b"#") => break,
                 None => {
                     let at = self.at(self.cursor.offset() - word.len());
-                    return Err(FormatError::malformed(format!("{} is no number", quoted(word)), at));
+                    self.fault(format!("{} is not a number", quoted(word)), left_out, at);
+                    numbers.fill(0.0);
+                    return 0;
                 }
             }
         }
         if count < least {
             let at = self.at(self.cursor.offset());
-            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
-            let message =
-                format!("there are {count} numbers on this line, where {least} are needed{cut_off}");
-            return Err(FormatError::malformed(message, at));
+            let cut_off = if self.cursor.is_done() { ", as the file was cut off here" } else { "" };
+            let message = format!("this line has {count} numbers and needs {least}{cut_off}");
+            self.fault(message, left_out, at);
+            numbers.fill(0.0);
+            return 0;
         }
         if odd {
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.note(what, self.cursor.place(self.cursor.offset()));
         }
-        Ok(count)
+        count
+    }
+
+    /// Notes that an element is left out, and why.
+    #[cold]
+    fn fault(&mut self, message: String, left_out: &str, at: Span) {
+        if self.block.fault.is_none() {
+            self.block.fault = Some(FormatError::malformed(message.clone(), at.clone()));
+        }
+        self.block.oddities.note_first(left_out, || message, || at);
+        self.pass_line();
     }
 
     fn face(&mut self, start: Place) -> Result<(), FormatError> {
@@ -269,7 +294,13 @@ impl<'a> Reader<'a> {
             if word.is_empty() || word.starts_with(b"#") {
                 break;
             }
-            let corner = self.corner(word)?;
+            let Some(corner) = self.corner(word) else {
+                self.block.corners.truncate(first);
+                self.block.backward[backward..].iter_mut().for_each(|left_out| left_out.corner = None);
+                let at = self.at(self.cursor.offset() - word.len());
+                self.fault(bad_corner(word), FACE_LEFT_OUT, at);
+                return Ok(());
+            };
             self.block.corners.push(corner);
             if (self.block.corners.len() - first).is_multiple_of(MANY) {
                 self.budget.take::<Corner>(MANY, self.file)?;
@@ -295,8 +326,7 @@ impl<'a> Reader<'a> {
 
     /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
     fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
-        let mut last = None;
-        let mut count = 0;
+        let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
         loop {
             let word = self.cursor.word();
             if word.is_empty() || word.starts_with(b"#") {
@@ -309,11 +339,12 @@ impl<'a> Reader<'a> {
                 None => {
                     let at = self.at(self.cursor.offset() - word.len());
                     let message = format!(
-                        "{} is no vertex of a point or a line: it has to be a number, counted from 1, or backwards \
-                         from -1",
+                        "{} is not a vertex of a point or a line: write a number, counted from 1, or backwards from -1",
                         quoted(word)
                     );
-                    return Err(FormatError::malformed(message, at));
+                    self.block.strokes.truncate(first);
+                    self.fault(message, ": this point or line is left out", at);
+                    return Ok(());
                 }
             };
             let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
@@ -333,25 +364,23 @@ impl<'a> Reader<'a> {
 
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[inline]
-    fn corner(&mut self, word: &[u8]) -> Result<Corner, FormatError> {
+    fn corner(&mut self, word: &[u8]) -> Option<Corner> {
         let mut corner = [NONE; 3];
         let mut rest = word;
         for part in 0..3 {
             let length = rest.iter().position(|&b| b == b'/').unwrap_or(rest.len());
             if length > 0 {
-                corner[part] = match index(&rest[..length]) {
-                    Some(Index::Forward(index)) => index,
-                    Some(Index::Backward(back)) => self.backward(word, part, back),
-                    None => return Err(self.bad_corner(word)),
+                corner[part] = match index(&rest[..length])? {
+                    Index::Forward(index) => index,
+                    Index::Backward(back) => self.backward(word, part, back),
                 };
             }
             match rest.get(length + 1..) {
                 Some(after) => rest = after,
-                None if corner[0] == NONE => return Err(self.bad_corner(word)),
-                None => return Ok(corner),
+                None => return Some(corner).filter(|corner| corner[0] != NONE),
             }
         }
-        Err(self.bad_corner(word))
+        None
     }
 
     /// Notes a part of a corner that counts backwards, and gives what stands in its place until it is known.
@@ -367,11 +396,6 @@ impl<'a> Reader<'a> {
         0
     }
 
-    #[cold]
-    fn bad_corner(&self, word: &[u8]) -> FormatError {
-        bad_corner(word, self.at(self.cursor.offset() - word.len()))
-    }
-
     /// `s off` and `s 0` are flat, any other number is a group that is smooth.
     fn smoothing_group(&mut self, start: Place) -> Result<(), FormatError> {
         let word = self.cursor.word();
@@ -382,8 +406,9 @@ impl<'a> Reader<'a> {
             (_, Some(group)) => group.min(BY_ANGLE - 1),
             _ => {
                 let message =
-                    format!("{} is no smoothing group: it has to be a number or 'off'", quoted(word));
-                return Err(FormatError::malformed(message, start.in_file(self.file)));
+                    format!("{} is not a smoothing group, which is a number or 'off'", quoted(word));
+                self.fault(message, ": this line is left out", start.in_file(self.file));
+                return Ok(());
             }
         };
         self.turn(Turn::Smoothing(smoothing));
@@ -398,15 +423,15 @@ impl<'a> Reader<'a> {
             }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
             | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
-                format!("the statement {} is left out", quoted(word))
+                format!("the statement {} is ignored", quoted(word))
             }
             _ => {
                 let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
                 if !readable {
-                    let message = format!("{} is no statement of an OBJ file", quoted(word));
+                    let message = format!("{} is not a statement of an OBJ file", quoted(word));
                     return Err(FormatError::malformed(message, start.in_file(self.file)));
                 }
-                format!("the unknown statement {} is left out", quoted(word))
+                format!("the unknown statement {} is ignored", quoted(word))
             }
         };
         self.note(&what, start);

@@ -205,7 +205,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
             assert!(message.contains(part), "{from} → {to}: {message}");
         }
     }
-    assert!(refusal("gltf", &TRIANGLE[..300]).contains("this is no JSON"));
+    assert!(refusal("gltf", &TRIANGLE[..300]).contains("this is not JSON"));
     let indexed = TRIANGLE
         .replace("\"POSITION\":0}", "\"POSITION\":0},\"indices\":1")
         .replace("\"VEC3\"}]", "\"VEC3\"},{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]");
@@ -221,7 +221,7 @@ fn what_is_not_understood_is_told_where_it_stands() {
     let text = TRIANGLE.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"extensions":{"EXT_odd":{}}}"#);
     let told = warnings(&read(&text));
     assert!(
-        told.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not understood"),
+        told.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not supported"),
         "{told}"
     );
 }
@@ -431,7 +431,7 @@ fn textures_lie_beside_the_scene_and_missing_ones_are_seen() {
     assert_eq!(base.at(Vec2::new(0.9, 0.5)), Rgb::WHITE, "held at the edge");
     assert_eq!(scene.textures[1].width(), 8);
     let told = warnings(&scene);
-    assert!(told.contains("#/images/1: a checker of magenta stands in place of a texture"), "{told}");
+    assert!(told.contains("#/images/1: a texture is replaced by a magenta checker"), "{told}");
     let climbing = with_material(material, &more.replace("gone.png", "../gone.png"));
     std::fs::write(folder.path().join("gone.png"), b"x").unwrap();
     std::fs::write(&path, climbing).unwrap();

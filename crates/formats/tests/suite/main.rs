@@ -11,9 +11,11 @@ mod gltf_files;
 mod gltf_motion;
 #[cfg(all(feature = "draco", feature = "ktx2"))]
 mod gltf_packed;
+mod gltf_validated;
 mod gltf_written;
 mod hostile;
 mod left_out;
+mod messages;
 mod native;
 mod obj;
 mod off;

@@ -369,7 +369,7 @@ fn what_is_wrong_is_told_with_its_place() {
         ),
         ("WorldBegin Shape \"disk\" \"float radius\" [1", "the file ends here, where ']'"),
         ("WorldBegin Shape \"disk\" \"float\" [1]", "'float' declares no parameter"),
-        ("WorldBegin Shape \"trianglemesh\"", "P (points of the shape) has to be given"),
+        ("WorldBegin Shape \"trianglemesh\"", "P (points of the shape) is missing"),
         ("WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1]", "'P' has to be triples of numbers"),
         (
             "WorldBegin Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1 1] \"integer indices\" [0 1 2]",
