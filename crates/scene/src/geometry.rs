@@ -13,6 +13,7 @@ use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
 use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
+use bilux_math::transcendental::powf_f64;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -46,7 +47,7 @@ impl Placed {
 /// How much lengths grow on average.
 fn mean_scale(to_world: &Transform) -> f32 {
     let volume = f64::from(to_world.matrix().determinant()).abs();
-    let scale = volume.cbrt() as f32;
+    let scale = powf_f64(volume, 1.0 / 3.0) as f32;
     if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
 }
 
