@@ -41,7 +41,7 @@ impl Cloud {
         file: &str,
     ) -> Result<(), FormatError> {
         let each = size_of::<(Vec3, u32)>() + if colours { size_of::<Rgb>() } else { 0 };
-        let bytes = count.checked_mul(each as u64).unwrap_or(u64::MAX);
+        let bytes = count.saturating_mul(each as u64);
         budget.take_bytes(bytes, file)?;
         self.positions.reserve_exact(count as usize);
         self.colours.reserve_exact(if colours { count as usize } else { 0 });

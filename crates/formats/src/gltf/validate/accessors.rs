@@ -67,12 +67,12 @@ pub(super) fn is_aligned<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     let inside = whole(node, "byteOffset").unwrap_or(0);
     let start = inside.saturating_add(whole(view, "byteOffset").unwrap_or(0));
     let is_matrix = text(node, "type").is_some_and(|kind| kind.starts_with("MAT"));
-    if is_matrix && inside % 4 != 0 {
+    if is_matrix && !inside.is_multiple_of(4) {
         check.report_key(node, "byteOffset", "a matrix must begin at a multiple of 4 bytes");
-    } else if inside % size != 0 {
+    } else if !inside.is_multiple_of(size) {
         let message = format!("{inside} is not a multiple of the {size} bytes that its numbers take");
         check.report_key(node, "byteOffset", message);
-    } else if start % size != 0 {
+    } else if !start.is_multiple_of(size) {
         let message = format!(
             "its elements begin at byte {start} of the buffer, which is not a multiple of the {size} bytes that its \
              numbers take"

@@ -137,7 +137,7 @@ pub(super) fn layout<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
         let stride = whole(view, "byteStride").unwrap_or(size);
         let offset = whole(accessor, "byteOffset").unwrap_or(0);
         let start = offset.saturating_add(whole(view, "byteOffset").unwrap_or(0));
-        if offset % 4 != 0 || start % 4 != 0 || stride % 4 != 0 {
+        if !offset.is_multiple_of(4) || !start.is_multiple_of(4) || !stride.is_multiple_of(4) {
             let message = format!("each element of {name} must begin at a multiple of 4 bytes");
             check.report(accessor, message);
         }

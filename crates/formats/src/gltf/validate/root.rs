@@ -72,7 +72,7 @@ pub(super) fn unused<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
             || WITHOUT_OBJECT.contains(name)
             || ANYWHERE.contains(name)
     };
-    if !check.extensions.iter().all(|name| is_known(name)) {
+    if !check.extensions.iter().all(is_known) {
         return;
     }
     let nodes_of_scenes = check.list("scenes").into_iter().any(|scene| scene.get("nodes").is_some());
