@@ -196,6 +196,26 @@ mod tests {
         assert!(counts.iter().all(|&c| (f64::from(c) / mean - 1.0).abs() < 0.03), "{counts:?}");
     }
 
+    /// Worked out by hand from the formulas in the book, so that no axis is mirrored or swapped. [pbrt 2023, 3.8.3]
+    #[test]
+    fn places_on_the_square_are_where_the_book_has_them() {
+        let r = 0.661_438; // 0.5 √1.75
+        for ([u, v], wanted) in [
+            ([0.75, 0.5], DVec3::new(r, 0.0, 0.75)),
+            ([0.5, 0.75], DVec3::new(0.0, r, 0.75)),
+            ([0.25, 0.5], DVec3::new(-r, 0.0, 0.75)),
+            ([0.5, 0.25], DVec3::new(0.0, -r, 0.75)),
+            // In a corner, and so below: r = 0.4, and 0.4 √1.84 / √2 is 0.383 667.
+            ([0.9, 0.9], DVec3::new(0.383_667, 0.383_667, -0.84)),
+            ([0.9, 0.1], DVec3::new(0.383_667, -0.383_667, -0.84)),
+        ] {
+            let found = on_the_sphere(u, v);
+            assert!((found - wanted).length() < 1e-5, "{u} {v}: {found}");
+            let [x, y] = Mapping::Square.place(wanted);
+            assert!((x - u).abs() + (y - v).abs() < 1e-5, "{wanted}: {x} {y}");
+        }
+    }
+
     #[test]
     fn there_and_back_it_is_the_same_place() {
         for (i, j) in (0..32).flat_map(|i| (0..32).map(move |j| (i, j))) {

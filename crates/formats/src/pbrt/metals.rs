@@ -4,9 +4,21 @@ use super::spectra::{Spectrum, under_daylight};
 use bilux_math::Rgb;
 use bilux_scene::materials::metal_indices;
 
-/// The channels of a metal of our table; those of copper where it is none.
+/// Metals of which pbrt's spectra are other measurements than those of our table: the index and the extinction of each
+/// channel, as [`from_spectra`] has them of the spectra that pbrt brings.
+const MEASURED: [(&str, [Rgb; 2]); 4] = [
+    ("aluminium", [Rgb::new(1.431, 0.929, 0.590), Rgb::new(7.748, 6.605, 5.352)]),
+    ("copper", [Rgb::new(0.215, 0.975, 1.209), Rgb::new(4.158, 2.621, 2.364)]),
+    ("gold", [Rgb::new(0.161, 0.413, 1.559), Rgb::new(3.964, 2.360, 1.719)]),
+    ("silver", [Rgb::new(0.130, 0.124, 0.151), Rgb::new(4.118, 3.335, 2.411)]),
+];
+
+/// The channels of one of pbrt's metals by the name that our table has for it; those of copper where it is none.
 pub(super) fn indices(metal: &str) -> [Rgb; 2] {
-    metal_indices(metal).or_else(|| metal_indices("copper")).unwrap_or([Rgb::WHITE; 2])
+    let measured =
+        |metal: &str| MEASURED.iter().find(|(name, _)| *name == metal).map(|(_, indices)| *indices);
+    let known = measured(metal).or_else(|| metal_indices(metal)).or_else(|| measured("copper"));
+    known.unwrap_or([Rgb::WHITE; 2])
 }
 
 /// Cosine of 82 degrees, where metals differ most from Schlick's law.
@@ -117,25 +129,40 @@ mod tests {
         [704.5, 0.13, 4.103],
     ];
 
-    /// Its red is 1.022 of white in sRGB, which nothing reflects; green and blue are 0.782 and 0.344.
-    /// [Akenine-Möller 2018, table 9.2]
+    /// In sRGB it is (1.037, 0.728, 0.365) of white, and no index reflects more than all.
     #[test]
     fn gold_is_redder_than_colours_can_be_and_has_indices_all_the_same() {
         let part = |i: usize| Spectrum(GOLD.iter().map(|row| [row[0], row[i]]).collect());
         let Reduced { indices: [eta, k], is_cut } = from_spectra(&part(1), &part(2));
         assert!(is_cut);
         let straight = [0, 1, 2].map(|c| reflectance(1.0, f64::from(eta[c]), f64::from(k[c])));
-        for (found, wanted) in straight.into_iter().zip([0.971, 0.782, 0.344]) {
-            assert!((found - wanted).abs() < 0.025, "{straight:?}");
+        for (found, wanted) in straight.into_iter().zip([0.971, 0.728, 0.365]) {
+            assert!((found - wanted).abs() < 0.005, "{straight:?}");
         }
         for c in 0..3 {
             assert!((0.05..2.0).contains(&eta[c]) && (1.0..6.0).contains(&k[c]), "{eta:?} {k:?}");
         }
     }
 
+    /// What pbrt's metals reflect straight on, in linear sRGB. [Akenine-Möller 2018, table 9.2] Gold's red is 1.022 there.
+    #[test]
+    fn metals_by_name_have_the_colours_that_tables_have() {
+        for (name, wanted) in [
+            ("aluminium", [0.913, 0.922, 0.924]),
+            ("brass", [0.910, 0.778, 0.423]),
+            ("copper", [0.955, 0.638, 0.538]),
+            ("gold", [0.962, 0.782, 0.344]),
+            ("silver", [0.972, 0.960, 0.915]),
+        ] {
+            let [found, _] = straight_and_grazing(indices(name), 1.0);
+            assert!((0..3).all(|c| (found[c] - wanted[c]).abs() < 1.5e-3), "{name}: {found:?}");
+        }
+    }
+
     #[test]
     fn known_metals_are_known() {
         assert_ne!(indices("gold"), indices("copper"));
+        assert_eq!(indices("brass"), metal_indices("brass").unwrap());
         assert_eq!(indices("nothing"), indices("copper"));
     }
 }

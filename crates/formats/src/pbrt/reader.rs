@@ -182,6 +182,10 @@ impl Pbrt<'_, '_> {
                 "what begins here does not end in the file: close it with AttributeEnd or ObjectEnd";
             return Err(FormatError::malformed(message, at.clone()));
         }
+        if let Some((name, _)) = &self.definition {
+            let message = format!("the object '{name}' does not end in the file: close it with ObjectEnd");
+            return Err(FormatError::malformed(message, crate::text::whole_file(source.name)));
+        }
         if !self.in_world {
             self.oddities.note("there is no WorldBegin in it, so that nothing can be seen", || {
                 crate::text::whole_file(source.name)

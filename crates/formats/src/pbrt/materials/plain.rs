@@ -105,8 +105,6 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
 pub(super) enum Metal {
     /// Reflects so much straight on.
     Reflectance(Ink),
-    /// One of our table.
-    Named(&'static str),
     /// By its refractive index and its extinction.
     Indices([Rgb; 2]),
 }
@@ -128,7 +126,7 @@ impl Pbrt<'_, '_> {
             return Ok(Metal::Reflectance(reflectance));
         }
         if !given {
-            return Ok(Metal::Named("copper"));
+            return Ok(Metal::Indices(metals::indices("copper")));
         }
         let metal_of = |name: &'static str| match named(list.find(name)?.text()?)? {
             Named::Metal { metal, .. } => Some(metal),
@@ -137,7 +135,7 @@ impl Pbrt<'_, '_> {
         if let (Some(metal), Some(same)) = (metal_of(eta_name), metal_of(k_name))
             && metal == same
         {
-            return Ok(Metal::Named(metal));
+            return Ok(Metal::Indices(metals::indices(metal)));
         }
         let spectra = match (list.find(eta_name), list.find(k_name)) {
             (Some(eta), Some(k)) => (self.whole_spectrum(eta)?, self.whole_spectrum(k)?),
@@ -174,7 +172,6 @@ impl Pbrt<'_, '_> {
         let at = list.place(names[0]);
         match self.metal(list, names)? {
             Metal::Reflectance(ink) => self.set_reflectance(spec, ink, list),
-            Metal::Named(name) => spec.parameters.set_at("metal", name.into(), at),
             Metal::Indices([eta, k]) => {
                 spec.parameters.set_at("eta", eta.into(), at.clone());
                 spec.parameters.set_at("k", k.into(), at);
