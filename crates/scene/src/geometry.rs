@@ -1,16 +1,19 @@
 //! The surfaces of a scene: triangles that stand still in one tree of the whole scene, those that move or repeat in
-//! trees of their own, and spheres in a last one.
+//! trees of their own, points and lines in trees beside them, and spheres in a last one.
 
 use crate::builder::{AccelChoice, unit_or};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
 use crate::parameters::Span;
 use crate::spheres::{PlacedSphere, Spheres};
+use crate::strokes::{StrokeWidths, Strokes};
 use crate::surface::{Surface, gamma};
 use crate::texture::UvPair;
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
+use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
+use bilux_math::transcendental::powf_f64;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -34,6 +37,20 @@ pub struct Placed {
     pub is_filtered: bool,
 }
 
+impl Placed {
+    /// True for what does not stand in the common tree.
+    fn in_own_tree(&self) -> bool {
+        self.instanced || !self.motion.is_still()
+    }
+}
+
+/// How much lengths grow on average.
+fn mean_scale(to_world: &Transform) -> f32 {
+    let volume = f64::from(to_world.matrix().determinant()).abs();
+    let scale = powf_f64(volume, 1.0 / 3.0) as f32;
+    if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
+}
+
 /// All triangles, and the trees over them.
 pub struct Geometry {
     objects: Vec<Placed>,
@@ -44,6 +61,9 @@ pub struct Geometry {
     /// The object of each instance; that of `still` is not looked at.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
+    /// The trees of points and lines, which are the instances behind those of triangles, and whether each is in the world as it
+    /// is.
+    strokes: Vec<(Arc<PrimitiveTree<Strokes>>, bool)>,
     /// Whether each object is mirrored, where it does not move.
     mirrored: Vec<bool>,
     /// Numbered after the objects.
@@ -52,19 +72,21 @@ pub struct Geometry {
 
 impl Geometry {
     /// Builds every tree. What stands still is moved into the world and put into one tree; what moves or is
-    /// instanced keeps its own, one for each mesh; spheres have one together.
+    /// instanced keeps its own, one for each mesh; spheres have one together, and the points and lines of each object one, whose
+    /// widths in the world are given.
     ///
     /// # Errors
     /// When there are too many triangles, or no accelerator has the name.
     pub fn build(
         objects: Vec<Placed>,
         spheres: Vec<PlacedSphere>,
+        widths: StrokeWidths,
         accel: &AccelChoice,
     ) -> Result<Geometry, SceneError> {
         let failed = |e: &dyn std::fmt::Display| SceneError::invalid(e.to_string(), &Span::default());
-        let in_own_tree = |o: &Placed| o.instanced || !o.motion.is_still();
+        let in_own_tree = |o: &Placed| o.in_own_tree() && !o.mesh.triangles.is_empty();
         let (mut corners, mut still_objects, mut groups) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, object) in objects.iter().enumerate().filter(|(_, o)| !in_own_tree(o)) {
+        for (i, object) in objects.iter().enumerate().filter(|(_, o)| !o.in_own_tree()) {
             let first = corners.len() as u32;
             still_objects.push((first, i as u32));
             corners.extend(world_corners(&object.mesh, &object.motion.at(0.0)));
@@ -99,10 +121,36 @@ impl Geometry {
             instances.push(Instance::new(tree, object.motion.clone()));
             instance_objects.push(i as u32);
         }
+        let mut strokes = Vec::new();
+        let mut stroke_trees: HashMap<(*const Mesh, u32), Arc<PrimitiveTree<Strokes>>> = HashMap::new();
+        for (i, object) in objects.iter().enumerate().filter(|(_, o)| o.mesh.stroke_count() > 0) {
+            let is_baked = !object.in_own_tree();
+            let (tree, motion) = if is_baked {
+                let to_world = object.motion.at(0.0);
+                (Arc::new(Strokes::tree(&object.mesh, Some(&to_world), widths, 1.0)), Motion::REST)
+            } else {
+                let scale = mean_scale(&object.motion.at(0.0));
+                let tree = || Arc::new(Strokes::tree(&object.mesh, None, widths, scale));
+                let key = (Arc::as_ptr(&object.mesh), scale.to_bits());
+                (stroke_trees.entry(key).or_insert_with(tree).clone(), object.motion.clone())
+            };
+            instances.push(Instance::new(tree.clone(), motion));
+            instance_objects.push(i as u32);
+            strokes.push((tree, is_baked));
+        }
         let mirrored = objects.iter().map(|o| o.motion.resting().is_some_and(Transform::mirrors)).collect();
         let spheres = Spheres::new(spheres, objects.len() as u32, instances.len() as u32);
         instances.extend(spheres.tree());
-        Ok(Geometry { objects, still, still_objects, instance_objects, instances, mirrored, spheres })
+        Ok(Geometry {
+            objects,
+            still,
+            still_objects,
+            instance_objects,
+            instances,
+            strokes,
+            mirrored,
+            spheres,
+        })
     }
 
     /// The top level for a time: cheap, since every tree is shared.
@@ -168,7 +216,29 @@ impl Geometry {
 
     /// The trees of triangles, each with where it stands.
     pub(crate) fn triangle_instances(&self) -> &[Instance] {
-        &self.instances[..self.instance_objects.len()]
+        &self.instances[..self.first_strokes()]
+    }
+
+    /// The instance that the first tree of points and lines is.
+    fn first_strokes(&self) -> usize {
+        self.instance_objects.len() - self.strokes.len()
+    }
+
+    /// True when some of it is points or lines.
+    pub(crate) fn has_strokes(&self) -> bool {
+        !self.strokes.is_empty()
+    }
+
+    /// The points and lines that an instance is, and whether they stand in the world as they are.
+    fn strokes_of(&self, instance: u32) -> Option<(&Strokes, bool)> {
+        let (tree, is_baked) = self.strokes.get((instance as usize).checked_sub(self.first_strokes())?)?;
+        Some((tree.primitives(), *is_baked))
+    }
+
+    /// True for what is a triangle.
+    #[inline]
+    pub(crate) fn is_triangle(&self, primitive: Primitive) -> bool {
+        (primitive.instance as usize) < self.first_strokes()
     }
 
     /// The trees, each with where it stands.
@@ -181,7 +251,8 @@ impl Geometry {
         if let Some((first, _)) = self.still_objects.iter().find(|(_, o)| *o == object) {
             return Primitive { instance: 0, index: *first };
         }
-        let instance = self.instance_objects.iter().position(|o| *o == object);
+        let of_triangles = &self.instance_objects[..self.first_strokes()];
+        let instance = of_triangles.iter().position(|o| *o == object);
         instance.map_or(Primitive::NONE, |i| Primitive { instance: i as u32, index: 0 })
     }
 
@@ -198,7 +269,12 @@ impl Geometry {
 
     /// Which object a hit belongs to.
     pub fn object_of(&self, hit: &Hit) -> u32 {
-        self.locate(hit.primitive()).0
+        self.object_of_primitive(hit.primitive())
+    }
+
+    /// Which object a triangle or sphere belongs to, as rays number it.
+    pub(crate) fn object_of_primitive(&self, primitive: Primitive) -> u32 {
+        self.locate(primitive).0
     }
 
     /// The object and the triangle within its mesh, or the sphere.
@@ -218,6 +294,9 @@ impl Geometry {
     pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, UvPair) {
         let (object, triangle) = self.locate(hit.primitive());
         let material = self.material_of(object);
+        if let Some((strokes, _)) = self.strokes_of(hit.instance) {
+            return (material, strokes.uv(hit.primitive, hit.u).into());
+        }
         match self.objects.get(object as usize) {
             Some(placed) => {
                 let corners = uv_pairs(&placed.mesh, placed.mesh.triangles[triangle as usize]);
@@ -240,9 +319,10 @@ impl Geometry {
         }
     }
 
-    /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for spheres.
+    /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for what
+    /// is no triangle.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        if primitive.instance == self.spheres.instance() {
+        if primitive == Primitive::NONE || !self.is_triangle(primitive) {
             return None;
         }
         let (_, [a, b, c], mirrors) = self.in_world(primitive, time);
@@ -264,11 +344,24 @@ impl Geometry {
     /// All that shading needs to know of a hit, footprints apart.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        if hit.instance == self.spheres.instance() {
-            self.spheres.surface(ray, hit)
-        } else {
+        if self.is_triangle(hit.primitive()) {
             self.triangle_surface(ray, hit)
+        } else {
+            self.other_surface(ray, hit)
         }
+    }
+
+    #[inline(never)]
+    fn other_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let Some((strokes, is_baked)) = self.strokes_of(hit.instance) else {
+            return self.spheres.surface(ray, hit);
+        };
+        let object = self.instance_objects[hit.instance as usize];
+        let to_world = match is_baked {
+            true => Cow::Borrowed(&Transform::IDENTITY),
+            false => self.place(object, ray.time).0,
+        };
+        strokes.surface(ray, hit, &to_world, object)
     }
 
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {

@@ -199,6 +199,9 @@ fn render_scene(
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
+    if !common.quiet {
+        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", output.display())));
+    }
     if let Some([x, y, sample]) = arguments.replay {
         output::print(job.replay(x, y, sample)?);
         return Ok(DONE);
@@ -233,6 +236,21 @@ fn render_scene(
         }
     }
     Ok(DONE)
+}
+
+/// Says which way is up where that was decided here; once, however many pictures there are.
+fn say_orientation(job: &Job, scene: &Path) {
+    static SAID: std::sync::Once = std::sync::Once::new();
+    if let Some(orientation) = job.orientation() {
+        let (up, front) = (orientation.up.name(), orientation.front.name());
+        let because = orientation.because.words();
+        SAID.call_once(|| {
+            output::say(format_args!(
+                "{}: up is {up}, front is {front}, {because} (--up, --front)",
+                scene.display()
+            ));
+        });
+    }
 }
 
 /// `{frame}` filled in with four digits; put before the extension where it is missing.
@@ -274,6 +292,7 @@ fn finish(
         bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
     }
     if !common.quiet {
+        say_orientation(job, scene);
         if let Some(choice) = &outcome.choice {
             output::say(format_args!(
                 "{}: {} chose {choice}",

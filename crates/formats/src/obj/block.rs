@@ -25,6 +25,8 @@ pub(super) struct Block {
     pub(super) places: Vec<Place>,
     /// Corners that count backwards from where they stand.
     pub(super) backward: Vec<Backward>,
+    /// Points and lines.
+    pub(super) strokes: Vec<Stroke>,
     /// What changes between faces, in order.
     pub(super) turns: Vec<(usize, Turn)>,
     pub(super) oddities: Oddities,
@@ -32,6 +34,8 @@ pub(super) struct Block {
     pub(super) lines: u32,
     /// What reading the block has taken of the budget.
     pub(super) spent: u64,
+    /// The first element that is left out because of what is wrong with it.
+    pub(super) fault: Option<FormatError>,
     /// What ended it early.
     pub(super) failure: Option<FormatError>,
 }
@@ -47,6 +51,26 @@ pub(super) struct Backward {
     pub(super) index: i64,
     /// Where in the block the corner is written.
     pub(super) offset: usize,
+}
+
+/// A point, or a line between two vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke {
+    /// How many turns stand before it.
+    pub(super) turns: usize,
+    /// Twice the same of a point.
+    pub(super) ends: [End; 2],
+    pub(super) is_point: bool,
+    pub(super) place: Place,
+}
+
+/// A vertex of a point or a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum End {
+    /// Counted from 0.
+    Whole(u32),
+    /// From the first vertex of the block, negative before it.
+    OfBlock(i64),
 }
 
 /// What changes between two faces.
@@ -74,7 +98,8 @@ impl Block {
         self.places.clear();
         self.backward.clear();
         self.turns.clear();
-        Block { oddities: Oddities::default(), failure: None, ..self }
+        self.strokes.clear();
+        Block { oddities: Oddities::default(), fault: None, failure: None, ..self }
     }
 }
 
@@ -87,16 +112,22 @@ pub(super) fn read_block(text: &[u8], file: &Arc<str>, budget: &Budget, block: B
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
 }
 
-/// What is wrong with a corner; `at` is where it stands.
+/// What is wrong with a corner.
 #[cold]
-pub(super) fn bad_corner(word: &[u8], at: Span) -> FormatError {
-    let message = format!(
-        "{} is no corner of a face: it has to be a vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
+pub(super) fn bad_corner(word: &[u8]) -> String {
+    format!(
+        "{} is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
          counted from 1, or backwards from -1",
         quoted(word)
-    );
-    FormatError::malformed(message, at)
+    )
 }
+
+/// What becomes of elements that cannot be read.
+const VERTEX_LEFT_OUT: &str = ": this vertex is left out, and with it the faces that it is a corner of";
+const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is taken as 0";
+const FACE_LEFT_OUT: &str = ": this face is left out";
+/// Of these it is known only when blocks are joined.
+pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
 
 struct Reader<'a> {
     cursor: Cursor<'a>,
@@ -115,6 +146,8 @@ impl<'a> Reader<'a> {
                 b"vt" => self.texture_coordinates()?,
                 b"vn" => self.normal()?,
                 b"f" | b"fo" => self.face(start)?,
+                b"l" => self.strokes(start, false)?,
+                b"p" => self.strokes(start, true)?,
                 b"o" | b"g" => {
                     let name = name_of(self.cursor.rest_of_line());
                     self.turn(Turn::Name(name));
@@ -154,9 +187,11 @@ impl<'a> Reader<'a> {
 
     fn turn(&mut self, turn: Turn) {
         let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
+        let is_drawn_with = self.block.strokes.last().is_some_and(|stroke| stroke.turns == turns.len());
         // Of several of a kind that no face stands between the last one counts.
         if let Some((before, last)) = turns.last_mut()
             && *before == faces
+            && !is_drawn_with
             && !matches!(turn, Turn::Libraries(..))
             && std::mem::discriminant(last) == std::mem::discriminant(&turn)
         {
@@ -169,7 +204,11 @@ impl<'a> Reader<'a> {
     /// `v x y z [w]` or `v x y z r g b`.
     fn vertex(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 8];
-        let count = self.numbers(&mut numbers, 3)?;
+        let mut count = self.numbers(&mut numbers, 3, VERTEX_LEFT_OUT);
+        if count == 0 {
+            // Its number is kept, so that the faces after it name the right ones.
+            (numbers, count) = ([f32::NAN; 8], 3);
+        }
         self.budget.take::<Vec3>(1, self.file)?;
         let block = &mut self.block;
         block.positions.push(Vec3::from_slice(&numbers));
@@ -187,7 +226,7 @@ impl<'a> Reader<'a> {
 
     fn texture_coordinates(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 1)?;
+        self.numbers(&mut numbers, 1, ATTRIBUTE_LEFT_OUT);
         self.budget.take::<Vec2>(1, self.file)?;
         self.block.uvs.push(Vec2::from_slice(&numbers));
         Ok(())
@@ -195,15 +234,15 @@ impl<'a> Reader<'a> {
 
     fn normal(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 3)?;
+        self.numbers(&mut numbers, 3, ATTRIBUTE_LEFT_OUT);
         self.budget.take::<Vec3>(1, self.file)?;
         self.block.normals.push(Vec3::from_slice(&numbers));
         Ok(())
     }
 
-    /// The numbers of a statement, `least` of them or more; how many there are.
+    /// The numbers of a statement, `least` of them or more; how many there are, or 0 where they cannot be read.
     #[inline]
-    fn numbers(&mut self, numbers: &mut [f32], least: usize) -> Result<usize, FormatError> {
+    fn numbers(&mut self, numbers: &mut [f32], least: usize, left_out: &str) -> usize {
         let mut count = 0;
         let mut odd = false;
         while count < numbers.len() {
@@ -217,22 +256,35 @@ impl<'a> Reader<'a> {
                 None if word.is_empty() || word.starts_with(b"#") => break,
                 None => {
                     let at = self.at(self.cursor.offset() - word.len());
-                    return Err(FormatError::malformed(format!("{} is no number", quoted(word)), at));
+                    self.fault(format!("{} is not a number", quoted(word)), left_out, at);
+                    numbers.fill(0.0);
+                    return 0;
                 }
             }
         }
         if count < least {
             let at = self.at(self.cursor.offset());
-            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
-            let message =
-                format!("there are {count} numbers on this line, where {least} are needed{cut_off}");
-            return Err(FormatError::malformed(message, at));
+            let cut_off = if self.cursor.is_done() { ", as the file was cut off here" } else { "" };
+            let message = format!("this line has {count} numbers and needs {least}{cut_off}");
+            self.fault(message, left_out, at);
+            numbers.fill(0.0);
+            return 0;
         }
         if odd {
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.note(what, self.cursor.place(self.cursor.offset()));
         }
-        Ok(count)
+        count
+    }
+
+    /// Notes that an element is left out, and why.
+    #[cold]
+    fn fault(&mut self, message: String, left_out: &str, at: Span) {
+        if self.block.fault.is_none() {
+            self.block.fault = Some(FormatError::malformed(message.clone(), at.clone()));
+        }
+        self.block.oddities.note_first(left_out, || message, || at);
+        self.pass_line();
     }
 
     fn face(&mut self, start: Place) -> Result<(), FormatError> {
@@ -242,7 +294,13 @@ impl<'a> Reader<'a> {
             if word.is_empty() || word.starts_with(b"#") {
                 break;
             }
-            let corner = self.corner(word)?;
+            let Some(corner) = self.corner(word) else {
+                self.block.corners.truncate(first);
+                self.block.backward[backward..].iter_mut().for_each(|left_out| left_out.corner = None);
+                let at = self.at(self.cursor.offset() - word.len());
+                self.fault(bad_corner(word), FACE_LEFT_OUT, at);
+                return Ok(());
+            };
             self.block.corners.push(corner);
             if (self.block.corners.len() - first).is_multiple_of(MANY) {
                 self.budget.take::<Corner>(MANY, self.file)?;
@@ -266,27 +324,63 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
+    fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
+        let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
+        loop {
+            let word = self.cursor.word();
+            if word.is_empty() || word.starts_with(b"#") {
+                break;
+            }
+            let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
+            let end = match index(digits) {
+                Some(Index::Forward(index)) => End::Whole(index),
+                Some(Index::Backward(back)) => End::OfBlock(self.block.positions.len() as i64 - back),
+                None => {
+                    let at = self.at(self.cursor.offset() - word.len());
+                    let message = format!(
+                        "{} is not a vertex of a point or a line: write a number, counted from 1, or backwards from -1",
+                        quoted(word)
+                    );
+                    self.block.strokes.truncate(first);
+                    self.fault(message, ": this point or line is left out", at);
+                    return Ok(());
+                }
+            };
+            let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
+            if let Some(ends) = ends {
+                self.budget.take::<Stroke>(1, self.file)?;
+                let turns = self.block.turns.len();
+                self.block.strokes.push(Stroke { turns, ends, is_point: are_points, place });
+            }
+            last = Some(end);
+            count += 1;
+        }
+        if count < 2 - usize::from(are_points) {
+            self.note("a line with fewer than 2 vertices, or a point without one, is left out", place);
+        }
+        Ok(())
+    }
+
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[inline]
-    fn corner(&mut self, word: &[u8]) -> Result<Corner, FormatError> {
+    fn corner(&mut self, word: &[u8]) -> Option<Corner> {
         let mut corner = [NONE; 3];
         let mut rest = word;
         for part in 0..3 {
             let length = rest.iter().position(|&b| b == b'/').unwrap_or(rest.len());
             if length > 0 {
-                corner[part] = match index(&rest[..length]) {
-                    Some(Index::Forward(index)) => index,
-                    Some(Index::Backward(back)) => self.backward(word, part, back),
-                    None => return Err(self.bad_corner(word)),
+                corner[part] = match index(&rest[..length])? {
+                    Index::Forward(index) => index,
+                    Index::Backward(back) => self.backward(word, part, back),
                 };
             }
             match rest.get(length + 1..) {
                 Some(after) => rest = after,
-                None if corner[0] == NONE => return Err(self.bad_corner(word)),
-                None => return Ok(corner),
+                None => return Some(corner).filter(|corner| corner[0] != NONE),
             }
         }
-        Err(self.bad_corner(word))
+        None
     }
 
     /// Notes a part of a corner that counts backwards, and gives what stands in its place until it is known.
@@ -302,11 +396,6 @@ impl<'a> Reader<'a> {
         0
     }
 
-    #[cold]
-    fn bad_corner(&self, word: &[u8]) -> FormatError {
-        bad_corner(word, self.at(self.cursor.offset() - word.len()))
-    }
-
     /// `s off` and `s 0` are flat, any other number is a group that is smooth.
     fn smoothing_group(&mut self, start: Place) -> Result<(), FormatError> {
         let word = self.cursor.word();
@@ -317,8 +406,9 @@ impl<'a> Reader<'a> {
             (_, Some(group)) => group.min(BY_ANGLE - 1),
             _ => {
                 let message =
-                    format!("{} is no smoothing group: it has to be a number or 'off'", quoted(word));
-                return Err(FormatError::malformed(message, start.in_file(self.file)));
+                    format!("{} is not a smoothing group, which is a number or 'off'", quoted(word));
+                self.fault(message, ": this line is left out", start.in_file(self.file));
+                return Ok(());
             }
         };
         self.turn(Turn::Smoothing(smoothing));
@@ -327,22 +417,21 @@ impl<'a> Reader<'a> {
 
     fn other_statement(&mut self, word: &[u8], start: Place) -> Result<(), FormatError> {
         let what = match word {
-            b"l" | b"p" => "lines and points are not drawn".to_owned(),
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
                 "free-form curves and surfaces are not drawn".to_owned()
             }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
             | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
-                format!("the statement {} is left out", quoted(word))
+                format!("the statement {} is ignored", quoted(word))
             }
             _ => {
                 let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
                 if !readable {
-                    let message = format!("{} is no statement of an OBJ file", quoted(word));
+                    let message = format!("{} is not a statement of an OBJ file", quoted(word));
                     return Err(FormatError::malformed(message, start.in_file(self.file)));
                 }
-                format!("the unknown statement {} is left out", quoted(word))
+                format!("the unknown statement {} is ignored", quoted(word))
             }
         };
         self.note(&what, start);

@@ -5,7 +5,6 @@ use super::lights::picture_name;
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
 use crate::FormatError;
-use crate::reading::Texels;
 use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};
 use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::{Spec, Texture, Value};
@@ -37,7 +36,7 @@ pub(super) fn infinite(
         let message = "'L' and 'filename' both say what this light gives: take one of them out";
         return Err(FormatError::malformed(message, list.place("L")));
     }
-    let picture = pbrt.file(&name, Texels::Colours, &at)?;
+    let picture = pbrt.light_file(&name, &at)?;
     let is_square = picture.width() == picture.height();
     if !is_square && !is_old {
         let what = "the picture of an infinite light is no square: taken as one by longitude and latitude";

@@ -18,6 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let working_folder = reading.options.working_folder.clone();
+    let before = std::mem::replace(&mut reading.working_folder, working_folder);
+    let scene = read_whole(reading, source);
+    reading.working_folder = before;
+    scene
+}
+
+fn read_whole(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut pbrt = Pbrt {
         reading,
         scene: SceneBuilder::default(),
@@ -184,7 +192,7 @@ impl Pbrt<'_, '_> {
 
     /// Reads another file as if it stood here.
     pub(super) fn include(&mut self, name: &str, at: &Span) -> Result<(), FormatError> {
-        let path = self.reading.locate(self.folder.as_deref(), name, at)?;
+        let path = self.reading.locate_besides(self.folder.as_deref(), name, &self.open, at)?;
         if self.open.contains(&path) {
             let message = format!("'{name}' includes itself, directly or through others: take it out here");
             return Err(FormatError::malformed(message, at.clone()));

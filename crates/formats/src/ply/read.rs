@@ -11,8 +11,9 @@ use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{SceneBuilder, Value};
+use bilux_scene::{Mesh, Object, SceneBuilder, Value};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let places = Places::new(source.name, source.bytes);
@@ -25,6 +26,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         soup: Soup::default(),
         vertices: Slots::default(),
         triangles: None,
+        edges: Vec::new(),
         wedge_uvs: Vec::new(),
         wedges: HashMap::new(),
         smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
@@ -56,6 +58,8 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) soup: Soup,
     /// Of all faces, where nothing has to be welded.
     triangles: Option<Vec<[u32; 3]>>,
+    /// Pairs of vertices.
+    edges: Vec<[u32; 2]>,
     vertices: Slots,
     /// Texture coordinates of corners rather than vertices, each value once.
     wedge_uvs: Vec<Vec2>,
@@ -77,8 +81,31 @@ impl Ply<'_, '_, '_> {
             "vertex" => self.vertices(element),
             "face" => self.faces(element, false),
             "tristrips" => self.faces(element, true),
+            "edge" if has_both_ends(element) => self.edges(element),
             _ => self.skip_element(element),
         }
+    }
+
+    /// Pairs of vertices, `vertex1` and `vertex2`.
+    fn edges(&mut self, element: &Element) -> Result<(), FormatError> {
+        for _ in 0..element.count {
+            let start = self.body.offset();
+            let mut ends = [NONE; 2];
+            for property in &element.properties {
+                let which = ENDS.iter().position(|end| *end == property.name);
+                match which.filter(|_| property.count.is_none()) {
+                    // What is no index is one that no file has.
+                    Some(end) => {
+                        ends[end] = u32::try_from(self.body.integer(property.scalar)?).unwrap_or(NONE);
+                    }
+                    None => self.skip(property)?,
+                }
+            }
+            self.end_row(start);
+            self.reading.budget.take::<[u32; 2]>(1, self.source.name)?;
+            self.edges.push(ends);
+        }
+        Ok(())
     }
 
     fn skip_element(&mut self, element: &Element) -> Result<(), FormatError> {
@@ -315,12 +342,11 @@ impl Ply<'_, '_, '_> {
             return self.finish_triangles(texture, scene, triangles);
         }
         if self.soup.faces.is_empty() {
-            let message = if self.soup.positions.is_empty() {
-                "there is no face in it"
-            } else {
-                "there is no face in it: this is a cloud of points; make a surface of it with another program first"
-            };
-            return Err(FormatError::malformed(message, self.places.whole()));
+            return self.finish_strokes(scene);
+        }
+        if !self.edges.is_empty() {
+            let places = self.places;
+            self.oddities.note("edges beside faces are not drawn", || places.whole());
         }
         let (normals, uvs) = (self.vertices.normals, self.vertices.uvs);
         let wedges = std::mem::take(&mut self.wedge_uvs);
@@ -342,6 +368,39 @@ impl Ply<'_, '_, '_> {
         let place = |offset: u64| places.at(offset as usize);
         assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
+        Ok(scene)
+    }
+
+    /// Vertices that no face joins: lines where there are edges, else a cloud of points.
+    fn finish_strokes(mut self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
+        let (soup, mut lines) = (std::mem::take(&mut self.soup), std::mem::take(&mut self.edges));
+        let known = soup.positions.len();
+        if known == 0 {
+            return Err(FormatError::malformed("there is no face and no vertex in it", self.places.whole()));
+        }
+        let given = lines.len();
+        lines.retain(|ends| ends.iter().all(|&end| (end as usize) < known));
+        if lines.len() < given {
+            let places = self.places;
+            let what = "edges name vertices that the file does not have; they are left out";
+            self.oddities.note(what, || places.whole());
+        }
+        self.reading.budget.take_bytes(known as u64 * 4, self.source.name)?;
+        let points = if lines.is_empty() { (0..known as u32).collect() } else { Vec::new() };
+        let material =
+            scene.add_material(plain_material(!soup.colours.is_empty(), !soup.specular.is_empty()));
+        let mesh = Mesh {
+            name: self.source.stem(),
+            positions: soup.positions,
+            uvs: soup.uvs,
+            vertex_kd: soup.colours,
+            vertex_ks: soup.specular,
+            points,
+            lines,
+            ..Mesh::default()
+        };
+        scene.objects.push(Object::new(&self.source.stem(), Arc::new(mesh), material));
+        self.oddities.into_warnings(&mut scene);
         Ok(scene)
     }
 
@@ -367,6 +426,13 @@ impl Ply<'_, '_, '_> {
         }
         Ok(())
     }
+}
+
+/// What the properties of an edge are called.
+const ENDS: [&str; 2] = ["vertex1", "vertex2"];
+
+fn has_both_ends(element: &Element) -> bool {
+    ENDS.iter().all(|end| element.properties.iter().any(|p| p.name == *end && p.count.is_none()))
 }
 
 /// Vertices that come later in the file bring their normals and uvs too, which are looked at in the end.

@@ -49,7 +49,7 @@ fn what_is_broken_in_draco_is_refused_with_its_pointer() {
         (r#""count":54"#, r#""count":51"#, "#/accessors/2: 54 elements of 108 bytes are packed for these 51"),
         ("\"componentType\":5123", "\"componentType\":5120", "do not fit this componentType"),
         (r#""indices":2"#, r#""indices":2,"mode":5"#, "only triangles can be packed"),
-        ("base64,RFJBQ08", "base64,RFJBR08", "the packed bytes of this primitive are broken"),
+        ("base64,RFJBQ08", "base64,RFJBR08", "the packed bytes of this primitive cannot be unpacked"),
     ];
     for (from, to, part) in cases {
         assert!(text.contains(from), "{from}");

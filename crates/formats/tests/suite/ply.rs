@@ -95,7 +95,7 @@ fn broken_files_are_refused_with_their_place() {
             "scene.ply:16:1: this face names vertex 4, but the file has only 4, counted from 0",
         ),
         (good.replace("0 1 2 3", "0 1 2 -1"), "scene.ply:16:1: this face names vertex -1"),
-        (good.replace("1 1 0", "1 one 0"), "scene.ply:14:3: 'one' is no number"),
+        (good.replace("1 1 0", "1 one 0"), "scene.ply:14:3: 'one' is not a number"),
         (
             good.replace("vertex 4", "vertex 4000000000"),
             "scene.ply:5:1: the header says 4000000000 of the element 'vertex'",

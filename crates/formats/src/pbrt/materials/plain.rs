@@ -1,7 +1,7 @@
 //! Materials of one layer.
 
 use super::super::inks::{Ink, Meaning};
-use super::super::metals;
+use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
 use super::super::spectra::{Named, named};
@@ -144,7 +144,13 @@ impl Pbrt<'_, '_> {
             _ => (None, None),
         };
         if let (Some(eta), Some(k)) = spectra {
-            return Ok(Metal::Indices(metals::from_spectra(&eta, &k)));
+            let Reduced { indices, is_cut } = metals::from_spectra(&eta, &k);
+            if is_cut {
+                let what =
+                    "a metal is of a stronger colour than sRGB holds: the nearest that it holds is used";
+                self.oddities.note(what, || list.place(eta_name));
+            }
+            return Ok(Metal::Indices(indices));
         }
         let [eta, k] = metals::indices("copper");
         let mut part = |name, default| {
