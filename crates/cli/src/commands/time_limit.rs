@@ -31,12 +31,12 @@ pub fn overrun(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bilux::scene::{Parameters, Value};
+    use bilux::scene::{Parameters, Spec, Value};
     use bilux::transport::Silent;
 
     #[test]
     fn one_line_says_where_the_time_went_and_nothing_is_said_within_the_tolerance() {
-        let scene = bilux::scene::generators::generate("teapot", &Parameters::default()).unwrap();
+        let scene = bilux::generate(&Spec::new("", "teapot")).unwrap();
         let mut user = Parameters::default();
         for (key, value) in
             [("size", Value::from("8x8")), ("time_limit", 1.0f32.into()), ("spp", Value::Integer(1))]
