@@ -111,7 +111,7 @@ impl Sheets {
         // Behind the wall of a solid is its inside: what stands on a floor is no sheet.
         let backwards = Ray { t_min: gap, ..from(p, -n) };
         let behind = accelerator.closest_hit(&backwards, &Query::default());
-        !behind.is_some_and(|hit| parts.is_back(&backwards, &hit).is_some())
+        behind.is_none_or(|hit| parts.is_back(&backwards, &hit).is_none())
     }
 
     /// The greatest gap behind the back of a triangle, `front` along its normal and twice as long as its area.
