@@ -132,7 +132,7 @@ impl Job {
         let accel = accel_of(&completed);
         let notes = own.iter().filter_map(|own| own.decision.clone()).collect();
         let built = match own.map(|own| own.alone) {
-            Some((alone, built)) if is_as_large(&alone, &completed) => built,
+            Some((alone, built)) if own_light::is_as_large(&alone, &completed) => built,
             _ => completed.build(&accel, shutter_at(&settings, settings.time), aspect)?,
         };
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
@@ -362,12 +362,6 @@ impl Outcome {
         note(".samples_that_told_it", "in the mean".to_owned());
         note(".bias_at_most", format!("{bias} standard errors of a pixel, root mean square"));
     }
-}
-
-/// True where nothing was added to a scene but a camera.
-fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> bool {
-    let counts = |scene: &SceneBuilder| (scene.objects.len(), scene.lights.len(), scene.cameras.len());
-    counts(alone) == counts(completed)
 }
 
 pub(crate) fn shutter_at(settings: &Settings, time: f32) -> [f32; 2] {

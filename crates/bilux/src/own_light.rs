@@ -47,6 +47,12 @@ pub(crate) fn measure(
     Ok(Some(OwnLight { is_enough, decision, alone: (framed, built) }))
 }
 
+/// True where nothing was added to a scene but a camera.
+pub(crate) fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> bool {
+    let counts = |scene: &SceneBuilder| (scene.objects.len(), scene.lights.len(), scene.cameras.len());
+    counts(alone) == counts(completed)
+}
+
 fn decision(measured: &Illumination, is_enough: bool) -> String {
     let percent = (measured.lit * 100.0).round();
     if measured.surfaces == 0.0 {

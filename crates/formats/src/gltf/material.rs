@@ -317,28 +317,6 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "fuzz_roughness", rough, extension.get("sheenRoughnessTexture"), Channel::A, &at)
     }
 
-    /// Theirs is in nm, between two thicknesses where a picture tells.
-    fn film(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
-        let Some(extension) = node.extension("KHR_materials_iridescence") else { return Ok(()) };
-        let weight = extension.number("iridescenceFactor")?.unwrap_or(0.0);
-        if weight <= 0.0 {
-            return Ok(());
-        }
-        let at = extension.at();
-        let picture = extension.get("iridescenceTexture");
-        self.scalar(draft, "thin_film_weight", weight, picture, Channel::R, &at)?;
-        let ior = extension.number("iridescenceIor")?.unwrap_or(1.3);
-        draft.set("thin_film_ior", ior as f32, at.clone());
-        let least = extension.number("iridescenceThicknessMinimum")?.unwrap_or(100.0);
-        let most = extension.number("iridescenceThicknessMaximum")?.unwrap_or(400.0);
-        let thickness = match extension.get("iridescenceThicknessTexture") {
-            Some(info) => self.thickness(info, [least, most], &mut draft.uv_sets)?,
-            None => ((most / 1000.0) as f32).into(),
-        };
-        draft.set("thin_film_thickness", thickness, at);
-        Ok(())
-    }
-
     fn diffuse_transmission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_diffuse_transmission") else { return Ok(()) };
         let weight = extension.number("diffuseTransmissionFactor")?.unwrap_or(0.0);
@@ -387,7 +365,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn scalar(
+    pub(super) fn scalar(
         &mut self,
         draft: &mut Draft,
         key: &str,

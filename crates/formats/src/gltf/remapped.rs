@@ -1,7 +1,7 @@
 //! Textures whose texels mean something else here: directions that become angles, and thicknesses from a least one on.
 
 use super::json::Node;
-use super::material::UvSets;
+use super::material::{Draft, UvSets};
 use super::reader::Gltf;
 use super::textures::Taken;
 use crate::FormatError;
@@ -13,6 +13,28 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 impl<'d> Gltf<'d, '_, '_> {
+    /// Theirs is in nm, between two thicknesses where a picture tells.
+    pub(super) fn film(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+        let Some(extension) = node.extension("KHR_materials_iridescence") else { return Ok(()) };
+        let weight = extension.number("iridescenceFactor")?.unwrap_or(0.0);
+        if weight <= 0.0 {
+            return Ok(());
+        }
+        let at = extension.at();
+        let picture = extension.get("iridescenceTexture");
+        self.scalar(draft, "thin_film_weight", weight, picture, Channel::R, &at)?;
+        let ior = extension.number("iridescenceIor")?.unwrap_or(1.3);
+        draft.set("thin_film_ior", ior as f32, at.clone());
+        let least = extension.number("iridescenceThicknessMinimum")?.unwrap_or(100.0);
+        let most = extension.number("iridescenceThicknessMaximum")?.unwrap_or(400.0);
+        let thickness = match extension.get("iridescenceThicknessTexture") {
+            Some(info) => self.thickness(info, [least, most], &mut draft.uv_sets)?,
+            None => ((most / 1000.0) as f32).into(),
+        };
+        draft.set("thin_film_thickness", thickness, at);
+        Ok(())
+    }
+
     /// Directions along the surface, in red and green, as turns from 0 to 1, to which `turns` are added.
     pub(super) fn angles(
         &mut self,
@@ -33,7 +55,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// Thicknesses in nm, from the first to the second as green grows, in our µm.
-    pub(super) fn thickness(
+    fn thickness(
         &mut self,
         info: Node<'d>,
         [first, second]: [f64; 2],
