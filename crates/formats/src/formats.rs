@@ -103,6 +103,34 @@ pub(crate) fn read_file(
     path: &Path,
     name: &Arc<str>,
 ) -> Result<SceneBuilder, FormatError> {
+    let before = reading.budget.clone();
+    let scene = read_file_once(row, reading, path, name)?;
+    let Some(origin) = far_origin(row, &scene) else { return Ok(scene) };
+    drop(scene);
+    reading.budget = before;
+    reading.origin = origin;
+    let again = read_file_once(row, reading, path, name);
+    reading.origin = DVec3::ZERO;
+    again.map(|scene| SceneBuilder { origin, ..scene })
+}
+
+/// Where a model is, if it is so far from zero that its coordinates have lost digits which the file may have.
+fn far_origin(row: Option<&SceneFormatEntry>, scene: &SceneBuilder) -> Option<DVec3> {
+    const FAR: f64 = 1024.0;
+    row.filter(|row| matches!(row.entry.name, "obj" | "ply"))?;
+    let bounds = scene.bounds(0.0);
+    let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let middle = ((low + high) * 0.5).round();
+    (!bounds.is_empty() && middle.is_finite() && middle.length() > FAR * (high - low).length())
+        .then_some(middle)
+}
+
+fn read_file_once(
+    row: Option<&SceneFormatEntry>,
+    reading: &mut Reading,
+    path: &Path,
+    name: &Arc<str>,
+) -> Result<SceneBuilder, FormatError> {
     let folder = path.parent();
     if let Some(row @ SceneFormatEntry { read: Some(ReadFormat::Flowing(_)), .. }) = row {
         let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };

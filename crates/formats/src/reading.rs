@@ -4,6 +4,7 @@ use crate::budget::Budget;
 use crate::images::{Means, decoded};
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
+use bilux_math::DVec3;
 use bilux_pictures::Limits;
 use bilux_scene::texture::{Channel, Image};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
@@ -46,6 +47,8 @@ pub(crate) struct Reading<'o> {
     pub(crate) budget: Budget,
     /// [`ReadOptions::crease_angle`], unless a scene has its own.
     pub(crate) crease_angle: f32,
+    /// What positions of the file are counted from, where they are far from zero beside what they differ by.
+    pub(crate) origin: DVec3,
     /// Nothing outside this folder is opened, but for what is found in [`Reading::working_folder`].
     root: Option<PathBuf>,
     /// Where the format that is being read looks for files too.
@@ -70,6 +73,7 @@ impl<'o> Reading<'o> {
             options,
             budget: Budget::new(options.max_memory),
             crease_angle: options.crease_angle,
+            origin: DVec3::ZERO,
             root,
             working_folder: None,
             textures: HashMap::new(),

@@ -33,7 +33,8 @@ pub(crate) fn as_triangles<'a>(
             objects.push(object);
             continue;
         }
-        let scale = f64::from(object.motion.at(0.0).matrix().determinant()).abs().cbrt() as f32;
+        let volume = f64::from(object.motion.at(0.0).matrix().determinant()).abs();
+        let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
         let bare = &*object.mesh;
         let mut body = solid(bare, &bare.points, &[], widths.points * 0.5 / scale);
         if !bare.lines.is_empty() {

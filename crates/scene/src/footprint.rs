@@ -4,7 +4,8 @@
 //! and the picture's size, never of a path. So a surface is the same from both ends of any path.
 
 use crate::cameras::Camera;
-use crate::geometry::{Geometry, triangle_uvs};
+use crate::corners::triangle_uvs;
+use crate::geometry::Geometry;
 use crate::mesh::Mesh;
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;

@@ -2,9 +2,11 @@
 //! trees of their own, points and lines in trees beside them, and spheres in a last one.
 
 use crate::builder::{AccelChoice, unit_or};
+use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
 use crate::parameters::Span;
+pub use crate::placed::Placed;
 use crate::spheres::{PlacedSphere, Spheres};
 use crate::strokes::{StrokeWidths, Strokes};
 use crate::surface::{Surface, gamma};
@@ -13,43 +15,10 @@ use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
 use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
-use bilux_math::transcendental::powf_f64;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// An object with its place, as [`Geometry::build`] takes it.
-pub struct Placed {
-    /// Its triangles, in their own space.
-    pub mesh: Arc<Mesh>,
-    /// Index of its material.
-    pub material: u32,
-    /// Where it is, and when.
-    pub motion: Motion,
-    /// Keep a tree of its own.
-    pub instanced: bool,
-    /// Its material gives light.
-    pub gives_light: bool,
-    /// Its material asks for tangents.
-    pub has_tangents: bool,
-    /// It has textures that are filtered.
-    pub is_filtered: bool,
-}
-
-impl Placed {
-    /// True for what does not stand in the common tree.
-    fn in_own_tree(&self) -> bool {
-        self.instanced || !self.motion.is_still()
-    }
-}
-
-/// How much lengths grow on average.
-fn mean_scale(to_world: &Transform) -> f32 {
-    let volume = f64::from(to_world.matrix().determinant()).abs();
-    let scale = powf_f64(volume, 1.0 / 3.0) as f32;
-    if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
-}
 
 /// All triangles, and the trees over them.
 pub struct Geometry {
@@ -122,20 +91,9 @@ impl Geometry {
             instance_objects.push(i as u32);
         }
         let mut strokes = Vec::new();
-        let mut stroke_trees: HashMap<(*const Mesh, u32), Arc<PrimitiveTree<Strokes>>> = HashMap::new();
-        for (i, object) in objects.iter().enumerate().filter(|(_, o)| o.mesh.stroke_count() > 0) {
-            let is_baked = !object.in_own_tree();
-            let (tree, motion) = if is_baked {
-                let to_world = object.motion.at(0.0);
-                (Arc::new(Strokes::tree(&object.mesh, Some(&to_world), widths, 1.0)), Motion::REST)
-            } else {
-                let scale = mean_scale(&object.motion.at(0.0));
-                let tree = || Arc::new(Strokes::tree(&object.mesh, None, widths, scale));
-                let key = (Arc::as_ptr(&object.mesh), scale.to_bits());
-                (stroke_trees.entry(key).or_insert_with(tree).clone(), object.motion.clone())
-            };
+        for (object, tree, motion, is_baked) in Strokes::trees(&objects, widths) {
             instances.push(Instance::new(tree.clone(), motion));
-            instance_objects.push(i as u32);
+            instance_objects.push(object);
             strokes.push((tree, is_baked));
         }
         let mirrored = objects.iter().map(|o| o.motion.resting().is_some_and(Transform::mirrors)).collect();
@@ -434,54 +392,4 @@ impl Geometry {
             time: ray.time,
         }
     }
-}
-
-/// The texture coordinates of a triangle's corners: where a mesh has none, the weights of the second and the third.
-pub(crate) fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
-    if mesh.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y] } else { triangle.map(|i| mesh.uvs[i as usize]) }
-}
-
-/// Where textures are looked up at every triangle's corners.
-pub(crate) fn corner_uvs(mesh: &Mesh) -> Vec<[UvPair; 3]> {
-    mesh.triangles.iter().map(|t| uv_pairs(mesh, *t)).collect()
-}
-
-/// Where they are looked up at the corners of one.
-#[inline]
-fn uv_pairs(mesh: &Mesh, triangle: [u32; 3]) -> [UvPair; 3] {
-    let first = triangle_uvs(mesh, triangle);
-    let second = if mesh.uvs2.is_empty() { first } else { triangle.map(|i| mesh.uvs2[i as usize]) };
-    std::array::from_fn(|i| UvPair([first[i], second[i]]))
-}
-
-/// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say
-/// nothing of it. [pbrt 2023, 6.5.2]
-fn tangents([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<(Vec3, Vec3)> {
-    let [uv_a, uv_b, uv_c] = [uvs[0]?, uvs[1]?, uvs[2]?];
-    let (b_side, c_side) = (uv_b - uv_a, uv_c - uv_a);
-    let determinant = b_side.perp_dot(c_side);
-    let sign = 1f32.copysign(determinant);
-    let along_u = ((b - a) * c_side.y - (c - a) * b_side.y) * sign;
-    let along_v = ((c - a) * b_side.x - (b - a) * c_side.x) * sign;
-    along_u.try_normalize().filter(|_| determinant != 0.0).map(|u| (u, along_v))
-}
-
-fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f32; 3]; 3]> {
-    let still = to_world.is_identity();
-    mesh.triangles.iter().map(move |t| {
-        t.map(|i| {
-            let p = mesh.positions[i as usize];
-            if still { p.to_array() } else { to_world.point(p).to_array() }
-        })
-    })
-}
-
-/// A point moved, with the bound on its error moved too. [pbrt 2023, 6.8.5]
-pub(crate) fn transform_with_error(to_world: &Transform, p: Vec3, error: Vec3) -> (Vec3, Vec3) {
-    let m = to_world.matrix();
-    let abs = |v: Vec3| {
-        m.x_axis.truncate().abs() * v.x + m.y_axis.truncate().abs() * v.y + m.z_axis.truncate().abs() * v.z
-    };
-    let rounding = (abs(p.abs()) + m.w_axis.truncate().abs()) * gamma(4);
-    (to_world.point(p), abs(error) * (1.0 + gamma(4)) + rounding)
 }

@@ -2,13 +2,15 @@
 //! them costs a triangle.
 
 use crate::builder::unit_or;
-use crate::geometry::transform_with_error;
+use crate::corners::transform_with_error;
+use crate::geometry::Placed;
 use crate::mesh::Mesh;
 use crate::surface::{Surface, gamma};
 use bilux_accel::primitives::{Capsule, Crossing, PrimitiveTree, Primitives, Shape, Sphere};
 use bilux_accel::{Hit, Primitive, Ray};
 use bilux_math::glam::DVec3;
-use bilux_math::{Rgb, Transform, Vec2, Vec3};
+use bilux_math::{Motion, Rgb, Transform, Vec2, Vec3};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// How wide points and lines are, in metres of the world. Where it is 0, they get a small part of the scene's size.
@@ -28,6 +30,9 @@ impl StrokeWidths {
         StrokeWidths { points: or(self.points, 1.0 / 200.0), lines: or(self.lines, 1.0 / 400.0) }
     }
 }
+
+/// An object, its tree, how that lies in the world, and whether it is in the world as it is.
+type Placement = (u32, Arc<PrimitiveTree<Strokes>>, Motion, bool);
 
 /// The points of a mesh, then its lines, with their bodies.
 pub(crate) struct Strokes {
@@ -52,6 +57,26 @@ impl Strokes {
             .filter(|to_world| !to_world.is_identity())
             .map(|to_world| mesh.positions.iter().map(|p| to_world.point(*p)).collect());
         PrimitiveTree::new(Strokes { mesh: mesh.clone(), moved, radii })
+    }
+
+    /// Those of all objects that have any: the object, its tree, how that lies in the world, and whether it is there as it is.
+    pub(crate) fn trees(objects: &[Placed], widths: StrokeWidths) -> Vec<Placement> {
+        let mut shared: HashMap<(*const Mesh, u32), Arc<PrimitiveTree<Strokes>>> = HashMap::new();
+        let mut all = Vec::new();
+        for (i, object) in objects.iter().enumerate().filter(|(_, o)| o.mesh.stroke_count() > 0) {
+            let place = object.motion.at(0.0);
+            if !object.in_own_tree() {
+                let tree = Arc::new(Strokes::tree(&object.mesh, Some(&place), widths, 1.0));
+                all.push((i as u32, tree, Motion::REST, true));
+                continue;
+            }
+            let scale = mean_scale(&place);
+            let tree = || Arc::new(Strokes::tree(&object.mesh, None, widths, scale));
+            let key = (Arc::as_ptr(&object.mesh), scale.to_bits());
+            let tree = shared.entry(key).or_insert_with(tree).clone();
+            all.push((i as u32, tree, object.motion.clone(), false));
+        }
+        all
     }
 
     fn position(&self, vertex: u32) -> [f32; 3] {
@@ -145,6 +170,13 @@ impl Strokes {
             time: ray.time,
         }
     }
+}
+
+/// How much lengths grow on average.
+fn mean_scale(to_world: &Transform) -> f32 {
+    let volume = f64::from(to_world.matrix().determinant()).abs();
+    let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
+    if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
 }
 
 /// How far f64 is off, beside f32.

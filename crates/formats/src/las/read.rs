@@ -29,12 +29,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(cloud.into_scene(source.stem()))
 }
 
+/// What gives a record its colour.
+type ColourOf = Box<dyn Fn(&[u8]) -> Rgb>;
+
 /// The colour of a record, where they have any; else its intensity as a grey, where these differ. Some programs write bytes into
 /// what should be 16 bits.
-fn colours<'b, I: Iterator<Item = &'b [u8]>>(
-    header: &Header,
-    records: impl Fn() -> I,
-) -> Option<Box<dyn Fn(&[u8]) -> Rgb>> {
+fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn() -> I) -> Option<ColourOf> {
     let one_for = |greatest: u16| if greatest > 255 { 65535.0 } else { 255.0 };
     if let Some(at) = header.colour {
         let channels = move |record: &[u8]| [0, 2, 4].map(|channel| u16_at(record, at + channel));

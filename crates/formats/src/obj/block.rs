@@ -1,13 +1,15 @@
 //! The lines of one block of an OBJ file, read by themselves: what earlier blocks say is added when they are joined.
 
+use super::index::{Index, index};
+use super::strokes::Stroke;
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::float::parse_f32;
+use crate::float::{parse_f32, parse_f64};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::Oddities;
 use crate::soup::{Corner, NONE};
 use crate::text::{Cursor, Place, name_of, quoted};
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
 
@@ -53,26 +55,6 @@ pub(super) struct Backward {
     pub(super) offset: usize,
 }
 
-/// A point, or a line between two vertices.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Stroke {
-    /// How many turns stand before it.
-    pub(super) turns: usize,
-    /// Twice the same of a point.
-    pub(super) ends: [End; 2],
-    pub(super) is_point: bool,
-    pub(super) place: Place,
-}
-
-/// A vertex of a point or a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum End {
-    /// Counted from 0.
-    Whole(u32),
-    /// From the first vertex of the block, negative before it.
-    OfBlock(i64),
-}
-
 /// What changes between two faces.
 #[derive(Debug)]
 pub(super) enum Turn {
@@ -104,9 +86,14 @@ impl Block {
 }
 
 /// Reads a block of whole lines into one that is empty.
-pub(super) fn read_block(text: &[u8], file: &Arc<str>, budget: &Budget, block: Block) -> Block {
+pub(super) fn read_block(
+    text: &[u8],
+    (file, origin): (&Arc<str>, DVec3),
+    budget: &Budget,
+    block: Block,
+) -> Block {
     let cursor = Cursor::joining_lines(text);
-    let mut reader = Reader { cursor, file, budget: budget.clone(), block };
+    let mut reader = Reader { cursor, file, origin, budget: budget.clone(), block };
     let failure = reader.statements().err();
     let spent = reader.budget.spent() - budget.spent();
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
@@ -129,11 +116,13 @@ const FACE_LEFT_OUT: &str = ": this face is left out";
 /// Of these it is known only when blocks are joined.
 pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
 
-struct Reader<'a> {
-    cursor: Cursor<'a>,
-    file: &'a Arc<str>,
-    budget: Budget,
-    block: Block,
+pub(super) struct Reader<'a> {
+    pub(super) cursor: Cursor<'a>,
+    pub(super) file: &'a Arc<str>,
+    /// What positions are counted from.
+    origin: DVec3,
+    pub(super) budget: Budget,
+    pub(super) block: Block,
 }
 
 impl<'a> Reader<'a> {
@@ -176,11 +165,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Where a byte of this line stands.
-    fn at(&self, offset: usize) -> Span {
+    pub(super) fn at(&self, offset: usize) -> Span {
         self.cursor.place(offset).in_file(self.file)
     }
 
-    fn note(&mut self, what: &str, at: Place) {
+    pub(super) fn note(&mut self, what: &str, at: Place) {
         let file = self.file;
         self.block.oddities.note(what, || at.in_file(file));
     }
@@ -204,10 +193,17 @@ impl<'a> Reader<'a> {
     /// `v x y z [w]` or `v x y z r g b`.
     fn vertex(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 8];
+        let mut again = (self.origin != DVec3::ZERO).then(|| self.cursor.clone());
         let mut count = self.numbers(&mut numbers, 3, VERTEX_LEFT_OUT);
         if count == 0 {
             // Its number is kept, so that the faces after it name the right ones.
             (numbers, count) = ([f32::NAN; 8], 3);
+        } else if let Some(again) = &mut again {
+            // With all of their digits.
+            for axis in 0..3 {
+                let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
+                numbers[axis] = (wide - self.origin[axis]) as f32;
+            }
         }
         self.budget.take::<Vec3>(1, self.file)?;
         let block = &mut self.block;
@@ -279,7 +275,7 @@ impl<'a> Reader<'a> {
 
     /// Notes that an element is left out, and why.
     #[cold]
-    fn fault(&mut self, message: String, left_out: &str, at: Span) {
+    pub(super) fn fault(&mut self, message: String, left_out: &str, at: Span) {
         if self.block.fault.is_none() {
             self.block.fault = Some(FormatError::malformed(message.clone(), at.clone()));
         }
@@ -321,44 +317,6 @@ impl<'a> Reader<'a> {
         self.budget.take::<[usize; 2]>(1, self.file)?;
         self.block.ends.push(self.block.corners.len() as u32);
         self.block.places.push(start);
-        Ok(())
-    }
-
-    /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
-    fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
-        let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
-        loop {
-            let word = self.cursor.word();
-            if word.is_empty() || word.starts_with(b"#") {
-                break;
-            }
-            let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
-            let end = match index(digits) {
-                Some(Index::Forward(index)) => End::Whole(index),
-                Some(Index::Backward(back)) => End::OfBlock(self.block.positions.len() as i64 - back),
-                None => {
-                    let at = self.at(self.cursor.offset() - word.len());
-                    let message = format!(
-                        "{} is not a vertex of a point or a line: write a number, counted from 1, or backwards from -1",
-                        quoted(word)
-                    );
-                    self.block.strokes.truncate(first);
-                    self.fault(message, ": this point or line is left out", at);
-                    return Ok(());
-                }
-            };
-            let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
-            if let Some(ends) = ends {
-                self.budget.take::<Stroke>(1, self.file)?;
-                let turns = self.block.turns.len();
-                self.block.strokes.push(Stroke { turns, ends, is_point: are_points, place });
-            }
-            last = Some(end);
-            count += 1;
-        }
-        if count < 2 - usize::from(are_points) {
-            self.note("a line with fewer than 2 vertices, or a point without one, is left out", place);
-        }
         Ok(())
     }
 
@@ -437,55 +395,5 @@ impl<'a> Reader<'a> {
         self.note(&what, start);
         self.pass_line();
         Ok(())
-    }
-}
-
-/// An index as OBJ counts, as one from 0, or how far back it lies.
-#[derive(Debug, PartialEq)]
-enum Index {
-    Forward(u32),
-    Backward(i64),
-}
-
-/// An index as OBJ counts, from 1, or backwards from -1; whether it exists is looked at when that is known.
-#[inline]
-fn index(text: &[u8]) -> Option<Index> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
-    };
-    if digits.is_empty() || digits.len() > 10 {
-        return None;
-    }
-    let mut number = 0i64;
-    for &digit in digits {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        number = number * 10 + i64::from(digit - b'0');
-    }
-    if number == 0 {
-        return None;
-    }
-    if negative {
-        return Some(Index::Backward(number));
-    }
-    u32::try_from(number - 1).ok().filter(|&i| i != NONE).map(Index::Forward)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn indices_count_from_one_or_backwards() {
-        assert_eq!(index(b"1"), Some(Index::Forward(0)));
-        assert_eq!(index(b"+7"), Some(Index::Forward(6)));
-        assert_eq!(index(b"-1"), Some(Index::Backward(1)));
-        assert_eq!(index(b"-8"), Some(Index::Backward(8)));
-        for bad in ["0", "-0", "", "-", "1.5", "4294967296", "99999999999"] {
-            assert_eq!(index(bad.as_bytes()), None, "{bad}");
-        }
     }
 }

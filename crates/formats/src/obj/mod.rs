@@ -1,6 +1,7 @@
 //! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
 
 mod block;
+mod index;
 mod maps;
 mod mtl;
 mod mtl_write;

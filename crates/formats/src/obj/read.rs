@@ -1,8 +1,8 @@
 //! Reading an OBJ file, block by block.
 
-use super::block::{BACKWARD_LEFT_OUT, Block, Stroke, Turn, bad_corner, read_block};
+use super::block::{BACKWARD_LEFT_OUT, Block, Turn, bad_corner, read_block};
 use super::mtl::read_library;
-use super::strokes::Strokes;
+use super::strokes::{Stroke, Strokes};
 use crate::FormatError;
 use crate::blocks::Blocks;
 use crate::normals::{BY_ANGLE, Smoothing};
@@ -84,9 +84,9 @@ impl Obj<'_, '_, '_> {
                 self.reading.budget.take_bytes(text.len() as u64, file)?;
                 texts.push(text);
             }
-            let budget = &self.reading.budget;
+            let (budget, origin) = (&self.reading.budget, self.reading.origin);
             spare.resize_with(texts.len(), Block::default);
-            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, file, budget, block);
+            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, (file, origin), budget, block);
             let parts: Vec<Block> = match texts.len() {
                 0 => return Ok(()),
                 1 => spare.drain(..).zip(&texts).map(parse).collect(),

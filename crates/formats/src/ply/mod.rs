@@ -5,6 +5,7 @@ mod direct;
 mod header;
 mod read;
 mod slots;
+mod strokes;
 mod write;
 
 pub(crate) use write::encode;

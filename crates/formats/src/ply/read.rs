@@ -4,16 +4,16 @@ use super::body::Body;
 use super::direct::can_be;
 use super::header::{Element, Property, Scalar, read_header};
 use super::slots::{MEANINGS, Slots};
+use super::strokes;
 use crate::FormatError;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
-use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::{Mesh, Object, SceneBuilder, Value};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
+use bilux_scene::{SceneBuilder, Value};
 use std::collections::HashMap;
-use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let places = Places::new(source.name, source.bytes);
@@ -59,7 +59,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
     /// Of all faces, where nothing has to be welded.
     triangles: Option<Vec<[u32; 3]>>,
     /// Pairs of vertices.
-    edges: Vec<[u32; 2]>,
+    pub(super) edges: Vec<[u32; 2]>,
     vertices: Slots,
     /// Texture coordinates of corners rather than vertices, each value once.
     wedge_uvs: Vec<Vec2>,
@@ -81,31 +81,9 @@ impl Ply<'_, '_, '_> {
             "vertex" => self.vertices(element),
             "face" => self.faces(element, false),
             "tristrips" => self.faces(element, true),
-            "edge" if has_both_ends(element) => self.edges(element),
+            "edge" if strokes::has_both_ends(element) => self.edges(element),
             _ => self.skip_element(element),
         }
-    }
-
-    /// Pairs of vertices, `vertex1` and `vertex2`.
-    fn edges(&mut self, element: &Element) -> Result<(), FormatError> {
-        for _ in 0..element.count {
-            let start = self.body.offset();
-            let mut ends = [NONE; 2];
-            for property in &element.properties {
-                let which = ENDS.iter().position(|end| *end == property.name);
-                match which.filter(|_| property.count.is_none()) {
-                    // What is no index is one that no file has.
-                    Some(end) => {
-                        ends[end] = u32::try_from(self.body.integer(property.scalar)?).unwrap_or(NONE);
-                    }
-                    None => self.skip(property)?,
-                }
-            }
-            self.end_row(start);
-            self.reading.budget.take::<[u32; 2]>(1, self.source.name)?;
-            self.edges.push(ends);
-        }
-        Ok(())
     }
 
     fn skip_element(&mut self, element: &Element) -> Result<(), FormatError> {
@@ -118,7 +96,7 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
+    pub(super) fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
         let count = match property.count {
             Some(scalar) => self.body.integer(scalar)?,
             None => 1,
@@ -141,7 +119,9 @@ impl Ply<'_, '_, '_> {
         // As many as the bytes that are left can hold, so that all room is made at once.
         self.reading.budget.take_bytes(element.count * 4 * floats as u64, self.source.name)?;
         self.make_room(&slots, element.count as usize);
-        let plain = slots.offsets(element).filter(|_| self.body.is_little());
+        let origin = self.reading.origin;
+        let is_far = origin != DVec3::ZERO;
+        let plain = slots.offsets(element).filter(|_| self.body.is_little() && !is_far);
         for _ in 0..element.count {
             let start = self.body.offset();
             let mut values = [0f32; MEANINGS.len()];
@@ -158,6 +138,9 @@ impl Ply<'_, '_, '_> {
             }
             for (property, meaning) in element.properties.iter().zip(&slots.meaning) {
                 match meaning {
+                    Some(slot @ 0..3) if is_far => {
+                        values[*slot] = (self.body.wide_number(property.scalar)? - origin[*slot]) as f32;
+                    }
                     Some(slot) => values[*slot] = self.body.number(property.scalar)?,
                     None => self.skip(property)?,
                 }
@@ -371,39 +354,6 @@ impl Ply<'_, '_, '_> {
         Ok(scene)
     }
 
-    /// Vertices that no face joins: lines where there are edges, else a cloud of points.
-    fn finish_strokes(mut self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
-        let (soup, mut lines) = (std::mem::take(&mut self.soup), std::mem::take(&mut self.edges));
-        let known = soup.positions.len();
-        if known == 0 {
-            return Err(FormatError::malformed("there is no face and no vertex in it", self.places.whole()));
-        }
-        let given = lines.len();
-        lines.retain(|ends| ends.iter().all(|&end| (end as usize) < known));
-        if lines.len() < given {
-            let places = self.places;
-            let what = "edges name vertices that the file does not have; they are left out";
-            self.oddities.note(what, || places.whole());
-        }
-        self.reading.budget.take_bytes(known as u64 * 4, self.source.name)?;
-        let points = if lines.is_empty() { (0..known as u32).collect() } else { Vec::new() };
-        let material =
-            scene.add_material(plain_material(!soup.colours.is_empty(), !soup.specular.is_empty()));
-        let mesh = Mesh {
-            name: self.source.stem(),
-            positions: soup.positions,
-            uvs: soup.uvs,
-            vertex_kd: soup.colours,
-            vertex_ks: soup.specular,
-            points,
-            lines,
-            ..Mesh::default()
-        };
-        scene.objects.push(Object::new(&self.source.stem(), Arc::new(mesh), material));
-        self.oddities.into_warnings(&mut scene);
-        Ok(scene)
-    }
-
     /// The texture of the whole mesh, as MeshLab names it in a comment.
     pub(super) fn texture(
         &mut self,
@@ -426,13 +376,6 @@ impl Ply<'_, '_, '_> {
         }
         Ok(())
     }
-}
-
-/// What the properties of an edge are called.
-const ENDS: [&str; 2] = ["vertex1", "vertex2"];
-
-fn has_both_ends(element: &Element) -> bool {
-    ENDS.iter().all(|end| element.properties.iter().any(|p| p.name == *end && p.count.is_none()))
 }
 
 /// Vertices that come later in the file bring their normals and uvs too, which are looked at in the end.

@@ -122,7 +122,6 @@ impl Xyz<'_, '_, '_> {
     /// A count alone begins PTS files, and those of chemists, in which letters follow.
     fn refuse_molecule(&mut self) -> Result<(), FormatError> {
         let mut ahead = self.cursor.clone();
-        ahead.end_line();
         let mut at = ahead.offset();
         let mut words = words_of(ahead.rest_of_line());
         if words.len() < 4 || parse_f64(words[1]).is_none() {

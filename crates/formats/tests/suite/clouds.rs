@@ -177,3 +177,25 @@ fn points_and_lines_come_back_where_a_format_holds_them_and_else_as_triangles() 
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
+
+#[test]
+fn a_mesh_far_from_zero_keeps_the_digits_of_its_file() {
+    let folder = std::env::temp_dir().join(format!("bilux-far-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let vertices = ["1000000.125 2000000 -5.5", "1000000.25 2000000 -5.5", "1000000.125 2000000.0625 -5.5"];
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n{}\n3 0 1 2\n",
+        vertices.join("\n")
+    );
+    let obj = format!("v {}\nf 1 2 3\n", vertices.join("\nv "));
+    for (name, text) in [("far.obj", obj), ("far.ply", ply)] {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        let scene = read(&path, &ReadOptions::default()).unwrap();
+        assert_eq!(scene.origin, DVec3::new(1_000_000.0, 2_000_000.0, -6.0), "{name}");
+        let wanted = [Vec3::new(0.125, 0.0, 0.5), Vec3::new(0.25, 0.0, 0.5), Vec3::new(0.125, 0.0625, 0.5)];
+        assert_eq!(only(&scene).positions, wanted, "{name}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}

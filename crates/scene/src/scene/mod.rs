@@ -5,8 +5,9 @@ mod tracer;
 
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
+use crate::corners::corner_uvs;
 use crate::footprint::View;
-use crate::geometry::{Geometry, corner_uvs};
+use crate::geometry::Geometry;
 use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
