@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Files that must be refused, with a part of the message.
 const REFUSED: &[(&str, &str)] = &[
-    ("asc/teapot.bpt", "no scene format"),
+    ("asc/teapot.bpt", "not a scene format"),
     ("obj/tinyobj/line-prim.obj", "only points or lines"),
     ("obj/tinyobj/points-prim.obj", "only points or lines"),
     ("ply/assimp/points.ply", "a cloud of points"),
