@@ -142,7 +142,7 @@ fn command_lines_that_ask_for_what_there_is_not() {
         let output = command.current_dir(path).args(arguments).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyz"]), 2, &["pot.xyz: this is not a scene format"]);
+    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyy"]), 2, &["pot.xyy: this is not a scene format"]);
     assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["that is what `bilux render` does"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
     assert_told(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
@@ -152,7 +152,11 @@ fn command_lines_that_ask_for_what_there_is_not() {
         &["'tif' is not a picture format that can be written"],
     );
     assert_told(bilux(&["generate", "teapts", "-o", "a.obj"]), 2, &["did you mean 'teapots'?"]);
-    assert_told(bilux(&["generate", "teapots", "-o", "a.png"]), 2, &["no scene format that can be written"]);
+    assert_told(
+        bilux(&["generate", "teapots", "-o", "a.png"]),
+        2,
+        &["not a scene format that can be written"],
+    );
 }
 
 #[test]

@@ -42,8 +42,11 @@ fn many_scenes_in_one_process_reach_nine_tenths_of_the_rate_of_each_alone() {
     let alone: f64 = names.iter().map(|name| render(folder.path(), std::slice::from_ref(name))).sum();
     let together = render(folder.path(), &names);
     let rate = alone / together;
-    println!("together {together:.2} s of CPU, alone {alone:.2} s: {:.0}% of the rate", 100.0 * rate);
-    assert!(rate >= 0.9, "together {together} s, alone {alone} s");
+    assert!(
+        rate >= 0.9,
+        "together {together:.2} s of CPU, alone {alone:.2} s: {:.0}% of the rate",
+        100.0 * rate
+    );
     let same = |i| std::fs::read(folder.path().join(format!("room{i}.png"))).unwrap();
     assert!((1..SCENES).all(|i| same(i) == same(0)), "a scene is not changed by those before it");
 }

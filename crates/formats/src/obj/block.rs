@@ -200,9 +200,9 @@ impl<'a> Reader<'a> {
             (numbers, count) = ([f32::NAN; 8], 3);
         } else if let Some(again) = &mut again {
             // With all of their digits.
-            for axis in 0..3 {
+            for (number, origin) in numbers.iter_mut().zip(self.origin.to_array()) {
                 let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
-                numbers[axis] = (wide - self.origin[axis]) as f32;
+                *number = (wide - origin) as f32;
             }
         }
         self.budget.take::<Vec3>(1, self.file)?;

@@ -151,7 +151,7 @@ fn cameras_and_lights_stand_at_their_nodes() {
         (&*light.kind, light.parameters.find("intensity").unwrap().0),
         ("point", &Rgb::new(4., 0., 0.).into())
     );
-    assert!(warnings(&scene).contains("lights/0: a light's range is not used"));
+    assert!(warnings(&scene).contains("lights/0: a light's range is ignored"));
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
             "without data",
         ),
         ("\"count\":3", "\"count\":-3", "#/accessors/0/count: this is -3"),
-        ("5126", "5124", "is no componentType"),
+        ("5126", "5124", "is not a componentType"),
         ("VEC3", "VEC5", "'VEC5' is no type"),
         ("VEC3", "VEC2", "elements of 2 numbers stand where 3 are wanted"),
         ("\"byteLength\":36}],", "\"byteLength\":37}],", "#/bufferViews/0: 37 bytes from byte 0"),

@@ -3,7 +3,7 @@
 use super::accessors::format_words;
 use super::meshes::target_count;
 use super::nodes::{as_index, has_joints};
-use super::{Check, Role, counted, text, whole};
+use super::{Check, Role, counted, is_off, text, whole};
 use crate::gltf::json::Node;
 use std::collections::HashSet;
 
@@ -101,7 +101,9 @@ fn input<'d>(check: &mut Check<'d, '_>, sampler: Node<'d>) {
             format!("the first keyframe is at {} s, before the start", times[0]),
         );
     }
-    if let Some(at) = times.windows(2).position(|pair| !(pair[0] < pair[1])) {
+    if let Some(at) =
+        times.windows(2).position(|pair| pair[0].partial_cmp(&pair[1]) != Some(std::cmp::Ordering::Less))
+    {
         let (before, after) = (times[at], times[at + 1]);
         let message = format!(
             "keyframe {} is at {after} s, and the one before it at {before} s: times must grow",
@@ -156,8 +158,7 @@ fn quaternions<'d>(check: &mut Check<'d, '_>, channel: Node<'d>, index: usize, i
     let Some(numbers) = check.numbers(index) else { return };
     let length = |q: &[f32]| q.iter().map(|x| x * x).sum::<f32>().sqrt();
     let counts = |i: usize| !is_cubic || i % 3 == 1;
-    let bad =
-        numbers.chunks_exact(4).enumerate().find(|(i, q)| counts(*i) && !((length(q) - 1.0).abs() <= 0.01));
+    let bad = numbers.chunks_exact(4).enumerate().find(|(i, q)| counts(*i) && is_off(length(q) - 1.0, 0.01));
     if let Some((at, q)) = bad {
         let message = format!("the rotation of element {at} has length {:.3}, but must have 1", length(q));
         check.report_key(channel, "sampler", message);

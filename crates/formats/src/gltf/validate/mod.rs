@@ -45,6 +45,11 @@ struct Check<'d, 'a> {
     attributes_in: HashMap<usize, HashSet<usize>>,
 }
 
+/// True for a deviation beyond the tolerance, and for one that is not a number.
+fn is_off(deviation: f32, tolerance: f32) -> bool {
+    deviation.is_nan() || deviation.abs() > tolerance
+}
+
 /// What the data of a buffer view are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {

@@ -1,7 +1,7 @@
 //! The numbers of vertices: directions, colours, weights. [glTF 2.0, 3.7.2.1 and 3.7.3.3]
 
 use super::meshes::{have, of_primitive};
-use super::{Check, text, whole};
+use super::{Check, is_off, text, whole};
 use crate::gltf::json::Node;
 
 /// Lengths that differ from one by more are reported; bytes and halves keep them within it.
@@ -41,7 +41,7 @@ fn counted_faults(faults: impl Iterator<Item = bool>, noun: &str, rest: &str) ->
 
 fn is_off_unit(v: &[f32]) -> bool {
     let squared: f32 = v.iter().map(|x| x * x).sum();
-    !((squared.sqrt() - 1.0).abs() <= LENGTH_TOLERANCE)
+    is_off(squared.sqrt() - 1.0, LENGTH_TOLERANCE)
 }
 
 fn normals(all: &[f32]) -> Option<String> {
@@ -109,7 +109,7 @@ fn influences<'d>(check: &mut Check<'d, '_>, node: Node<'d>, all: &[(&'d str, us
                 }
             }
         }
-        sums += usize::from(!((sum - 1.0f32).abs() <= SUM_TOLERANCE));
+        sums += usize::from(is_off(sum - 1.0f32, SUM_TOLERANCE));
     }
     let mut report = |message: String| check.report_key(node, "attributes", message);
     if let (Some((vertex, joint)), Some(limit)) = (beyond, limit) {
