@@ -19,7 +19,11 @@ const SIGMA: Rgb = Rgb::new(0.15, 0.4, 0.8);
 fn block(builder: &mut SceneBuilder, sigma: Rgb) {
     let bounds = Aabb { min: Vec3::new(-7.0, -1.0, -7.0), max: Vec3::new(7.0, 6.0, 7.0) };
     let air = Spec::new("", "dielectric").with("eta", 1.0f32).with("absorption", sigma);
-    put(builder, "block", Arc::new(cuboid(bounds)), air.with("priority", Value::Integer(1)));
+    put(builder, "block", Arc::new(cuboid(bounds)), air.clone().with("priority", Value::Integer(2)));
+    // In it, a block that counts less, and therefore changes nothing: rays pass its surface.
+    let inner = Aabb { min: Vec3::new(-5.0, -0.5, -1.0), max: Vec3::new(0.6, 0.9, 0.9) };
+    let idle = air.with("absorption", 3.0f32).with("priority", Value::Integer(1));
+    put(builder, "idle block", Arc::new(cuboid(inner)), idle);
 }
 
 fn integrator(name: &str) -> Box<dyn PixelIntegrator> {

@@ -294,6 +294,11 @@ fn surfaces_give_light_on_their_side() {
     let spec = world(&format!("AreaLightSource \"diffuse\" \"float power\" [1]\n{TRIANGLE}"));
     let spec = &spec.materials[spec.objects[0].material];
     close(colour(spec, "emission"), [2.0 / std::f32::consts::PI; 3]);
+    // And from both of its sides together.
+    let both = r#"AreaLightSource "diffuse" "float power" [1] "bool twosided" true"#;
+    let scene = world(&format!("{both}\n{TRIANGLE}"));
+    let spec = &scene.materials[scene.objects[0].material];
+    close(colour(spec, "emission"), [1.0 / std::f32::consts::PI; 3]);
 }
 
 #[test]
