@@ -277,8 +277,13 @@ fn a_capsule_is_met_where_its_surface_is_and_not_again_at_the_start() {
             let wide = |v: [f32; 3]| v.map(f64::from);
             let (a, b, p) = (wide(ends[0]), wide(ends[1]), wide(p));
             let s = capsule.nearest(p);
-            let apart = |k: usize| p[k] - (a[k] + (b[k] - a[k]) * s);
-            (0..3).map(|k| apart(k) * apart(k)).sum::<f64>().sqrt()
+            (0..3)
+                .map(|k| {
+                    let d = p[k] - (a[k] + (b[k] - a[k]) * s);
+                    d * d
+                })
+                .sum::<f64>()
+                .sqrt()
         };
         let Some(hit) = tree.closest_hit(&ray, &Query::default()) else { continue };
         hits += 1;

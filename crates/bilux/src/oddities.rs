@@ -1,16 +1,17 @@
 //! What is odd about a picture before it is rendered, though it can be.
 
+use crate::presets::{Ground, Studio};
 use bilux_math::{Vec2, Vec3};
-use bilux_scene::{Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, Span, Surface, Tracer, Warning};
+use bilux_scene::{
+    Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
+};
 
 /// Warnings about a scene, as it was before anything was made up for, and as a camera sees it.
 pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
-    if !given.objects.iter().any(|object| shows_something(&object.mesh)) {
-        warn("there is nothing to be seen: no triangle, point or line has corners that are all numbers");
-    } else if is_in_glass(scene, camera) {
+    if is_in_glass(scene, camera) {
         warn(
             "the camera is inside of something transparent, and sees all through it: move the camera out, \
              unless this is meant",
@@ -32,6 +33,44 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
         }
     }
     warnings
+}
+
+/// What is odd about the ground that was asked for.
+pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -> Option<Warning> {
+    let message = match studio.ground? {
+        Ground::None => return None,
+        _ if !has_ground => "--ground: there is no ground, since the camera looks up from below it",
+        Ground::Mirror if studio.cut_out => {
+            "--ground mirror is opaque, and hides the background: --ground shadow lets it through"
+        }
+        _ if has_backdrop => "the ground hides the picture behind the model: leave --ground out",
+        _ => return None,
+    };
+    Some(Warning { message: message.to_owned(), at: Span::default() })
+}
+
+/// Kinds of light that are seen themselves.
+const SEEN_LIGHTS: [&str; 4] = ["rect", "sphere", "environment", "sky"];
+
+/// Refuses a scene in which there is nothing to be seen.
+pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
+    let is_seen = |light: &Spec| SEEN_LIGHTS.contains(&light.kind.as_str());
+    let is_full = |mesh: &Mesh| !mesh.triangles.is_empty() || mesh.stroke_count() > 0;
+    let has_shapes = scene.objects.iter().any(|object| is_full(&object.mesh));
+    if scene.objects.iter().any(|object| shows_something(&object.mesh)) {
+        return Ok(());
+    }
+    let message = match (has_shapes, scene.lights.iter().any(is_seen)) {
+        (true, _) => {
+            "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers"
+        }
+        // A sky alone is a picture, where a format can say so.
+        (false, true) if !scene.surroundings_unsaid => return Ok(()),
+        (false, _) => {
+            "the scene is empty: it has no triangles, points or lines to render; `bilux info` shows what the file holds"
+        }
+    };
+    Err(SceneError::invalid(message, &Span::default()))
 }
 
 /// A model that fills less of a picture than this is a speck.

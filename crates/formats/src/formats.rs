@@ -8,6 +8,7 @@ use crate::writing::{Writing, write_all};
 use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, las, native, obj, off, pbrt, ply, stl, xyz};
 use bilux_math::DVec3;
 use bilux_math::registry::Entry;
+use bilux_pictures::PICTURE_FORMATS;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint, Warning};
 use std::io::Read;
@@ -140,7 +141,9 @@ fn read_file_once(
     }
     let bytes = reading.load(path)?;
     let row = row.or_else(|| sniffed(&bytes));
-    let row = row.ok_or_else(|| unknown(path, "read", SceneFormatEntry::reads))?;
+    let row = row.ok_or_else(|| {
+        picture(path, &bytes).unwrap_or_else(|| unknown(path, "read", SceneFormatEntry::reads))
+    })?;
     let scene = read_source(row, reading, &Source { bytes: &bytes, name, folder })?;
     reading.release(bytes);
     Ok(scene)
@@ -211,7 +214,7 @@ fn flow(
         return Err(unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
     };
     if source.bytes.is_empty() {
-        return Err(FormatError::malformed("the file is empty: export it again", whole_file(source.name)));
+        return Err(FormatError::malformed("the file is empty", whole_file(source.name)));
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
     let mut scene = match read {
@@ -224,6 +227,14 @@ fn flow(
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
         _ => Ok(scene),
     }
+}
+
+/// What is said of a picture that stands where a scene should.
+fn picture(path: &Path, bytes: &[u8]) -> Option<FormatError> {
+    let by_bytes = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
+    let row = by_bytes.or_else(|| bilux_pictures::format_named(&extension(path)?))?;
+    let name = path.display().to_string();
+    Some(FormatError::IsPicture { name, format: row.extensions[0] })
 }
 
 fn sniffed(bytes: &[u8]) -> Option<&'static SceneFormatEntry> {

@@ -1,7 +1,7 @@
 //! Points and lines for formats that hold triangles alone: little balls and tubes in their places.
 
 use crate::writing::Writing;
-use bilux_math::transcendental::{cos, powf_f64, sin};
+use bilux_math::transcendental::{cos, sin};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::generators::shapes;
 use bilux_scene::{Mesh, Object, SceneBuilder};
@@ -34,7 +34,7 @@ pub(crate) fn as_triangles<'a>(
             continue;
         }
         let volume = f64::from(object.motion.at(0.0).matrix().determinant()).abs();
-        let scale = powf_f64(volume, 1.0 / 3.0) as f32;
+        let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
         let bare = &*object.mesh;
         let mut body = solid(bare, &bare.points, &[], widths.points * 0.5 / scale);
         if !bare.lines.is_empty() {

@@ -97,9 +97,14 @@ impl Default for AccelChoice {
 
 impl SceneBuilder {
     /// Adds a material and gives its index.
-    pub fn add_material(&mut self, spec: Spec) -> usize {
-        self.materials.push(spec);
+    pub fn add_material(&mut self, spec: impl Into<Spec>) -> usize {
+        self.materials.push(spec.into());
         self.materials.len() - 1
+    }
+
+    /// Adds a light.
+    pub fn add_light(&mut self, spec: impl Into<Spec>) {
+        self.lights.push(spec.into());
     }
 
     /// Adds a warning.

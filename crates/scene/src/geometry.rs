@@ -227,7 +227,12 @@ impl Geometry {
 
     /// Which object a hit belongs to.
     pub fn object_of(&self, hit: &Hit) -> u32 {
-        self.locate(hit.primitive()).0
+        self.object_of_primitive(hit.primitive())
+    }
+
+    /// Which object a triangle or sphere belongs to, as rays number it.
+    pub(crate) fn object_of_primitive(&self, primitive: Primitive) -> u32 {
+        self.locate(primitive).0
     }
 
     /// The object and the triangle within its mesh, or the sphere.
@@ -275,7 +280,7 @@ impl Geometry {
     /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for what
     /// is no triangle.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        if !self.is_triangle(primitive) {
+        if primitive == Primitive::NONE || !self.is_triangle(primitive) {
             return None;
         }
         let (_, [a, b, c], mirrors) = self.in_world(primitive, time);

@@ -28,6 +28,7 @@ pub mod spheres;
 pub mod strokes;
 pub mod surface;
 pub mod texture;
+pub mod typed;
 pub mod wavelength;
 
 pub use bilux_accel::{Counters, Primitive, Query, Ray};

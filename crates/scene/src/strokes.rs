@@ -9,7 +9,6 @@ use crate::surface::{Surface, gamma};
 use bilux_accel::primitives::{Capsule, Crossing, PrimitiveTree, Primitives, Shape, Sphere};
 use bilux_accel::{Hit, Primitive, Ray};
 use bilux_math::glam::DVec3;
-use bilux_math::transcendental::powf_f64;
 use bilux_math::{Motion, Rgb, Transform, Vec2, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -176,7 +175,7 @@ impl Strokes {
 /// How much lengths grow on average.
 fn mean_scale(to_world: &Transform) -> f32 {
     let volume = f64::from(to_world.matrix().determinant()).abs();
-    let scale = powf_f64(volume, 1.0 / 3.0) as f32;
+    let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
     if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
 }
 

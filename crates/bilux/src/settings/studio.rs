@@ -47,6 +47,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         focal: reader.is_given("focal").then(|| reader.number("focal")),
         aspect: None,
         cut_out: false,
+        lit: None,
     })
 }
 

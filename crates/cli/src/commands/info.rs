@@ -4,6 +4,7 @@ use super::{DONE, check_choices, read_options_with, tell_warnings};
 use crate::arguments::{Common, Info};
 use crate::output;
 use crate::usage;
+use bilux::formats::ReadOptions;
 use bilux::memory::Memory;
 use bilux::scene::{Mesh, SceneBuilder, Texture};
 use serde_json::json;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
+    let options = ReadOptions { validate: true, ..options };
     let scene = bilux::load(&arguments.scene, &options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {

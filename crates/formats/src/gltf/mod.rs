@@ -22,12 +22,14 @@ mod meshopt;
 mod place;
 mod primitive;
 mod reader;
+mod remapped;
 mod skin;
 mod soundness;
 mod tangents;
 mod textures;
 mod topology;
 mod uri;
+mod validate;
 mod variants;
 mod write;
 

@@ -38,7 +38,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let mode = Mode::of(node)?;
         let attributes = node.need("attributes")?;
         let Some(position) = attributes.get("POSITION") else {
-            self.oddities.note("a primitive has no positions and is left out", || node.at());
+            self.oddities.note("a primitive has no POSITION and is left out", || node.at());
             return Ok(None);
         };
         let mut mesh = Mesh { name: worn.name.to_owned(), ..Mesh::default() };
@@ -57,7 +57,7 @@ impl<'d> Gltf<'d, '_, '_> {
             self.bend(node, joints, &mut mesh)?;
         }
         if mesh.positions.iter().any(|p| !p.is_finite()) {
-            let what = "positions have numbers that are infinite or no numbers; they are kept";
+            let what = "positions have numbers that are infinite or not numbers (NaN); they are kept";
             self.oddities.note(what, || position.at());
         }
         self.coordinates(attributes, material, &mut mesh)?;
@@ -87,13 +87,13 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(normal) = attributes.get("NORMAL") {
             mesh.normals = vec3(self.attribute::<3>(normal, Some(count))?);
             if mesh.normals.iter().any(|n| (n.length_squared() - 1.0).abs() > 0.1) {
-                self.oddities.note("normals are not of length one: taken as directions", || normal.at());
+                self.oddities.note("normals do not have length one; they are normalized", || normal.at());
             }
         }
         if let Some(tangent) = attributes.get("TANGENT").filter(|_| material.has_direction) {
             let tangents = self.attribute::<4>(tangent, Some(count))?;
             if tangents.iter().any(|t| t[3].abs() != 1.0) {
-                let what = "the fourth number of a tangent has to be 1 or -1: its sign is used";
+                let what = "the fourth number of a tangent must be 1 or -1; its sign is used";
                 self.oddities.note(what, || tangent.at());
             }
             mesh.tangents = tangents.into_iter().map(Vec4::from).collect();
@@ -123,7 +123,7 @@ impl<'d> Gltf<'d, '_, '_> {
                     .map(|[u, v]| Vec2::new(u, 1.0 - v))
                     .collect(),
                 None if material.uv_sets[slot].is_some() => {
-                    let what = "a material looks up textures by texture coordinates that its mesh has not: taken as 0";
+                    let what = "a material needs texture coordinates that its mesh does not have; they are taken as 0";
                     self.oddities.note(what, || attributes.at());
                     self.reading.budget.take_bytes(count as u64 * 8, &self.file)?;
                     vec![Vec2::Y; count]
@@ -176,14 +176,13 @@ impl<'d> Gltf<'d, '_, '_> {
     fn morph(&mut self, node: Node<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
         let targets = node.list("targets")?;
         if targets.len() != weights.len() && !weights.is_empty() {
-            let what = "there are not as many weights as morph targets";
+            let what = "the number of weights is not that of the morph targets";
             self.oddities.note(what, || node.at_key("targets"));
         }
         for (target, &weight) in targets.into_iter().zip(weights) {
             for (key, used) in target.entries() {
                 if !matches!(key, "POSITION" | "NORMAL" | "TANGENT") && !key.starts_with('_') {
-                    let what =
-                        "a morph target moves what does not move here: positions, normals and tangents do";
+                    let what = "a morph target moves something other than positions, normals and tangents, which is ignored";
                     self.oddities.note(what, || used.at());
                 }
             }
@@ -218,7 +217,7 @@ impl<'d> Gltf<'d, '_, '_> {
             let is_used = ATTRIBUTES.contains(&key) || used_uv(key) || is_skin || key.starts_with('_');
             // Sets of texture coordinates that nothing looks up change nothing.
             if !is_used && !key.starts_with("TEXCOORD_") {
-                self.oddities.note("an attribute of a mesh is not used", || node.at());
+                self.oddities.note("an attribute of a mesh is ignored", || node.at());
             }
         }
     }

@@ -28,7 +28,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let json = parse(reading, container.json, source)?;
     let root = Node::root(&json, source.name);
     if !root.is_object() {
-        return Err(root.error("this JSON is no glTF, which begins with '{'"));
+        return Err(root.error("this JSON is not glTF, which is an object in braces"));
     }
     check_version(root)?;
     extensions::check(root, &mut oddities)?;
@@ -37,6 +37,11 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let mut gltf = Gltf::new(&document, source, reading, oddities, time);
     gltf.decode_ahead()?;
     gltf.scene()?;
+    if gltf.reading.options.validate {
+        gltf.validate()?;
+    } else {
+        gltf.check_data()?;
+    }
     let Gltf { mut scene, oddities, meshes, materials, images, .. } = gltf;
     if reading.options.whole_movement && scene.inventory.moves() {
         let made = Made { meshes, materials, images };
@@ -147,7 +152,6 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             self.place(&placed)?;
         }
         share_trees(&mut self.scene);
-        self.check_data()?;
         let root = self.document.root;
         let skins = root.list("skins")?;
         self.scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
@@ -191,7 +195,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         };
         for world in places.iter() {
             let Some(transform) = Transform::from_matrix(world) else {
-                self.oddities.note("a node is scaled to nothing and not drawn", || node.at());
+                self.oddities.note("a node is scaled to nothing and is not drawn", || node.at());
                 continue;
             };
             let motion = Motion::still(transform);
@@ -229,6 +233,11 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         self.meshes.insert(key, parts.clone());
         Ok(parts)
     }
+
+    /// True when a picture has been read, as numbers or as colours.
+    pub(super) fn has_read(&self, image: usize, is_data: bool) -> bool {
+        self.images.contains_key(&(image, is_data))
+    }
 }
 
 /// The JSON, if there is memory for what it becomes.
@@ -239,10 +248,35 @@ fn parse(reading: &mut Reading, bytes: &[u8], source: &Source) -> Result<serde_j
     serde_json::from_slice(bytes).map_err(|error| {
         let (line, column) = (error.line() as u32, error.column() as u32);
         let text = error.to_string();
-        let what = text.split(" at line ").next().unwrap_or(&text);
-        let message = format!("this is no JSON: {what}; export the file again");
+        let what = syntax_fault(text.split(" at line ").next().unwrap_or(&text));
+        let message = format!("this is not JSON: {what}");
         FormatError::malformed(message, Span { file: source.name.clone(), line, column })
     })
+}
+
+/// Reports of the JSON parser, by a part of each, and what they mean.
+const SYNTAX_FAULTS: &[(&str, &str)] = &[
+    ("EOF", "the file ends in the middle of it, and was cut off"),
+    ("expected value", "a value should stand here"),
+    ("`,` or `}`", "a comma or a closing brace should stand here"),
+    ("`,` or `]`", "a comma or a closing bracket should stand here"),
+    ("`:`", "a colon should stand here"),
+    ("expected ident", "a value should stand here"),
+    ("trailing comma", "a comma stands before a closing bracket or brace"),
+    ("trailing characters", "something stands after its end"),
+    ("key must be a string", "a name in double quotes should stand here"),
+    ("control character", "a control character stands in a text, where it must be escaped"),
+    ("escape", "a text has an escape that does not exist"),
+    ("surrogate", "a text has half of a Unicode character"),
+    ("unicode", "a text has a Unicode character that does not exist"),
+    ("number out of range", "this number is too large"),
+    ("invalid number", "this is not a number"),
+    ("recursion", "lists and objects are nested too deep"),
+];
+
+fn syntax_fault(report: &str) -> &'static str {
+    let found = SYNTAX_FAULTS.iter().find(|(part, _)| report.contains(part));
+    found.map_or("it has a mistake here", |(_, meaning)| meaning)
 }
 
 /// Major versions change the meaning of files, minor ones add to it.
@@ -252,14 +286,17 @@ fn check_version(root: Node) -> Result<(), FormatError> {
         let Some(text) = node.get(key) else { return Ok(None) };
         let parts = text.as_text()?.split_once('.');
         let version = parts.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
-        version.map(Some).ok_or_else(|| text.error("a version is two numbers, as in \"2.0\""))
+        version
+            .map(Some)
+            .ok_or_else(|| text.error("a version is two numbers with a point between, such as 2.0"))
     };
     let wrong = |major: u32, minor: u32| {
-        let message = format!("this is glTF {major}.{minor}, and 2.0 is read: export it as glTF 2.0");
+        let message =
+            format!("this is glTF {major}.{minor}, and only 2.0 can be read: export it as glTF 2.0");
         Err(FormatError::malformed(message, asset.at()))
     };
     let Some((major, minor)) = parse(asset, "version")? else {
-        return Err(asset.error("the version is missing here; it has to be \"2.0\""));
+        return Err(asset.error("'version' is missing here: it must be \"2.0\""));
     };
     match parse(asset, "minVersion")? {
         Some((major, minor)) if (major, minor) > (2, 0) => wrong(major, minor),

@@ -30,7 +30,9 @@ impl Mode {
             5 => Mode::Strip,
             6 => Mode::Fan,
             other => {
-                return Err(node.error(format!("mode {other} is none; there are 0 to 6, and 4 is triangles")));
+                return Err(
+                    node.error(format!("mode {other} does not exist: modes are 0 to 6, and 4 is triangles"))
+                );
             }
         })
     }

@@ -29,7 +29,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(cloud.into_scene(source.stem()))
 }
 
-/// The colour of a record.
+/// What gives a record its colour.
 type ColourOf = Box<dyn Fn(&[u8]) -> Rgb>;
 
 /// The colour of a record, where they have any; else its intensity as a grey, where these differ. Some programs write bytes into
@@ -64,6 +64,6 @@ fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn()
             let part = (f32::from(u16_at(record, INTENSITY)) - dark) / (bright - dark);
             Rgb::grey(srgb_decode(0.15 + 0.8 * part.clamp(0.0, 1.0)))
         };
-        Box::new(grey) as ColourOf
+        Box::new(grey) as Box<dyn Fn(&[u8]) -> Rgb>
     })
 }

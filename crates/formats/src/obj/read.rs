@@ -1,6 +1,6 @@
 //! Reading an OBJ file, block by block.
 
-use super::block::{Block, Turn, bad_corner, read_block};
+use super::block::{BACKWARD_LEFT_OUT, Block, Turn, bad_corner, read_block};
 use super::mtl::read_library;
 use super::strokes::{Stroke, Strokes};
 use crate::FormatError;
@@ -38,8 +38,8 @@ fn read_in_blocks(
         reading,
         source,
         lines: 0,
-        soup: Soup { first_vertex: 1, ..Soup::default() },
-        scene: SceneBuilder::default(),
+        soup: Soup { first_vertex: 1, leaves_out: true, ..Soup::default() },
+        scene: SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() },
         materials: HashMap::new(),
         oddities: Oddities::default(),
         name: String::new(),
@@ -104,7 +104,7 @@ impl Obj<'_, '_, '_> {
     /// Adds what a block says to what those before it said.
     fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
         self.reading.budget.take_bytes(block.spent, self.source.name)?;
-        self.turn_round(block, text)?;
+        self.turn_round(block, text);
         self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
         self.add_colours(block)?;
         let before = self.soup.positions.len();
@@ -117,12 +117,12 @@ impl Obj<'_, '_, '_> {
         self.add_faces(block, before)?;
         let end = Place { line: 1, column: 1 }.after(self.lines).after(block.lines);
         self.lines = self.lines.saturating_add(block.lines);
+        let before = end.line - 1 - block.lines;
+        if let Some(fault) = block.fault.take().map(|fault| moved_down(fault, before)) {
+            self.set_fault(fault);
+        }
         match block.failure.take() {
-            Some(FormatError::Malformed { message, mut at }) => {
-                at.line = at.line.saturating_add(end.line - 1 - block.lines);
-                Err(FormatError::Malformed { message, at })
-            }
-            Some(error) => Err(error),
+            Some(error) => Err(moved_down(error, before)),
             // Indices are 32-bit numbers, and the last one means that there is none.
             None if most.iter().any(|&count| count as u64 >= u64::from(NONE)) => {
                 let message = "there are more than 4 billion vertices or corners: cut the file into several";
@@ -132,26 +132,44 @@ impl Obj<'_, '_, '_> {
         }
     }
 
+    /// Keeps the fault that stands first.
+    fn set_fault(&mut self, fault: FormatError) {
+        let line = |fault: &FormatError| match fault {
+            FormatError::Malformed { at, .. } => at.line,
+            _ => 0,
+        };
+        if self.soup.first_fault.as_ref().is_none_or(|first| line(&fault) < line(first)) {
+            self.soup.first_fault = Some(fault);
+        }
+    }
+
     /// Gives corners that count backwards their indices.
-    fn turn_round(&self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
-        let soup = &self.soup;
-        let before = [soup.positions.len(), soup.uvs.len(), soup.normals.len()];
+    fn turn_round(&mut self, block: &mut Block, text: &[u8]) {
+        let before = [self.soup.positions.len(), self.soup.uvs.len(), self.soup.normals.len()];
+        let mut is_first = true;
         for backward in &block.backward {
             let index = before[backward.part as usize] as i64 + backward.index;
-            let index = u32::try_from(index).ok().filter(|&index| index != NONE).ok_or_else(|| {
+            let index = u32::try_from(index).ok().filter(|&index| index != NONE).unwrap_or_else(|| {
+                // Lines are counted once a block: a file may have as many of these as it has corners.
+                if !std::mem::take(&mut is_first) {
+                    self.oddities.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
+                    return NONE;
+                }
                 let mut cursor = Cursor::joining_lines(text);
                 cursor.go_to(backward.offset);
                 let mut at = Places::new(self.source.name, text).at(backward.offset);
                 at.line = at.line.saturating_add(self.lines);
-                bad_corner(cursor.word(), at)
-            })?;
+                let message = bad_corner(cursor.word());
+                self.set_fault(FormatError::malformed(message.clone(), at.clone()));
+                self.oddities.note_first(BACKWARD_LEFT_OUT, || message, || at);
+                NONE
+            });
             // A face that something was wrong with may have ended before its corner was there.
             let corner = backward.corner.and_then(|corner| block.corners.get_mut(corner as usize));
             if let Some(corner) = corner {
                 corner[backward.part as usize] = index;
             }
         }
-        Ok(())
     }
 
     /// Where one vertex has a colour all have.
@@ -262,9 +280,12 @@ impl Obj<'_, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, mut materials, mut oddities, soup, mut strokes, .. } = self;
+        let Obj { reading, source, mut scene, mut materials, mut oddities, mut soup, mut strokes, .. } = self;
+        if let Some(fault) = soup.first_fault.take_if(|_| soup.faces.is_empty() && strokes.is_empty()) {
+            return Err(fault);
+        }
         if soup.positions.is_empty() {
-            let message = "there is no face in it, and no vertex: is this an OBJ file?";
+            let message = "the file has no faces and no vertices: is this an OBJ file?";
             return Err(FormatError::malformed(message, whole_file(source.name)));
         }
         if soup.faces.is_empty() && strokes.is_empty() {
@@ -281,6 +302,17 @@ impl Obj<'_, '_, '_> {
         assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
+    }
+}
+
+/// The same error where so many lines stand before.
+fn moved_down(error: FormatError, lines: u32) -> FormatError {
+    match error {
+        FormatError::Malformed { message, mut at } => {
+            at.line = at.line.saturating_add(lines);
+            FormatError::Malformed { message, at }
+        }
+        error => error,
     }
 }
 

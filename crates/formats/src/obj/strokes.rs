@@ -34,8 +34,7 @@ pub(super) enum End {
 impl Reader<'_> {
     /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
     pub(super) fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
-        let mut last = None;
-        let mut count = 0;
+        let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
         loop {
             let word = self.cursor.word();
             if word.is_empty() || word.starts_with(b"#") {
@@ -48,11 +47,12 @@ impl Reader<'_> {
                 None => {
                     let at = self.at(self.cursor.offset() - word.len());
                     let message = format!(
-                        "{} is no vertex of a point or a line: it has to be a number, counted from 1, or backwards \
-                         from -1",
+                        "{} is not a vertex of a point or a line: write a number, counted from 1, or backwards from -1",
                         quoted(word)
                     );
-                    return Err(FormatError::malformed(message, at));
+                    self.block.strokes.truncate(first);
+                    self.fault(message, ": this point or line is left out", at);
+                    return Ok(());
                 }
             };
             let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };

@@ -198,6 +198,6 @@ impl<'a> Body<'a> {
     #[cold]
     fn bad_word(&self, word: &[u8], wanted: &str) -> FormatError {
         let at = self.places.at(self.cursor.offset() - word.len());
-        FormatError::malformed(format!("{} is no {wanted}, but one should stand here", quoted(word)), at)
+        FormatError::malformed(format!("{} is not a {wanted}, which should be here", quoted(word)), at)
     }
 }

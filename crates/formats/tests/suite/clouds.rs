@@ -59,7 +59,7 @@ fn points_and_lines_of_an_obj_are_objects_beside_its_faces() {
     assert_eq!((&only(&scene).points[..], only(&scene).vertex_kd.len()), (&[0, 1][..], 2));
     for (text, wanted) in [
         ("v 0 0 0\nl 1 2\n", "vertex 2, but the file has only 1"),
-        ("v 0 0 0\np x\n", "'x' is no vertex of a point"),
+        ("v 0 0 0\np x\n", "'x' is not a vertex of a point"),
         ("v 0 0 0\nl 1 -3\n", "names a vertex that the file does not have"),
         ("o nothing\n", "no face in it, and no vertex"),
     ] {

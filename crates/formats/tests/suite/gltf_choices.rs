@@ -121,7 +121,7 @@ fn textures_are_looked_up_by_two_sets_of_coordinates() {
     scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
     let without = text.replace(r#""TEXCOORD_0":1,"#, "");
     let told = warnings(&read(&without, &ReadOptions::default()));
-    assert!(told.contains("by texture coordinates that its mesh has not"), "{told}");
+    assert!(told.contains("texture coordinates that its mesh does not have"), "{told}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use bilux_formats::{ReadOptions, read};
 use std::path::{Path, PathBuf};
 
 /// Files that must be refused, with a part of the message.
-const REFUSED: &[(&str, &str)] = &[("asc/teapot.bpt", "no scene format")];
+const REFUSED: &[(&str, &str)] = &[("asc/teapot.bpt", "not a scene format")];
 
 /// Files that belong to others.
 const COMPANIONS: &[&str] = &["mtl", "png", "jpg"];

@@ -63,7 +63,7 @@ fn broken_files_are_refused_with_their_place() {
             "scene.stl:9:1: the file ends within this facet",
         ),
         (format!("solid x\n{}", FACET.replace("1 0 0", "1 0")), "scene.stl:5:13: a vertex has three numbers"),
-        (format!("solid x\n{}", FACET.replace("1 0 0", "1 O 0")), "scene.stl:5:12: 'O' is no number"),
+        (format!("solid x\n{}", FACET.replace("1 0 0", "1 O 0")), "scene.stl:5:12: 'O' is not a number"),
         (
             format!("solid x\n{}", FACET.replace("  vertex 1 0 0\n", "")),
             "scene.stl:7:1: a facet with 2 corners",

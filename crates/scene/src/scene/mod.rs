@@ -1,5 +1,6 @@
 //! The immutable scene, and the [`Tracer`] through which integrators ask it.
 
+mod sheets;
 mod tracer;
 
 use crate::builder::AccelChoice;
@@ -14,6 +15,7 @@ use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, Query};
 use bilux_math::{Aabb, Rgb, Vec3};
+use sheets::Sheets;
 use std::sync::Arc;
 pub use tracer::Tracer;
 
@@ -140,6 +142,8 @@ pub struct Scene {
     shutter: [f32; 2],
     /// For whom textures are filtered.
     view: Option<View>,
+    /// The gaps of sheets, where there are any.
+    sheets: Option<Sheets>,
 }
 
 impl Scene {
@@ -151,7 +155,8 @@ impl Scene {
             }
             _ => None,
         };
-        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None }
+        let sheets = Sheets::find(&parts, &accelerator, shutter[0]);
+        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets }
     }
 
     /// The same scene at another time: only the top level is built anew.

@@ -12,7 +12,7 @@ const FAR: f64 = 32.0;
 
 /// Turns a scene as it is asked for, and where nothing is, as its format or its shape says; `None` where it stays as it is. A
 /// scene with a camera of its own stays, unless it is asked for; one with a camera or a light stays where it is.
-pub(super) fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
+pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
     let is_asked = studio.up.is_some() || studio.front.is_some();
     let is_bare = scene.cameras.is_empty() && scene.lights.is_empty();
     if scene.objects.is_empty() || !(is_asked || is_bare) {
