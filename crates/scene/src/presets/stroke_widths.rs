@@ -10,7 +10,7 @@ const PLACES: usize = 512;
 /// The least diameter, in pixels.
 const LEAST: f32 = 1.5;
 /// The greatest diameter of points, and the diameter of lines, in parts of the picture's shorter side.
-const LARGE: f32 = 1.0 / 80.0;
+const LARGE: f32 = 1.0 / 50.0;
 const LINE: f32 = 1.0 / 256.0;
 /// Points cover the ground between them where they lie as on a surface: their diameter, beside their mean distance.
 const COVERING: f32 = 1.3;
