@@ -38,6 +38,22 @@ pub fn is_command_line(error: &anyhow::Error) -> bool {
             Some(bilux::Error::Scene(scene)) => Some(scene),
             _ => cause.downcast_ref::<bilux::scene::SceneError>(),
         };
-        cause.is::<WrongCommandLine>() || scene.is_some_and(|s| s.at().file.starts_with("--"))
+        cause.is::<WrongCommandLine>()
+            || scene.is_some_and(|s| s.at().file.starts_with("--"))
+            || cause.downcast_ref().is_some_and(is_about_options)
     })
+}
+
+/// True for what only options can have caused.
+fn is_about_options(error: &bilux::Error) -> bool {
+    use bilux::transport::{FilmError, RenderError};
+    let bilux::Error::Render(error) = error else { return false };
+    matches!(
+        error,
+        RenderError::StopOfPart
+            | RenderError::IntervalOfPattern
+            | RenderError::Samples { .. }
+            | RenderError::Pixel { .. }
+            | RenderError::Film(FilmError::Window { .. })
+    )
 }

@@ -113,8 +113,8 @@ fn command_lines_that_ask_for_what_there_is_not() {
     let path = folder.path();
     std::fs::write(path.join("pot.obj"), PLAIN).unwrap();
     let refused = |more: &[&str], parts: &[&str]| assert_told(render(path, "pot.obj", more), 2, parts);
-    refused(&["--size", "0x0"], &["--size: '0x0' is no size: write it as 640x480"]);
-    refused(&["--size", "99999x9"], &["--size: '99999x9' is no size", "1 to 65536"]);
+    refused(&["--size", "0x0"], &["--size: '0x0' is not a size: each side has 1 to 65536 pixels"]);
+    refused(&["--size", "99999x9"], &["--size: '99999x9' is not a size", "1 to 65536"]);
     refused(&["-o", "out.pgn"], &["out.pgn: 'pgn' is not a picture format", "did you mean 'png'?"]);
     refused(&["-o", "out"], &["out: the name has no extension of a picture format", "there are: png"]);
     refused(&["-o", "none/out.png"], &["there is no folder 'none'", "make it first"]);

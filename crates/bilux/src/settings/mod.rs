@@ -302,9 +302,18 @@ fn stop(reader: &Reader) -> Stop {
     Stop { noise: above_zero("noise"), time_limit: above_zero("time_limit").map(Duration::from_secs_f32) }
 }
 
-/// What is said of a text that [`parse_size`] does not take.
+/// Why [`parse_size`] does not take a text, and what to write instead.
 pub fn no_size(text: &str) -> String {
-    format!("'{text}' is no size: write it as 640x480, with sides of 1 to {MAX_SIDE} pixels")
+    let sides = text.split(|c: char| !c.is_ascii_digit()).filter(|side| !side.is_empty());
+    let sides: Vec<u64> = sides.map(|side| side.parse().unwrap_or(u64::MAX)).collect();
+    let fit = sides.iter().all(|side| (1..=u64::from(MAX_SIDE)).contains(side));
+    let advice = match sides[..] {
+        [_, _] | [_] if !fit => format!("each side has 1 to {MAX_SIDE} pixels"),
+        [width, height] => format!("write {width}x{height}"),
+        [side] => format!("write {side}x{side} for a square"),
+        _ => "write the width and the height in pixels, such as 640x480".to_owned(),
+    };
+    format!("'{text}' is not a size: {advice}")
 }
 
 /// `640x480` as two numbers that a film can have.
