@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 /// Render physically based pictures of 3D scenes on the CPU
 #[derive(Parser)]
-#[command(name = "bilux", version = crate::version::text(), about, long_about = None, max_term_width = 100)]
+#[command(name = "bilux", about = "Render physically based pictures of 3D scenes on the CPU", long_about = None, version = crate::version::text(), max_term_width = 100)]
 #[command(help_template = help::TEMPLATE, disable_help_flag = true, disable_version_flag = true)]
 #[command(after_help = "Examples:\n  \
     bilux generate trio -o trio.toml             Write a built-in scene to a file\n  \

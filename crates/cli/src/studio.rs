@@ -6,7 +6,7 @@ use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
 use bilux::presets::Studio;
-use bilux::scene::{Parameters, SceneBuilder, Value};
+use bilux::scene::{Parameters, SceneBuilder, SceneError, Value};
 use bilux::settings::Background;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -43,6 +43,10 @@ impl StudioArguments {
     /// Puts around a scene what is asked for.
     pub fn set_up(&self, scene: &mut SceneBuilder, options: &ReadOptions) -> anyhow::Result<()> {
         if let Some(preset) = &self.preset {
+            let names = bilux::presets::PRESETS.iter().map(|row| row.entry.name);
+            if !names.clone().any(|name| name == preset) {
+                return Err(SceneError::unknown("preset", preset, names, &from_flag("--preset")).into());
+            }
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
         if self.env.as_deref() == Some(Path::new("none")) {
@@ -71,6 +75,18 @@ impl StudioArguments {
                 "--background {}: write transparent, a colour (white, '#rrggbb', or R,G,B from 0 to 1), or the file of a picture",
                 text.display()
             );
+        }
+        Ok(())
+    }
+
+    /// Finds out before the work whether the pictures that options name can be opened.
+    pub fn check_files(&self) -> anyhow::Result<()> {
+        let env = self.env.as_deref().filter(|path| *path != Path::new("none"));
+        for (flag, path) in [("--env", env), ("--background", self.picture_behind())] {
+            if let Some(path) = path {
+                std::fs::File::open(path)
+                    .with_context(|| format!("{flag}: {}: cannot open it", path.display()))?;
+            }
         }
         Ok(())
     }

@@ -25,8 +25,11 @@ pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
     anyhow::Error::new(WrongCommandLine(error.into()))
 }
 
-/// The error with the scene's name, unless it tells it already.
+/// The error with the scene's name, unless it has it already or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
+    if is_command_line(&error) {
+        return error;
+    }
     let name = scene.display().to_string();
     if format!("{error:#}").contains(&name) { error } else { error.context(name) }
 }

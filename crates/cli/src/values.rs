@@ -72,7 +72,7 @@ pub fn parse_noise(text: &str) -> Result<f32, String> {
             Err(format!("this is {}% of the light: write {text}% or {}", part * 100.0, part / 100.0))
         }
         part if part > 1.0 => Err("more noise than light: write 2% or 0.02".to_owned()),
-        part if part == 0.0 => Err("no picture is without noise: write 1% or 0.01, or more".to_owned()),
+        0.0 => Err("no picture is without noise: write 1% or 0.01, or more".to_owned()),
         _ => Err(advice()),
     }
 }

@@ -125,7 +125,7 @@ fn command_lines_that_ask_for_what_there_is_not() {
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
     assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyz"]), 2, &["pot.xyz: this is no scene format"]);
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["that is what `bilux render` does"]);
+    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render` for that"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
     assert_told(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
     assert_told(

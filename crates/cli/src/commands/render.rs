@@ -28,6 +28,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let targets = targets(arguments).map_err(usage::wrong)?;
     aov::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
+    arguments.studio.check_files()?;
     confine(&targets, arguments, common)?;
     let mut failed = 0;
     for target in &targets {

@@ -102,8 +102,8 @@ mod tests {
     fn folder() -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path();
-        ["scene", "out"].map(|name| fs::create_dir(path.join(name)).unwrap());
-        ["scene/a.obj", "secret", "old"].map(|name| fs::write(path.join(name), "x").unwrap());
+        ["scene", "out"].iter().for_each(|name| fs::create_dir(path.join(name)).unwrap());
+        ["scene/a.obj", "secret", "old"].iter().for_each(|name| fs::write(path.join(name), "x").unwrap());
         std::os::unix::fs::symlink("../secret", path.join("scene/link")).unwrap();
         folder
     }
