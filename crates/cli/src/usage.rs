@@ -27,7 +27,7 @@ pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
 
 /// The error with the scene's name, unless it has it already or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
-    if is_command_line(&error) {
+    if is_command_line(&error) || error.is::<crate::output::Unprinted>() {
         return error;
     }
     let name = scene.display().to_string();

@@ -77,7 +77,7 @@ fn scene_files_that_say_something_wrong_are_told_where() {
         std::fs::write(path.join("a.toml"), "[[model]]\nfile = 'pot.obj'\n").unwrap();
         render(path, "a.toml", &["--camera", "5"])
     };
-    assert_told((code, said), 2, &["--camera: there is no camera '5': this scene has 1, counted from 0"]);
+    assert_told((code, said), 2, &["--camera: there is no camera '5': this scene has only camera 0"]);
 }
 
 #[test]

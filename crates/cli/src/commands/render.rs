@@ -13,7 +13,7 @@ use bilux::budget::with_default_budget;
 use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
-use bilux::scene::{Parameters, SceneBuilder};
+use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
 use bilux::{Job, Outcome};
 use std::cell::{Cell, RefCell};
@@ -101,6 +101,7 @@ impl Input<'_> {
     ) -> anyhow::Result<Input<'a>> {
         let mut piped = None;
         if is_stdout(path) {
+            check_input_format(&arguments.input_format).map_err(usage::wrong)?;
             let mut bytes = Vec::new();
             let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
             input.context("standard input: cannot read it")?;
@@ -282,6 +283,16 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
         rendered.tell(common.verbose);
     }
     Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
+}
+
+/// Refuses a format of which there is none.
+fn check_input_format(name: &str) -> anyhow::Result<()> {
+    if name == "auto" || bilux::formats::format_named(name).is_some_and(|row| row.reads()) {
+        return Ok(());
+    }
+    let rows = bilux::formats::SCENE_FORMATS.iter().filter(|row| row.reads());
+    let names = rows.map(|row| row.entry.name).chain(["auto"]);
+    Err(SceneError::unknown("scene format", name, names, &settings_from::from_flag("--input-format")).into())
 }
 
 /// `--stats`.

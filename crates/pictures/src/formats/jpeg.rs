@@ -87,8 +87,7 @@ fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureEr
     let planes = opaque_planes(FORMAT, picture, options)?;
     let colours = if planes.names.len() == 1 { ColorType::Luma } else { ColorType::Rgb };
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, options.quality.clamp(1, 100));
-    encoder.set_optimized_huffman_tables(true);
+    let encoder = Encoder::new(&mut bytes, options.quality.clamp(1, 100));
     encoder.encode(&planes.to_u8(&planes.names), width, height, colours).map_err(unwritable)?;
     Ok(bytes)
 }
