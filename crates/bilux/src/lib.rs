@@ -22,6 +22,7 @@ pub mod job;
 mod layers;
 pub mod memory;
 mod oddities;
+mod own_light;
 pub mod presets;
 pub mod settings;
 pub mod strategies;
@@ -47,6 +48,8 @@ pub mod prelude {
     pub use crate::{Error, Job, Outcome, Quiet, Settings};
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
     pub use bilux_pictures::Picture;
+    pub use bilux_scene::cameras::CameraSpec;
+    pub use bilux_scene::typed::{lights, materials};
     pub use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
 }
 

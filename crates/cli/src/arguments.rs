@@ -7,11 +7,13 @@ use crate::help;
 pub use crate::measuring::{Bench, BenchKind};
 use crate::studio::StudioArguments;
 use crate::values::{
-    Exposure, parse_bytes, parse_count, parse_crop, parse_exposure, parse_frames, parse_noise, parse_quality,
-    parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp, parse_vector,
+    Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
+    parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp,
+    parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Render physically based pictures of 3D scenes on the CPU
 #[derive(Parser)]
@@ -126,7 +128,8 @@ pub enum Command {
     bilux merge a.exr b.exr -o scene.png                Merge them\n\n\
     Exit status:\n  \
     0 when every picture was written, 1 when something failed, 2 when the command line is wrong,\n  \
-    130 or 143 when a signal ended it early (the picture so far is saved), 141 when standard output was closed")]
+    124 when --timeout, 130 or 143 when a signal ended it early (the picture so far is saved),\n  \
+    141 when standard output was closed")]
 pub struct Render {
     /// The scene files; `-` reads standard input
     #[arg(required = true, value_name = "SCENE")]
@@ -144,7 +147,7 @@ pub struct Render {
     /// Stop when the noise is at most this part of the light, on average: 2% looks smooth
     #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::MOST_USED)]
     pub noise: Option<f32>,
-    /// Finish within this time, including reading and denoising; at least half of it is spent on rendering
+    /// Finish within this time, including reading and denoising; where that is impossible, a line says why
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::MOST_USED)]
     pub time_limit: Option<f32>,
     /// The integrator, which finds the light (`bilux list integrators`) [default: auto]
@@ -180,6 +183,12 @@ pub struct Render {
     #[arg(long, value_name = "auto|oidn|builtin|off", num_args = 0..=1, default_missing_value = "auto",
         require_equals = true, help_heading = help::PICTURE)]
     pub denoise: Option<String>,
+    /// Render the cleanest picture that about a second gives, reading and denoising included: for thumbnails
+    #[arg(long, conflicts_with_all = ["spp", "noise", "time_limit"], help_heading = help::SPEED)]
+    pub fast: bool,
+    /// End the whole command after this time, with the picture as it is by then (exit status 124)
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_duration, help_heading = help::SPEED)]
+    pub timeout: Option<Duration>,
     /// The seed of the random numbers; another seed gives other noise
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_seed, help_heading = help::PICTURE)]
     pub seed: Option<u64>,

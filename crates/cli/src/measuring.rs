@@ -21,12 +21,15 @@ use std::path::PathBuf;
     bilux bench load                                   Files of 100 MB that it makes, and a million instances\n  \
     bilux bench load scan.ply house.glb --json\n  \
     bilux bench render --report measured               Ten minutes, and a page of pictures\n  \
-    bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16")]
+    bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
+    bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,bdpt,auto:path-photons\n  \
+    bilux bench models                                 A dozen models, in five minutes")]
 pub struct Bench {
     /// The benchmark
     #[arg(value_enum)]
     pub kind: BenchKind,
-    /// `load`: scene files [default: files that it makes]. `rays`: scene files, or the built-in scenes teapots3, interior,
+    /// `render`: scene files [default: the built-in scenes]. `load`: scene files [default: files that it makes]. `models`:
+    /// model files [default: built-in ones, and those of ../shared/scenes]. `rays`: scene files, or the built-in scenes teapots3, interior,
     /// scan, teapot1m [default: these four], teapot1k, teapot10k, teapot100k and teapots10m
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
@@ -72,12 +75,20 @@ pub struct Bench {
     /// `render`: the scenes [default: all]
     #[arg(long = "scenes", value_name = "NAME,…", value_delimiter = ',')]
     pub gallery: Vec<String>,
-    /// `render`: the integrators [default: path, bdpt, vcm, sppm, auto]
+    /// `render`: the integrators [default: path, bdpt, vcm, sppm, auto]; auto:WAYS is `auto` restricted to one of its
+    /// choices, such as auto:path-photons
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub integrators: Vec<String>,
-    /// `render`: the CPU seconds per picture, summed over all threads [default: 1,4]
+    /// `render`: the CPU seconds per picture, summed over all threads [default: 1,4]. `models`: the seconds for each half of a
+    /// reference [default: 8]
     #[arg(long, value_name = "S,S,…", value_delimiter = ',')]
     pub seconds: Vec<f64>,
+    /// `models`: keep the references in this folder, and use those that it has
+    #[arg(long, value_name = "DIR")]
+    pub references: Option<PathBuf>,
+    /// `render`: the CPU seconds for each of the two integrators that make the reference of a scene file [default: 60]
+    #[arg(long, value_name = "S")]
+    pub reference_seconds: Option<f64>,
     /// `render`: the number of pictures of each kind, of which the median is reported [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub seeds: Option<u32>,
@@ -110,4 +121,6 @@ pub enum BenchKind {
     Render,
     /// How fast scene files are read, and how much memory that takes
     Load,
+    /// Models as they come: what is seen of their errors at nothing said, in a second, and fast
+    Models,
 }

@@ -24,6 +24,12 @@ pub struct StudioArguments {
     /// Put the model in front of nothing (transparent), a colour (white, '#rrggbb' or R,G,B) or a picture, which lights nothing
     #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::MOST_USED)]
     pub background: Option<String>,
+    /// Which of the model's axes is up: x, y, z, -x, -y or -z [default: auto, by its format and its shape]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
+    pub up: Option<String>,
+    /// Which of the model's axes is its front, which the studio's camera sees [default: auto]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
+    pub front: Option<String>,
     /// The studio's camera as a preset (`bilux list presets`)
     #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
     pub preset: Option<String>,

@@ -1,6 +1,7 @@
 //! Values as they are written on the command line.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 pub fn parse_rival(text: &str) -> Result<(String, PathBuf), String> {
     let (name, path) =
@@ -114,6 +115,13 @@ pub fn parse_replay(text: &str) -> Result<[u32; 3], String> {
 
 pub fn parse_vector(text: &str) -> Result<[f32; 3], String> {
     numbers(text, "three numbers, such as 4,0,0")
+}
+
+/// The same as a duration.
+pub fn parse_duration(text: &str) -> Result<Duration, String> {
+    let seconds = parse_seconds(text)?;
+    Duration::try_from_secs_f32(seconds)
+        .map_err(|_| "this is longer than any picture takes: write less".to_owned())
 }
 
 /// A length, 0 or more.

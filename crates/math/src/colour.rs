@@ -162,6 +162,22 @@ pub fn srgb_decode(encoded: f32) -> f32 {
 mod tests {
     use super::*;
 
+    /// By hand from the standard: a curve that both ways share would come back as well.
+    #[test]
+    fn srgb_is_the_curve_of_the_standard() {
+        for (encoded, linear) in [(0.02, 0.001_548), (0.5, 0.214_041), (188.0 / 255.0, 0.502_886), (1.0, 1.0)]
+        {
+            assert!((srgb_decode(encoded) - linear).abs() < 2e-6, "{encoded}: {}", srgb_decode(encoded));
+            assert!((srgb_encode(linear) - encoded).abs() < 1e-5, "{linear}: {}", srgb_encode(linear));
+        }
+    }
+
+    #[test]
+    fn luminance_is_that_of_rec_709() {
+        let of = |r: f32, g: f32, b: f32| Rgb::new(r, g, b).luminance();
+        assert_eq!([of(1.0, 0.0, 0.0), of(0.0, 1.0, 0.0), of(0.0, 0.0, 1.0)], [0.2126, 0.7152, 0.0722]);
+    }
+
     #[test]
     fn srgb_round_trips_every_byte() {
         for byte in 0..=255u8 {

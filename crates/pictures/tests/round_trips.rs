@@ -152,6 +152,31 @@ fn hdr_holds_whole_numbers_and_limits() {
     assert_eq!(back.rgb(3, 0), Rgb::BLACK);
 }
 
+/// Bytes by hand, as the formats' own pages have them: what is written wrongly and read wrongly comes back too.
+#[test]
+fn bytes_mean_what_their_formats_say() {
+    let read = |bytes: &[u8]| read_bytes(bytes, None, &Limits::default()).unwrap();
+    // Radiance: a mantissa is a part of 256, and the exponent is over 128. One pixel of 1, 1/2 and 1/4; one of 64, 0 and 0.
+    let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+    let hdr = read(&[&header[..], &[128, 64, 32, 129], &[128, 0, 0, 135]].concat());
+    assert_eq!(hdr.to_rgb().unwrap(), [Rgb::new(1.0, 0.5, 0.25), Rgb::new(64.0, 0.0, 0.0)]);
+    // PFM: the lowest row first; the sign of the scale is the order of bytes.
+    for (scale, bytes) in [("1.0", 2.0f32.to_be_bytes()), ("-1.0", 2.0f32.to_le_bytes())] {
+        let pfm = read(&[format!("Pf\n1 2\n{scale}\n").as_bytes(), &bytes, &[0; 4]].concat());
+        assert_eq!(pfm.channel("Y").unwrap(), [0.0, 2.0], "{scale}");
+    }
+    // PPM of 16 bits: the greater byte first, by the sRGB curve.
+    let ppm = read(&[&b"P6\n1 1\n65535\n"[..], &[0x80, 0x00, 0xff, 0xff, 0x00, 0x00]].concat());
+    let light = ppm.into_linear().to_rgb().unwrap()[0];
+    assert!((light - Rgb::new(0.214_05, 1.0, 0.0)).map(f32::abs).max_channel() < 2e-5, "{light:?}");
+    // Written, the other way round.
+    let picture = Picture::from_rgb(1, 2, vec![Rgb::grey(1.0), Rgb::grey(0.502_886)]).unwrap();
+    let written = |format: &str| write_bytes(format, &picture, &WriteOptions::default()).unwrap();
+    assert!(written("ppm").ends_with(&[255, 255, 255, 188, 188, 188]));
+    assert!(written("hdr").ends_with(&[128, 128, 128, 129, 129, 129, 129, 128]));
+    assert!(written("pfm").ends_with(&[1.0f32.to_le_bytes(); 3].concat()));
+}
+
 #[test]
 fn display_formats_encode_light() {
     let picture = Picture::from_rgb(3, 1, vec![Rgb::grey(0.5), Rgb::grey(7.0), Rgb::grey(-1.0)]).unwrap();
@@ -225,4 +250,14 @@ fn planes_have_to_fit() {
     assert!(picture.push_channel("", vec![0.0; 6]).is_err());
     assert!(Picture::new(0, 4).is_err() && Picture::new(usize::MAX, usize::MAX).is_err());
     assert!(Picture::from_rgb(2, 2, vec![Rgb::BLACK; 3]).is_err());
+}
+
+#[test]
+fn bytes_for_a_display_are_encoded_and_have_alpha() {
+    let mut picture = Picture::from_rgb(2, 1, vec![Rgb::new(0.5, 0.0, 7.0), Rgb::grey(0.25)]).unwrap();
+    assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 137, 137, 137, 255]);
+    // Half there, and its light multiplied by that.
+    picture.push_channel("A", vec![1.0, 0.5]).unwrap();
+    assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 188, 188, 188, 128]);
+    assert_eq!(Picture::new(2, 1).unwrap().to_rgba8(), None);
 }

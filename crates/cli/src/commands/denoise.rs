@@ -18,6 +18,9 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let confines = Confines::default().reading(input).writing(output);
     confines.check_written(output, common).map_err(usage::wrong)?;
     let tone_map = tone_map(&arguments.tonemap).map_err(usage::wrong)?;
+    if arguments.by != "builtin" {
+        crate::denoising::load(arguments.threads, common);
+    }
     let task = Task { threads: arguments.threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).map_err(usage::wrong)?;
     confines.enter(common)?;

@@ -21,6 +21,10 @@ pub struct Rendered<'a> {
     pub total_seconds: f64,
     /// What denoised it.
     pub denoiser: Option<&'a Chosen>,
+    /// `--timeout` ended it.
+    pub timed_out: bool,
+    /// Why it took longer than its time limit, if it did.
+    pub overrun: Option<String>,
     pub warnings: &'a [String],
 }
 
@@ -43,7 +47,15 @@ impl Rendered<'_> {
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
         let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
-        let cut = if self.outcome.cancelled { "; interrupted: this is the picture so far" } else { "" };
+        let cut = match self.outcome.cancelled {
+            true if self.timed_out => "; ended by --timeout: this is the picture so far",
+            true => "; interrupted: this is the picture so far",
+            false => "",
+        };
+        self.tell_orientation();
+        if let Some(overrun) = &self.overrun {
+            output::say(format_args!("{output}: {overrun}"));
+        }
         output::say(format_args!(
             "{output}: {}x{}, {} samples per pixel, {:.1} s{noise}{}{cut}",
             s.width,
@@ -54,6 +66,19 @@ impl Rendered<'_> {
         ));
         if let Some(advice) = self.denoiser.and_then(|chosen| chosen.advice.as_ref()) {
             output::say(format_args!("{output}: {advice}"));
+        }
+    }
+
+    /// Says which way is up where that was decided here; once, however many pictures there are.
+    fn tell_orientation(&self) {
+        static SAID: std::sync::Once = std::sync::Once::new();
+        if let Some(orientation) = self.job.orientation() {
+            let (up, front) = (orientation.up.name(), orientation.front.name());
+            let because = orientation.because.words();
+            let scene = self.scene.display();
+            SAID.call_once(|| {
+                output::say(format_args!("{scene}: up is {up}, front is {front}, {because} (--up, --front)"));
+            });
         }
     }
 

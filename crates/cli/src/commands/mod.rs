@@ -14,6 +14,7 @@ pub mod merge;
 pub mod render;
 mod stats;
 mod targets;
+mod time_limit;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
@@ -25,7 +26,7 @@ use bilux::math::Rgb;
 use bilux::pictures::Picture;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::{SceneBuilder, Span, Warning};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The work is done.
 pub const DONE: u8 = 0;
@@ -35,6 +36,7 @@ fn read_options(common: &Common) -> ReadOptions {
     ReadOptions {
         max_memory: common.max_memory,
         allow_outside: common.allow_outside,
+        working_folder: (!common.sandbox).then(PathBuf::new),
         strict: common.strict,
         ..ReadOptions::default()
     }

@@ -1,15 +1,15 @@
 //! `bilux render`: pictures from scenes.
 
 use super::targets::{Target, frame_path, is_stdout, targets};
-use super::{DONE, aov, check_choices, log, read_options_with, stats, tell_warnings};
+use super::{DONE, aov, check_choices, log, read_options_with, stats, tell_warnings, time_limit};
 use crate::arguments::{Common, Render};
-use crate::denoising::check_scenes;
+use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
 use crate::sandbox::Confines;
 use crate::{output, settings_from, usage};
 use anyhow::{Context, anyhow, bail};
-use bilux::budget::with_default_budget;
+use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
@@ -29,6 +29,10 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     aov::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
+    if let Some(timeout) = arguments.timeout {
+        interrupt.end_after(timeout);
+    }
+    begin_loading(arguments, common);
     confine(&targets, arguments, common)?;
     let mut failed = 0;
     for target in &targets {
@@ -211,8 +215,11 @@ fn render_scene(
     let Input { arguments, common, .. } = *input;
     let begun = Instant::now();
     let mut user = user.clone();
-    let by_default =
-        !is_part(arguments) && arguments.replay.is_none() && with_default_budget(&scene.settings, &mut user);
+    let is_whole = !is_part(arguments) && arguments.replay.is_none();
+    if arguments.fast {
+        with_fast_budget(&scene.settings, &mut user);
+    }
+    let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
     let mut job = input.job(scene, &user)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was given elsewhere than by --at.
@@ -221,6 +228,9 @@ fn render_scene(
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
+    if !common.quiet {
+        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", target.output.display())));
+    }
     if let Some([x, y, sample]) = arguments.replay {
         output::print(job.replay(x, y, sample).context("--replay")?)?;
         return Ok(DONE);
@@ -258,10 +268,16 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     let report = Report::new(&label, common, interrupt.clone());
     let for_display = is_stdout(output) || format_of_path(output)?.for_display;
     let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
+    let before = input.begun.get().elapsed();
+    interrupt.renders(true);
+    let before = input.begun.get().elapsed();
+    interrupt.renders(true);
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     let denoiser = denoiser.filter(|_| !outcome.cancelled);
     let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
+    interrupt.renders(false);
+    let overrun = time_limit::overrun(job, &outcome, before, seconds, input.begun.get().elapsed());
     tell_odd_samples(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     let rendered = log::Rendered {
@@ -273,6 +289,8 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
         seconds,
         total_seconds: input.begun.get().elapsed().as_secs_f64(),
         denoiser: denoiser.as_ref().filter(|_| denoised),
+        timed_out: interrupt.timed_out(),
+        overrun,
         warnings: &input.warnings.borrow(),
     };
     write_stats(target, &rendered)?;

@@ -7,7 +7,7 @@ use bilux_scene::SceneBuilder;
 
 /// A document under construction: accessors of floats in one buffer.
 #[derive(Default)]
-struct Parts {
+pub(crate) struct Parts {
     bytes: Vec<u8>,
     views: Vec<String>,
     accessors: Vec<String>,
@@ -15,12 +15,12 @@ struct Parts {
 
 impl Parts {
     /// Adds an accessor of floats and gives its number.
-    fn floats(&mut self, kind: &str, width: usize, numbers: &[f32]) -> usize {
+    pub(crate) fn floats(&mut self, kind: &str, width: usize, numbers: &[f32]) -> usize {
         let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
         self.add(kind, 5126, numbers.len() / width, &bytes)
     }
 
-    fn add(&mut self, kind: &str, component: u32, count: usize, bytes: &[u8]) -> usize {
+    pub(crate) fn add(&mut self, kind: &str, component: u32, count: usize, bytes: &[u8]) -> usize {
         let (view, start) = (self.views.len(), self.bytes.len());
         self.bytes.extend(bytes);
         self.views.push(format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{}}}"#, bytes.len()));
@@ -30,7 +30,7 @@ impl Parts {
         self.accessors.len() - 1
     }
 
-    fn document(&self, rest: &str) -> String {
+    pub(crate) fn document(&self, rest: &str) -> String {
         let uri: String = self.bytes.iter().map(|b| format!("%{b:02x}")).collect();
         format!(
             r#"{{"asset":{{"version":"2.0"}},"accessors":[{}],"bufferViews":[{}],
@@ -115,8 +115,8 @@ fn animations_are_chosen_by_name_or_number() {
 #[test]
 fn what_is_wrong_with_an_animation_is_told_and_left_out() {
     let cases = [
-        ("[1.0, 3.0]", [3.0, 1.0], "the times of an animation have to be numbers that rise"),
-        ("NaN", [1.0, f32::NAN], "the times of an animation have to be numbers that rise"),
+        ("[1.0, 3.0]", [3.0, 1.0], "the times of an animation must be numbers that increase"),
+        ("NaN", [1.0, f32::NAN], "the times of an animation must be numbers that increase"),
     ];
     for (name, times, part) in cases {
         let mut parts = Parts::default();

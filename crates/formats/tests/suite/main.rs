@@ -3,15 +3,19 @@
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
 mod asc;
+mod clouds;
 mod gltf;
 mod gltf_choices;
+mod gltf_conventions;
 mod gltf_files;
 mod gltf_motion;
 #[cfg(all(feature = "draco", feature = "ktx2"))]
 mod gltf_packed;
+mod gltf_validated;
 mod gltf_written;
 mod hostile;
 mod left_out;
+mod messages;
 mod native;
 mod obj;
 mod off;
@@ -21,6 +25,7 @@ mod patterns;
 mod pbrt;
 mod pbrt_written;
 mod ply;
+mod ply_types;
 mod round_trips;
 mod shared_files;
 mod stl;

@@ -32,9 +32,11 @@ impl Roughness {
     /// The facets at a point.
     #[inline]
     pub(super) fn at(&self, surface: &Surface) -> Ggx {
-        self.even.unwrap_or_else(|| {
+        // Turned from u towards v, on whichever side of u that is.
+        let rotation = self.rotation * surface.handedness;
+        self.even.filter(|_| rotation == self.rotation).unwrap_or_else(|| {
             let uv = surface.uvs();
-            Ggx::from_roughness(self.roughness.at(uv), self.anisotropy.at(uv), self.rotation)
+            Ggx::from_roughness(self.roughness.at(uv), self.anisotropy.at(uv), rotation)
         })
     }
 

@@ -4,6 +4,7 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{Ways, light_vertices, to_camera};
+use crate::media::Media;
 use crate::splats::Splats;
 use crate::task::Task;
 use bilux_math::registry::Entry;
@@ -30,8 +31,9 @@ struct Light {
 impl PixelIntegrator for Light {
     /// Only the lights themselves.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        match task.tracer.closest(ray) {
-            Some(surface) => task.scene().emission(&surface, -Vec3::from(ray.direction)),
+        let mut media = Media::at_start(task.tracer, ray);
+        match media.closest(task.tracer, ray) {
+            Some((surface, passed)) => passed * task.scene().emission(&surface, -Vec3::from(ray.direction)),
             None => task.scene().background(ray.direction.into(), 0),
         }
     }

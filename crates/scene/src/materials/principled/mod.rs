@@ -184,7 +184,9 @@ impl Principled {
     fn point(&self, surface: &Surface) -> Point {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
         let point = self.maps.at(surface.uvs());
-        Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), ..point }
+        // Turned from u towards v, on whichever side of u that is.
+        let rotation = point.rotation * surface.handedness;
+        Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), rotation, ..point }
     }
 
     /// [`Material::bsdf`], with a coat about a normal of its own.
@@ -217,7 +219,9 @@ impl Material for Principled {
             }
         }
         let bsdf = match &self.even {
-            Some(even) if surface.vertex_kd.is_none() => even.moved_to(surface.n_shade, surface.n_geom),
+            Some(even) if surface.vertex_kd.is_none() && surface.handedness > 0.0 => {
+                even.moved_to(surface.n_shade, surface.n_geom)
+            }
             _ => Bsdf::new(surface.n_shade, surface.n_geom, self.point(surface).lobes()),
         };
         bsdf.along(surface.tangent)

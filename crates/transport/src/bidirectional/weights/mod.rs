@@ -78,8 +78,8 @@ fn verdict(scene: &Scene, ways: &Ways, flaw: Flaw) -> Verdict {
     verdict
 }
 
-/// Matt, rough, polished and transparent bodies, with normals of a picture or interpolated, under three lights, one of each
-/// kind that `lights` names.
+/// Matt, rough, polished and transparent bodies, with normals of a picture or interpolated, under a light of each kind that
+/// `lights` names.
 fn scene(lights: &[&str], camera: Spec) -> Scene {
     let mut builder = SceneBuilder::default();
     let waves = (0..64).map(|i| {
@@ -104,11 +104,14 @@ fn scene(lights: &[&str], camera: Spec) -> Scene {
         let ball = shapes::ball(Vec3::new(x, 0.45, 0.1 * x), 0.4, 12, true);
         shapes::put(&mut builder, "ball", ball, material);
     }
-    for kind in lights {
+    for (i, kind) in lights.iter().enumerate() {
         let light = Spec::new("", kind);
+        // Several panels lie one above the other, each brighter than the one before.
+        let panels = lights[..i].iter().filter(|before| **before == "rect").count() as f32;
         builder.lights.push(match *kind {
             "rect" => {
-                let panel = light.with("position", Vec3::new(-0.7, 2.6, -0.4)).with("intensity", 8.0f32);
+                let place = Vec3::new(-0.7, 2.6 - 0.3 * panels, -0.4 + 0.7 * panels);
+                let panel = light.with("position", place).with("intensity", 8.0 * (1.0 + panels));
                 panel.with("edge_u", Vec3::X * 1.5).with("edge_v", Vec3::Z)
             }
             "point" => light.with("position", Vec3::new(0.3, 2.0, 1.5)).with("intensity", 3.0f32),
@@ -158,6 +161,30 @@ fn every_weight_is_the_share_of_its_strategy() {
                 assert!(compared > 3000 && telling.iter().sum::<usize>() > 500, "{telling:?}");
             }
         }
+    }
+}
+
+/// More than are all sampled, so that each is chosen now and then.
+const MANY: [&[&str]; 2] = [
+    &["rect", "rect", "rect", "rect", "rect"],
+    &["point", "rect", "environment", "rect", "directional", "rect"],
+];
+
+#[test]
+fn every_weight_is_the_share_of_its_strategy_among_many_lights() {
+    for (i, lights) in MANY.into_iter().enumerate() {
+        let scene = scene(lights, cameras()[i].clone());
+        assert!(!crate::LightChoice::new(&scene).takes_all());
+        for ways in [sets()[0], Ways { direct: false, ..sets()[1] }] {
+            let Verdict { compared, wrong, worst, telling, .. } = verdict(&scene, &ways, Flaw::None);
+            assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
+            assert!(telling[..2].iter().all(|&n| n > 500), "{telling:?}");
+        }
+        let Verdict { compared, wrong, .. } = verdict(&scene, &sets()[0], Flaw::Choice);
+        assert!(
+            wrong > compared / 20,
+            "only {wrong} of {compared} weights know how seldom a light is chosen"
+        );
     }
 }
 

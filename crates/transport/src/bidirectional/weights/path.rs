@@ -43,6 +43,7 @@ pub(super) enum Flaw {
     Cosine,
     Distance,
     LightChoice,
+    Choice,
     PickedTwice,
     MergedTwice,
     Direct,
@@ -112,7 +113,8 @@ impl Path {
         let emission = light.emission_pdf(&scene.bounds(), direct, -first.to_light, self.start.cos);
         let choice =
             if flaw == Flaw::LightChoice { 1.0 } else { task.emission.probability(self.start.index) };
-        let picked = f64::from(direct) * f64::from(task.lights.probability(self.start.index));
+        let chosen = if flaw == Flaw::Choice { 1.0 } else { task.lights.probability(self.start.index) };
+        let picked = f64::from(direct) * f64::from(chosen);
         let mut product =
             f64::from(emission) * f64::from(choice) * cosine(first.from_light.1, first.to_light, flaw);
         if let Some(p) = self.start.p {

@@ -1,0 +1,272 @@
+//! Whatever changes a sample changes the fingerprint, so that films of two pictures never join in silence; and what changes
+//! none does not, so that films of one picture do.
+
+use bilux::fingerprint::fingerprint;
+use bilux::math::glam::Vec4;
+use bilux::math::motion::{Motion, MotionKey};
+use bilux::math::registry::{Parameter, ParameterKind};
+use bilux::math::{Rgb, Transform, Vec2, Vec3};
+use bilux::prelude::*;
+use bilux::scene::cameras::CameraSpec;
+use bilux::scene::texture::{Channel, Filter, Texture, UvTransform, Wrap};
+use bilux::settings::RENDER;
+use bilux::transport::integrators::INTEGRATORS;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A triangle with everything that a mesh can have, a lamp, two cameras of which one moves, a picture.
+fn scene() -> SceneBuilder {
+    let mut scene = SceneBuilder::default();
+    let texels = (0..16).map(|i| Rgb::grey(i as f32 / 15.0)).collect();
+    scene.textures.push(Arc::new(Texture::new("", 4, 4, texels, false)));
+    scene.add_material(Spec::new("paint", "diffuse").with("reflectance", Value::Texture(0)));
+    scene.add_material(Spec::new("tin", "mirror").with("reflectance", 0.5f32));
+    let mesh = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        normals: vec![Vec3::Z; 3],
+        uvs: vec![Vec2::ZERO, Vec2::X, Vec2::Y],
+        uvs2: vec![Vec2::ONE; 3],
+        tangents: vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 3],
+        vertex_kd: vec![Rgb::WHITE; 3],
+        vertex_ks: vec![Rgb::BLACK; 3],
+        triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
+    };
+    scene.objects.push(Object::new("sail", Arc::new(mesh), 0));
+    scene.lights.push(Spec::new("lamp", "point").with("position", Vec3::Z).with("intensity", 2.0f32));
+    let camera = |name: &str| Spec::new(name, "perspective").with("position", Vec3::Z * 3.0);
+    let mut moves = Parameters::default();
+    moves.set("position", Vec3::Z * 4.0);
+    scene.cameras.push(CameraSpec { spec: camera("a"), keyframes: vec![(1.0, moves)] });
+    scene.cameras.push(CameraSpec { spec: camera("b"), keyframes: Vec::new() });
+    scene
+}
+
+fn mesh_of(scene: &mut SceneBuilder) -> &mut Mesh {
+    Arc::make_mut(&mut scene.objects[0].mesh)
+}
+
+fn texture_of(scene: &mut SceneBuilder) -> &mut Texture {
+    Arc::make_mut(&mut scene.textures[0])
+}
+
+fn key(time_seconds: f32, x: f32) -> MotionKey {
+    let (rotation, scale) = (bilux::math::Quat::IDENTITY, Vec3::ONE);
+    MotionKey { time_seconds, translation: Vec3::X * x, rotation, scale }
+}
+
+type Change = (&'static str, fn(&mut SceneBuilder));
+
+/// All that a scene is made of, each changed a little.
+const CHANGES: &[Change] = &[
+    ("a position", |s| mesh_of(s).positions[1].x = 1.5),
+    ("a normal", |s| mesh_of(s).normals[1].x = 0.5),
+    ("a texture coordinate", |s| mesh_of(s).uvs[1].x = 0.5),
+    ("one of the second set", |s| mesh_of(s).uvs2[1].x = 0.5),
+    ("a tangent", |s| mesh_of(s).tangents[1].y = 0.5),
+    ("a tangent's hand", |s| mesh_of(s).tangents[1].w = -1.0),
+    ("a vertex's diffuse colour", |s| mesh_of(s).vertex_kd[1].r = 0.5),
+    ("a vertex's specular colour", |s| mesh_of(s).vertex_ks[1].r = 0.5),
+    ("the order of corners", |s| mesh_of(s).triangles[0] = [0, 2, 1]),
+    ("one triangle more", |s| mesh_of(s).triangles.push([0, 2, 1])),
+    ("an object's material", |s| s.objects[0].material = 1),
+    ("an object's place", |s| {
+        s.objects[0].motion =
+            Motion::still(Transform::from_matrix(bilux::math::DMat4::from_rotation_x(0.5)).unwrap());
+    }),
+    ("a movement", |s| s.objects[0].motion = Motion::from_keys(vec![key(0.0, 0.0), key(1.0, 2.0)]).unwrap()),
+    ("its end", |s| s.objects[0].motion = Motion::from_keys(vec![key(0.0, 0.0), key(1.0, 3.0)]).unwrap()),
+    ("its time", |s| s.objects[0].motion = Motion::from_keys(vec![key(0.0, 0.0), key(2.0, 2.0)]).unwrap()),
+    ("one object more", |s| s.objects.push(s.objects[0].clone())),
+    ("a texel", |s| {
+        let texels = (0..16).map(|i| Rgb::grey(if i == 7 { 0.0 } else { i as f32 / 15.0 })).collect();
+        *texture_of(s) = Texture::new("", 4, 4, texels, false);
+    }),
+    ("the picture's shape", |s| {
+        let texels = (0..16).map(|i| Rgb::grey(i as f32 / 15.0)).collect();
+        *texture_of(s) = Texture::new("", 8, 2, texels, false);
+    }),
+    ("a picture's factor", |s| texture_of(s).factor = Rgb::grey(0.5)),
+    ("a picture's channel", |s| texture_of(s).channel = Some(Channel::A)),
+    ("a picture's threshold", |s| texture_of(s).threshold = Some(0.5)),
+    ("how a picture is blended", |s| texture_of(s).filter = Filter::Nearest),
+    ("how it goes on to the right", |s| texture_of(s).wrap[0] = Wrap::Clamp),
+    ("how it goes on upwards", |s| texture_of(s).wrap[1] = Wrap::Clamp),
+    ("where it lies", |s| texture_of(s).transform = Some(UvTransform::new([0.5, 0.0], 0.0, [1.0; 2]))),
+    ("by which set it is looked up", |s| texture_of(s).second_uv = true),
+    ("a material's kind", |s| s.materials[0].kind = "phong".to_owned()),
+    ("a material's parameter", |s| s.materials[1].parameters.set("reflectance", 0.25f32)),
+    ("one parameter more", |s| s.materials[1].parameters.set("gloss", 0.25f32)),
+    ("one parameter fewer", |s| s.materials[0].parameters.0.clear()),
+    ("a light's kind", |s| s.lights[0].kind = "spot".to_owned()),
+    ("a light's parameter", |s| s.lights[0].parameters.set("intensity", 3.0f32)),
+    ("one light fewer", |s| s.lights.clear()),
+    ("a camera's kind", |s| s.cameras[0].spec.kind = "orthographic".to_owned()),
+    ("a camera's parameter", |s| s.cameras[0].spec.parameters.set("fov", 30.0f32)),
+    ("a camera's movement", |s| s.cameras[0].keyframes[0].1.set("position", Vec3::Z * 5.0)),
+    ("the time of that", |s| s.cameras[0].keyframes[0].0 = 2.0),
+    ("which camera is the first", |s| s.cameras.swap(0, 1)),
+];
+
+#[test]
+fn whatever_of_a_scene_changes_another_picture_it_is() {
+    let settings = Settings::resolve(&Parameters::default()).unwrap();
+    let mut seen = HashMap::from([(fingerprint(&scene(), &settings), "nothing")]);
+    for (what, change) in CHANGES {
+        let mut changed = scene();
+        change(&mut changed);
+        if let Some(other) = seen.insert(fingerprint(&changed, &settings), what) {
+            panic!("{what} and {other} have one fingerprint");
+        }
+    }
+    // Names alone, and where something was written, are no part of the picture.
+    let mut renamed = scene();
+    mesh_of(&mut renamed).name = "canvas".to_owned();
+    renamed.objects[0].name = "jib".to_owned();
+    assert_eq!(seen[&fingerprint(&renamed, &settings)], "nothing");
+}
+
+/// What a setting does to samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Effect {
+    /// Each may be another.
+    Changes,
+    /// They are the same to the bit, or others of the same picture.
+    Keeps,
+}
+use Effect::{Changes, Keeps};
+
+/// Every row of [`RENDER`] with a value that is not its default.
+const SETTINGS: &[(&str, &str, Effect)] = &[
+    ("integrator", "path", Changes),
+    ("accel", "brute", Keeps),
+    ("size", "9x8", Changes),
+    ("spp", "3", Keeps),
+    ("noise", "0.5", Keeps),
+    ("time_limit", "5", Keeps),
+    ("seed", "7", Changes),
+    ("max_depth", "3", Changes),
+    ("threads", "1", Keeps),
+    ("camera", "b", Changes),
+    ("ground", "none", Changes),
+    ("orbit", "40,10", Changes),
+    ("focal", "80", Changes),
+    ("time", "0.5", Changes),
+    ("shutter", "0.5", Changes),
+    ("fps", "12", Keeps),
+    ("filter", "tent", Changes),
+    ("texture_filter", "none", Changes),
+    ("pixel_anchor", "corner", Changes),
+    ("exposure", "1", Keeps),
+    ("auto_exposure", "true", Keeps),
+    ("background", "transparent", Changes),
+    ("tonemap", "aces", Keeps),
+    ("denoise", "off", Keeps),
+    ("transfer", "linear", Keeps),
+    ("culling", "back", Changes),
+    ("build", "fast", Keeps),
+    ("cpu", "baseline", Keeps),
+    ("bsp_split", "fuchs", Keeps),
+    ("bsp_group", "objects", Keeps),
+    ("early_out", "false", Keeps),
+    ("cull_by_partition", "false", Keeps),
+];
+
+fn value(parameter: &Parameter, text: &str) -> Value {
+    match parameter.kind {
+        ParameterKind::Bool => Value::Bool(text == "true"),
+        ParameterKind::Integer { .. } => Value::Integer(text.parse().unwrap()),
+        ParameterKind::Number { .. } => Value::from(text.parse::<f32>().unwrap()),
+        _ => Value::Text(text.to_owned()),
+    }
+}
+
+/// Without a camera and a light of its own, where a setting is of the studio.
+fn fingerprint_of(key: &str, value: Option<Value>) -> String {
+    let mut scene = scene();
+    if ["ground", "orbit", "focal", "background"].contains(&key) {
+        scene.cameras.clear();
+        scene.lights.clear();
+    }
+    let mut settings = Parameters::default();
+    settings.set("size", "8x8");
+    if let Some(value) = value {
+        settings.set(key, value);
+    }
+    Job::new(&scene, &settings).unwrap_or_else(|error| panic!("{key}: {error}")).fingerprint().to_owned()
+}
+
+#[test]
+fn every_setting_is_known_to_change_samples_or_to_keep_them() {
+    for parameter in RENDER.parameters {
+        let Some((key, text, effect)) = SETTINGS.iter().find(|(key, ..)| *key == parameter.name) else {
+            panic!("say in this table whether '{}' changes samples", parameter.name);
+        };
+        assert_ne!(*text, parameter.default, "{key}");
+        let is_another = fingerprint_of(key, None) != fingerprint_of(key, Some(value(parameter, text)));
+        assert_eq!(if is_another { Changes } else { Keeps }, *effect, "{key} = {text}");
+    }
+    assert!(SETTINGS.iter().all(|(key, ..)| RENDER.parameters.iter().any(|p| p.name == *key)));
+}
+
+/// Something that is not the default of a parameter.
+fn other(parameter: &Parameter) -> Value {
+    match parameter.kind {
+        ParameterKind::Bool => Value::Bool(parameter.default != "true"),
+        ParameterKind::Integer { min, .. } if parameter.default == (min + 1).to_string() => {
+            Value::Integer(min + 2)
+        }
+        ParameterKind::Integer { min, .. } => Value::Integer(min + 1),
+        ParameterKind::Number { min, max } => Value::Number(0.3 * min + 0.7 * min.max(max.min(min + 1.0))),
+        ParameterKind::Choice(words) => {
+            Value::Text(words.iter().find(|word| **word != parameter.default).unwrap().to_string())
+        }
+        kind => panic!("{}: an integrator's parameter of the kind {kind:?}", parameter.name),
+    }
+}
+
+#[test]
+fn integrators_and_their_parameters_make_another_picture() {
+    let scene = scene();
+    let mut seen = HashMap::new();
+    for row in INTEGRATORS {
+        let mut settings = Parameters::default();
+        settings.set("integrator", row.entry.name);
+        let mut look = |settings: &Parameters, what: String| {
+            let found = fingerprint(&scene, &Settings::resolve(settings).unwrap());
+            if let Some(other) = seen.insert(found, what.clone()) {
+                panic!("{what} and {other} have one fingerprint");
+            }
+        };
+        look(&settings, row.entry.name.to_owned());
+        for parameter in row.entry.parameters {
+            let mut settings = settings.clone();
+            settings.set(parameter.name, other(parameter));
+            look(&settings, format!("{}: {}", row.entry.name, parameter.name));
+        }
+    }
+}
+
+#[test]
+fn films_of_two_integrators_or_two_materials_do_not_join() {
+    let film = |scene: &SceneBuilder, integrator: &str, samples: std::ops::Range<u32>| {
+        let mut settings = Parameters::default();
+        settings.set("size", "4x4");
+        settings.set("spp", Value::Integer(4));
+        settings.set("integrator", integrator);
+        let mut job = Job::new(scene, &settings).unwrap();
+        job.samples(samples);
+        job.render(&Quiet).unwrap().film
+    };
+    let mut dull = scene();
+    dull.materials[0].parameters.set("reflectance", 0.2f32);
+    let first = film(&scene(), "path", 0..2);
+    for other in [film(&scene(), "bdpt", 2..4), film(&dull, "path", 2..4)] {
+        let error = first.clone().merge(&other).unwrap_err().to_string();
+        assert!(
+            error.contains("fingerprint") || error.contains("picture") || error.contains("scene"),
+            "{error}"
+        );
+    }
+    first.clone().merge(&film(&scene(), "path", 2..4)).unwrap();
+}
