@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::budget::left_for_light;
+use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
 use crate::memory::Memory;
 use crate::oddities::{self, oddities};
@@ -10,8 +11,7 @@ use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_scene::{
-    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, SceneError, Span,
-    Spec, Warning,
+    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
@@ -385,30 +385,4 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         interval: false,
         halves: false,
     })
-}
-
-/// A camera by its name, or by its number from 0.
-pub(crate) fn choose_camera(scene: &Scene, wanted: &str, at: &Span) -> Result<Arc<dyn Camera>, Error> {
-    let cameras = scene.cameras();
-    let by_name = cameras.iter().find(|(name, _)| name == wanted);
-    let by_number = wanted.parse().ok().and_then(|i: usize| cameras.get(i));
-    if let Some((_, camera)) = by_name.or(by_number) {
-        return Ok(camera.clone());
-    }
-    let names: Vec<&str> = cameras.iter().map(|(name, _)| name.as_str()).filter(|n| !n.is_empty()).collect();
-    if names.is_empty() || wanted.parse::<usize>().is_ok() {
-        let known = cameras.iter().enumerate().map(|(i, (name, _))| match name.as_str() {
-            "" => i.to_string(),
-            name => format!("{i} ({name})"),
-        });
-        let known: Vec<String> = known.collect();
-        let message = match known.as_slice() {
-            [one] => format!("there is no camera '{wanted}': this scene has only camera {one}"),
-            known => {
-                format!("there is no camera '{wanted}': this scene has the cameras {}", known.join(", "))
-            }
-        };
-        return Err(SceneError::invalid(message, at).into());
-    }
-    Err(SceneError::unknown("camera", wanted, names, at).into())
 }

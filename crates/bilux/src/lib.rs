@@ -16,6 +16,7 @@
 //! says ([`settings`]), and a [`Job`] renders it.
 
 pub mod budget;
+mod camera_choice;
 pub mod error;
 pub mod fingerprint;
 pub mod job;

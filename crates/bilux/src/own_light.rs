@@ -1,7 +1,8 @@
 //! Whether a file's own light is to light its picture, or a studio: by what it brings where the camera looks.
 
 use crate::Error;
-use crate::job::{choose_camera, shutter_at};
+use crate::camera_choice::choose_camera;
+use crate::job::shutter_at;
 use crate::presets::{self, Studio};
 use crate::settings::Settings;
 use bilux_scene::{AccelChoice, Scene, SceneBuilder};

@@ -270,8 +270,6 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
     let before = input.begun.get().elapsed();
     interrupt.renders(true);
-    let before = input.begun.get().elapsed();
-    interrupt.renders(true);
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     let denoiser = denoiser.filter(|_| !outcome.cancelled);

@@ -151,7 +151,6 @@ fn each_fault_is_reported_where_it_is() {
 
 /// Files of the Khronos validator's own tests, where a folder of them is named: `GLTF_VALIDATOR_TESTS=…/test`.
 #[test]
-#[ignore = "needs the files of the Khronos glTF validator's tests: cargo test -p bilux-formats validator -- --ignored"]
 fn faults_that_the_khronos_validator_knows_are_reported() {
     let Some(folder) = std::env::var_os("GLTF_VALIDATOR_TESTS") else {
         println!("skipped: GLTF_VALIDATOR_TESTS does not name the test folder of the Khronos glTF validator");

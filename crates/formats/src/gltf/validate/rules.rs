@@ -16,19 +16,24 @@ use crate::gltf::json::Node;
 /// One rule.
 pub(super) struct Rule {
     /// What must hold.
-    #[cfg_attr(not(test), allow(dead_code, reason = "the tests go by it"))]
-    pub(super) name: &'static str,
+    #[cfg(test)]
+    name: &'static str,
     /// The objects for which it must.
     pub(super) of: &'static Kind,
     pub(super) check: for<'d> fn(&mut Check<'d, '_>, Node<'d>),
 }
 
 const fn rule(
-    name: &'static str,
+    _name: &'static str,
     of: &'static Kind,
     check: for<'d> fn(&mut Check<'d, '_>, Node<'d>),
 ) -> Rule {
-    Rule { name, of, check }
+    Rule {
+        #[cfg(test)]
+        name: _name,
+        of,
+        check,
+    }
 }
 
 /// All rules. Those of an object run after all that it holds was looked at; those of the root are last.
@@ -79,3 +84,15 @@ pub(super) const RULES: &[Rule] = &[
     rule("joints are in the scene of their mesh", &ROOT, skins::in_scene),
     rule("all objects are used", &ROOT, root::unused),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_rule_has_a_name_of_its_own() {
+        let names: HashSet<_> = RULES.iter().map(|rule| rule.name).collect();
+        assert_eq!(names.len(), RULES.len());
+    }
+}
