@@ -2,6 +2,7 @@
 //! all of it the same keys of one table.
 
 mod background;
+mod size;
 mod studio;
 
 use crate::Error;
@@ -13,8 +14,8 @@ use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Warning};
 use bilux_transport::Stop;
-use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+pub use size::{no_size, parse_size};
 use std::time::Duration;
 pub use studio::parse_orbit;
 use studio::{as_orbit, studio};
@@ -309,27 +310,6 @@ const MOST_SPP: u32 = 1 << 16;
 fn stop(reader: &Reader) -> Stop {
     let above_zero = |key: &str| Some(reader.number(key)).filter(|&x| x > 0.0);
     Stop { noise: above_zero("noise"), time_limit: above_zero("time_limit").map(Duration::from_secs_f32) }
-}
-
-/// Why [`parse_size`] does not take a text, and what to write instead.
-pub fn no_size(text: &str) -> String {
-    let sides = text.split(|c: char| !c.is_ascii_digit()).filter(|side| !side.is_empty());
-    let sides: Vec<u64> = sides.map(|side| side.parse().unwrap_or(u64::MAX)).collect();
-    let fit = sides.iter().all(|side| (1..=u64::from(MAX_SIDE)).contains(side));
-    let advice = match sides[..] {
-        [_, _] | [_] if !fit => format!("each side has 1 to {MAX_SIDE} pixels"),
-        [width, height] => format!("write {width}x{height}"),
-        [side] => format!("write {side}x{side} for a square"),
-        _ => "write the width and the height in pixels, such as 640x480".to_owned(),
-    };
-    format!("'{text}' is not a size: {advice}")
-}
-
-/// `640x480` as two numbers that a film can have.
-pub fn parse_size(text: &str) -> Option<(u32, u32)> {
-    let (w, h) = text.split_once(['x', 'X', '×'])?;
-    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
-    Some((side(w)?, side(h)?))
 }
 
 fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {
