@@ -27,7 +27,8 @@ pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
 
 /// The error with the scene's name, unless it has it already or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
-    if is_command_line(&error) || error.is::<crate::output::Unprinted>() {
+    let is_about_scene = !is_command_line(&error) && !error.is::<crate::output::Unprinted>();
+    if !is_about_scene || scene == Path::new("-") {
         return error;
     }
     let name = scene.display().to_string();

@@ -109,6 +109,9 @@ impl Input<'_> {
             let mut bytes = Vec::new();
             let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
             input.context("standard input: cannot read it")?;
+            if bytes.is_empty() {
+                bail!("standard input is empty: name a scene file, or send a scene");
+            }
             piped = Some(bytes);
         }
         let (begun, warnings) = (Cell::new(Instant::now()), RefCell::default());
