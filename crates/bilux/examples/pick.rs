@@ -14,7 +14,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (_, camera) = job.scene().cameras().first().ok_or("the scene has a camera")?;
     let mut tracer = Tracer::new(job.scene(), false);
     let mut names = Vec::new();
-    for (x, y) in [(0.5, 0.5), (0.02, 0.5), (0.5, 0.98)] {
+    for (x, y) in [(0.5, 0.5), (0.02, 0.5), (0.98, 0.5)] {
         let ray = camera.ray(&CameraSample { film: Vec2::new(x, y), lens: Vec2::ZERO, time: 0.0 });
         match tracer.closest(&ray) {
             Some(surface) => {
