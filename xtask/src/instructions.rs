@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::fs;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Callgrind knows no AVX-512: what those kernels take is seen by `bilux bench rays` only.
 const WORKS: &[&str] = &[
@@ -46,7 +47,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         "--example",
         "counted_work",
     ]))?;
-    let counted = WORKS.iter().map(|work| Ok((*work, count(work)?))).collect::<Result<Vec<_>>>()?;
+    let counted = count_all()?;
     let compiler = output(Command::new("rustc").arg("--version").current_dir(root()))?.trim().to_owned();
     let path = root().join(TABLE);
     if arguments.iter().any(|argument| argument == "--write") {
@@ -63,6 +64,25 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
         return Ok(());
     }
     bail!("slower than {TABLE}: {}; if that is wanted, `cargo xtask instructions --write`", slower.join(", "))
+}
+
+/// Every work, as many at a time as there are cores: what one takes does not depend on the others.
+fn count_all() -> Result<Vec<(&'static str, f64)>> {
+    let next = AtomicUsize::new(0);
+    let on_one_core = || {
+        let works = std::iter::from_fn(|| WORKS.get(next.fetch_add(1, Ordering::Relaxed)));
+        works.map(|work| Ok((*work, count(work)?))).collect::<Result<Vec<_>>>()
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut counted = std::thread::scope(|scope| {
+        let all: Vec<_> = (0..cores).map(|_| scope.spawn(on_one_core)).collect();
+        let joined =
+            all.into_iter().map(|thread| thread.join().unwrap_or_else(|_| bail!("a count panicked")));
+        joined.collect::<Result<Vec<_>>>()
+    })?
+    .concat();
+    counted.sort_by_key(|(work, _)| WORKS.iter().position(|known| known == work));
+    Ok(counted)
 }
 
 /// Instructions a ray.

@@ -9,6 +9,7 @@ mod docs;
 mod instructions;
 mod licences;
 mod mutants;
+mod package;
 mod process;
 mod test;
 mod tidy;
@@ -31,6 +32,11 @@ const CHORES: &[Chore] = &[
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
     Chore { name: "contact-sheet", summary: "models beside their screenshots", run: contact_sheet::run },
     Chore { name: "dist", summary: "what is released: the binary, its pages, a checksum", run: dist::run },
+    Chore {
+        name: "package",
+        summary: "the libraries are fit for a package registry (minutes)",
+        run: package::run,
+    },
     Chore { name: "instructions", summary: "how many instructions a ray takes", run: instructions::run },
     Chore {
         name: "cpu-levels",

@@ -27,7 +27,7 @@ pub trait Accelerator: Send + Sync {
         let found = Mutex::new(Vec::new());
         let note = |hit: &Hit| {
             if query.keeps(hit) {
-                found.lock().unwrap_or_else(PoisonError::into_inner).push(*hit);
+                found.lock().unwrap_or_else(PoisonError::into_inner).push(hit.with_positive_zeros());
             }
             // Nothing counts, so that the search goes on to the end of the ray.
             false
@@ -80,19 +80,22 @@ pub trait Traverse: Send + Sync {
 
 impl<T: Traverse> Accelerator for T {
     fn closest_hit(&self, ray: &Ray, query: &Query) -> Option<Hit> {
-        self.closest(ray, query, &mut Nothing)
+        self.closest(ray, query, &mut Nothing).map(Hit::with_positive_zeros)
     }
     fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
         self.any(ray, query, &mut Nothing)
     }
     fn closest_hits(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
         self.closest_each(rays, query, hits);
+        for hit in hits.iter_mut().take(rays.len()).flatten() {
+            *hit = hit.with_positive_zeros();
+        }
     }
     fn any_hits(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
         self.any_each(rays, query, hits);
     }
     fn closest_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> Option<Hit> {
-        self.closest(ray, query, counters)
+        self.closest(ray, query, counters).map(Hit::with_positive_zeros)
     }
     fn any_hit_counted(&self, ray: &Ray, query: &Query, counters: &mut Counters) -> bool {
         self.any(ray, query, counters)

@@ -1,5 +1,7 @@
 //! Rays, what is asked of them, and what they hit.
 
+use crate::mesh::TriangleMesh;
+use bilux_math::glam::DVec3;
 use std::fmt;
 
 /// A half-line, or a piece of one: points `origin + t * direction` for `t_min <= t <= t_max`.
@@ -71,6 +73,25 @@ impl Hit {
     /// Which triangle of which instance was hit.
     pub const fn primitive(&self) -> Primitive {
         Primitive { instance: self.instance, index: self.primitive }
+    }
+
+    /// The point that was hit: `ray` is the one that was asked.
+    pub fn point(&self, ray: &Ray) -> [f32; 3] {
+        ray.at(self.t)
+    }
+
+    /// The unit normal of the triangle that was hit, on the side from which its vertices run counter-clockwise, in the
+    /// space of its mesh; zero where the triangle has no area. Panics, as slices do, when the hit is of another mesh
+    /// that has more triangles.
+    pub fn normal(&self, mesh: &TriangleMesh) -> [f32; 3] {
+        let [a, b, c] = mesh.triangles()[self.primitive as usize].map(|p| DVec3::from(p.map(f64::from)));
+        (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array()
+    }
+
+    /// The same hit, without zeros of negative sign.
+    pub(crate) fn with_positive_zeros(self) -> Hit {
+        // Adding zero changes no number but -0.
+        Hit { t: self.t + 0.0, u: self.u + 0.0, v: self.v + 0.0, ..self }
     }
 }
 

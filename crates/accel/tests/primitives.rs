@@ -3,7 +3,7 @@
 mod support;
 
 use bilux_accel::primitives::{
-    Cone, Crossing, Curve, Disc, PrimitiveTree, Primitives, Quadric, Shape, Sphere,
+    Capsule, Cone, Crossing, Curve, Disc, PrimitiveTree, Primitives, Quadric, Shape, Sphere,
 };
 use bilux_accel::{Accelerator, Culling, Hit, Primitive, Query, Ray};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ fn random_shape(numbers: &mut Numbers, scale: f32) -> Shape {
     };
     let centre = vector(numbers, 4.0);
     let radius = numbers.unit() * scale;
-    match numbers.below(5) {
+    match numbers.below(6) {
         0 => Shape::Sphere(Sphere { centre, radius }),
         1 => Shape::Disc(Disc { centre, normal: numbers.vector(), radius }),
         2 => {
@@ -25,6 +25,7 @@ fn random_shape(numbers: &mut Numbers, scale: f32) -> Shape {
             let second = if numbers.below(2) == 0 { radius } else { numbers.unit() * scale };
             Shape::Cone(Cone { ends, radii: [radius, second] })
         }
+        5 => Shape::Capsule(Capsule { ends: [centre, near(numbers, centre, 1.0)], radius: radius * 0.3 }),
         3 => {
             let corner = |sign: f32| centre.map(|x| x + sign * scale);
             let within = [corner(-1.0), corner(1.0)];
@@ -149,6 +150,15 @@ fn hits_lie_where_the_formulas_say() {
     assert_eq!(all(Shape::Cone(cylinder)), [(4.0, 0.375), (6.0, 0.375)]);
     let cone = Cone { ends: [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], radii: [2.0, 0.0] };
     assert_eq!(all(Shape::Cone(cone)), [(4.5, 0.5), (5.5, 0.5)]);
+    // A round end, the side, and one that is a ball.
+    let capsule = Capsule { ends: [[0.0, -1.0, 0.0], [0.0, 3.0, 0.0]], radius: 2.0 };
+    assert_eq!(all(Shape::Capsule(capsule)), [(4.0, 0.375), (6.0, 0.375)]);
+    let below = Capsule { ends: [[0.0, -2.5, 0.0], [0.0, -2.5, 0.0]], radius: 5.0 };
+    assert_eq!(all(Shape::Capsule(below)), [(3.0, 0.0), (7.0, 0.0)]);
+    let end = Capsule { ends: [[0.0, -9.0, 0.0], [0.0, -2.5, 0.0]], radius: 5.0 };
+    assert_eq!(all(Shape::Capsule(end)), [(3.0, 1.0), (7.0, 1.0)]);
+    let along = Capsule { ends: [[0.0, 0.5, 0.0], [0.0, 0.5, 4.0]], radius: 1.0 };
+    assert_eq!(all(Shape::Capsule(along)), [(2.5, 1.0), (5.5, 0.0)]);
     // Beyond the tip there would be the other half.
     assert_eq!(all(Shape::Cone(Cone { ends: [[0.0, -1.5, 0.0], [0.0, 0.0, 0.0]], radii: [3.0, 0.0] })), []);
     // A paraboloid z = x² + y².
@@ -250,4 +260,43 @@ fn what_is_no_shape_is_never_met() {
         PrimitiveTree::new(Vec::<Shape>::new()).closest_hit(&Ray::new([0.0; 3], [1.0; 3]), &Query::default()),
         None
     );
+}
+
+#[test]
+fn a_capsule_is_met_where_its_surface_is_and_not_again_at_the_start() {
+    let mut numbers = Numbers::new(7);
+    let (mut hits, mut across) = (0, 0);
+    for _ in 0..20_000 {
+        let ends = [numbers.vector(), numbers.vector()];
+        let capsule = Capsule { ends, radius: 0.02 + 0.3 * numbers.unit() };
+        let tree = PrimitiveTree::new(vec![Shape::Capsule(capsule)]);
+        let origin = numbers.vector().map(|x| x * 5.0);
+        let target = numbers.vector();
+        let ray = Ray::new(origin, std::array::from_fn(|k| target[k] - origin[k]));
+        let distance = |p: [f32; 3]| {
+            let wide = |v: [f32; 3]| v.map(f64::from);
+            let (a, b, p) = (wide(ends[0]), wide(ends[1]), wide(p));
+            let s = capsule.nearest(p);
+            (0..3)
+                .map(|k| {
+                    let d = p[k] - (a[k] + (b[k] - a[k]) * s);
+                    d * d
+                })
+                .sum::<f64>()
+                .sqrt()
+        };
+        let Some(hit) = tree.closest_hit(&ray, &Query::default()) else { continue };
+        hits += 1;
+        let p = ray.at(hit.t);
+        assert!((distance(p) - f64::from(capsule.radius)).abs() < 1e-5, "{capsule:?} {ray:?}");
+        // On through it: the far side, or nothing where the ray only grazes it.
+        let on = Ray { exclude: hit.primitive(), t_min: 0.0, ..Ray::new(p, ray.direction) };
+        if let Some(far) = tree.closest_hit(&on, &Query::default()) {
+            across += 1;
+            assert!((distance(on.at(far.t)) - f64::from(capsule.radius)).abs() < 1e-5);
+            let middle = std::array::from_fn(|k| (p[k] + on.at(far.t)[k]) * 0.5);
+            assert!(distance(middle) < f64::from(capsule.radius) + 1e-5);
+        }
+    }
+    assert!(hits > 2000 && across > hits * 9 / 10, "{hits} {across}");
 }

@@ -6,6 +6,7 @@ mod accels;
 pub mod build;
 pub mod frames;
 pub mod load;
+pub mod models;
 pub mod paper;
 pub mod rays;
 pub mod render;

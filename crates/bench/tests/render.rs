@@ -39,6 +39,31 @@ fn rows_have_what_programs_ask_for_and_the_page_shows_it() {
 }
 
 #[test]
+fn a_file_is_measured_too_and_what_auto_foresaw_stands_beside_it() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("own.toml");
+    let scene = "[[model]]\ngenerate = \"cornell\"\nwith = [\"lights\", \"cameras\"]\n";
+    std::fs::write(&file, scene).unwrap();
+    let options = Options {
+        scenes: Vec::new(),
+        files: vec![file.clone()],
+        reference_seconds: 1.0,
+        integrators: ["auto", "path", "auto:bdpt"].map(str::to_owned).to_vec(),
+        ..quick()
+    };
+    let report = run(&options, &|_| {}).unwrap();
+    assert_eq!(report.rows.len(), 3);
+    for row in &report.rows {
+        assert_eq!(row["scene"].as_str(), file.to_str());
+        let number = |key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}"));
+        assert!(["foreseen", "measured", "measured_trimmed"].map(number).iter().all(|x| *x > 0.0), "{row}");
+    }
+    assert_eq!(report.rows[0]["foreseen"], 1.0);
+    assert!(report.rows[0]["chosen"].is_string() && report.rows[1]["chosen"].is_null());
+    assert!(report.text.contains("foreseen") && report.text.contains("and trimmed"), "{}", report.text);
+}
+
+#[test]
 fn what_is_not_there_is_told() {
     let error = |options: Options| run(&options, &|_| {}).err().unwrap().to_string();
     let named = |name: &str| vec![name.to_owned()];

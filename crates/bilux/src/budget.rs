@@ -27,9 +27,36 @@ pub fn with_default_budget(scene: &Parameters, user: &mut Parameters) -> bool {
     true
 }
 
-/// What is left of a time limit for rendering, where other things take so much of it: at least half.
+/// What ends a picture that has to be there fast, in seconds.
+pub const FAST_SECONDS: f32 = 1.0;
+
+/// Scattering events after the camera that a fast picture has at most: what comes later shows in no thumbnail.
+const FAST_DEPTH: i64 = 8;
+
+/// Sets what gives the cleanest picture in about [`FAST_SECONDS`]: plain path tracing without a first look at the scene, few scattering
+/// events, and a tree that is built fast; but nothing that the user has said otherwise, and no other integrator where the scene
+/// asks for one that leaves nothing to chance.
+pub fn with_fast_budget(scene: &Parameters, user: &mut Parameters) {
+    let mut unless_said = |key: &str, value: Value| {
+        if user.find(key).is_none() {
+            user.set(key, value);
+        }
+    };
+    unless_said("time_limit", FAST_SECONDS.into());
+    unless_said("noise", Value::Integer(0));
+    unless_said("spp", Value::Integer(0));
+    unless_said("max_depth", Value::Integer(FAST_DEPTH));
+    unless_said("build", "fast".into());
+    let scenes = scene.find("integrator").map(|(value, _)| value);
+    let is_classic = |value: &Value| matches!(value, Value::Text(name) if INTEGRATORS.iter().any(|row| row.entry.name == name && row.classic));
+    if !scenes.is_some_and(is_classic) {
+        unless_said("integrator", "path".into());
+    }
+}
+
+/// What is left of a time limit for rendering, where other things take so much of it. One sample of each pixel is taken in any case.
 pub(crate) fn left_for_light(limit: Duration, others: Duration) -> Duration {
-    limit.saturating_sub(others).max(limit / 2)
+    limit.saturating_sub(others)
 }
 
 #[cfg(test)]
@@ -37,10 +64,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_of_the_time_is_for_light_whatever_else_takes() {
+    fn what_else_takes_time_is_not_left_for_light() {
         let [limit, short, long] = [5.0, 0.5, 9.0].map(Duration::from_secs_f32);
         assert_eq!(left_for_light(limit, short), Duration::from_secs_f32(4.5));
-        assert_eq!(left_for_light(limit, long), Duration::from_secs_f32(2.5));
+        assert_eq!(left_for_light(limit, long), Duration::ZERO);
+    }
+
+    #[test]
+    fn a_fast_picture_keeps_what_the_user_says_and_integrators_without_chance() {
+        let mut user = Parameters::default();
+        user.set("max_depth", Value::Integer(3));
+        with_fast_budget(&Parameters::default(), &mut user);
+        let said = |user: &Parameters, key: &str| user.find(key).map(|(value, _)| value.clone());
+        assert_eq!(said(&user, "max_depth"), Some(Value::Integer(3)));
+        assert_eq!(said(&user, "integrator"), Some("path".into()));
+        assert_eq!(said(&user, "time_limit"), Some(FAST_SECONDS.into()));
+        let (mut scene, mut user) = (Parameters::default(), Parameters::default());
+        scene.set("integrator", "whitted");
+        with_fast_budget(&scene, &mut user);
+        assert_eq!(said(&user, "integrator"), None);
     }
 
     #[test]

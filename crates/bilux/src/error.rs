@@ -27,9 +27,10 @@ pub enum Error {
     Film(#[from] FilmError),
     /// A picture that would take more memory than it may.
     #[error(
-        "this would take about {} MB of memory ({} meshes, {} textures, {} what finds hits, {} the picture), and {} MB are \
-         allowed: make the picture smaller, or allow more memory",
-        mega(.needed.total()), mega(.needed.meshes), mega(.needed.textures + .needed.levels), mega(.needed.trees), mega(.needed.picture), .most / 1_000_000
+        "this would take about {} MB of memory ({} MB for meshes, {} MB for textures, {} MB for the trees that find hits, \
+         {} MB for the picture), and {} MB are allowed: {}, or allow more memory",
+        mega(.needed.total()), mega(.needed.meshes), mega(.needed.textures + .needed.levels), mega(.needed.trees),
+        mega(.needed.picture), .most / 1_000_000, smaller(.needed)
     )]
     TooLarge {
         /// What it would take.
@@ -40,6 +41,18 @@ pub enum Error {
     /// Settings that do not go together.
     #[error("{0}")]
     Settings(String),
+}
+
+/// What to make smaller: that which takes the most.
+fn smaller(needed: &Memory) -> &'static str {
+    let Memory { meshes, textures, levels, trees, picture } = *needed;
+    if picture >= (meshes + trees).max(textures + levels) {
+        "make the picture smaller"
+    } else if textures + levels > meshes + trees {
+        "make the textures smaller"
+    } else {
+        "simplify the model, or leave parts of it out"
+    }
 }
 
 fn mega(bytes: u64) -> u64 {

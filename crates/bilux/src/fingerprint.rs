@@ -24,6 +24,13 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         for index in mesh.triangles.iter().flatten() {
             hash.update(index.to_le_bytes());
         }
+        // As few have these.
+        if mesh.stroke_count() > 0 {
+            for index in mesh.points.iter().chain(mesh.lines.iter().flatten()) {
+                hash.update(index.to_le_bytes());
+            }
+            hash.update(format!("{} strokes {:?}", mesh.points.len(), scene.stroke_widths));
+        }
         hash.update(format!("{} {:?}", object.material, object.motion));
     }
     if settings.filters_textures && !scene.textures.is_empty() {

@@ -2,19 +2,21 @@
 
 use crate::Error;
 use crate::budget::left_for_light;
+use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
 use crate::memory::Memory;
-use crate::oddities::oddities;
+use crate::oddities::{self, oddities};
+use crate::own_light;
 use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use bilux_scene::{
-    AccelChoice, Camera, Counters, Parameters, Reader, Scene, SceneBuilder, SceneError, Span, Spec, Warning,
+    AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
     Choice, Features, Film, Filter, FirstHalf, Interval, PixelAnchor, Progress, Reached, RenderError,
-    RenderSettings, Replay, SamplePlace, Stop, Strategies, Window, coverage,
+    RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -41,10 +43,15 @@ pub struct Job {
     begun: Option<Instant>,
     /// No library of others may be loaded.
     pub(crate) sandboxed: bool,
+    /// How a model was turned.
+    orientation: Option<Orientation>,
     /// What it was made of; the fingerprint is of that, and takes long where textures are large.
     source: SceneBuilder,
     fingerprint: OnceLock<String>,
     warnings: Vec<Warning>,
+    notes: Vec<String>,
+    /// The ground whose shadow alone is in the picture.
+    catcher: Option<ShadowCatcher>,
 }
 
 /// What a render gave.
@@ -100,22 +107,41 @@ impl Job {
     /// When anything in the scene is wrong.
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
         let aspect = settings.width as f32 / settings.height as f32;
-        let studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
-        let mut completed = crate::presets::completed(scene, &studio);
+        oddities::check_not_empty(scene)?;
+        let mut studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
+        let accel_of = |scene: &SceneBuilder| {
+            settings.accel_for(scene.objects.iter().map(|object| object.mesh.triangles.len()).sum())
+        };
+        let mut completed = scene.clone();
+        let orientation = crate::presets::set_upright(&mut completed, &studio);
+        let own = own_light::measure(&completed, &studio, &settings, &accel_of(scene))?;
+        studio.lit = own.as_ref().map(|own| own.is_enough);
+        crate::presets::add_missing(&mut completed, &studio);
+        let objects = completed.objects.len() as u32;
+        let has_ground = completed.objects.len() > scene.objects.len();
+        let has_backdrop = completed.lights.iter().any(Spec::is_backdrop);
+        let of_ground = oddities::of_ground(&studio, has_ground, has_backdrop);
+        let catcher = crate::presets::shadow_catcher(&completed, &studio)
+            .map(|ground| ShadowCatcher { ground: ground as u32, objects });
         if settings.background.is_cut_out() {
             let nothing = Spec::new("nothing", "environment").with("radiance", Rgb::BLACK);
             crate::presets::put_behind(&mut completed, nothing);
         }
-        let triangles = completed.objects.iter().map(|object| object.mesh.triangles.len()).sum();
-        let accel = settings.accel_for(triangles);
-        let built = completed.build(&accel, shutter_at(&settings, settings.time), aspect)?;
+        let size = [settings.width, settings.height];
+        bilux_scene::presets::set_stroke_widths(&mut completed, &settings.camera, size, settings.time);
+        let accel = accel_of(&completed);
+        let notes = own.iter().filter_map(|own| own.decision.clone()).collect();
+        let built = match own.map(|own| own.alone) {
+            Some((alone, built)) if own_light::is_as_large(&alone, &completed) => built,
+            _ => completed.build(&accel, shutter_at(&settings, settings.time), aspect)?,
+        };
         let reader = Reader::new(&settings.integrator_parameters, &settings.integrator.entry)?;
         let integrator = (settings.integrator.build)(&reader)?;
         let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
         let filters = settings.filters_textures;
         let built = if filters { built.filtered(camera.clone(), settings.height) } else { built };
         Ok(Job {
-            warnings: oddities(scene, &built, &*camera),
+            warnings: oddities(scene, &built, &*camera).into_iter().chain(of_ground).collect(),
             camera,
             render: render_settings(&settings)?,
             studio_lit: completed.lights.len() > scene.lights.len() && !settings.integrator.classic,
@@ -123,7 +149,10 @@ impl Job {
             denoising: Duration::ZERO,
             begun: None,
             sandboxed: false,
+            orientation,
             source: completed,
+            notes,
+            catcher,
             fingerprint: OnceLock::new(),
             accel,
             scene: built,
@@ -144,8 +173,17 @@ impl Job {
         &self.warnings
     }
 
-    /// Its time limit counts from here, as where a file was opened, and not from the first sample. Half of the limit is left to
-    /// rendering, whatever went before.
+    /// What was decided for a scene that leaves it open, such as what lights it.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// How a model was turned that came without a camera, or that was asked to be turned.
+    pub fn orientation(&self) -> Option<Orientation> {
+        self.orientation
+    }
+
+    /// Its time limit counts from here, as where a file was opened, and not from the first sample.
     pub fn begun_at(&mut self, begun: Instant) {
         self.begun = Some(begun);
     }
@@ -209,12 +247,13 @@ impl Job {
         render.stop.time_limit = end.map(|end| end.saturating_duration_since(Instant::now()));
         let rendered = bilux_transport::render(scene, camera, integrator, &render, progress)?;
         let samples = rendered.reached.map_or(render.spp, |reached| reached.spp);
-        let coverage = self
-            .settings
-            .background
-            .is_cut_out()
-            .then(|| coverage(scene, camera, integrator, &render, samples))
-            .transpose()?;
+        let coverage = match (self.settings.background.is_cut_out(), self.catcher) {
+            (false, _) => None,
+            (true, None) => Some(coverage(scene, camera, integrator, &render, samples)?),
+            (true, Some(catcher)) => {
+                Some(shadow_alpha(scene, camera, integrator, &render, samples, catcher)?)
+            }
+        };
         let mut film = rendered.film;
         if rendered.cancelled || render.crop.is_some() || render.samples != (0..render.spp) {
             self.fingerprint().clone_into(&mut film.fingerprint);
@@ -325,7 +364,7 @@ impl Outcome {
     }
 }
 
-fn shutter_at(settings: &Settings, time: f32) -> [f32; 2] {
+pub(crate) fn shutter_at(settings: &Settings, time: f32) -> [f32; 2] {
     [time, time + settings.shutter]
 }
 
@@ -346,24 +385,4 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         interval: false,
         halves: false,
     })
-}
-
-/// A camera by its name, or by its number from 0.
-fn choose_camera(scene: &Scene, wanted: &str, at: &Span) -> Result<Arc<dyn Camera>, Error> {
-    let cameras = scene.cameras();
-    let by_name = cameras.iter().find(|(name, _)| name == wanted);
-    let by_number = wanted.parse().ok().and_then(|i: usize| cameras.get(i));
-    if let Some((_, camera)) = by_name.or(by_number) {
-        return Ok(camera.clone());
-    }
-    let names: Vec<&str> = cameras.iter().map(|(name, _)| name.as_str()).filter(|n| !n.is_empty()).collect();
-    if names.is_empty() || wanted.parse::<usize>().is_ok() {
-        let message = format!(
-            "there is no camera '{wanted}': this scene has {}, counted from 0{}",
-            cameras.len(),
-            if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
-        );
-        return Err(SceneError::invalid(message, at).into());
-    }
-    Err(SceneError::unknown("camera", wanted, names, at).into())
 }

@@ -14,7 +14,8 @@ const FOR_DISPLAY: &str = "display";
 const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
 
 impl Job {
-    /// From now on no library of others is loaded, and no file looked for that may be one.
+    /// From now on no library of others is loaded, and no file looked for that may be one; what
+    /// [`preload`](bilux_pictures::denoise::preload) has loaded before is used.
     pub fn sandbox(&mut self) {
         self.sandboxed = true;
     }
@@ -39,7 +40,7 @@ impl Job {
             name => name,
         };
         let task = Task {
-            pixels: u64::from(self.render.width) * u64::from(self.render.height),
+            size: (self.render.width as usize, self.render.height as usize),
             threads: self.settings.threads,
             // More of it is better spent on samples.
             time: self.render.stop.time_limit.map(|limit| limit / 4),

@@ -16,12 +16,14 @@
 //! says ([`settings`]), and a [`Job`] renders it.
 
 pub mod budget;
+mod camera_choice;
 pub mod error;
 pub mod fingerprint;
 pub mod job;
 mod layers;
 pub mod memory;
 mod oddities;
+mod own_light;
 pub mod presets;
 pub mod settings;
 pub mod strategies;
@@ -47,6 +49,8 @@ pub mod prelude {
     pub use crate::{Error, Job, Outcome, Quiet, Settings};
     pub use bilux_math::{Rgb, Transform, Vec2, Vec3};
     pub use bilux_pictures::Picture;
+    pub use bilux_scene::cameras::CameraSpec;
+    pub use bilux_scene::typed::{lights, materials};
     pub use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
 }
 

@@ -1,16 +1,22 @@
 //! How much memory a picture is going to take, so that none is begun that cannot be held.
 
 use crate::Settings;
-use bilux_scene::SceneBuilder;
+use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashSet;
 use std::sync::Arc;
 
 /// A triangle in trees of its own, while they are built; measured up to 157.
 const TRIANGLE: u64 = 170;
+/// A point or a line in a tree, with the place of its vertices in the world, while that is built; measured up to 130.
+const STROKE: u64 = 150;
 /// An object that repeats another, with its place in the tree of all; measured at 295.
 const INSTANCE: u64 = 350;
 /// A pixel, with its sums, its layers, and what tells noise and takes it away; measured up to 180.
 const PIXEL: u64 = 200;
+
+fn trees_over(mesh: &Mesh) -> u64 {
+    mesh.triangles.len() as u64 * TRIANGLE + mesh.stroke_count() as u64 * STROKE
+}
 
 /// About how many bytes it takes to render a scene, at most.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,8 +45,7 @@ impl Memory {
             }
             // What stands still goes into one tree, as often as it is there.
             let is_still = !object.instanced && object.motion.is_still();
-            all.trees +=
-                INSTANCE + if is_new || is_still { mesh.triangles.len() as u64 * TRIANGLE } else { 0 };
+            all.trees += INSTANCE + if is_new || is_still { trees_over(mesh) } else { 0 };
         }
         let mut images = HashSet::new();
         let new_images = scene.textures.iter().filter(|texture| images.insert(Arc::as_ptr(&texture.image)));

@@ -1,16 +1,17 @@
 //! What is odd about a picture before it is rendered, though it can be.
 
+use crate::presets::{Ground, Studio};
 use bilux_math::{Vec2, Vec3};
-use bilux_scene::{Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, Span, Surface, Tracer, Warning};
+use bilux_scene::{
+    Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
+};
 
 /// Warnings about a scene, as it was before anything was made up for, and as a camera sees it.
 pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
-    if !given.objects.iter().any(|object| has_finite_triangle(&object.mesh)) {
-        warn("there is nothing to be seen: no triangle has corners that are all numbers");
-    } else if is_in_glass(scene, camera) {
+    if is_in_glass(scene, camera) {
         warn(
             "the camera is inside of something transparent, and sees all through it: move the camera out, \
              unless this is meant",
@@ -20,13 +21,78 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
             "the camera sees nothing but backs of surfaces that show their front alone (doubleSided is false, in glTF), \
              and so nothing: look from the other side, as by --orbit 180",
         );
+    } else if given.surroundings_unsaid && !given.cameras.is_empty() {
+        // Who writes such a file has rarely looked through its camera; other scenes are made for theirs.
+        let share = share_seen(given.objects.len() as u32, scene, camera);
+        if share < SPECK {
+            warn(&format!(
+                "the model fills {:.2}% of what the file's own camera sees: --orbit 26.5,17.8 takes the studio's camera, \
+                 which frames it",
+                share * 100.0
+            ));
+        }
     }
     warnings
 }
 
-fn has_finite_triangle(mesh: &Mesh) -> bool {
+/// What is odd about the ground that was asked for.
+pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -> Option<Warning> {
+    let message = match studio.ground? {
+        Ground::None => return None,
+        _ if !has_ground => "--ground: there is no ground, since the camera looks up from below it",
+        Ground::Mirror if studio.cut_out => {
+            "--ground mirror is opaque, and hides the background: --ground shadow lets it through"
+        }
+        _ if has_backdrop => "the ground hides the picture behind the model: leave --ground out",
+        _ => return None,
+    };
+    Some(Warning { message: message.to_owned(), at: Span::default() })
+}
+
+/// Kinds of light that are seen themselves.
+const SEEN_LIGHTS: [&str; 4] = ["rect", "sphere", "environment", "sky"];
+
+/// Refuses a scene in which there is nothing to be seen.
+pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
+    let is_seen = |light: &Spec| SEEN_LIGHTS.contains(&light.kind.as_str());
+    let is_full = |mesh: &Mesh| !mesh.triangles.is_empty() || mesh.stroke_count() > 0;
+    let has_shapes = scene.objects.iter().any(|object| is_full(&object.mesh));
+    if scene.objects.iter().any(|object| shows_something(&object.mesh)) {
+        return Ok(());
+    }
+    let message = match (has_shapes, scene.lights.iter().any(is_seen)) {
+        (true, _) => {
+            "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers"
+        }
+        // A sky alone is a picture, where a format can say so.
+        (false, true) if !scene.surroundings_unsaid => return Ok(()),
+        (false, _) => {
+            "the scene is empty: it has no triangles, points or lines to render; `bilux info` shows what the file holds"
+        }
+    };
+    Err(SceneError::invalid(message, &Span::default()))
+}
+
+/// A model that fills less of a picture than this is a speck.
+const SPECK: f32 = 0.003;
+
+/// The part of a camera's picture that a scene's first objects fill.
+fn share_seen(objects: u32, scene: &Scene, camera: &dyn Camera) -> f32 {
+    const GRID: usize = 96;
+    let mut tracer = Tracer::new(scene, false);
+    let mut is_met = |i: &usize| {
+        let film = Vec2::new((i % GRID) as f32 + 0.5, (i / GRID) as f32 + 0.5) / GRID as f32;
+        let ray = camera.ray(&CameraSample { film, lens: Vec2::splat(0.5), time: scene.shutter()[0] });
+        tracer.closest(&ray).is_some_and(|surface| surface.object < objects)
+    };
+    (0..GRID * GRID).filter(&mut is_met).count() as f32 / (GRID * GRID) as f32
+}
+
+fn shows_something(mesh: &Mesh) -> bool {
     let is_finite = |&i: &u32| mesh.positions.get(i as usize).is_some_and(|p| p.is_finite());
     mesh.triangles.iter().any(|triangle| triangle.iter().all(is_finite))
+        || mesh.points.iter().any(is_finite)
+        || mesh.lines.iter().any(|line| line.iter().all(is_finite))
 }
 
 /// True when the camera would see something of a scene's first objects if it did not see through their backs.
@@ -126,6 +192,23 @@ mod tests {
         assert!(told(shell(), [0.1, 0.2, 0.0])[0].contains("--orbit 180"));
         assert!(told(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
         assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
+    }
+
+    #[test]
+    fn a_speck_in_the_camera_of_a_gltf_is_reported_with_the_way_to_the_studio() {
+        let warnings = |distance: f32, unsaid: bool| {
+            let mut scene = SceneBuilder { surroundings_unsaid: unsaid, ..SceneBuilder::default() };
+            let clay = scene.add_material(Spec::new("", "diffuse"));
+            scene.objects.push(Object::new("ball", Arc::new(shapes::icosphere(Vec3::ZERO, 1.0, 3)), clay));
+            let camera = Spec::new("", "perspective").with("position", Value::triple([0.0, 0.0, distance]));
+            let camera = camera.with("look_at", Value::triple([0.0, 0.0, 0.0]));
+            scene.cameras.push(CameraSpec { spec: camera, ..CameraSpec::default() });
+            let job = Job::new(&scene, &Parameters::default()).unwrap();
+            job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+        };
+        assert!(warnings(100.0, true).contains("--orbit 26.5,17.8"), "{}", warnings(100.0, true));
+        assert_eq!(warnings(10.0, true), "");
+        assert_eq!(warnings(100.0, false), "", "whoever writes a scene means what it shows");
     }
 
     #[test]

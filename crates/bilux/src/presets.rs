@@ -2,7 +2,10 @@
 
 use crate::Error;
 use bilux_formats::ReadOptions;
-pub use bilux_scene::presets::{Ground, PRESETS, PresetEntry, Studio, apply};
+use bilux_pictures::Limits;
+pub use bilux_scene::presets::{
+    Ground, PRESETS, PresetEntry, Studio, add_missing, apply, frame, set_upright, shadow_catcher,
+};
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 
@@ -42,6 +45,12 @@ pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions)
     Ok(())
 }
 
+/// What is wrong with a picture itself: its place in the text that names it here is nobody's.
+fn picture_fault(picture: &Path, options: &ReadOptions) -> Option<Error> {
+    let limits = Limits::new(options.max_memory);
+    bilux_pictures::read_with(picture, &limits).err().map(Error::from)
+}
+
 /// A picture of surroundings as a light, its texture among the scene's.
 fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<Spec, Error> {
     let name = picture.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -53,7 +62,8 @@ fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions
     let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // Nobody who asks for it wants a checker in its place.
     let options = ReadOptions { strict: true, ..options.clone() };
-    let mut read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options)?;
+    let read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options);
+    let mut read = read.map_err(|error| picture_fault(picture, &options).unwrap_or(error.into()))?;
     let before = scene.textures.len();
     scene.textures.append(&mut read.textures);
     let mut light = read.lights.swap_remove(0);

@@ -7,10 +7,11 @@ pub use crate::measuring::{Bench, BenchKind};
 use crate::studio::StudioArguments;
 use crate::values::{
     Exposure, parse_bytes, parse_crop, parse_exposure, parse_frames, parse_replay, parse_samples,
-    parse_vector,
+    parse_seconds, parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Physically right pictures of 3D scenes on plain CPUs, with light traced from both ends.
 #[derive(Parser)]
@@ -144,9 +145,15 @@ pub struct Render {
     /// with --aov interval
     #[arg(long, value_name = "REL")]
     pub noise: Option<f32>,
-    /// Be done after this time, reading and denoising included (half of it is kept for light)
+    /// The cleanest picture that about a second gives, for thumbnails: reading and denoising included
+    #[arg(long, conflicts_with_all = ["spp", "noise", "time_limit"])]
+    pub fast: bool,
+    /// Be done after this time, reading and denoising included; where that is impossible, a line says why
     #[arg(long, value_name = "SECONDS")]
     pub time_limit: Option<f32>,
+    /// End the whole command after this time, with the picture as it is by then (exit status 124)
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub timeout: Option<Duration>,
     /// Another number gives other noise
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,

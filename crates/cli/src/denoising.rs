@@ -1,7 +1,9 @@
 //! What `bilux denoise` is told.
 
+use crate::arguments::{Common, Render};
 use crate::values::{Exposure, parse_exposure};
 use anyhow::bail;
+use bilux::pictures::denoise::preload;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -40,4 +42,26 @@ pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
         bail!("'{0}' is no scene: write --denoise={0}, with the sign between", name.display());
     }
     Ok(())
+}
+
+/// Begins to load the libraries of denoisers, while the scene is read, where one is likely to be used. In a sandbox they are loaded
+/// before the first byte of a file is read, and none is loaded after that.
+pub fn begin_loading(arguments: &Render, common: &Common) {
+    let may_use = match arguments.denoise.as_deref() {
+        Some("auto" | "oidn") => true,
+        Some(_) => false,
+        // A number of samples gives the same bytes as ever.
+        None => arguments.spp.is_none() || arguments.noise.is_some() || arguments.time_limit.is_some(),
+    };
+    if may_use && arguments.samples.is_none() && arguments.crop.is_none() {
+        load(arguments.threads.unwrap_or(0) as usize, common);
+    }
+}
+
+/// Loads them, or in a sandbox waits until they are loaded.
+pub fn load(threads: usize, common: &Common) {
+    let loading = preload(threads);
+    if common.sandbox {
+        loading.wait();
+    }
 }

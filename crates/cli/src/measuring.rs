@@ -18,13 +18,15 @@ use std::path::PathBuf;
     bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
     bilux bench load                                  files of 100 MB that it makes, and a million instances\n  \
     bilux bench load scan.ply house.glb --json\n  \
+    bilux bench models                                a dozen models, five minutes\n  \
     bilux bench render --report measured              ten minutes, and a page to look at\n  \
-    bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16")]
+    bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
+    bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,bdpt,auto:path-photons")]
 pub struct Bench {
     /// What to measure
     #[arg(value_enum)]
     pub kind: BenchKind,
-    /// `load`: scene files; without any, some are made. `rays`: scene files, or teapots3, interior, scan, teapot1m, which are all four traced if none is given, or
+    /// `render`: scene files, measured in place of the shipped scenes. `load`: scene files; without any, some are made. `models`: model files; without any, ours and those of ../shared/scenes. `rays`: scene files, or teapots3, interior, scan, teapot1m, which are all four traced if none is given, or
     /// teapot1k, teapot10k, teapot100k, teapots10m
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
@@ -70,12 +72,19 @@ pub struct Bench {
     /// `render`: which of its scenes (all)
     #[arg(long = "scenes", value_name = "NAME,…", value_delimiter = ',')]
     pub gallery: Vec<String>,
-    /// `render`: which integrators (path, bdpt, vcm, sppm, auto)
+    /// `render`: which integrators (path, bdpt, vcm, sppm, auto); auto:WAYS is `auto` held to one of its choices, such as
+    /// auto:path-photons
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub integrators: Vec<String>,
-    /// `render`: CPU seconds a picture, all threads together (1,4)
+    /// `render`: CPU seconds a picture, all threads together (1,4). `models`: seconds for each half of a reference (8)
     #[arg(long, value_name = "S,S,…", value_delimiter = ',')]
     pub seconds: Vec<f64>,
+    /// `models`: keep the references in this folder, and take them from there
+    #[arg(long, value_name = "DIR")]
+    pub references: Option<PathBuf>,
+    /// `render`: CPU seconds of each of the two integrators that make the reference of a scene file (60)
+    #[arg(long, value_name = "S")]
+    pub reference_seconds: Option<f64>,
     /// `render`: pictures of each kind, over which medians are taken (5)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub seeds: Option<u32>,
@@ -108,4 +117,6 @@ pub enum BenchKind {
     Render,
     /// How fast scene files are read, and how much memory that takes
     Load,
+    /// Models as they come: what is seen of their errors at nothing said, in a second, and fast
+    Models,
 }

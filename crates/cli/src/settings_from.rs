@@ -28,6 +28,8 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         ("max_depth", "--max-depth", whole(a.max_depth.map(u64::from))),
         ("camera", "--camera", text(&a.camera)),
         ("orbit", "--orbit", text(&a.studio.orbit)),
+        ("up", "--up", text(&a.studio.up)),
+        ("front", "--front", text(&a.studio.front)),
         ("focal", "--focal", number(a.studio.focal)),
         ("ground", "--ground", text(&a.studio.ground)),
         ("background", "--background", text(&a.studio.background())),

@@ -19,6 +19,12 @@ pub struct StudioArguments {
     /// From where a studio's camera looks: degrees to the right of the model's front, and above it
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
     pub orbit: Option<String>,
+    /// Which of the model's axes is up: x, y, z, -x, -y or -z [default: auto, by its format and its shape]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    pub up: Option<String>,
+    /// Which of the model's axes is its front, which the studio's camera sees [default: auto]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    pub front: Option<String>,
     /// Focal length of the studio's camera, in mm for a picture 24 mm high [default: 45]
     #[arg(long, value_name = "MM")]
     pub focal: Option<f32>,

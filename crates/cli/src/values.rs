@@ -1,6 +1,7 @@
 //! Values as they are written on the command line.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 pub fn parse_rival(text: &str) -> Result<(String, PathBuf), String> {
     let (name, path) = text.split_once('=').ok_or("is written as embree=/path/of/libembree4.so.4")?;
@@ -51,6 +52,13 @@ pub fn parse_replay(text: &str) -> Result<[u32; 3], String> {
 
 pub fn parse_vector(text: &str) -> Result<[f32; 3], String> {
     numbers(text, "X,Y,Z")
+}
+
+/// A time above 0.
+pub fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|&s: &f64| s > 0.0);
+    let time = seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
+    time.ok_or_else(|| "a number of seconds above 0 is wanted, as in 10 or 0.5".to_owned())
 }
 
 /// A length, 0 or more.

@@ -44,15 +44,18 @@ fn files_that_are_no_scenes_are_refused_in_one_sentence() {
     write("index.obj", PLAIN.replace("1 2 3", "1 2 9").as_bytes());
     write("picture.gif", b"GIF89a");
     let refused = |name: &str, parts: &[&str]| assert_told(render(path, name, &[]), 1, parts);
-    refused("none.obj", &["none.obj: cannot open it", "No such file"]);
+    refused("none.obj", &["none.obj: cannot open it: No such file or directory"]);
     refused("folder.obj", &["folder.obj: this is a folder: name a scene file in it"]);
-    refused("empty.obj", &["empty.obj: the file is empty: export it again"]);
-    refused("cut.obj", &["cut.obj:3:6: there are 2 numbers", "cut off"]);
+    refused("empty.obj", &["empty.obj: the file is empty"]);
+    refused("cut.obj", &["cut.obj:3:6: this line has 2 numbers and needs 3", "cut off"]);
     refused("cut.asc", &["cut.asc:4:1: this vertex has 4 numbers", "cut off"]);
-    refused("program.asc", &["no plain text"]);
-    refused("program.obj", &["program.obj:1:1: this file is no plain text"]);
+    refused("program.asc", &["not plain text"]);
+    refused("program.obj", &["program.obj:1:1: this file is not plain text"]);
     refused("index.obj", &["index.obj:4:1: this face names vertex 9, but the file has only 3"]);
-    refused("picture.gif", &["picture.gif: this is no scene format", "known are asc, gltf, glb, pbrt, obj"]);
+    refused(
+        "picture.gif",
+        &["picture.gif: this is not a scene format", "known are asc, gltf, glb, pbrt, obj"],
+    );
     assert!(!path.join("out.png").exists());
 }
 
@@ -72,7 +75,7 @@ fn scene_files_that_say_something_wrong_are_told_where() {
     refused("[[model]]\nfile = 'pots.obj'\n", &["a.toml:2:8: there is no file 'pots.obj'", "put it there"]);
     refused("[[model]]\nfile = 'pot.obj'\nmaterial = 'x'\n", &["a.toml:3:12: there is no material 'x'"]);
     refused("include = ['b.toml']\n", &["b.toml:1:12: 'a.toml' includes itself"]);
-    refused("[[model]\n", &["a.toml:1:", "this is no TOML"]);
+    refused("[[model]\n", &["a.toml:1:", "this is not TOML"]);
     let (code, said) = {
         std::fs::write(path.join("a.toml"), "[[model]]\nfile = 'pot.obj'\n").unwrap();
         render(path, "a.toml", &["--camera", "5"])
@@ -93,18 +96,33 @@ fn what_can_be_drawn_is_drawn_with_a_warning() {
     let textured = |file: &str| format!("mtllib a.mtl\n{}", PLAIN.replace("f ", "usemtl a\nf ") + file);
     for (texture, part) in [("brick.png", "there is no file 'brick.png'"), ("cut.png", "cut short")] {
         std::fs::write(path.join("a.mtl"), format!("newmtl a\nmap_Kd {texture}\n")).unwrap();
-        drawn(
-            "a.obj",
-            &textured(""),
-            &["a.mtl:2:1: a checker of magenta stands in place of a texture", part],
-        );
+        drawn("a.obj", &textured(""), &["a.mtl:2:1: a texture is replaced by a magenta checker", part]);
     }
     let no_numbers = PLAIN.replace(['0', '1'], "nan").replace("f nan", "f 1");
     std::fs::write(path.join("nan.obj"), &no_numbers).unwrap();
-    assert_told(render(path, "nan.obj", &[]), 0, &["infinite or no numbers", "nothing to be seen"]);
+    assert_told(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing can be seen"]);
     let inside = "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\n[[material]]\nname = 'glass'\n\
                   kind = 'dielectric'\n[[model]]\nshape = 'sphere'\nmaterial = 'glass'\n";
     drawn("inside.toml", inside, &["the camera is inside of something transparent"]);
+}
+
+#[test]
+fn an_empty_scene_is_an_error() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let light = r#"{"asset":{"version":"2.0"},"scenes":[{}],"scene":0}"#;
+    for (name, text) in [
+        ("empty.gltf", light),
+        ("empty.toml", "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n"),
+        ("empty.pbrt", "WorldBegin\nLightSource \"point\"\n"),
+    ] {
+        std::fs::write(path.join(name), text).unwrap();
+        for flags in [&[][..], &["--ground", "mirror"], &["--background", "transparent"]] {
+            let (code, said) = render(path, name, flags);
+            assert!(!said.contains("NaN") && !said.contains("inf "), "{name}: {said}");
+            assert_told((code, said), 1, &["the scene is empty"]);
+        }
+    }
 }
 
 #[test]
@@ -124,7 +142,7 @@ fn command_lines_that_ask_for_what_there_is_not() {
         let output = command.current_dir(path).args(arguments).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyz"]), 2, &["pot.xyz: this is no scene format"]);
+    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyy"]), 2, &["pot.xyy: this is not a scene format"]);
     assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["that is what `bilux render` does"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
     assert_told(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
@@ -134,7 +152,11 @@ fn command_lines_that_ask_for_what_there_is_not() {
         &["'tif' is not a picture format that can be written"],
     );
     assert_told(bilux(&["generate", "teapts", "-o", "a.obj"]), 2, &["did you mean 'teapots'?"]);
-    assert_told(bilux(&["generate", "teapots", "-o", "a.png"]), 2, &["no scene format that can be written"]);
+    assert_told(
+        bilux(&["generate", "teapots", "-o", "a.png"]),
+        2,
+        &["not a scene format that can be written"],
+    );
 }
 
 #[test]
@@ -143,7 +165,7 @@ fn little_memory_is_enough_or_is_told() {
     let path = folder.path();
     std::fs::write(path.join("large.obj"), PLAIN.repeat(40_000)).unwrap();
     let (code, said) = render(path, "large.obj", &["--max-memory", "1M"]);
-    assert_told((code, said), 1, &["large.obj: reading it takes more than", "--max-memory"]);
+    assert_told((code, said), 1, &["large.obj: reading this takes more than", "--max-memory"]);
     std::fs::write(path.join("small.obj"), PLAIN).unwrap();
     let (code, said) = render(path, "small.obj", &["--size", "40000x40000"]);
     assert_told(

@@ -30,7 +30,7 @@ fn what_noise_or_time_ends_is_denoised_for_a_display_and_counted_samples_are_not
     let path = folder.path();
     let said = render(path, "a.png", &["--noise", "0.3"]);
     assert!(
-        said.contains("denoised by the built-in filter") && said.contains("pip install pyoidn"),
+        said.contains("denoised by the built-in filter") && said.contains("OIDN_LIB names a library"),
         "{said}"
     );
     assert!(!render(path, "b.png", &["--noise", "0.3", "--denoise=off"]).contains("denoised"));
@@ -92,7 +92,83 @@ fn a_denoiser_that_is_not_there_is_an_error_that_says_how_to_get_it() {
     command.current_dir(folder.path()).env("OIDN_LIB", "nowhere").args(arguments);
     let output = command.assert().code(2).stdout("").get_output().stderr.clone();
     let said = String::from_utf8(output).unwrap();
-    assert!(said.contains("pip install pyoidn") && !folder.path().join("a.png").exists(), "{said}");
+    assert!(said.contains("OIDN_LIB names a library that cannot be used: nowhere"), "{said}");
+    assert!(!folder.path().join("a.png").exists());
+}
+
+/// What a default picture says of denoising, where `python3` is a script that prints `printed`, and nothing else is installed.
+#[cfg(unix)]
+fn said_with_python(folder: &Path, printed: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let bin = folder.join("bin");
+    std::fs::create_dir_all(&bin).unwrap();
+    let python = bin.join("python3");
+    std::fs::write(&python, format!("#!/bin/sh\necho '{printed}'\n")).unwrap();
+    std::fs::set_permissions(&python, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = Command::cargo_bin("bilux").unwrap();
+    let arguments = ["render", "pot.obj", "--size", "16x16", "--noise", "0.5", "-o", "a.png"];
+    command.current_dir(folder).env_clear().env("PATH", &bin).env("HOME", folder).args(arguments);
+    String::from_utf8(command.assert().success().get_output().stderr.clone()).unwrap()
+}
+
+/// pyenv's `python3` is a script: only it knows where packages are.
+#[cfg(unix)]
+#[test]
+fn python3_is_asked_where_pyoidn_is_and_nobody_is_told_to_install_what_is_installed() {
+    let folder = folder();
+    let package = folder.path().join("versions/3.12/pyoidn");
+    let said = said_with_python(folder.path(), "");
+    if said.contains("denoised by Open Image Denoise") {
+        return; // The system has one.
+    }
+    assert!(said.contains("pip install pyoidn"), "{said}");
+    // A file that is no library: found, and said to be of no use.
+    std::fs::create_dir_all(package.join("oidn/lib")).unwrap();
+    std::fs::write(package.join("oidn/lib/libOpenImageDenoise.so.2"), "no library").unwrap();
+    let said = said_with_python(folder.path(), &package.display().to_string());
+    let is_true = said.contains("is installed, but cannot be used") && !said.contains("pip install");
+    assert!(is_true || cfg!(target_os = "macos"), "{said}");
+}
+
+/// In a sandbox the library is loaded before the scene is read, so that its fault is found as without one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_sandbox_loads_the_library_before_the_scene_is_read() {
+    let folder = folder();
+    let mut command = Command::cargo_bin("bilux").unwrap();
+    let arguments = ["--sandbox", "render", "missing.obj", "--denoise=oidn", "-o", "a.png"];
+    // The dynamic linker says what it looks for, in its order.
+    command.current_dir(folder.path()).env("LD_DEBUG", "files").env("OIDN_LIB", "nowhere").args(arguments);
+    let said = String::from_utf8_lossy(&command.assert().failure().get_output().stderr.clone()).into_owned();
+    let place = |what: &str| said.find(what).unwrap_or_else(|| panic!("no {what} in {said}"));
+    assert!(place("file=nowhere") < place("missing.obj"));
+}
+
+#[test]
+fn a_timeout_ends_with_the_picture_as_it_is() {
+    let folder = folder();
+    let mut command = Command::cargo_bin("bilux").unwrap();
+    let arguments =
+        ["render", "pot.obj", "--spp", "1000000", "--size", "64x64", "--timeout", "2", "-o", "a.png"];
+    command.current_dir(folder.path()).args(arguments);
+    let said = String::from_utf8(command.assert().code(124).get_output().stderr.clone()).unwrap();
+    assert!(said.contains("--timeout") && folder.path().join("a.png").exists(), "{said}");
+    // Without a picture there is nothing to save; and no time is no timeout.
+    for wrong in ["0", "-1", "soon"] {
+        let mut command = Command::cargo_bin("bilux").unwrap();
+        command.current_dir(folder.path()).args(["render", "pot.obj", "-o", "b.png"]);
+        command.arg(format!("--timeout={wrong}")).assert().code(2);
+    }
+}
+
+#[test]
+fn fast_pictures_are_denoised_path_traced_and_there_within_their_time() {
+    let folder = folder();
+    let said = render(folder.path(), "a.png", &["--fast"]);
+    assert!(said.contains("denoised by") && !said.contains("chose"), "{said}");
+    let mut command = Command::cargo_bin("bilux").unwrap();
+    command.current_dir(folder.path()).args(["render", "pot.obj", "-o", "b.png", "--fast", "--spp", "4"]);
+    command.assert().code(2);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene file.
 
-use bilux_pictures::PictureError;
+use bilux_pictures::{PictureError, reason};
 use bilux_scene::{SceneError, Span, Warning};
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum FormatError {
     /// A file cannot be opened, read or written.
-    #[error("{}: cannot {action}: {source}", .path.display())]
+    #[error("{}: cannot {action}: {}", .path.display(), reason(.source))]
     Io {
         /// Which file.
         path: PathBuf,
@@ -38,7 +38,7 @@ pub enum FormatError {
     },
     /// A file that another one names is not in the scene's folder.
     #[error(
-        "{at}: '{name}' lies outside the scene's folder, and only files in it are opened; copy it there, or \
+        "{at}: '{name}' lies outside the scene's folder, and only files in it are opened: copy it there, or \
          allow files outside"
     )]
     Outside {
@@ -48,7 +48,9 @@ pub enum FormatError {
         at: Span,
     },
     /// More memory is needed than is allowed.
-    #[error("{file}: reading it takes more than the {limit} bytes that are allowed; allow more memory")]
+    #[error(
+        "{file}: reading this takes more than the {limit} bytes that are allowed: raise the memory limit if you trust it"
+    )]
     TooLarge {
         /// Which file.
         file: String,
@@ -57,7 +59,7 @@ pub enum FormatError {
     },
     /// No format goes by this name.
     #[error(
-        "{name}: this is no scene format that can be {wanted}{}; known are {}",
+        "{name}: this is not a scene format that can be {wanted}{}; known are {}",
         .nearest.as_ref().map(|n| format!(" (did you mean '{n}'?)")).unwrap_or_default(),
         .known.join(", ")
     )]
@@ -71,6 +73,17 @@ pub enum FormatError {
         /// All that are known.
         known: Vec<String>,
     },
+    /// A picture stands where a scene should.
+    #[error(
+        "{name}: this is a picture ({format}), not a scene: name a scene file; a picture can be its surroundings (--env) \
+         or a texture in it"
+    )]
+    IsPicture {
+        /// The file.
+        name: String,
+        /// Which format of pictures it has.
+        format: &'static str,
+    },
     /// A name or a value in a scene file is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -78,7 +91,7 @@ pub enum FormatError {
     #[error(transparent)]
     Picture(#[from] PictureError),
     /// Something odd, where strictness was asked for.
-    #[error("{0} (only a warning, were it not for strict reading)")]
+    #[error("{0} (with strict reading, warnings are errors)")]
     Strict(Warning),
 }
 

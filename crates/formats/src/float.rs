@@ -15,6 +15,13 @@ pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     }
 }
 
+/// The f64 nearest to a decimal number; for coordinates that are large beside what they differ by.
+pub(crate) fn parse_f64(word: &[u8]) -> Option<f64> {
+    // What is no decimal number as files have them is none here either.
+    parse_f32(word)?;
+    std::str::from_utf8(word).ok()?.parse().ok().or_else(|| parse_f32(word).map(f64::from))
+}
+
 const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
     1e19, 1e20, 1e21, 1e22,

@@ -2,19 +2,32 @@
 
 use crate::bake::with_pictures;
 use crate::reading::{Reading, Source, open};
+use crate::strokes::as_triangles;
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
-use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, native, obj, off, pbrt, ply, stl};
+use crate::{FormatError, ReadOptions, WriteOptions, asc, gltf, las, native, obj, off, pbrt, ply, stl, xyz};
+use bilux_math::DVec3;
 use bilux_math::registry::Entry;
+use bilux_pictures::PICTURE_FORMATS;
 use bilux_scene::error::nearest_name;
-use bilux_scene::{SceneBuilder, Warning};
+use bilux_scene::{SceneBuilder, UpHint, Warning};
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Every format that there is.
-pub const SCENE_FORMATS: &[SceneFormatEntry] =
-    &[asc::ENTRY, gltf::ENTRY, pbrt::ENTRY, obj::ENTRY, ply::ENTRY, stl::ENTRY, off::ENTRY, native::ENTRY];
+pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
+    asc::ENTRY,
+    gltf::ENTRY,
+    pbrt::ENTRY,
+    obj::ENTRY,
+    ply::ENTRY,
+    stl::ENTRY,
+    off::ENTRY,
+    las::ENTRY,
+    xyz::ENTRY,
+    native::ENTRY,
+];
 
 /// A row of [`SCENE_FORMATS`].
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +38,8 @@ pub struct SceneFormatEntry {
     pub extensions: &'static [&'static str],
     /// What of a scene a file of this format can hold.
     pub capabilities: &'static [&'static str],
+    /// Which way is up in its files.
+    pub up: UpHint,
     /// True when bytes look like this format.
     pub(crate) sniff: fn(&[u8]) -> bool,
     pub(crate) read: Option<ReadFormat>,
@@ -88,6 +103,34 @@ pub(crate) fn read_file(
     path: &Path,
     name: &Arc<str>,
 ) -> Result<SceneBuilder, FormatError> {
+    let before = reading.budget.clone();
+    let scene = read_file_once(row, reading, path, name)?;
+    let Some(origin) = far_origin(row, &scene) else { return Ok(scene) };
+    drop(scene);
+    reading.budget = before;
+    reading.origin = origin;
+    let again = read_file_once(row, reading, path, name);
+    reading.origin = DVec3::ZERO;
+    again.map(|scene| SceneBuilder { origin, ..scene })
+}
+
+/// Where a model is, if it is so far from zero that its coordinates have lost digits which the file may have.
+fn far_origin(row: Option<&SceneFormatEntry>, scene: &SceneBuilder) -> Option<DVec3> {
+    const FAR: f64 = 1024.0;
+    row.filter(|row| matches!(row.entry.name, "obj" | "ply"))?;
+    let bounds = scene.bounds(0.0);
+    let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let middle = ((low + high) * 0.5).round();
+    (!bounds.is_empty() && middle.is_finite() && middle.length() > FAR * (high - low).length())
+        .then_some(middle)
+}
+
+fn read_file_once(
+    row: Option<&SceneFormatEntry>,
+    reading: &mut Reading,
+    path: &Path,
+    name: &Arc<str>,
+) -> Result<SceneBuilder, FormatError> {
     let folder = path.parent();
     if let Some(row @ SceneFormatEntry { read: Some(ReadFormat::Flowing(_)), .. }) = row {
         let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
@@ -98,7 +141,9 @@ pub(crate) fn read_file(
     }
     let bytes = reading.load(path)?;
     let row = row.or_else(|| sniffed(&bytes));
-    let row = row.ok_or_else(|| unknown(path, "read", SceneFormatEntry::reads))?;
+    let row = row.ok_or_else(|| {
+        picture(path, &bytes).unwrap_or_else(|| unknown(path, "read", SceneFormatEntry::reads))
+    })?;
     let scene = read_source(row, reading, &Source { bytes: &bytes, name, folder })?;
     reading.release(bytes);
     Ok(scene)
@@ -136,7 +181,14 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
     let row = format_of_path(path)?;
     let mut writing = Writing::new(path, options);
     if let Some(write) = row.write {
+        if scene.origin != DVec3::ZERO {
+            let [x, y, z] = scene.origin.to_array();
+            writing.warn(format!(
+                "positions are written as they lie from {x}, {y}, {z}, where the file has its points"
+            ));
+        }
         let scene = with_pictures(scene, row.capabilities, &mut writing);
+        let scene = as_triangles(scene, row.capabilities, &mut writing);
         write(&scene, &mut writing)?;
     }
     write_all(path, writing)
@@ -162,18 +214,27 @@ fn flow(
         return Err(unknown(Path::new(row.entry.name), "read", SceneFormatEntry::reads));
     };
     if source.bytes.is_empty() {
-        return Err(FormatError::malformed("the file is empty: export it again", whole_file(source.name)));
+        return Err(FormatError::malformed("the file is empty", whole_file(source.name)));
     }
     let (spent, textures) = (reading.budget.spent(), reading.texture_bytes());
-    let scene = match read {
+    let mut scene = match read {
         ReadFormat::Whole(read) => read(reading, source)?,
         ReadFormat::Flowing(read) => read(reading, source, from)?,
     };
+    scene.up = row.up;
     reading.settle(spent, textures, &scene);
     match scene.warnings.first() {
         Some(first) if reading.options.strict => Err(FormatError::Strict(first.clone())),
         _ => Ok(scene),
     }
+}
+
+/// What is said of a picture that stands where a scene should.
+fn picture(path: &Path, bytes: &[u8]) -> Option<FormatError> {
+    let by_bytes = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
+    let row = by_bytes.or_else(|| bilux_pictures::format_named(&extension(path)?))?;
+    let name = path.display().to_string();
+    Some(FormatError::IsPicture { name, format: row.extensions[0] })
 }
 
 fn sniffed(bytes: &[u8]) -> Option<&'static SceneFormatEntry> {

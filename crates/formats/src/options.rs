@@ -1,5 +1,7 @@
 //! What a reader may do and how a writer should.
 
+use std::path::PathBuf;
+
 /// What reading a scene may take and open, and what is chosen where a file leaves a choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {
@@ -7,8 +9,13 @@ pub struct ReadOptions {
     pub max_memory: u64,
     /// Whether files outside the scene's own folder may be opened.
     pub allow_outside: bool,
+    /// Where files that a pbrt scene names are looked for too, when they are not in its folder: pbrt looks in the working
+    /// directory. They may be opened if they lie in this folder.
+    pub working_folder: Option<PathBuf>,
     /// Whether what would be a warning is an error.
     pub strict: bool,
+    /// Whether all that a file holds is checked, shown or not, and each fault becomes a warning (glTF).
+    pub validate: bool,
     /// Faces of a mesh without normals look smooth where they meet at less than this angle, in degrees;
     /// at 0 nothing is added to the mesh, and its faces look flat.
     pub crease_angle: f32,
@@ -32,7 +39,9 @@ impl Default for ReadOptions {
         ReadOptions {
             max_memory: 4 << 30,
             allow_outside: false,
+            working_folder: None,
             strict: false,
+            validate: false,
             crease_angle: 40.0,
             time: 0.0,
             whole_movement: false,

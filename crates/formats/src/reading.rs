@@ -4,6 +4,7 @@ use crate::budget::Budget;
 use crate::images::{Means, decoded};
 use crate::text::whole_file;
 use crate::{FormatError, ReadOptions};
+use bilux_math::DVec3;
 use bilux_pictures::Limits;
 use bilux_scene::texture::{Channel, Image};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
@@ -46,8 +47,12 @@ pub(crate) struct Reading<'o> {
     pub(crate) budget: Budget,
     /// [`ReadOptions::crease_angle`], unless a scene has its own.
     pub(crate) crease_angle: f32,
-    /// Nothing outside this folder is opened.
+    /// What positions of the file are counted from, where they are far from zero beside what they differ by.
+    pub(crate) origin: DVec3,
+    /// Nothing outside this folder is opened, but for what is found in [`Reading::working_folder`].
     root: Option<PathBuf>,
+    /// Where the format that is being read looks for files too.
+    pub(crate) working_folder: Option<PathBuf>,
     textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
     texture_bytes: u64,
     /// Scenes put into other scenes, each read once.
@@ -68,7 +73,9 @@ impl<'o> Reading<'o> {
             options,
             budget: Budget::new(options.max_memory),
             crease_angle: options.crease_angle,
+            origin: DVec3::ZERO,
             root,
+            working_folder: None,
             textures: HashMap::new(),
             texture_bytes: 0,
             models: HashMap::new(),
@@ -145,6 +152,17 @@ impl<'o> Reading<'o> {
         name: &str,
         at: &Span,
     ) -> Result<PathBuf, FormatError> {
+        self.locate_besides(folder, name, &[], at)
+    }
+
+    /// The same; one of `open`, the files that are being read, is found only where it is named with its folder.
+    pub(crate) fn locate_besides(
+        &self,
+        folder: Option<&Path>,
+        name: &str,
+        open: &[PathBuf],
+        at: &Span,
+    ) -> Result<PathBuf, FormatError> {
         let Some(folder) = folder.map(non_empty) else {
             let message = format!("'{name}' cannot be looked for: the scene did not come from a folder");
             return Err(FormatError::malformed(message, at.clone()));
@@ -157,9 +175,15 @@ impl<'o> Reading<'o> {
         if beside.is_empty() || name.contains('\0') {
             return Err(missing());
         }
-        let found = [folder.join(name), folder.join(&portable), folder.join(beside)]
-            .into_iter()
-            .find_map(|path| fs::canonicalize(path).ok())
+        let there = |path: PathBuf| fs::canonicalize(path).ok();
+        let named = [folder.join(name), folder.join(&portable)].into_iter().find_map(there);
+        if named.is_none()
+            && let Some(found) = self.in_working_folder(&portable)
+        {
+            return Ok(found);
+        }
+        let found = named
+            .or_else(|| there(folder.join(beside)).filter(|path| !open.contains(path)))
             // Whatever else it may be, a pipe would never end.
             .filter(|path| path.is_file())
             .ok_or_else(missing)?;
@@ -168,6 +192,13 @@ impl<'o> Reading<'o> {
             None if self.options.allow_outside => Ok(found),
             _ => Err(FormatError::Outside { name: name.to_owned(), at: at.clone() }),
         }
+    }
+
+    /// A file of this name in the working folder, or below it.
+    fn in_working_folder(&self, name: &str) -> Option<PathBuf> {
+        let folder = fs::canonicalize(non_empty(self.working_folder.as_deref()?)).ok()?;
+        let found = fs::canonicalize(folder.join(name)).ok()?;
+        (found.starts_with(&folder) && found.is_file()).then_some(found)
     }
 
     /// A file's bytes. They count as held until [`Reading::release`].
@@ -249,43 +280,65 @@ pub(crate) fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
 /// Counts odd things by kind, so that a file with a million of them gives one warning.
 #[derive(Debug, Default)]
 pub(crate) struct Oddities {
-    kinds: Vec<(String, u64, Span)>,
+    kinds: Vec<Oddity>,
+}
+
+#[derive(Debug)]
+struct Oddity {
+    /// What all of the kind share.
+    what: String,
+    /// What of the first stands in front of it in a message.
+    first: String,
+    count: u64,
+    at: Span,
 }
 
 /// Kinds beyond this are not told apart: a file of garbage has thousands.
-const MOST_KINDS: usize = 40;
+const MAX_KINDS: usize = 40;
 
 impl Oddities {
     /// Takes over what was noted in a part of the file before which so many lines stand.
     pub(crate) fn append(&mut self, part: Oddities, lines: u32) {
-        for (what, count, mut at) in part.kinds {
+        for Oddity { what, first, count, mut at } in part.kinds {
             at.line = at.line.saturating_add(lines);
-            self.note(&what, || at);
-            if let Some((_, counted, _)) = self.kinds.iter_mut().find(|(kind, ..)| *kind == what) {
-                *counted += count - 1;
+            self.note_first(&what, || first, || at);
+            if let Some(known) = self.kinds.iter_mut().find(|kind| kind.what == what) {
+                known.count += count - 1;
             }
         }
     }
 
     /// Notes one more of a kind; `at` is asked only for the first.
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
+        self.note_first(what, String::new, at);
+    }
+
+    /// The same with words about the first of the kind, which stand in front of what all share.
+    pub(crate) fn note_first(
+        &mut self,
+        what: &str,
+        first: impl FnOnce() -> String,
+        at: impl FnOnce() -> Span,
+    ) {
         let kinds = self.kinds.len();
-        match self.kinds.iter_mut().find(|(kind, ..)| kind == what) {
-            Some((_, count, _)) => *count += 1,
-            None if kinds > MOST_KINDS => {}
-            None if kinds == MOST_KINDS => {
-                self.kinds.push(("there is more that is odd from here on".to_owned(), 1, at()));
+        match self.kinds.iter_mut().find(|kind| kind.what == what) {
+            Some(kind) => kind.count += 1,
+            None if kinds > MAX_KINDS => {}
+            None if kinds == MAX_KINDS => {
+                let what = "further faults from here on are not listed".to_owned();
+                self.kinds.push(Oddity { what, first: String::new(), count: 1, at: at() });
             }
-            None => self.kinds.push((what.to_owned(), 1, at())),
+            None => self.kinds.push(Oddity { what: what.to_owned(), first: first(), count: 1, at: at() }),
         }
     }
 
     /// Turns them into warnings, each with its count and the place of the first.
-    pub(crate) fn into_warnings(self, scene: &mut SceneBuilder) {
-        for (what, count, at) in self.kinds {
+    pub(crate) fn into_warnings(mut self, scene: &mut SceneBuilder) {
+        self.kinds.sort_by_key(|kind| (kind.at.line, kind.at.column));
+        for Oddity { what, first, count, at } in self.kinds {
             let times =
                 if count > 1 { format!(" ({count} times; this is the first)") } else { String::new() };
-            scene.warn(format!("{what}{times}"), at);
+            scene.warn(format!("{first}{what}{times}"), at);
         }
     }
 }

@@ -211,7 +211,9 @@ pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
     match error {
         // Zeros behind the text, as some programs leave them, are passed as blanks.
         FormatError::Malformed { message, at } if source.bytes.iter().take(4096).any(|&b| b == 0) => {
-            let message = format!("this file is no plain text, but binary, or text of 16 bits ({message})");
+            let message = format!(
+                "this file is not plain text: it is binary, or text with 16 bits a character ({message})"
+            );
             FormatError::Malformed { message, at }
         }
         error => error,

@@ -31,6 +31,23 @@ impl Transform {
         (affine && sound).then_some(Transform { forward, inverse })
     }
 
+    /// Moves by `offset`; `None` when that is not finite.
+    pub fn translate(offset: Vec3) -> Option<Transform> {
+        Transform::from_matrix(DMat4::from_translation(offset.as_dvec3()))
+    }
+
+    /// Turns by `radians` about an axis through the origin, counter-clockwise as seen from where it points; `None` when
+    /// the axis has no length, or something is not finite.
+    pub fn rotate(axis: Vec3, radians: f32) -> Option<Transform> {
+        let axis = axis.as_dvec3().try_normalize()?;
+        Transform::from_matrix(DMat4::from_axis_angle(axis, f64::from(radians)))
+    }
+
+    /// Scales along the axes; `None` when a factor is 0 or not finite.
+    pub fn scale(factors: Vec3) -> Option<Transform> {
+        Transform::from_matrix(DMat4::from_scale(factors.as_dvec3()))
+    }
+
     /// First `self`, then `next`.
     pub fn then(&self, next: &Transform) -> Transform {
         Transform { forward: next.forward * self.forward, inverse: self.inverse * next.inverse }
@@ -96,6 +113,19 @@ mod tests {
             * DMat4::from_rotation_y(204f64.to_radians());
         let made = Transform::from_matrix(matrix).unwrap();
         assert_eq!(made, Transform::from_matrix(made.matrix().as_dmat4()).unwrap());
+    }
+
+    #[test]
+    fn steps_are_made_by_name_and_joined_in_order() {
+        let moved = Transform::translate(Vec3::X).unwrap();
+        let turned = Transform::rotate(Vec3::Z * 3.0, std::f32::consts::FRAC_PI_2).unwrap();
+        let grown = Transform::scale(Vec3::new(1.0, 2.0, -1.0)).unwrap();
+        let all = moved.then(&turned).then(&grown);
+        assert!(all.point(Vec3::ZERO).abs_diff_eq(Vec3::Y * 2.0, 1e-6), "{}", all.point(Vec3::ZERO));
+        assert!(all.mirrors() && all.then(&all.inverted()).point(Vec3::ONE).abs_diff_eq(Vec3::ONE, 1e-6));
+        assert_eq!(Transform::translate(Vec3::NAN), None);
+        assert_eq!(Transform::rotate(Vec3::ZERO, 1.0), None);
+        assert_eq!(Transform::scale(Vec3::X), None);
     }
 
     #[test]

@@ -15,7 +15,7 @@ pub enum PictureError {
         source: Box<PictureError>,
     },
     /// The operating system refused.
-    #[error("cannot {action}: {source}")]
+    #[error("cannot {action}: {}", reason(source))]
     Io {
         /// What was tried.
         action: &'static str,
@@ -51,13 +51,13 @@ pub enum PictureError {
         known: String,
     },
     /// The bytes look like no picture format that we know.
-    #[error("these bytes are of no known picture format; there are: {known}")]
+    #[error("this is not a picture of a known format; there are: {known}")]
     Unrecognised {
         /// Every name that there is.
         known: String,
     },
     /// The file breaks the rules of its format.
-    #[error("{format}: {what}; the file is damaged or was written wrongly, so export it again")]
+    #[error("{format}: {what}: the file is damaged or was written wrongly; save it again")]
     Invalid {
         /// The format.
         format: &'static str,
@@ -65,7 +65,7 @@ pub enum PictureError {
         what: String,
     },
     /// The file ends too early.
-    #[error("{format}: the file ends in the middle of {part}; it was cut short, so copy or export it again")]
+    #[error("{format}: the file ends in the middle of {part}: it was cut short; copy it or save it again")]
     Truncated {
         /// The format.
         format: &'static str,
@@ -84,7 +84,8 @@ pub enum PictureError {
     },
     /// The picture would take more memory than allowed.
     #[error(
-        "{format}: {width} x {height} pixels need {needed} bytes, and the limit is {limit}; raise the memory limit if the file is to be trusted"
+        "{format}: {width} x {height} pixels need {}, and the limit is {limit}: raise the memory limit if you trust the file",
+        bytes_in_words(*needed)
     )]
     TooLarge {
         /// The format.
@@ -99,9 +100,7 @@ pub enum PictureError {
         limit: u64,
     },
     /// The file has more bytes than allowed.
-    #[error(
-        "the file has more than the limit of {limit} bytes; raise the memory limit if it is to be trusted"
-    )]
+    #[error("the file has more than the limit of {limit} bytes: raise the memory limit if you trust it")]
     FileTooLarge {
         /// The limit in bytes.
         limit: u64,
@@ -157,6 +156,19 @@ impl PictureError {
             source => PictureError::InFile { path: path.to_owned(), source: Box::new(source) },
         }
     }
+}
+
+/// Why the operating system refused, in its words and without its number.
+pub fn reason(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    match text.find(" (os error") {
+        Some(end) => text[..end].to_owned(),
+        None => text,
+    }
+}
+
+fn bytes_in_words(bytes: u64) -> String {
+    if bytes == u64::MAX { "more bytes than any machine has".to_owned() } else { format!("{bytes} bytes") }
 }
 
 /// A name without an extension asks for no format.

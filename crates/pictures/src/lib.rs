@@ -35,7 +35,7 @@ mod picture;
 pub mod tonemap;
 
 pub use denoise::{DENOISERS, DenoiserEntry};
-pub use error::PictureError;
+pub use error::{PictureError, reason};
 pub use formats::{
     BitDepth, PICTURE_FORMATS, PictureFormatEntry, Rgba8, WriteOptions, format_named, format_of_path,
     guarded_decoding, is_decoding, read, read_bytes, read_rgba8, read_with, write, write_atomically,

@@ -151,7 +151,7 @@ impl Picture {
         let taken = self.channels.iter().any(|c| c.name == name)
             || self.integer_planes.iter().any(|plane| plane.name == name);
         let what = if name.is_empty() || name.contains('\0') {
-            format!("'{name}' is no name for a channel: it has to have letters and no zero bytes")
+            format!("'{name}' is not a name for a channel: it must have letters and no zero bytes")
         } else if taken {
             format!("there is already a channel '{name}'")
         } else if length != self.pixel_count() {
@@ -205,6 +205,18 @@ impl Picture {
     pub fn to_rgb(&self) -> Option<Vec<Rgb>> {
         let [r, g, b] = self.rgb_planes()?;
         Some((0..self.pixel_count()).map(|i| Rgb::new(r[i], g[i], b[i])).collect())
+    }
+
+    /// The main picture as bytes for a display, four to a pixel in rows, the top one first: red, green, blue and alpha,
+    /// sRGB-encoded, alpha not multiplied in, 255 where the picture has none. `None` where it has no colour. Light above 1
+    /// becomes 255: see [`crate::to_display`] for exposure and tone curves.
+    pub fn to_rgba8(&self) -> Option<Vec<u8>> {
+        let shown = self.main().into_srgb();
+        let [r, g, b] = shown.rgb_planes()?;
+        let alpha = shown.channel("A");
+        let byte = |sample: f32| crate::formats::quantise(sample, 255.0) as u8;
+        let pixel = |i: usize| [byte(r[i]), byte(g[i]), byte(b[i]), alpha.map_or(255, |a| byte(a[i]))];
+        Some((0..self.pixel_count()).flat_map(pixel).collect())
     }
 
     /// The colour of one pixel as stored, black where the picture has no colour. Panics beyond the edges,

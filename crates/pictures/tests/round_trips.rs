@@ -251,3 +251,13 @@ fn planes_have_to_fit() {
     assert!(Picture::new(0, 4).is_err() && Picture::new(usize::MAX, usize::MAX).is_err());
     assert!(Picture::from_rgb(2, 2, vec![Rgb::BLACK; 3]).is_err());
 }
+
+#[test]
+fn bytes_for_a_display_are_encoded_and_have_alpha() {
+    let mut picture = Picture::from_rgb(2, 1, vec![Rgb::new(0.5, 0.0, 7.0), Rgb::grey(0.25)]).unwrap();
+    assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 137, 137, 137, 255]);
+    // Half there, and its light multiplied by that.
+    picture.push_channel("A", vec![1.0, 0.5]).unwrap();
+    assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 188, 188, 188, 128]);
+    assert_eq!(Picture::new(2, 1).unwrap().to_rgba8(), None);
+}

@@ -8,13 +8,15 @@ use crate::inventory::Inventory;
 use crate::lights::{self, BuiltLight, Sides};
 use crate::materials::{self, Ingredients, Material};
 use crate::mesh::Mesh;
+use crate::orientation::UpHint;
 use crate::parameters::{Parameters, Span, Spec};
 use crate::scene::{Scene, SceneLight, SceneParts};
 use crate::spheres::PlacedSphere;
+use crate::strokes::StrokeWidths;
 use crate::texture::Texture;
 use bilux_accel::{BuildOptions, Query};
 use bilux_math::motion::Motion;
-use bilux_math::{Rgb, Transform, Vec3};
+use bilux_math::{DVec3, Rgb, Transform, Vec3};
 use std::sync::Arc;
 
 /// A mesh somewhere in the scene.
@@ -60,6 +62,14 @@ pub struct SceneBuilder {
     pub cameras: Vec<CameraSpec>,
     /// The file's format knows lamps, and has no word for what is around a scene.
     pub surroundings_unsaid: bool,
+    /// Which way is up, as far as the file or its format says.
+    pub up: UpHint,
+    /// Metres in a unit of length of the file; 0 for one, as in all scenes that say nothing of it.
+    pub unit: f64,
+    /// What all positions of the file have in common and is left out of ours, so that 32-bit floats hold the rest.
+    pub origin: DVec3,
+    /// How wide points and lines are.
+    pub stroke_widths: StrokeWidths,
     /// Settings of the render that the file wishes for, not looked at here.
     pub settings: Parameters,
     /// What was odd while reading.
@@ -87,9 +97,14 @@ impl Default for AccelChoice {
 
 impl SceneBuilder {
     /// Adds a material and gives its index.
-    pub fn add_material(&mut self, spec: Spec) -> usize {
-        self.materials.push(spec);
+    pub fn add_material(&mut self, spec: impl Into<Spec>) -> usize {
+        self.materials.push(spec.into());
         self.materials.len() - 1
+    }
+
+    /// Adds a light.
+    pub fn add_light(&mut self, spec: impl Into<Spec>) {
+        self.lights.push(spec.into());
     }
 
     /// Adds a warning.
@@ -134,7 +149,10 @@ impl SceneBuilder {
             has_tangents: materials[object.material].needs_tangents(),
             is_filtered: filtered.get(object.material).is_some_and(|textures| !textures.is_empty()),
         });
-        let geometry = Geometry::build(placed.collect(), spheres, accel)?;
+        let has_strokes = self.objects.iter().any(|object| object.mesh.stroke_count() > 0);
+        let size = if has_strokes { self.bounds(shutter[0]).extent().length() } else { 1.0 };
+        let widths = self.stroke_widths.for_size(size);
+        let geometry = Geometry::build(placed.collect(), spheres, widths, accel)?;
         let parts = SceneParts::new(geometry, materials, lights, &panels, &lamps, cameras, filtered);
         Ok(Scene::new(Arc::new(parts), accel, shutter))
     }
@@ -211,6 +229,12 @@ fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
     let out_of_range = |t: &&[u32; 3]| t.iter().any(|&i| i as usize >= count);
     if let Some(bad) = mesh.triangles.iter().find(out_of_range) {
         return fail(format!("mesh '{name}' has a triangle {bad:?}, but only {count} vertices"));
+    }
+    let strokes = || mesh.points.iter().chain(mesh.lines.iter().flatten());
+    if let Some(bad) = strokes().find(|&&i| i as usize >= count) {
+        return fail(format!(
+            "mesh '{name}' has a point or a line at vertex {bad}, but only {count} vertices"
+        ));
     }
     Ok(())
 }

@@ -21,7 +21,7 @@ pub enum SceneError {
         at: Span,
     },
     /// A value of the wrong kind or out of range.
-    #[error("{at}: {what} is {found}, but has to be {wanted}")]
+    #[error("{at}: {what} is {found}, but must be {wanted}")]
     BadValue {
         /// Which parameter.
         what: String,
@@ -33,7 +33,7 @@ pub enum SceneError {
         at: Span,
     },
     /// Something has to be given and is not.
-    #[error("{at}: {what} has to be given")]
+    #[error("{at}: {what} is missing: add it")]
     Missing {
         /// What is missing.
         what: String,
@@ -84,11 +84,83 @@ impl SceneError {
     }
 }
 
-/// The known name that a misspelt one most likely means.
+/// Names of glTF, Blender and other renderers, and what they are called here. Where a material has no such name, the next
+/// of the row counts.
+const SYNONYMS: &[(&str, &[&str])] = &[
+    ("albedo", &["base_color", "reflectance", "kd"]),
+    ("base_color_factor", &["base_color", "reflectance", "kd"]),
+    ("color", &["base_color", "reflectance", "kd"]),
+    ("colour", &["base_color", "reflectance", "kd"]),
+    ("diffuse", &["base_color", "reflectance", "kd"]),
+    ("diffuse_color", &["base_color", "reflectance", "kd"]),
+    ("metallic", &["base_metalness"]),
+    ("metalness", &["base_metalness"]),
+    ("metallic_factor", &["base_metalness"]),
+    ("roughness", &["roughness", "specular_roughness"]),
+    ("roughness_factor", &["roughness", "specular_roughness"]),
+    ("specular", &["specular_weight", "ks"]),
+    ("ior", &["specular_ior", "eta"]),
+    ("index_of_refraction", &["specular_ior", "eta"]),
+    ("anisotropy", &["anisotropy", "specular_roughness_anisotropy"]),
+    ("anisotropy_strength", &["anisotropy", "specular_roughness_anisotropy"]),
+    ("transmission", &["transmission_weight", "kt"]),
+    ("transmission_factor", &["transmission_weight", "kt"]),
+    ("clearcoat", &["coat_weight"]),
+    ("coat", &["coat_weight"]),
+    ("clearcoat_factor", &["coat_weight"]),
+    ("clearcoat_roughness", &["coat_roughness"]),
+    ("clearcoat_roughness_factor", &["coat_roughness"]),
+    ("sheen", &["fuzz_weight"]),
+    ("fuzz", &["fuzz_weight"]),
+    ("sheen_color", &["fuzz_color"]),
+    ("sheen_roughness", &["fuzz_roughness"]),
+    ("iridescence", &["thin_film_weight"]),
+    ("iridescence_factor", &["thin_film_weight"]),
+    ("iridescence_ior", &["thin_film_ior"]),
+    ("attenuation_color", &["transmission_color", "absorption"]),
+    ("attenuation_distance", &["transmission_depth", "absorption"]),
+    ("emissive", &["emission"]),
+    ("emissive_factor", &["emission"]),
+    ("emission_color", &["emission"]),
+    ("emissive_strength", &["emission_scale"]),
+    ("emission_strength", &["emission_scale"]),
+    ("emission_luminance", &["emission_scale"]),
+    ("geometry_opacity", &["opacity"]),
+    ("alpha", &["opacity"]),
+    ("normal_texture", &["normal"]),
+    ("normal_map", &["normal"]),
+    ("double_sided", &["visible_sides"]),
+];
+
+/// The known name that another one most likely means: one that it abbreviates or is elsewhere called by, or one that is
+/// spelt much like it.
 pub fn nearest_name(name: &str, known: &[String]) -> Option<String> {
-    let distance = |k: &String| strsim::damerau_levenshtein(&name.to_lowercase(), k);
+    let plain = snake_case(name);
+    let row = SYNONYMS.iter().find(|(other, _)| *other == plain);
+    let same = row.and_then(|(_, names)| names.iter().find(|name| known.iter().any(|k| k == *name)));
+    if let Some(same) = same {
+        return Some((*same).to_owned());
+    }
+    let distance = |k: &String| strsim::damerau_levenshtein(&name.to_lowercase(), &k.to_lowercase());
     let best = known.iter().min_by_key(|k| distance(k))?;
-    (distance(best) <= 1 + name.chars().count() / 3).then(|| best.clone())
+    if distance(best) <= 1 + name.chars().count() / 3 {
+        return Some(best.clone());
+    }
+    // `transmission` may be the beginning of `transmission_weight`.
+    let longer = |k: &&String| k.strip_prefix(&plain).is_some_and(|rest| rest.starts_with('_'));
+    known.iter().filter(longer).min_by_key(|k| k.len()).cloned()
+}
+
+/// `baseColorFactor` as `base_color_factor`.
+fn snake_case(name: &str) -> String {
+    let mut snake = String::with_capacity(name.len() + 4);
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() && !snake.is_empty() && !snake.ends_with('_') {
+            snake.push('_');
+        }
+        snake.push(letter.to_ascii_lowercase());
+    }
+    snake
 }
 
 /// The name behind its kind, before what it would belong to: "key 'fow' of a camera".
@@ -102,7 +174,7 @@ fn named(what: &str, name: &str) -> String {
 fn suggestion(nearest: &Option<String>, known: &[String]) -> String {
     match nearest {
         Some(name) => format!("; did you mean '{name}'?"),
-        None if known.is_empty() => ", nor any other".to_owned(),
+        None if known.is_empty() => ", nor any other: add it, or correct the name".to_owned(),
         None => format!(" (known: {})", known.join(", ")),
     }
 }

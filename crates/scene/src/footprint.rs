@@ -4,7 +4,8 @@
 //! and the picture's size, never of a path. So a surface is the same from both ends of any path.
 
 use crate::cameras::Camera;
-use crate::geometry::{Geometry, triangle_uvs};
+use crate::corners::triangle_uvs;
+use crate::geometry::Geometry;
 use crate::mesh::Mesh;
 use crate::parameters::{Spec, Value};
 use crate::surface::Surface;
@@ -25,6 +26,9 @@ impl View {
     pub(crate) fn put_on(&self, surface: &mut Surface, geometry: &Geometry) {
         let object = geometry.objects().get(surface.object as usize);
         let Some(object) = object.filter(|object| object.is_filtered) else { return };
+        if !geometry.is_triangle(surface.primitive) {
+            return;
+        }
         let (triangle, corners, _) = geometry.in_world(surface.primitive, surface.time);
         let pixel = self.pixel_at(surface.p, surface.time);
         let rates = uv_rates(&object.mesh, object.mesh.triangles[triangle as usize], corners);

@@ -1,38 +1,24 @@
 //! The surfaces of a scene: triangles that stand still in one tree of the whole scene, those that move or repeat in
-//! trees of their own, and spheres in a last one.
+//! trees of their own, points and lines in trees beside them, and spheres in a last one.
 
 use crate::builder::{AccelChoice, unit_or};
+use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
 use crate::error::SceneError;
 use crate::mesh::Mesh;
 use crate::parameters::Span;
+pub use crate::placed::Placed;
 use crate::spheres::{PlacedSphere, Spheres};
+use crate::strokes::{StrokeWidths, Strokes};
 use crate::surface::{Surface, gamma};
 use crate::texture::UvPair;
 use bilux_accel::instancing::{Instance, TopLevel, TwoLevel};
+use bilux_accel::primitives::PrimitiveTree;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray, TriangleMesh};
 use bilux_math::motion::Motion;
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// An object with its place, as [`Geometry::build`] takes it.
-pub struct Placed {
-    /// Its triangles, in their own space.
-    pub mesh: Arc<Mesh>,
-    /// Index of its material.
-    pub material: u32,
-    /// Where it is, and when.
-    pub motion: Motion,
-    /// Keep a tree of its own.
-    pub instanced: bool,
-    /// Its material gives light.
-    pub gives_light: bool,
-    /// Its material asks for tangents.
-    pub has_tangents: bool,
-    /// It has textures that are filtered.
-    pub is_filtered: bool,
-}
 
 /// All triangles, and the trees over them.
 pub struct Geometry {
@@ -44,6 +30,9 @@ pub struct Geometry {
     /// The object of each instance; that of `still` is not looked at.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
+    /// The trees of points and lines, which are the instances behind those of triangles, and whether each is in the world as it
+    /// is.
+    strokes: Vec<(Arc<PrimitiveTree<Strokes>>, bool)>,
     /// Whether each object is mirrored, where it does not move.
     mirrored: Vec<bool>,
     /// Numbered after the objects.
@@ -52,19 +41,21 @@ pub struct Geometry {
 
 impl Geometry {
     /// Builds every tree. What stands still is moved into the world and put into one tree; what moves or is
-    /// instanced keeps its own, one for each mesh; spheres have one together.
+    /// instanced keeps its own, one for each mesh; spheres have one together, and the points and lines of each object one, whose
+    /// widths in the world are given.
     ///
     /// # Errors
     /// When there are too many triangles, or no accelerator has the name.
     pub fn build(
         objects: Vec<Placed>,
         spheres: Vec<PlacedSphere>,
+        widths: StrokeWidths,
         accel: &AccelChoice,
     ) -> Result<Geometry, SceneError> {
         let failed = |e: &dyn std::fmt::Display| SceneError::invalid(e.to_string(), &Span::default());
-        let in_own_tree = |o: &Placed| o.instanced || !o.motion.is_still();
+        let in_own_tree = |o: &Placed| o.in_own_tree() && !o.mesh.triangles.is_empty();
         let (mut corners, mut still_objects, mut groups) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, object) in objects.iter().enumerate().filter(|(_, o)| !in_own_tree(o)) {
+        for (i, object) in objects.iter().enumerate().filter(|(_, o)| !o.in_own_tree()) {
             let first = corners.len() as u32;
             still_objects.push((first, i as u32));
             corners.extend(world_corners(&object.mesh, &object.motion.at(0.0)));
@@ -99,10 +90,25 @@ impl Geometry {
             instances.push(Instance::new(tree, object.motion.clone()));
             instance_objects.push(i as u32);
         }
+        let mut strokes = Vec::new();
+        for (object, tree, motion, is_baked) in Strokes::trees(&objects, widths) {
+            instances.push(Instance::new(tree.clone(), motion));
+            instance_objects.push(object);
+            strokes.push((tree, is_baked));
+        }
         let mirrored = objects.iter().map(|o| o.motion.resting().is_some_and(Transform::mirrors)).collect();
         let spheres = Spheres::new(spheres, objects.len() as u32, instances.len() as u32);
         instances.extend(spheres.tree());
-        Ok(Geometry { objects, still, still_objects, instance_objects, instances, mirrored, spheres })
+        Ok(Geometry {
+            objects,
+            still,
+            still_objects,
+            instance_objects,
+            instances,
+            strokes,
+            mirrored,
+            spheres,
+        })
     }
 
     /// The top level for a time: cheap, since every tree is shared.
@@ -168,7 +174,29 @@ impl Geometry {
 
     /// The trees of triangles, each with where it stands.
     pub(crate) fn triangle_instances(&self) -> &[Instance] {
-        &self.instances[..self.instance_objects.len()]
+        &self.instances[..self.first_strokes()]
+    }
+
+    /// The instance that the first tree of points and lines is.
+    fn first_strokes(&self) -> usize {
+        self.instance_objects.len() - self.strokes.len()
+    }
+
+    /// True when some of it is points or lines.
+    pub(crate) fn has_strokes(&self) -> bool {
+        !self.strokes.is_empty()
+    }
+
+    /// The points and lines that an instance is, and whether they stand in the world as they are.
+    fn strokes_of(&self, instance: u32) -> Option<(&Strokes, bool)> {
+        let (tree, is_baked) = self.strokes.get((instance as usize).checked_sub(self.first_strokes())?)?;
+        Some((tree.primitives(), *is_baked))
+    }
+
+    /// True for what is a triangle.
+    #[inline]
+    pub(crate) fn is_triangle(&self, primitive: Primitive) -> bool {
+        (primitive.instance as usize) < self.first_strokes()
     }
 
     /// The trees, each with where it stands.
@@ -181,7 +209,8 @@ impl Geometry {
         if let Some((first, _)) = self.still_objects.iter().find(|(_, o)| *o == object) {
             return Primitive { instance: 0, index: *first };
         }
-        let instance = self.instance_objects.iter().position(|o| *o == object);
+        let of_triangles = &self.instance_objects[..self.first_strokes()];
+        let instance = of_triangles.iter().position(|o| *o == object);
         instance.map_or(Primitive::NONE, |i| Primitive { instance: i as u32, index: 0 })
     }
 
@@ -198,7 +227,12 @@ impl Geometry {
 
     /// Which object a hit belongs to.
     pub fn object_of(&self, hit: &Hit) -> u32 {
-        self.locate(hit.primitive()).0
+        self.object_of_primitive(hit.primitive())
+    }
+
+    /// Which object a triangle or sphere belongs to, as rays number it.
+    pub(crate) fn object_of_primitive(&self, primitive: Primitive) -> u32 {
+        self.locate(primitive).0
     }
 
     /// The object and the triangle within its mesh, or the sphere.
@@ -218,6 +252,9 @@ impl Geometry {
     pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, UvPair) {
         let (object, triangle) = self.locate(hit.primitive());
         let material = self.material_of(object);
+        if let Some((strokes, _)) = self.strokes_of(hit.instance) {
+            return (material, strokes.uv(hit.primitive, hit.u).into());
+        }
         match self.objects.get(object as usize) {
             Some(placed) => {
                 let corners = uv_pairs(&placed.mesh, placed.mesh.triangles[triangle as usize]);
@@ -240,9 +277,10 @@ impl Geometry {
         }
     }
 
-    /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for spheres.
+    /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for what
+    /// is no triangle.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
-        if primitive.instance == self.spheres.instance() {
+        if primitive == Primitive::NONE || !self.is_triangle(primitive) {
             return None;
         }
         let (_, [a, b, c], mirrors) = self.in_world(primitive, time);
@@ -264,11 +302,24 @@ impl Geometry {
     /// All that shading needs to know of a hit, footprints apart.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        if hit.instance == self.spheres.instance() {
-            self.spheres.surface(ray, hit)
-        } else {
+        if self.is_triangle(hit.primitive()) {
             self.triangle_surface(ray, hit)
+        } else {
+            self.other_surface(ray, hit)
         }
+    }
+
+    #[inline(never)]
+    fn other_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let Some((strokes, is_baked)) = self.strokes_of(hit.instance) else {
+            return self.spheres.surface(ray, hit);
+        };
+        let object = self.instance_objects[hit.instance as usize];
+        let to_world = match is_baked {
+            true => Cow::Borrowed(&Transform::IDENTITY),
+            false => self.place(object, ray.time).0,
+        };
+        strokes.surface(ray, hit, &to_world, object)
     }
 
     fn triangle_surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -341,54 +392,4 @@ impl Geometry {
             time: ray.time,
         }
     }
-}
-
-/// The texture coordinates of a triangle's corners: where a mesh has none, the weights of the second and the third.
-pub(crate) fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
-    if mesh.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y] } else { triangle.map(|i| mesh.uvs[i as usize]) }
-}
-
-/// Where textures are looked up at every triangle's corners.
-pub(crate) fn corner_uvs(mesh: &Mesh) -> Vec<[UvPair; 3]> {
-    mesh.triangles.iter().map(|t| uv_pairs(mesh, *t)).collect()
-}
-
-/// Where they are looked up at the corners of one.
-#[inline]
-fn uv_pairs(mesh: &Mesh, triangle: [u32; 3]) -> [UvPair; 3] {
-    let first = triangle_uvs(mesh, triangle);
-    let second = if mesh.uvs2.is_empty() { first } else { triangle.map(|i| mesh.uvs2[i as usize]) };
-    std::array::from_fn(|i| UvPair([first[i], second[i]]))
-}
-
-/// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say
-/// nothing of it. [pbrt 2023, 6.5.2]
-fn tangents([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<(Vec3, Vec3)> {
-    let [uv_a, uv_b, uv_c] = [uvs[0]?, uvs[1]?, uvs[2]?];
-    let (b_side, c_side) = (uv_b - uv_a, uv_c - uv_a);
-    let determinant = b_side.perp_dot(c_side);
-    let sign = 1f32.copysign(determinant);
-    let along_u = ((b - a) * c_side.y - (c - a) * b_side.y) * sign;
-    let along_v = ((c - a) * b_side.x - (b - a) * c_side.x) * sign;
-    along_u.try_normalize().filter(|_| determinant != 0.0).map(|u| (u, along_v))
-}
-
-fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f32; 3]; 3]> {
-    let still = to_world.is_identity();
-    mesh.triangles.iter().map(move |t| {
-        t.map(|i| {
-            let p = mesh.positions[i as usize];
-            if still { p.to_array() } else { to_world.point(p).to_array() }
-        })
-    })
-}
-
-/// A point moved, with the bound on its error moved too. [pbrt 2023, 6.8.5]
-pub(crate) fn transform_with_error(to_world: &Transform, p: Vec3, error: Vec3) -> (Vec3, Vec3) {
-    let m = to_world.matrix();
-    let abs = |v: Vec3| {
-        m.x_axis.truncate().abs() * v.x + m.y_axis.truncate().abs() * v.y + m.z_axis.truncate().abs() * v.z
-    };
-    let rounding = (abs(p.abs()) + m.w_axis.truncate().abs()) * gamma(4);
-    (to_world.point(p), abs(error) * (1.0 + gamma(4)) + rounding)
 }

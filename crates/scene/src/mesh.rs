@@ -1,9 +1,13 @@
-//! Triangles with what shading needs of them.
+//! Triangles, points and lines with what shading needs of them.
 
 use bilux_math::glam::Vec4;
+use bilux_math::transcendental::sin_cos;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 
-/// A triangle mesh in its own space. Attributes are per vertex and either absent (empty) or as many as
+/// More bands of a sphere than anybody sees: 67 million triangles.
+const MAX_RINGS: u32 = 4096;
+
+/// Triangles, points and lines in their own space. Attributes are per vertex and either absent (empty) or as many as
 /// positions; [`crate::SceneBuilder::build`] checks that.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -26,20 +30,94 @@ pub struct Mesh {
     pub vertex_ks: Vec<Rgb>,
     /// Triples of vertices.
     pub triangles: Vec<[u32; 3]>,
+    /// Vertices that are points: balls of the scene's width of points.
+    pub points: Vec<u32>,
+    /// Pairs of vertices that lines join: tubes of the scene's width of lines.
+    pub lines: Vec<[u32; 2]>,
 }
 
 impl Mesh {
+    /// A flat quadrilateral from its corner along two edges. Its front is where `edge_u × edge_v` points; texture
+    /// coordinates go from 0 at the corner to 1 along each edge.
+    pub fn quad(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Mesh {
+        let normal = edge_u.cross(edge_v).normalize_or_zero();
+        Mesh {
+            positions: vec![corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v],
+            normals: vec![normal; 4],
+            uvs: vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        }
+    }
+
+    /// A sphere with smooth normals, of `rings` bands from pole to pole (2..=4096) and twice as many around; its poles
+    /// are on the y axis. u goes around, from 0 to 1, and v up.
+    pub fn sphere(centre: Vec3, radius: f32, rings: u32) -> Mesh {
+        let rings = rings.clamp(2, MAX_RINGS);
+        let columns = 2 * rings;
+        let mut mesh = Mesh::default();
+        for row in 0..=rings {
+            let v = row as f32 / rings as f32;
+            // At the poles the sine is no exact zero.
+            let (sin_theta, cos_theta) = match row {
+                0 => (0.0, 1.0),
+                _ if row == rings => (0.0, -1.0),
+                _ => sin_cos(std::f32::consts::PI * v),
+            };
+            for column in 0..=columns {
+                let u = column as f32 / columns as f32;
+                // The first meridian again, to the bit, so that nothing shows between.
+                let (sin_phi, cos_phi) =
+                    sin_cos(std::f32::consts::TAU * (column % columns) as f32 / columns as f32);
+                let normal = Vec3::new(sin_theta * cos_phi, cos_theta, -sin_theta * sin_phi);
+                mesh.positions.push(centre + normal * radius);
+                mesh.normals.push(normal);
+                mesh.uvs.push(Vec2::new(u, 1.0 - v));
+            }
+        }
+        for row in 0..rings {
+            for column in 0..columns {
+                let above = row * (columns + 1) + column;
+                let below = above + columns + 1;
+                if row > 0 {
+                    mesh.triangles.push([above, below, above + 1]);
+                }
+                if row + 1 < rings {
+                    mesh.triangles.push([above + 1, below, below + 1]);
+                }
+            }
+        }
+        mesh
+    }
+
     /// Bytes that it holds.
     pub fn size(&self) -> u64 {
         let triples = self.positions.len() + self.normals.len() + self.triangles.len();
         let colours = self.vertex_kd.len() + self.vertex_ks.len();
         let uvs = self.uvs.len() + self.uvs2.len();
-        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len()) as u64
+        let strokes = self.points.len() + 2 * self.lines.len();
+        4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len() + strokes) as u64
     }
 
-    /// The box around all vertices that triangles name.
+    /// How many points and lines there are.
+    pub fn stroke_count(&self) -> usize {
+        self.points.len() + self.lines.len()
+    }
+
+    /// True when there is nothing to draw.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty() && self.stroke_count() == 0
+    }
+
+    /// The vertices that triangles, points and lines name, as often as they do.
+    pub fn named_vertices(&self) -> impl Iterator<Item = u32> {
+        let strokes = self.points.iter().chain(self.lines.iter().flatten());
+        self.triangles.iter().flatten().chain(strokes).copied()
+    }
+
+    /// The box around all vertices that are named by a triangle, a point or a line, without the width of these.
     pub fn bounds(&self) -> Aabb {
-        let named = self.triangles.iter().flatten().filter_map(|&i| self.positions.get(i as usize));
+        let named = self.named_vertices().filter_map(|i| self.positions.get(i as usize));
         Aabb::of_points(named.copied().filter(|p| p.is_finite()))
     }
 
@@ -54,5 +132,39 @@ impl Mesh {
             }
         }
         normals.iter().map(|n| n.normalize_or_zero()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Six times the volume that the triangles enclose.
+    fn volume6(mesh: &Mesh) -> f32 {
+        let of = |&[a, b, c]: &[u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|i| mesh.positions[i as usize]);
+            a.cross(b).dot(c)
+        };
+        mesh.triangles.iter().map(of).sum()
+    }
+
+    #[test]
+    fn a_sphere_is_closed_and_faces_outwards() {
+        let mesh = Mesh::sphere(Vec3::ZERO, 2.0, 64);
+        let wanted = 6.0 * 4.0 / 3.0 * std::f32::consts::PI * 8.0;
+        assert!((volume6(&mesh) / wanted - 1.0).abs() < 0.005, "{}", volume6(&mesh) / wanted);
+        assert_eq!(mesh.triangles.len(), 2 * 128 * 63);
+        let is_on_it =
+            |(p, n): (&Vec3, &Vec3)| p.abs_diff_eq(*n * 2.0, 1e-6) && (n.length() - 1.0).abs() < 1e-6;
+        assert!(mesh.positions.iter().zip(&mesh.normals).all(is_on_it));
+        assert_eq!(Mesh::sphere(Vec3::ZERO, 1.0, 0), Mesh::sphere(Vec3::ZERO, 1.0, 2));
+    }
+
+    #[test]
+    fn a_quad_faces_where_its_edges_turn_to() {
+        let mesh = Mesh::quad(Vec3::ZERO, Vec3::Z * 2.0, Vec3::X);
+        assert_eq!(mesh.normals, [Vec3::Y; 4]);
+        assert_eq!(mesh.smooth_normals(), mesh.normals);
+        assert_eq!((mesh.positions[2], mesh.uvs[2]), (Vec3::new(1.0, 0.0, 2.0), Vec2::ONE));
     }
 }

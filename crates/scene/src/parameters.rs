@@ -67,6 +67,11 @@ impl From<f32> for Value {
         Value::Number(f64::from(x))
     }
 }
+impl From<i32> for Value {
+    fn from(i: i32) -> Value {
+        Value::Integer(i64::from(i))
+    }
+}
 impl From<bool> for Value {
     fn from(b: bool) -> Value {
         Value::Bool(b)
@@ -75,6 +80,11 @@ impl From<bool> for Value {
 impl From<&str> for Value {
     fn from(s: &str) -> Value {
         Value::Text(s.to_owned())
+    }
+}
+impl From<String> for Value {
+    fn from(s: String) -> Value {
+        Value::Text(s)
     }
 }
 impl From<Rgb> for Value {

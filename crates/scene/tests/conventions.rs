@@ -380,7 +380,8 @@ fn ggx(alpha: [f64; 2], wi: DVec3) -> f64 {
     let h = (wi + DVec3::Z).normalize();
     let sum = h.x * h.x / (alpha[0] * alpha[0]) + h.y * h.y / (alpha[1] * alpha[1]) + h.z * h.z;
     let d = 1.0 / (PI * alpha[0] * alpha[1] * sum * sum);
-    let tilt = (alpha[0] * wi.x).powi(2) + (alpha[1] * wi.y).powi(2);
+    let (tilt_x, tilt_y) = (alpha[0] * wi.x, alpha[1] * wi.y);
+    let tilt = tilt_x * tilt_x + tilt_y * tilt_y;
     let lambda = 0.5 * ((1.0 + tilt / (wi.z * wi.z)).sqrt() - 1.0);
     d / (1.0 + lambda) / 4.0
 }

@@ -225,7 +225,7 @@ fn a_studio_is_as_it_is_asked_for() {
     let ray = camera.ray(&CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 });
     let direction = Vec3::from(ray.direction);
     assert!((direction - Vec3::NEG_X).length() < 1e-5, "{direction}");
-    assert_eq!(scene.materials.last().map(|m| m.kind.as_str()), Some("principled"));
+    assert_eq!(scene.materials.last().map(|m| m.kind.as_str()), Some("mirror"));
     // What is asked for comes before what a file brings, and the rest of it is kept.
     let mut seen = teapot();
     seen.cameras.push(CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() });

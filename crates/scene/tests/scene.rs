@@ -151,3 +151,15 @@ fn spheres_beside_one_tree_answer_as_the_level_above_does() {
     }
     assert!(met[0] > 500 && met[1] > 500, "{met:?}");
 }
+
+#[test]
+fn what_is_typed_is_what_is_written_by_hand() {
+    use bilux_scene::typed::lights::Point;
+    use bilux_scene::typed::materials::Dielectric;
+    let typed: Spec = Dielectric::new("pane").eta(1.5).thin(true).priority(2).glass("none").into();
+    let by_hand = Spec::new("pane", "dielectric").with("eta", 1.5).with("thin", true);
+    assert_eq!(typed, by_hand.with("priority", bilux_scene::Value::Integer(2)).with("glass", "none"));
+    let mut builder = SceneBuilder::default();
+    builder.add_light(Point::new("bulb").position(Vec3::Y));
+    assert_eq!(builder.lights, [Spec::new("bulb", "point").with("position", Vec3::Y)]);
+}

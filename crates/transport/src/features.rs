@@ -20,7 +20,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// Camera rays of a pixel, where the picture has as many: more shows in no picture.
+/// Camera rays of a pixel, also where the picture has fewer samples: denoisers tell by them what mixture of surfaces a pixel on an edge
+/// shows. Where nothing is left to chance, there are no more than the picture has.
 pub const FEATURE_SAMPLES: u32 = 8;
 
 /// So many smooth surfaces are looked through or into.
@@ -55,7 +56,7 @@ struct Sums {
     material: u32,
 }
 
-/// Looks at the first samples of each pixel: at most [`FEATURE_SAMPLES`], and no more than fit into `time` if that is
+/// Looks at [`FEATURE_SAMPLES`] samples of each pixel, its first ones, and at no more than fit into `time` if that is
 /// given. `None` when it was stopped.
 ///
 /// # Errors
@@ -74,7 +75,7 @@ pub fn features(
     let empty = |tile: Window| Ok((tile, zeroed::<Sums>(tile.pixels())?));
     let mut tiles = window.tiles(TILE).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
     let pool = threads(settings)?;
-    let samples = settings.spp.min(FEATURE_SAMPLES);
+    let samples = if integrator.is_random() { FEATURE_SAMPLES } else { settings.spp.min(FEATURE_SAMPLES) };
     let mut done = 0;
     while done < samples {
         pool.install(|| {

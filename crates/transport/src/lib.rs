@@ -16,6 +16,7 @@ pub mod features;
 pub mod film;
 pub mod filters;
 pub mod halves;
+pub mod illumination;
 pub mod integrators;
 pub mod interval;
 pub mod join;
@@ -27,6 +28,7 @@ pub mod plan;
 pub mod render;
 pub mod replay;
 pub mod sampler;
+pub mod shadow_catcher;
 #[cfg(test)]
 #[path = "../tests/common/mod.rs"]
 mod shapes;
@@ -44,6 +46,7 @@ pub use features::{FEATURE_SAMPLES, Features, coverage, features};
 pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};
 pub use halves::{FirstHalf, push_variance};
+pub use illumination::{Illumination, illumination};
 pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrator};
 pub use interval::{Estimate, Interval, REPLICATES};
 pub use join::JoinedLayers;
@@ -54,6 +57,7 @@ pub use render::{
 };
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
+pub use shadow_catcher::{ShadowCatcher, shadow_alpha};
 pub use splats::Splats;
 pub use stop::{Reached, Stop};
 pub use strategies::{Strategies, Strategy, StrategyPicture, strategies};

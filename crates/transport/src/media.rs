@@ -79,9 +79,15 @@ impl Media {
     }
 
     /// The light that is left at the end of a ray that begins in these media, `distance` metres long; `None` where
-    /// something is between its ends. Of light from infinity `distance` is 0: beyond the last surface nothing absorbs.
+    /// something is between its ends. Of light from infinity `distance` is 0: beyond the last surface nothing absorbs. `n` is the
+    /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none.
     #[inline]
-    pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, distance: f32) -> Option<Rgb> {
+    pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, distance: f32, n: Vec3) -> Option<Rgb> {
+        tracer.ending_on(ray, n, |tracer| self.passed(tracer, ray, distance))
+    }
+
+    #[inline]
+    fn passed(&self, tracer: &mut Tracer, ray: &Ray, distance: f32) -> Option<Rgb> {
         if !tracer.scene.has_nested() {
             return (!tracer.occluded(ray)).then(|| transmittance(self.sigma_a, distance));
         }

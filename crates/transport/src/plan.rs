@@ -28,6 +28,8 @@ pub struct Choice {
 pub struct Rival {
     /// What it is called.
     pub name: &'static str,
+    /// What it is called where it is asked for: a value of the parameter `ways` of `auto`.
+    pub ways: &'static str,
     /// Expected relative variance of one sample of a pixel.
     pub error: f64,
     /// The part of the light that it cannot find, 0..=1.

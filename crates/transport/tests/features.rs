@@ -71,6 +71,14 @@ fn mirrors_show_what_is_seen_in_them() {
     assert_eq!(found.depth[33 * 16], f32::INFINITY);
 }
 
+/// Edges of a picture of one sample are as well known as those of others: denoisers rebuild them by that.
+#[test]
+fn few_samples_have_the_features_of_many() {
+    let builder = still_life();
+    let [one, many] = [1, 64].map(|spp| seen(&builder, &RenderSettings::new(40, 30, spp)));
+    assert!(one == many);
+}
+
 #[test]
 fn they_do_not_depend_on_threads_crop_or_range() {
     let builder = still_life();

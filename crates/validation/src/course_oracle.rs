@@ -8,17 +8,22 @@ pub const SIZE: usize = 256;
 
 type V3 = [f64; 3];
 
+const BACKGROUND: [u8; 3] = [128, 112, 96];
+
 /// The picture's RGB bytes, row by row from the top; `None` when a vertex does not have eight numbers.
 ///
 /// The text is keywords, each with three vertices of `x y z nx ny nz u v`. Triangles that reach behind the
-/// camera are left out.
+/// image plane are left out.
 pub fn course_picture(asc: &str) -> Option<Vec<u8>> {
-    let view = View::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0);
+    picture_in(&View::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0), asc)
+}
+
+fn picture_in(view: &View, asc: &str) -> Option<Vec<u8>> {
     let mut depth = vec![f64::INFINITY; SIZE * SIZE];
-    let mut picture = [128u8, 112, 96].repeat(SIZE * SIZE);
+    let mut picture = BACKGROUND.repeat(SIZE * SIZE);
     for triangle in triangles(asc)? {
         let corners = triangle.map(|(p, n)| view.corner(p, n));
-        if corners.iter().all(|c| c.depth > 0.0) {
+        if corners.iter().all(|c| !c.is_behind) {
             draw(&corners, &mut depth, &mut picture);
         }
     }
@@ -40,25 +45,27 @@ struct Corner {
     /// In pixels, y down.
     x: f64,
     y: f64,
-    /// Along the camera's axis.
-    depth: f64,
+    /// Behind the image plane, which is at the camera's position.
+    is_behind: bool,
+    /// What x and y are divided by: 1 at the camera's position, and 0 at the eye behind it.
+    divisor: f64,
     /// In camera space.
     normal: V3,
 }
 
 /// Model and camera in one.
 struct View {
-    eye: V3,
+    position: V3,
     axes: [V3; 3],
     tan_half: f64,
 }
 
 impl View {
-    fn new(eye: V3, look_at: V3, up: V3, fov_degrees: f64) -> View {
-        let z = unit(subtract(look_at, eye));
+    fn new(position: V3, look_at: V3, up: V3, fov_degrees: f64) -> View {
+        let z = unit(subtract(look_at, position));
         let y = unit(subtract(up, scale(z, dot(up, z))));
         View {
-            eye,
+            position,
             axes: [cross(y, z), y, z],
             tan_half: bilux_math::transcendental::tan_f64(fov_degrees.to_radians() / 2.0),
         }
@@ -67,13 +74,15 @@ impl View {
     fn corner(&self, position: V3, normal: V3) -> Corner {
         let turned = turn(position);
         let world = [3.25 * turned[0], 3.25 * turned[1] - 3.25, 3.25 * turned[2] + 3.5];
-        let [x, y, depth] = self.axes.map(|axis| dot(axis, subtract(world, self.eye)));
+        let [x, y, z] = self.axes.map(|axis| dot(axis, subtract(world, self.position)));
         let turned_normal = turn(normal);
         let half = SIZE as f64 / 2.0;
+        let divisor = z * self.tan_half + 1.0;
         Corner {
-            x: half + half * x / (depth * self.tan_half),
-            y: half - half * y / (depth * self.tan_half),
-            depth,
+            x: half + half * x / divisor,
+            y: half - half * y / divisor,
+            is_behind: z < 0.0,
+            divisor,
             normal: self.axes.map(|axis| dot(axis, turned_normal)),
         }
     }
@@ -104,13 +113,13 @@ fn draw([a, b, c]: &[Corner; 3], depth: &mut [f64], picture: &mut [u8]) {
             if weights.iter().any(|&w| w < 0.0) {
                 continue;
             }
-            // On the screen 1/z is linear, and so is everything over z.
-            let over_z = [weights[0] / a.depth, weights[1] / b.depth, weights[2] / c.depth];
-            let z = 1.0 / over_z.iter().sum::<f64>();
+            // On the screen 1/divisor is linear, and so is everything over it.
+            let over = [weights[0] / a.divisor, weights[1] / b.divisor, weights[2] / c.divisor];
+            let divisor = 1.0 / over.iter().sum::<f64>();
             let pixel = j * SIZE + i;
-            if z < depth[pixel] {
-                depth[pixel] = z;
-                let [ka, kb, kc] = over_z.map(|w| w * z);
+            if divisor < depth[pixel] {
+                depth[pixel] = divisor;
+                let [ka, kb, kc] = over.map(|w| w * divisor);
                 let normal = add(add(scale(a.normal, ka), scale(b.normal, kb)), scale(c.normal, kc));
                 picture[3 * pixel..3 * pixel + 3].copy_from_slice(&shade(unit(normal)));
             }
@@ -195,10 +204,29 @@ mod tests {
             assert!((f64::from(*found) - 255.0 * wanted).abs() <= 1.0, "{found} for {wanted}");
         }
         assert_eq!(pixel(2, 2), [128, 112, 96]);
-        // The corner at (-1, -1) lies left of the middle and below it.
-        assert_eq!(pixel(103, 150), pixel(128, 128));
-        assert_eq!(pixel(150, 103), pixel(128, 128));
-        assert_eq!(pixel(190, 90), [128, 112, 96]);
+        // The corner at (-1, -1) lies left of the middle and below it, by 128 / (15 tan 17.5° + 1) = 22.3 pixels.
+        assert_eq!(pixel(110, 146), pixel(128, 128));
+        assert_eq!(pixel(146, 110), pixel(128, 128));
+        assert_eq!(pixel(104, 140), BACKGROUND);
+        assert_eq!(pixel(170, 100), BACKGROUND);
         assert_eq!(course_picture("triangle 1 2 3"), None);
+    }
+
+    /// First and last columns of a few rows in which a picture by the course's renderer itself, an example that the
+    /// course hands out, shows the square from 0 to 20 in x and z.
+    #[test]
+    fn a_square_is_where_a_picture_of_the_course_shows_it() {
+        let view = View::new([-3.0, -25.0, -4.0], [7.8, 0.7, 6.5], [-0.2, 1.0, 0.0], 63.7);
+        let corner = |x: f64, z: f64| format!("{x} 0 {z} 0 1 0 0 0\n");
+        let [a, b, c, d] = [corner(0.0, 0.0), corner(0.0, 20.0), corner(20.0, 20.0), corner(20.0, 0.0)];
+        let picture = picture_in(&view, &format!("triangle\n{a}{b}{c}triangle\n{a}{d}{c}")).unwrap();
+        for (j, first, last) in
+            [(160, 40, 117), (180, 47, 119), (200, 58, 121), (220, 71, 123), (240, 84, 125), (255, 94, 127)]
+        {
+            let row = picture[3 * j * SIZE..3 * (j + 1) * SIZE].chunks(3);
+            let seen: Vec<usize> =
+                row.enumerate().filter(|(_, c)| **c != BACKGROUND).map(|(i, _)| i).collect();
+            assert_eq!((seen.first(), seen.last()), (Some(&first), Some(&last)), "row {j}");
+        }
     }
 }

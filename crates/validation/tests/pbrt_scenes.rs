@@ -240,7 +240,7 @@ fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
         Shape "bilinearmesh" "point3 P" [-4 0 4  4 0 4  -4 0 -4  4 0 -4]
         AttributeBegin
             Translate -1 .75 0
-            Material "conductor" "spectrum eta" "metal-Cu-eta" "spectrum k" "metal-Cu-k" "float roughness" .0625
+            Material "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float roughness" .0625
             Shape "sphere" "float radius" .75
         AttributeEnd
         AttributeBegin
@@ -276,9 +276,9 @@ fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
         kind = "diffuse"
         reflectance = [0.6, 0.5, 0.4]
         [[material]]
-        name = "copper"
+        name = "brass"
         kind = "conductor"
-        metal = "copper"
+        metal = "brass"
         roughness = 0.5
         [[material]]
         name = "panel"
@@ -297,7 +297,7 @@ fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
         around = 192
         along = 96
         translate = [-1, 0.75, 0]
-        material = "copper"
+        material = "brass"
         [[model]]
         shape = "quad"
         translate = [1, 1.5, -1]

@@ -1,4 +1,4 @@
-//! What is no triangle: spheres, discs, cones, quadrics and curves, each met where its formula says, and whatever
+//! What is no triangle: spheres, capsules, discs, cones, quadrics and curves, each met where its formula says, and whatever
 //! else somebody can find the crossings of.
 //!
 //! ```
@@ -22,6 +22,7 @@
 //! ([`Ray::exclude`]) a curved one leaves out the crossing that is nearest to the ray's origin, which is the origin
 //! itself: so a ray that is sent through a sphere from its surface meets the far side, and never the near one again.
 
+mod capsule;
 mod cone;
 mod curve;
 mod disc;
@@ -31,6 +32,7 @@ mod sphere;
 mod tree;
 
 pub use crate::triangle::Crossing;
+pub use capsule::Capsule;
 pub use cone::Cone;
 pub use curve::Curve;
 pub use disc::Disc;
@@ -73,6 +75,36 @@ pub enum Shape {
     Quadric(Quadric),
     /// See [`Curve`].
     Curve(Curve),
+    /// See [`Capsule`].
+    Capsule(Capsule),
+}
+
+impl Shape {
+    /// Least and greatest corner of the box around it.
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        match self {
+            Shape::Sphere(sphere) => sphere.bounds(),
+            Shape::Disc(disc) => disc.bounds(),
+            Shape::Cone(cone) => cone.bounds(),
+            Shape::Quadric(quadric) => quadric.bounds(),
+            Shape::Curve(curve) => curve.bounds(),
+            Shape::Capsule(capsule) => capsule.bounds(),
+        }
+    }
+
+    /// Calls `visit` with every crossing with the line of a ray, as [`Primitives::crossings`]; `leaves` where the ray leaves this
+    /// shape.
+    pub fn crossings(&self, ray: &Ray, leaves: bool, visit: &mut dyn FnMut(Crossing)) {
+        match self {
+            Shape::Sphere(sphere) => sphere.crossings(ray, leaves, visit),
+            Shape::Disc(disc) if !leaves => disc.crossings(ray, visit),
+            Shape::Cone(cone) => cone.crossings(ray, leaves, visit),
+            Shape::Quadric(quadric) => quadric.crossings(ray, leaves, visit),
+            Shape::Curve(curve) if !leaves => curve.crossings(ray, visit),
+            Shape::Capsule(capsule) => capsule.crossings(ray, leaves, visit),
+            Shape::Disc(_) | Shape::Curve(_) => {}
+        }
+    }
 }
 
 impl Primitives for Vec<Shape> {
@@ -81,25 +113,11 @@ impl Primitives for Vec<Shape> {
     }
 
     fn bounds(&self, index: u32) -> [[f32; 3]; 2] {
-        match &self[index as usize] {
-            Shape::Sphere(sphere) => sphere.bounds(),
-            Shape::Disc(disc) => disc.bounds(),
-            Shape::Cone(cone) => cone.bounds(),
-            Shape::Quadric(quadric) => quadric.bounds(),
-            Shape::Curve(curve) => curve.bounds(),
-        }
+        self[index as usize].bounds()
     }
 
     fn crossings(&self, index: u32, ray: &Ray, visit: &mut dyn FnMut(Crossing)) {
-        let leaves = ray.exclude.index == index;
-        match &self[index as usize] {
-            Shape::Sphere(sphere) => sphere.crossings(ray, leaves, visit),
-            Shape::Disc(disc) if !leaves => disc.crossings(ray, visit),
-            Shape::Cone(cone) => cone.crossings(ray, leaves, visit),
-            Shape::Quadric(quadric) => quadric.crossings(ray, leaves, visit),
-            Shape::Curve(curve) if !leaves => curve.crossings(ray, visit),
-            Shape::Disc(_) | Shape::Curve(_) => {}
-        }
+        self[index as usize].crossings(ray, ray.exclude.index == index, visit);
     }
 }
 

@@ -1,4 +1,5 @@
-//! Light transport: every integrator on eight scenes, each hard in another way, for equal CPU time, against references.
+//! Light transport: every integrator on eight scenes, each hard in another way, or on scenes of the user's own, for equal
+//! CPU time, against references.
 //!
 //! Of a scene, an integrator and a budget, several pictures are rendered that differ in their seeds only; errors are
 //! medians over these. The number of samples comes from the speed that was measured just before, so that a picture is
@@ -7,24 +8,28 @@
 mod cost;
 mod curves;
 mod errors;
+mod foreseen;
 mod page;
 mod reference;
+mod subject;
 mod table;
 
 pub use errors::{BLOCK, bias2, relmse, relmse_trimmed};
 pub use reference::{Making, Reference, make_references};
 
 use crate::{Report, Tell, median};
+use bilux::formats::ReadOptions;
 use bilux::pictures::WriteOptions;
 use bilux::scene::error::nearest_name;
-use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
-use bilux::transport::INTEGRATORS;
+use bilux::scene::{Parameters, SceneBuilder, Value as Setting};
+use bilux::transport::{Choice, INTEGRATORS};
 use bilux::{Error, Job, Quiet};
 use bilux_math::Rgb;
 use cost::Clock;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
+use subject::{Subject, subjects};
 
 /// Width and height of the pictures: whole blocks of [`BLOCK`] pixels.
 pub const SIZE: (u32, u32) = (128, 96);
@@ -51,9 +56,15 @@ const USUAL: [&str; 5] = ["path", "bdpt", "vcm", "sppm", "auto"];
 /// What the benchmark can be told.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Names of [`SCENES`]; all of them where there are none.
+    /// Names of [`SCENES`]; all of them where there are neither names nor files.
     pub scenes: Vec<String>,
-    /// Names of integrators; the usual ones where there are none.
+    /// Scene files of the user's own. Their references are made first.
+    pub files: Vec<PathBuf>,
+    /// How files are read.
+    pub read: ReadOptions,
+    /// CPU seconds that each of the two integrators spends on the reference of a file.
+    pub reference_seconds: f64,
+    /// Names of integrators, `auto:WAYS` for one set of techniques of `auto`; the usual ones where there are none.
     pub integrators: Vec<String>,
     /// CPU seconds a picture, of all threads together.
     pub seconds: Vec<f64>,
@@ -69,6 +80,9 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             scenes: Vec::new(),
+            files: Vec::new(),
+            read: ReadOptions::default(),
+            reference_seconds: 60.0,
             integrators: Vec::new(),
             seconds: vec![1.0, 4.0],
             seeds: 5,
@@ -80,7 +94,7 @@ impl Default for Options {
 
 /// What one integrator made of a scene within a budget.
 struct Row {
-    scene: &'static str,
+    scene: String,
     integrator: String,
     /// The budget, in CPU seconds.
     seconds: f64,
@@ -96,23 +110,29 @@ struct Row {
     peak_mb: Option<f64>,
     /// The first of the pictures.
     picture: Vec<Rgb>,
+    /// What `auto` chose there, and why.
+    choice: Option<Choice>,
 }
 
 impl Row {
-    fn json(&self, reference: &Reference) -> Value {
+    fn json(&self, scene: &Measured) -> Value {
+        let reference = &scene.reference;
+        let compared = scene.compared(self);
         json!({
             "scene": self.scene, "integrator": self.integrator, "seconds": self.seconds, "samples": self.samples,
             "relmse": self.relmse, "relmse_trimmed": self.relmse_trimmed, "bias2": self.bias2, "mean": self.mean,
             "peak_mb": self.peak_mb, "cpu_seconds": self.took, "reference_mean": reference.mean(),
-            "reference_relmse": reference.relmse,
+            "reference_relmse": reference.relmse, "foreseen": compared.foreseen, "measured": compared.measured,
+            "measured_trimmed": compared.measured_trimmed,
+            "chosen": self.choice.as_ref().map(|choice| choice.best().ways),
         })
     }
 }
 
 /// All that was measured of a scene.
 struct Measured {
-    scene: &'static str,
-    summary: &'static str,
+    scene: String,
+    summary: String,
     reference: Reference,
     /// How its pictures are shown.
     shown: WriteOptions,
@@ -124,7 +144,6 @@ struct Measured {
 /// # Errors
 /// When a scene or an integrator is not known, or the page cannot be written.
 pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
-    let scenes = chosen_scenes(&options.scenes)?;
     let integrators = chosen_integrators(&options.integrators)?;
     if let Some(wrong) = options.seconds.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
         return Err(Error::Settings(format!("--seconds {wrong}: a budget is a number of seconds above 0")));
@@ -133,17 +152,18 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
         std::fs::create_dir_all(folder)
             .map_err(|e| Error::Settings(format!("cannot make the folder '{}': {e}", folder.display())))?;
     }
-    let cells = scenes.len() * integrators.len();
+    let subjects = subjects(options, tell)?;
+    let cells = subjects.len() * integrators.len();
     let mut bench =
         Bench { options, tell, begun: Instant::now(), done: 0.0, all: cells as f64 * options.work() };
     let mut measured = Vec::new();
-    for (name, bytes) in scenes {
-        measured.push(bench.scene(name, bytes, &integrators)?);
+    for subject in subjects {
+        measured.push(bench.scene(subject, &integrators)?);
     }
     if let Some(folder) = &options.report {
         page::write(folder, &measured, options)?;
     }
-    let rows = measured.iter().flat_map(|m| m.rows.iter().map(|row| row.json(&m.reference))).collect();
+    let rows = measured.iter().flat_map(|m| m.rows.iter().map(|row| row.json(m))).collect();
     Ok(Report { rows, text: table::text(&measured, options), picture: None })
 }
 
@@ -165,47 +185,40 @@ struct Bench<'a> {
 }
 
 impl Bench<'_> {
-    fn scene(&mut self, name: &'static str, bytes: &[u8], integrators: &[String]) -> Result<Measured, Error> {
-        let scene = scene(name)?;
-        let reference = Reference::read(bytes)?;
-        let shown = Job::new(&scene, &settings("path", 1, 0, 1))?.write_options()?;
-        let entry = bilux::scene::generators::GENERATORS.iter().find(|row| row.entry.name == name);
-        let summary = entry.map_or("", |row| row.entry.summary);
+    fn scene(&mut self, subject: Subject, integrators: &[String]) -> Result<Measured, Error> {
+        let shown = Job::new(&subject.scene, &settings("path", 1, 0, 1))?.write_options()?;
         let mut rows = Vec::new();
         for integrator in integrators {
-            let mut speed = calibrate(&scene, integrator, &self.options.seconds, self.options.threads)?;
+            let mut speed =
+                calibrate(&subject.scene, integrator, &self.options.seconds, self.options.threads)?;
             for &seconds in &self.options.seconds {
-                (self.tell)(&format!("{name}, {integrator}, {seconds} s{}", self.time_left()));
-                let row = self.cell(name, &scene, integrator, seconds, speed, &reference)?;
+                (self.tell)(&format!("{}, {integrator}, {seconds} s{}", subject.name, self.time_left()));
+                let row = self.cell(&subject, integrator, seconds, speed)?;
                 speed = f64::from(row.samples) / row.took.max(1e-3);
                 rows.push(row);
             }
         }
+        let Subject { name, summary, reference, .. } = subject;
         Ok(Measured { scene: name, summary, reference, shown, rows })
     }
 
     /// The pictures of one scene by one integrator within one budget. `speed` is samples of every pixel a CPU second.
-    fn cell(
-        &mut self,
-        name: &'static str,
-        scene: &SceneBuilder,
-        integrator: &str,
-        seconds: f64,
-        speed: f64,
-        reference: &Reference,
-    ) -> Result<Row, Error> {
+    fn cell(&mut self, subject: &Subject, integrator: &str, seconds: f64, speed: f64) -> Result<Row, Error> {
+        let (scene, reference) = (&subject.scene, &subject.reference);
         let samples = self.fitting(scene, integrator, seconds, speed)?;
         let (mut took, mut peaks, mut pictures) = (Vec::new(), Vec::new(), Vec::new());
+        let mut choice = None;
         for seed in 1..=u64::from(self.options.seeds.max(1)) {
             let shot = shoot(scene, &settings(integrator, samples, seed, self.options.threads))?;
             self.done += seconds;
             took.push(shot.seconds);
             peaks.extend(shot.peak_mb);
             pictures.push(shot.picture);
+            choice = choice.or(shot.choice);
         }
         let over = |error: &dyn Fn(&[Rgb]) -> f64| median(pictures.iter().map(|p| error(p)).collect());
         Ok(Row {
-            scene: name,
+            scene: subject.name.clone(),
             integrator: integrator.to_owned(),
             seconds,
             took: median(took),
@@ -216,6 +229,7 @@ impl Bench<'_> {
             mean: over(&errors::mean),
             peak_mb: (!peaks.is_empty()).then(|| median(peaks)),
             picture: pictures.swap_remove(0),
+            choice,
         })
     }
 
@@ -269,6 +283,7 @@ struct Shot {
     seconds: f64,
     peak_mb: Option<f64>,
     picture: Vec<Rgb>,
+    choice: Option<Choice>,
 }
 
 fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<Shot, Error> {
@@ -276,29 +291,21 @@ fn shoot(scene: &SceneBuilder, settings: &Parameters) -> Result<Shot, Error> {
     let clock = Clock::start(job.settings().threads);
     let outcome = job.render(&Quiet)?;
     let (seconds, peak_mb) = clock.stop();
-    Ok(Shot { seconds, peak_mb, picture: outcome.film.to_rgb() })
+    Ok(Shot { seconds, peak_mb, picture: outcome.film.to_rgb(), choice: outcome.choice })
 }
 
 fn settings(integrator: &str, samples: u32, seed: u64, threads: u32) -> Parameters {
     let mut settings = Parameters::default();
-    settings.set("integrator", integrator);
+    let (name, ways) = integrator.split_once(':').unwrap_or((integrator, ""));
+    settings.set("integrator", name);
+    if !ways.is_empty() {
+        settings.set("ways", ways);
+    }
     settings.set("size", Setting::Text(format!("{}x{}", SIZE.0, SIZE.1)));
     settings.set("spp", Setting::Integer(i64::from(samples)));
     settings.set("seed", Setting::Integer(seed as i64));
     settings.set("threads", Setting::Integer(i64::from(threads)));
     settings
-}
-
-fn scene(name: &str) -> Result<SceneBuilder, Error> {
-    bilux::generate(&Spec::new("", name))
-}
-
-/// The rows of [`SCENES`] of these names, in their order there.
-fn chosen_scenes(names: &[String]) -> Result<Vec<(&'static str, &'static [u8])>, Error> {
-    let known: Vec<String> = SCENES.iter().map(|(name, _)| (*name).to_owned()).collect();
-    names.iter().try_for_each(|name| check("scene of `bench render`", name, &known))?;
-    let wanted = |name: &str| names.is_empty() || names.iter().any(|n| n == name);
-    Ok(SCENES.iter().copied().filter(|(name, _)| wanted(name)).collect())
 }
 
 fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
@@ -307,7 +314,8 @@ fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
     if names.is_empty() {
         return Ok(USUAL.map(str::to_owned).into_iter().filter(|name| known.contains(name)).collect());
     }
-    names.iter().try_for_each(|name| check("integrator to measure", name, &known))?;
+    let plain = |name: &String| name.strip_prefix("auto:").map_or(name.clone(), |_| "auto".to_owned());
+    names.iter().try_for_each(|name| check("integrator to measure", &plain(name), &known))?;
     Ok(names.to_vec())
 }
 

@@ -1,10 +1,12 @@
 //! References: long renders by two unbiased integrators that have to agree before they are averaged.
 
 use super::errors::{block_means, mean};
-use super::{SIZE, calibrate, chosen_scenes, scene, settings, shoot};
+use super::subject::{chosen_scenes, generated};
+use super::{SIZE, calibrate, settings, shoot};
 use crate::{Report, Tell};
 use bilux::Error;
 use bilux::pictures::{Limits, Picture, WriteOptions, read_bytes, write};
+use bilux::scene::SceneBuilder;
 use bilux_math::Rgb;
 use bilux_math::transcendental::powf_f64;
 use serde_json::json;
@@ -82,7 +84,7 @@ pub fn make_references(making: &Making, tell: Tell) -> Result<Report, Error> {
         let mut found = Vec::new();
         for integrator in WITNESSES {
             tell(&format!("{name}: {integrator}"));
-            found.push(Witness::ask(name, integrator, making)?);
+            found.push(Witness::ask(&generated(name)?, integrator, making)?);
         }
         let [a, b] = &found[..] else { continue };
         let p = a.agreement(b);
@@ -111,6 +113,23 @@ pub fn make_references(making: &Making, tell: Tell) -> Result<Report, Error> {
     Ok(Report { rows, text: lines.join("\n"), picture: None })
 }
 
+/// The reference of any scene, and the least p-value where the integrators disagree.
+pub(super) fn make_reference(
+    name: &str,
+    scene: &SceneBuilder,
+    making: &Making,
+    tell: Tell,
+) -> Result<(Reference, Option<f64>), Error> {
+    let ask = |integrator| {
+        tell(&format!("{name}: {integrator}, for the reference"));
+        Witness::ask(scene, integrator, making)
+    };
+    let [a, b] = WITNESSES.map(ask);
+    let (a, b) = (a?, b?);
+    let p = a.agreement(&b);
+    Ok((a.joined(&b), (p <= AGREE).then_some(p)))
+}
+
 /// What one integrator says of a scene.
 struct Witness {
     name: &'static str,
@@ -120,13 +139,12 @@ struct Witness {
 }
 
 impl Witness {
-    fn ask(name: &str, integrator: &'static str, making: &Making) -> Result<Witness, Error> {
-        let scene = scene(name)?;
+    fn ask(scene: &SceneBuilder, integrator: &'static str, making: &Making) -> Result<Witness, Error> {
         let budget = making.seconds / PARTS as f64;
-        let speed = calibrate(&scene, integrator, &[budget], making.threads)?;
+        let speed = calibrate(scene, integrator, &[budget], making.threads)?;
         let samples = ((speed * budget).round() as u32).max(1);
         let part =
-            |k| Ok(shoot(&scene, &settings(integrator, samples, FIRST_SEED + k, making.threads))?.picture);
+            |k| Ok(shoot(scene, &settings(integrator, samples, FIRST_SEED + k, making.threads))?.picture);
         let parts = (0..PARTS).map(part).collect::<Result<_, Error>>()?;
         Ok(Witness { name: integrator, samples, parts })
     }

@@ -26,7 +26,7 @@ pub(super) fn text(measured: &[Measured], options: &Options) -> String {
 }
 
 /// Columns of a scene's table.
-pub(super) const HEADER: [&str; 11] = [
+pub(super) const HEADER: [&str; 14] = [
     "integrator",
     "seconds",
     "took",
@@ -38,6 +38,9 @@ pub(super) const HEADER: [&str; 11] = [
     "/ path",
     "s to 0.01",
     "MB",
+    "foreseen",
+    "measured",
+    "and trimmed",
 ];
 
 fn of_scene(scene: &Measured) -> String {
@@ -51,6 +54,8 @@ fn of_scene(scene: &Measured) -> String {
 
 pub(super) fn cells(scene: &Measured, row: &Row) -> Vec<String> {
     let optional = |x: Option<f64>, digits: usize| x.map_or("–".to_owned(), |x| format!("{x:.digits$}"));
+    let compared = scene.compared(row);
+    let times = |x: Option<f64>| x.map_or("–".to_owned(), short);
     let path = find(scene, "path", row.seconds).map(|path| row.relmse / path.relmse);
     vec![
         row.integrator.clone(),
@@ -64,6 +69,9 @@ pub(super) fn cells(scene: &Measured, row: &Row) -> Vec<String> {
         optional(path, 3),
         short(row.took * row.relmse / TARGET),
         optional(row.peak_mb, 0),
+        times(compared.foreseen),
+        times(compared.measured),
+        times(compared.measured_trimmed),
     ]
 }
 
@@ -76,7 +84,7 @@ fn of_auto(measured: &[Measured]) -> String {
             let path = find(scene, "path", auto.seconds)?;
             let best = best_single(scene, auto.seconds)?;
             Some(vec![
-                scene.scene.to_owned(),
+                scene.scene.clone(),
                 format!("{}", auto.seconds),
                 format!("{:.2}", path.relmse / auto.relmse),
                 best.integrator.clone(),

@@ -58,6 +58,13 @@ pub const RENDER: Entry = Entry {
             "from where the studio's camera looks: degrees to the right of the front, and above it, as AZ,EL",
             "26.5,17.8",
         ),
+        choice("up", "which of a model's axes is up; auto goes by its format and its shape", AXES, "auto"),
+        choice(
+            "front",
+            "which of a model's axes is its front; auto goes by its format and its shape",
+            AXES,
+            "auto",
+        ),
         number(
             "focal",
             "focal length of the studio's camera, for a picture 24 mm high",
@@ -140,6 +147,8 @@ const fn number(
 ) -> Parameter {
     Parameter { name, summary, unit, kind: ParameterKind::Number { min, max }, default }
 }
+
+const AXES: &[&str] = &["auto", "x", "y", "z", "-x", "-y", "-z"];
 
 const GROUNDS: &[&str] = &["auto", "shadow", "mirror", "none"];
 

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::presets::{Ground, Studio};
-use bilux_scene::{Reader, SceneError, Value};
+use bilux_scene::{Axis, Reader, SceneError, Value};
 
 /// A pair of numbers as the text that an orbit is: `[30, 15]` in scene files, `--set orbit=30,15`.
 pub(super) fn as_orbit(value: Value) -> Value {
@@ -33,12 +33,21 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         }
         false => None,
     };
+    let [up, front] = ["up", "front"].map(|key| Axis::named(&reader.text(key)));
+    if up.zip(front).is_some_and(|(up, front)| up.index() == front.index()) {
+        let message =
+            "up and front are along one axis: the front has to be another one, as in up z and front -y";
+        return Err(SceneError::invalid(message, reader.span("front")).into());
+    }
     Ok(Studio {
+        up,
+        front,
         ground: Ground::named(&reader.text("ground")),
         orbit,
         focal: reader.is_given("focal").then(|| reader.number("focal")),
         aspect: None,
         cut_out: false,
+        lit: None,
     })
 }
 

@@ -33,8 +33,9 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Visibility => bilux_bench::visibility::run(&options, &tell)?,
         BenchKind::Build => bilux_bench::build::run(&options, &tell)?,
         BenchKind::Rays => bilux_bench::rays::run(&rays(arguments, common)?, &tell)?,
-        BenchKind::Render => render(arguments, &tell)?,
+        BenchKind::Render => render(arguments, common, &tell)?,
         BenchKind::Load => load(arguments, common, &tell)?,
+        BenchKind::Models => models(arguments, &tell)?,
     };
     if arguments.json {
         output::print(serde_json::to_string_pretty(&report.json())?);
@@ -49,7 +50,11 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
 }
 
 /// `bench render`, and the making of its references.
-fn render(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+fn render(
+    arguments: &Bench,
+    common: &Common,
+    tell: bilux_bench::Tell,
+) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::render::{Making, Options, make_references, run};
     let defaults = Options::default();
     if let Some(folder) = &arguments.make_references {
@@ -60,6 +65,9 @@ fn render(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_be
     }
     let options = Options {
         scenes: arguments.gallery.clone(),
+        files: arguments.scenes.clone(),
+        read: read_options(common),
+        reference_seconds: arguments.reference_seconds.unwrap_or(defaults.reference_seconds),
         integrators: arguments.integrators.clone(),
         seconds: if arguments.seconds.is_empty() { defaults.seconds } else { arguments.seconds.clone() },
         seeds: arguments.seeds.unwrap_or(defaults.seeds),
@@ -101,6 +109,18 @@ fn load(arguments: &Bench, common: &Common, tell: bilux_bench::Tell) -> anyhow::
         let _ = std::fs::remove_dir_all(&folder);
     }
     Ok(report(rows?))
+}
+
+/// `bench models`, by this program itself.
+fn models(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+    use bilux_bench::models::{Options, SECONDS, run};
+    let options = Options {
+        program: std::env::current_exe()?,
+        files: arguments.scenes.clone(),
+        seconds: arguments.seconds.last().copied().unwrap_or(SECONDS),
+        references: arguments.references.clone(),
+    };
+    Ok(run(&options, tell)?)
 }
 
 /// What a reference takes of each integrator where nothing is said, in seconds.

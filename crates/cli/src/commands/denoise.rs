@@ -14,6 +14,9 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     check_folder(output).map_err(usage::wrong)?;
     format_of_path(output).map_err(usage::wrong)?;
     let tone_map = tone_map(&arguments.tonemap).map_err(usage::wrong)?;
+    if arguments.by != "builtin" {
+        crate::denoising::load(arguments.threads, common);
+    }
     let task = Task { threads: arguments.threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).map_err(usage::wrong)?;
     let noisy = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;

@@ -4,6 +4,7 @@ use super::{DONE, check_choices, read_options_with, tell_warnings};
 use crate::arguments::{Common, Info};
 use crate::output;
 use crate::usage;
+use bilux::formats::ReadOptions;
 use bilux::memory::Memory;
 use bilux::scene::{Mesh, SceneBuilder, Texture};
 use serde_json::json;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
+    let options = ReadOptions { validate: true, ..options };
     let scene = bilux::load(&arguments.scene, &options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {
@@ -38,13 +40,22 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
         "meshes": own.len(),
         "vertices": own.iter().map(|m| m.positions.len()).sum::<usize>(),
         "triangles": scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
+        "points": scene.objects.iter().map(|o| o.mesh.points.len()).sum::<usize>(),
+        "lines": scene.objects.iter().map(|o| o.mesh.lines.len()).sum::<usize>(),
         "instances": scene.objects.iter().filter(|o| o.instanced).count(),
         "moving": scene.objects.iter().filter(|o| !o.motion.is_still()).count(),
         "bounds": if bounds.is_empty() { json!(null) } else {
-            json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })
+            let in_file = |p: bilux::math::Vec3| match scene.origin {
+                bilux::math::DVec3::ZERO => json!(p.to_array()),
+                origin => json!((p.as_dvec3() + origin).to_array()),
+            };
+            json!({ "min": in_file(bounds.min), "max": in_file(bounds.max) })
         },
+        "metres_per_unit": metres(scene),
+        "up": up(scene),
         "objects": scene.objects.iter().map(|o| json!({
-            "name": o.name, "triangles": o.mesh.triangles.len(), "material": o.material,
+            "name": o.name, "triangles": o.mesh.triangles.len(), "points": o.mesh.points.len(),
+            "lines": o.mesh.lines.len(), "material": o.material,
             "normals": !o.mesh.normals.is_empty(), "uvs": !o.mesh.uvs.is_empty(),
             "vertex_colours": !o.mesh.vertex_kd.is_empty(),
         })).collect::<Vec<_>>(),
@@ -78,24 +89,26 @@ fn as_text(scene: &SceneBuilder) -> String {
     };
     let size = bounds.extent();
     format!(
-        "triangles  {} in {} objects ({} meshes with {} vertices; {} instanced, {} moving)\n\
-         bounds     {:?} to {:?}, {} x {} x {} m\n\
+        "{}triangles  {} in {} objects ({} meshes with {} vertices; {} instanced, {} moving)\n\
+         bounds     {:?} to {:?}, {} x {} x {} {}\n\
          materials  {}\n\
          textures   {}\n\
          lights     {}\n\
          cameras    {}\n\
          memory     {}{}",
+        strokes(scene),
         scene.objects.iter().map(|o| o.mesh.triangles.len()).sum::<usize>(),
         scene.objects.len(),
         own.len(),
         own.iter().map(|m| m.positions.len()).sum::<usize>(),
         scene.objects.iter().filter(|o| o.instanced).count(),
         scene.objects.iter().filter(|o| !o.motion.is_still()).count(),
-        bounds.min.to_array(),
-        bounds.max.to_array(),
+        (bounds.min.as_dvec3() + scene.origin).to_array().map(|c| c as f32),
+        (bounds.max.as_dvec3() + scene.origin).to_array().map(|c| c as f32),
         size.x,
         size.y,
         size.z,
+        unit(scene),
         names(scene.materials.iter().map(spec).collect()),
         names(scene.textures.iter().map(|t| texture(t)).collect()),
         names(scene.lights.iter().map(spec).collect()),
@@ -103,6 +116,30 @@ fn as_text(scene: &SceneBuilder) -> String {
         memory(&Memory::of_scene(scene)),
         choices(scene),
     )
+}
+
+fn metres(scene: &SceneBuilder) -> f64 {
+    if scene.unit > 0.0 { scene.unit } else { 1.0 }
+}
+
+fn unit(scene: &SceneBuilder) -> &'static str {
+    let known = [(1.0, "m"), (0.001, "mm"), (0.01, "cm"), (0.0254, "in"), (0.3048, "ft")];
+    known.iter().find(|(metres_of, _)| *metres_of == metres(scene)).map_or("", |(_, name)| name)
+}
+
+/// Which way is up, as the format says.
+fn up(scene: &SceneBuilder) -> &'static str {
+    let (bilux::scene::UpHint::Is(axis) | bilux::scene::UpHint::Usually(axis)) = scene.up;
+    axis.name()
+}
+
+/// How many points and lines there are, in a line of its own; nothing where there are none.
+fn strokes(scene: &SceneBuilder) -> String {
+    let sum = |count: fn(&Mesh) -> usize| scene.objects.iter().map(|o| count(&o.mesh)).sum::<usize>();
+    match (sum(|mesh| mesh.points.len()), sum(|mesh| mesh.lines.len())) {
+        (0, 0) => String::new(),
+        (points, lines) => format!("points     {points}, and {lines} lines\n"),
+    }
 }
 
 /// What is held, and what comes to it when it is rendered.

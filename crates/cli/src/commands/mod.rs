@@ -12,6 +12,7 @@ pub mod manual;
 pub mod merge;
 pub mod render;
 mod stats;
+mod time_limit;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
@@ -19,7 +20,7 @@ use crate::output;
 use anyhow::bail;
 use bilux::formats::{Glass, ReadOptions};
 use bilux::scene::{SceneBuilder, Warning};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The work is done.
 pub const DONE: u8 = 0;
@@ -29,6 +30,7 @@ fn read_options(common: &Common) -> ReadOptions {
     ReadOptions {
         max_memory: common.max_memory,
         allow_outside: common.allow_outside,
+        working_folder: (!common.sandbox).then(PathBuf::new),
         strict: common.strict,
         ..ReadOptions::default()
     }

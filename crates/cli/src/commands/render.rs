@@ -1,13 +1,15 @@
 //! `bilux render`: pictures from scenes.
 
-use super::{DONE, aov, check_choices, check_folder, denoise, read_options_with, stats, tell_warnings};
+use super::{
+    DONE, aov, check_choices, check_folder, denoise, read_options_with, stats, tell_warnings, time_limit,
+};
 use crate::arguments::{Common, Render};
-use crate::denoising::check_scenes;
+use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
 use crate::{output, settings_from, usage};
 use anyhow::{Context, bail};
-use bilux::budget::{DEFAULT_BUDGET, with_default_budget};
+use bilux::budget::{DEFAULT_BUDGET, with_default_budget, with_fast_budget};
 use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
@@ -25,6 +27,10 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let targets = targets(arguments).map_err(usage::wrong)?;
     aov::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
+    if let Some(timeout) = arguments.timeout {
+        interrupt.end_after(timeout);
+    }
+    begin_loading(arguments, common);
     let mut failed = 0;
     for (scene, output) in &targets {
         match render_one(scene, output, &user, arguments, common, &interrupt) {
@@ -177,11 +183,14 @@ fn render_scene(
     user: &Parameters,
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
-    let Input { path, arguments, common, .. } = *input;
+    let Input { arguments, common, .. } = *input;
     let begun = Instant::now();
     let mut user = user.clone();
-    let by_default =
-        !is_part(arguments) && arguments.replay.is_none() && with_default_budget(&scene.settings, &mut user);
+    let is_whole = !is_part(arguments) && arguments.replay.is_none();
+    if arguments.fast {
+        with_fast_budget(&scene.settings, &mut user);
+    }
+    let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
     let mut job = input.job(scene, &user)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
         // The time was said elsewhere than by --at.
@@ -190,6 +199,9 @@ fn render_scene(
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     tell_warnings(job.warnings(), common)?;
+    if !common.quiet {
+        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", output.display())));
+    }
     if let Some([x, y, sample]) = arguments.replay {
         output::print(job.replay(x, y, sample)?);
         return Ok(DONE);
@@ -203,7 +215,7 @@ fn render_scene(
         ));
     }
     let Some((first, last)) = arguments.frames else {
-        return finish(&mut job, output, path, build_seconds, arguments, common, interrupt);
+        return finish(&mut job, output, input, build_seconds, interrupt);
     };
     for frame in first..=last {
         let time = frame as f32 / job.settings().fps;
@@ -218,12 +230,27 @@ fn render_scene(
         }
         job.at_time(time);
         let output = frame_path(output, frame);
-        let status = finish(&mut job, &output, path, build_seconds, arguments, common, interrupt)?;
+        let status = finish(&mut job, &output, input, build_seconds, interrupt)?;
         if status != DONE {
             return Ok(status);
         }
     }
     Ok(DONE)
+}
+
+/// Says which way is up where that was decided here; once, however many pictures there are.
+fn say_orientation(job: &Job, scene: &Path) {
+    static SAID: std::sync::Once = std::sync::Once::new();
+    if let Some(orientation) = job.orientation() {
+        let (up, front) = (orientation.up.name(), orientation.front.name());
+        let because = orientation.because.words();
+        SAID.call_once(|| {
+            output::say(format_args!(
+                "{}: up is {up}, front is {front}, {because} (--up, --front)",
+                scene.display()
+            ));
+        });
+    }
 }
 
 /// `{frame}` filled in with four digits; put before the extension where it is missing.
@@ -240,20 +267,23 @@ fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
 fn finish(
     job: &mut Job,
     output: &Path,
-    scene: &Path,
+    input: &Input,
     build_seconds: f64,
-    arguments: &Render,
-    common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
+    let Input { path: scene, arguments, common, .. } = *input;
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
     let report = Report::new(&label, common, interrupt.clone());
     let for_display = is_stdout(output) || format_of_path(output)?.for_display;
     let denoiser = job.denoiser(for_display && !is_part(arguments)).map_err(usage::wrong)?;
+    let before = input.begun.get().elapsed();
+    interrupt.renders(true);
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     let denoiser = denoiser.filter(|_| !outcome.cancelled);
     let denoised = write(job, &outcome, denoiser.as_ref(), output, arguments)?;
+    interrupt.renders(false);
+    let overrun = time_limit::overrun(job, &outcome, before, seconds, input.begun.get().elapsed());
     tell_odd_samples(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     if let Some(path) = &arguments.stats {
@@ -262,6 +292,7 @@ fn finish(
         bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
     }
     if !common.quiet {
+        say_orientation(job, scene);
         if let Some(choice) = &outcome.choice {
             output::say(format_args!(
                 "{}: {} chose {choice}",
@@ -276,6 +307,9 @@ fn finish(
         if let Some(told) = denoised {
             output::say(format_args!("{}: {told}", output.display()));
         }
+        if let Some(overrun) = overrun {
+            output::say(format_args!("{}: {overrun}", output.display()));
+        }
         output::say(format_args!(
             "{}: {}x{}, {} by {}, {:.2} s after {build_seconds:.2} s of building, {:.2} Mrays/s{}",
             output.display(),
@@ -285,7 +319,11 @@ fn finish(
             s.accel.name,
             seconds,
             outcome.counters.rays as f64 / seconds.max(1e-9) / 1e6,
-            if outcome.cancelled { "; interrupted: this is what there is" } else { "" },
+            match outcome.cancelled {
+                true if interrupt.timed_out() => "; ended by --timeout: this is what there is",
+                true => "; interrupted: this is what there is",
+                false => "",
+            },
         ));
     }
     Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })

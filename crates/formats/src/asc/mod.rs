@@ -6,6 +6,7 @@ mod write;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::text::Cursor;
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -24,6 +25,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "materials: kd, ks, reflectivity",
     ],
     sniff,
+    up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };

@@ -239,7 +239,7 @@ impl Asc<'_, '_, '_> {
             }
             let Some(value) = parse_f32(word) else {
                 let message =
-                    format!("{} is no number, but a number of a vertex should stand here", quoted(word));
+                    format!("{} is not a number, and a number of a vertex should be here", quoted(word));
                 return Err(FormatError::malformed(message, self.places.at(at)));
             };
             let Some(slot) = numbers.values.get_mut(numbers.count) else {

@@ -80,7 +80,7 @@ impl<'d> Accessor<'d> {
         let name = kind.as_text()?;
         let Some((_, shape)) = SHAPES.iter().find(|(known, _)| *known == name) else {
             let known = SHAPES.map(|(name, _)| name).join(", ");
-            return Err(kind.error(format!("'{name}' is no type of elements; there are {known}")));
+            return Err(kind.error(format!("'{name}' is not a type of elements, which are {known}")));
         };
         let mut accessor = Accessor {
             node,
@@ -104,7 +104,7 @@ impl<'d> Accessor<'d> {
         } else if let Some(view) = node.get("bufferView") {
             accessor.data = Some(strided(document, node, view, [offset, count, size])?);
         } else if count > document.size() {
-            let message = format!("{count} elements without data are more than this file can mean");
+            let message = format!("{count} elements without data are more than a file of this size can mean");
             return Err(node.error(message));
         }
         if let Some(sparse) = node.get("sparse") {
@@ -117,7 +117,9 @@ impl<'d> Accessor<'d> {
     pub(super) fn floats<const N: usize>(&self, budget: &mut Budget) -> Result<Vec<[f32; N]>, FormatError> {
         if self.width() != N {
             let have = self.width();
-            return Err(self.node.error(format!("elements of {have} numbers stand where {N} are wanted")));
+            return Err(self
+                .node
+                .error(format!("its elements have {have} numbers, but {N} are needed here")));
         }
         budget.take_bytes((self.count as u64).saturating_mul(4 * N as u64), &self.node.at().file)?;
         let mut all = vec![[0.0; N]; self.count];
@@ -162,7 +164,7 @@ impl<'d> Accessor<'d> {
     /// Whole numbers, as indices are.
     pub(super) fn indices(&self, budget: &mut Budget) -> Result<Vec<u32>, FormatError> {
         if self.width() != 1 || !matches!(self.component, Component::U8 | Component::U16 | Component::U32) {
-            return Err(self.node.error("indices have to be SCALAR, of 8, 16 or 32 bits without a sign"));
+            return Err(self.node.error("indices must be SCALAR, of 8, 16 or 32 bits without a sign"));
         }
         budget.take_bytes((self.count as u64).saturating_mul(4), &self.node.at().file)?;
         let mut all = vec![0; self.count];
@@ -254,12 +256,12 @@ impl<'d> Sparse<'d> {
     ) -> Result<Sparse<'d>, FormatError> {
         let count = node.need("count")?.as_count()?;
         if count > total {
-            return Err(node.error(format!("{count} elements cannot take the place of {total}")));
+            return Err(node.error(format!("{count} sparse elements cannot replace {total}")));
         }
         let (places, values) = (node.need("indices")?, node.need("values")?);
         let component = Component::read(places.need("componentType")?)?;
         if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
-            return Err(places.error("sparse indices have to be of 8, 16 or 32 bits without a sign"));
+            return Err(places.error("sparse indices must be of 8, 16 or 32 bits without a sign"));
         }
         let offset = |node: Node<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
         let from = strided(
@@ -273,7 +275,7 @@ impl<'d> Sparse<'d> {
         let indices: Vec<u32> = (0..count).map(read).collect();
         let rises = indices.windows(2).all(|pair| pair[0] < pair[1]);
         if !rises || indices.last().is_some_and(|&last| last as usize >= total) {
-            return Err(places.error(format!("sparse indices have to rise, and to be below {total}")));
+            return Err(places.error(format!("sparse indices must increase and be less than {total}")));
         }
         let values = strided(document, values, values.need("bufferView")?, [offset(values)?, count, size])?;
         Ok(Sparse { indices, values })
@@ -290,9 +292,9 @@ impl Component {
             5125 => Component::U32,
             5126 => Component::F32,
             other => {
-                return Err(
-                    node.error(format!("{other} is no componentType; there are 5120 to 5123, 5125 and 5126"))
-                );
+                return Err(node.error(format!(
+                    "{other} is not a componentType, which are 5120 to 5123, 5125 and 5126"
+                )));
             }
         })
     }

@@ -88,7 +88,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 if channel.get("target").is_some_and(|target| {
                     target.get("node").is_some() || target.extension("KHR_animation_pointer").is_some()
                 }) {
-                    let what = "an animation moves what does not move here: only nodes and weights do";
+                    let what = "an animation moves something other than nodes and weights, which is ignored";
                     self.oddities.note(what, || channel.at());
                 }
                 continue;
@@ -132,14 +132,14 @@ impl<'d> Gltf<'d, '_, '_> {
             "LINEAR" => Between::Linear,
             "CUBICSPLINE" => Between::Cubic,
             other => {
-                return Err(
-                    sampler.error(format!("'{other}' is no interpolation: STEP, LINEAR and CUBICSPLINE are"))
-                );
+                return Err(sampler.error(format!(
+                    "'{other}' is not an interpolation, which are STEP, LINEAR and CUBICSPLINE"
+                )));
             }
         };
         let rises = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
         let Some(&last) = times.last().filter(|_| input.width() == 1 && rises) else {
-            return Err(input.node.error("the times of an animation have to be numbers that rise"));
+            return Err(input.node.error("the times of an animation must be numbers that increase"));
         };
         let parts = if between == Between::Cubic { 3 } else { 1 };
         let width = match moves {

@@ -19,7 +19,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let index = user.need("light")?;
         let list = self.document.root.extension("EXT_lights_area");
         let Some(light) = list.and_then(|list| list.item("lights", index.as_count().ok()?)) else {
-            return Err(index.error("there is no such light in the document's EXT_lights_area"));
+            return Err(index.error("the document's EXT_lights_area has no such light"));
         };
         let colour = light.numbers::<3>("color")?.unwrap_or([1.0; 3]).map(|c| c.max(0.0) as f32);
         let radiance = Rgb::from_array(colour) * light.number("intensity")?.unwrap_or(1000.0).max(0.0) as f32;
@@ -52,7 +52,11 @@ impl<'d> Gltf<'d, '_, '_> {
                 let mesh = disc(middle, right * (size * 0.5), up * (size * 0.5));
                 self.scene.objects.push(Object::new(name, Arc::new(mesh), material));
             }
-            other => return Err(light.error(format!("'{other}' is no area light: rect and disk are"))),
+            other => {
+                return Err(
+                    light.error(format!("'{other}' is not a type of area light, which are rect and disk"))
+                );
+            }
         }
         Ok(())
     }

@@ -18,7 +18,11 @@ pub(super) fn camera(
     let lens = camera.need(match kind.as_text()? {
         "perspective" => "perspective",
         "orthographic" => "orthographic",
-        other => return Err(kind.error(format!("'{other}' is no camera: perspective or orthographic is"))),
+        other => {
+            return Err(kind.error(format!(
+                "'{other}' is not a type of camera, which are perspective and orthographic"
+            )));
+        }
     })?;
     let name = if node.name().is_empty() { camera.name() } else { node.name() };
     let axis = |v: DVec3| world.transform_vector3(v).try_normalize();

@@ -26,7 +26,9 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
     if !bytes.starts_with(MAGIC) {
         if container.json.starts_with(b"\xef\xbb\xbf") {
             container.json = &bytes[3..];
-            container.warnings.push("the file begins with a byte order mark, which glTF has not".to_owned());
+            container
+                .warnings
+                .push("the file begins with a byte order mark, which glTF does not allow".to_owned());
         }
         return Ok(container);
     }
@@ -34,7 +36,9 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
         return fail("the GLB file ends within its header: it was cut off".to_owned());
     };
     if version != 2 {
-        return fail(format!("this is GLB of version {version}, and 2 is read: export it as glTF 2.0"));
+        return fail(format!(
+            "this is GLB of version {version}, and only 2 can be read: export it as glTF 2.0"
+        ));
     }
     let length = length as usize;
     if length > bytes.len() {
@@ -45,7 +49,7 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
     }
     if length < bytes.len() {
         let more = bytes.len() - length;
-        container.warnings.push(format!("{more} bytes behind the end of the GLB file are not used"));
+        container.warnings.push(format!("{more} bytes after the end of the GLB file are ignored"));
     }
     container.json = &[];
     let mut at = 12;
@@ -58,28 +62,34 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
         };
         let end = (at + 8).checked_add(size as usize).filter(|&end| end <= length);
         let Some(chunk) = end.and_then(|end| bytes.get(at + 8..end)) else {
-            return fail(format!("chunk {number} at byte {at} says {size} bytes, which go beyond the file"));
+            return fail(format!(
+                "chunk {number} at byte {at} should have {size} bytes, more than the file has left"
+            ));
         };
         match (number, kind) {
             (0, JSON) => container.json = chunk,
-            (0, _) => return fail("the first chunk of a GLB file has to be JSON, but is not".to_owned()),
+            (0, _) => {
+                return fail("the first chunk of a GLB file must be JSON, and this one is not".to_owned());
+            }
             (1, BIN) => container.binary = Some(chunk),
             (_, JSON | BIN) => {
-                container
-                    .warnings
-                    .push(format!("chunk {number} stands where none of its kind may: not used"));
+                container.warnings.push(format!(
+                    "chunk {number} at byte {at} stands where none of its kind may, and is ignored"
+                ));
             }
-            _ => container.warnings.push(format!("chunk {number} is of an unknown kind: not used")),
+            _ => container
+                .warnings
+                .push(format!("chunk {number} at byte {at} is of an unknown kind, and is ignored")),
         }
         if chunk.len() % 4 != 0 {
             container
                 .warnings
-                .push(format!("chunk {number} has {size} bytes, but has to have a multiple of 4"));
+                .push(format!("chunk {number} at byte {at} has {size} bytes, which must be a multiple of 4"));
         }
         at += 8 + chunk.len();
     }
     if container.json.is_empty() {
-        return fail("there is no JSON in this GLB file, or it is empty: export it again".to_owned());
+        return fail("this GLB file has no JSON in it".to_owned());
     }
     Ok(container)
 }

@@ -50,9 +50,8 @@ impl<'a> Document<'a> {
         for (i, node) in root.list("buffers")?.into_iter().enumerate() {
             let wanted = node.need("byteLength")?.as_count()?;
             if node.get("uri").is_some_and(|uri| uri.as_text().is_ok_and(uri::is_odd)) {
-                oddities.note("what stands before the comma of a data URI is broken: not looked at", || {
-                    node.at()
-                });
+                oddities
+                    .note("the part of a data URI before its comma is broken, and is ignored", || node.at());
             }
             let bytes: Cow<[u8]> = match (node.get("uri"), container.binary) {
                 (Some(uri), _) => Cow::Owned(uri::load(reading, source, uri)?),
@@ -110,6 +109,11 @@ impl<'a> Document<'a> {
         self.has_binary
     }
 
+    /// How many bytes a buffer has.
+    pub(super) fn buffer_length(&self, index: usize) -> usize {
+        self.buffers.get(index).map_or(0, |bytes| bytes.len())
+    }
+
     /// What is odd about a buffer view that can be read.
     ///
     /// # Errors
@@ -120,9 +124,9 @@ impl<'a> Document<'a> {
         }
         let found = self.part(view, self.buffer(view.need("buffer")?)?)?;
         Ok(match found.stride {
-            Some(stride) if stride % 4 != 0 => Some("byteStride has to be a multiple of 4"),
+            Some(stride) if stride % 4 != 0 => Some("byteStride must be a multiple of 4"),
             Some(stride) if stride > found.bytes.len() => Some("byteStride is more than the view has bytes"),
-            _ if found.bytes.is_empty() => Some("a buffer view has no bytes, but has to have one"),
+            _ if found.bytes.is_empty() => Some("a buffer view must have at least 1 byte, and this has none"),
             _ => None,
         })
     }
@@ -132,7 +136,9 @@ impl<'a> Document<'a> {
         let number = index.as_count()?;
         self.root.item(list, number).ok_or_else(|| {
             let count = self.root.list(list).map_or(0, |items| items.len());
-            index.error(format!("this names number {number} of '{list}', of which there are {count}"))
+            index.error(format!(
+                "this names number {number} of '{list}', but the file has {count}, counted from 0"
+            ))
         })
     }
 
@@ -163,7 +169,7 @@ impl<'a> Document<'a> {
         })?;
         let stride = node.count("byteStride")?;
         if let Some(stride) = stride.filter(|stride| !(4..=252).contains(stride)) {
-            return Err(node.error(format!("byteStride is {stride}, but has to be from 4 to 252")));
+            return Err(node.error(format!("byteStride is {stride}, but must be from 4 to 252")));
         }
         Ok(View { bytes, stride })
     }

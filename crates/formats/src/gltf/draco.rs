@@ -25,7 +25,7 @@ pub(super) fn unpack(document: &Document, budget: &mut Budget) -> Result<HashMap
         for primitive in mesh.list("primitives")? {
             let Some(extension) = primitive.extension(NAME) else { continue };
             if Mode::of(primitive)? != Mode::Triangles {
-                return Err(primitive.error("only triangles can be packed by Draco: mode has to be 4"));
+                return Err(primitive.error("only triangles can be packed by Draco: mode must be 4"));
             }
             let wanted = wanted(primitive, extension)?;
             if wanted.iter().all(|(number, _)| drawn.contains_key(number)) {
@@ -73,21 +73,33 @@ fn decoded(document: &Document, extension: Node, budget: &mut Budget) -> Result<
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
     };
     let broken = |what: &str| {
-        extension
-            .error(format!("the packed bytes of this primitive are broken: {what}; export the file again"))
+        extension.error(format!(
+            "the packed bytes of this primitive cannot be unpacked: {what}; export the file again"
+        ))
     };
     match guarded_decoding(decode) {
         None => Err(broken("they contradict each other")),
         Some(Err(error)) if error.kind() == ErrorKind::LimitExceeded => {
             budget.take_bytes(u64::MAX, &extension.at().file)?;
-            Err(broken(error.message()))
+            Err(broken(fault(error.kind())))
         }
-        Some(Err(error)) => Err(broken(error.message())),
+        Some(Err(error)) => Err(broken(fault(error.kind()))),
         Some(Ok(mesh)) => {
             // Counted for good, although it is gone soon: that bounds how often a short file can ask for it.
             budget.take_bytes(mesh.num_faces() as u64 * 12, &extension.at().file)?;
             Ok(mesh)
         }
+    }
+}
+
+/// What a kind of error of the decoder means.
+fn fault(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::LimitExceeded => "they become more than there is memory for",
+        ErrorKind::UnsupportedFeature | ErrorKind::UnsupportedVersion => {
+            "they are packed in a way that is not known here"
+        }
+        _ => "they are damaged",
     }
 }
 
@@ -116,7 +128,8 @@ fn of_accessor(
     };
     let number = attribute.as_count()?;
     let packed = u32::try_from(number).ok().and_then(|id| mesh.attribute_by_unique_id(id));
-    let packed = packed.ok_or_else(|| attribute.error(format!("nothing packed is called {number}")))?;
+    let packed =
+        packed.ok_or_else(|| attribute.error(format!("the packed data have no attribute {number}")))?;
     let count = mesh.num_points();
     let bytes = if component_of(packed.data_type()) == Some(kind) {
         raw(packed, count).ok_or_else(|| attribute.error("this attribute has fewer values than points"))?

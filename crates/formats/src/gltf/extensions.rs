@@ -47,7 +47,7 @@ pub(super) fn check(root: Node, oddities: &mut Oddities) -> Result<(), FormatErr
             let meant = nearest_name(text, &known).filter(|n| n.len().abs_diff(text.len()) < 3);
             let meant = meant.map_or_else(String::new, |name| format!(" (did it mean {name}?)"));
             let message = format!(
-                "this file cannot be shown without the extension {text}, which is not understood{meant}: export it \
+                "this file needs the extension {text}, which is not supported{meant}: export it \
                  without"
             );
             return Err(name.error(message));
@@ -66,7 +66,7 @@ fn note_unknown(node: Node, oddities: &mut Oddities) {
         if key == "extensions" {
             for (name, used) in value.entries() {
                 if !KNOWN.contains(&name) && !NOTHING_TO_SEE.contains(&name) {
-                    let what = format!("the extension {name} is not understood and not applied");
+                    let what = format!("the extension {name} is not supported and is ignored");
                     oddities.note(&what, || used.at());
                 }
             }

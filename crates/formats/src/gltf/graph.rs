@@ -35,12 +35,12 @@ impl<'d> Gltf<'d, '_, '_> {
             let number = index.as_count()?;
             let slot = &mut self.order[number];
             if slot.replace(placed.len()).is_some() {
-                let message = "this node stands below two others, or below itself: a node has one parent";
+                let message = "this node has two parents, or is below itself: a node has one parent";
                 return Err(index.error(message));
             }
             let world = parent * place::local(node, number, &self.pose)?;
             if !world.is_finite() {
-                return Err(node.error("this node is scaled or moved beyond all numbers"));
+                return Err(node.error("this node is scaled or moved to numbers that are not finite"));
             }
             placed.push(Placed { node, index: number, world });
             let children = node.list("children")?;
@@ -69,7 +69,7 @@ impl<'d> Gltf<'d, '_, '_> {
             Some(scene) => scene.list("nodes"),
             None => {
                 if root.get("nodes").is_some() {
-                    let what = "the file has no scene, so that nothing of it is shown";
+                    let what = "the file has no scene, and so nothing of it is shown";
                     self.oddities.note(what, || root.at());
                 }
                 Ok(Vec::new())

@@ -63,11 +63,34 @@ impl<'a> Node<'a> {
     }
 
     fn wrong(&self, wanted: &str) -> FormatError {
-        let mut found = self.value.to_string();
-        if found.len() > 40 {
-            found = format!("{}…", found.chars().take(40).collect::<String>());
+        self.error(format!("this is {}, but must be {wanted}", self.shortened()))
+    }
+
+    /// The value as it is written, cut where it is long.
+    pub(super) fn shortened(&self) -> String {
+        let found = self.value.to_string();
+        if found.len() > 40 { format!("{}…", found.chars().take(40).collect::<String>()) } else { found }
+    }
+
+    /// The value itself.
+    pub(super) fn value(&self) -> &'a Value {
+        self.value
+    }
+
+    /// Where it stands in the list that holds it.
+    pub(super) fn number_in_list(&self) -> Option<usize> {
+        match self.path[..self.length].last() {
+            Some(Step::Index(index)) => Some(*index),
+            _ => None,
         }
-        self.error(format!("this is {found}, but has to be {wanted}"))
+    }
+
+    /// The same for what holds the list: of a primitive, the number of its mesh.
+    pub(super) fn number_of_parent(&self) -> Option<usize> {
+        match self.path[..self.length] {
+            [.., Step::Index(index), Step::Key(_), Step::Index(_)] => Some(index),
+            _ => None,
+        }
     }
 
     /// The value of a key, if there is one.
@@ -77,7 +100,7 @@ impl<'a> Node<'a> {
 
     /// The value of a key that has to be there.
     pub(super) fn need(&self, key: &'a str) -> Result<Node<'a>, FormatError> {
-        self.get(key).ok_or_else(|| self.error(format!("'{key}' is missing here: export the file again")))
+        self.get(key).ok_or_else(|| self.error(format!("'{key}' is missing here")))
     }
 
     /// An extension, if it is used here.

@@ -18,7 +18,7 @@ pub(super) fn light<'d>(
     let index = user.need("light")?;
     let list = root.extension("KHR_lights_punctual");
     let Some(light) = list.and_then(|list| list.item("lights", index.as_count().ok()?)) else {
-        return Err(index.error("there is no such light in the document's KHR_lights_punctual"));
+        return Err(index.error("the document's KHR_lights_punctual has no such light"));
     };
     let (position, kind) = (placed.world.w_axis.truncate(), light.need("type")?);
     let Some(forward) = placed.world.transform_vector3(DVec3::NEG_Z).try_normalize() else {
@@ -51,14 +51,18 @@ pub(super) fn light<'d>(
                 .with("inner_angle", inner)
         }
         other => {
-            return Err(kind.error(format!("'{other}' is no light: directional, point and spot are")));
+            return Err(kind
+                .error(format!("'{other}' is not a type of light, which are directional, point and spot")));
         }
     };
     if radius > 0.0 && spec.kind != "sphere" {
         oddities.note("only lights of type point are given a radius", || light.at());
     }
     if light.get("range").is_some() {
-        oddities.note("a light's range is not used: its light falls off as light does", || light.at());
+        oddities
+            .note("a light's range is ignored: its light falls off with the square of the distance", || {
+                light.at()
+            });
     }
     Ok(Some(Spec { span: light.at(), ..spec }))
 }

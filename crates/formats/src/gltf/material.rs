@@ -93,6 +93,10 @@ impl<'d> Gltf<'d, '_, '_> {
             let scale = info.number("scale")?.unwrap_or(1.0);
             draft.set("normal_scale", scale as f32, info.at());
         }
+        if let Some(info) = node.get("occlusionTexture") {
+            let what = "occlusion textures are not used: how much light reaches a crease is computed";
+            self.oddities.note(what, || info.at());
+        }
         if let Some(ior) = node.extension("KHR_materials_ior") {
             let number = ior.number("ior")?.unwrap_or(1.5);
             // Zero stands for a surface that reflects everything.
@@ -140,7 +144,11 @@ impl<'d> Gltf<'d, '_, '_> {
             "OPAQUE" => return Ok(()),
             "BLEND" => None,
             "MASK" => Some(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
-            other => return Err(node.error(format!("'{other}' is no alphaMode: OPAQUE, MASK and BLEND are"))),
+            other => {
+                return Err(
+                    node.error(format!("'{other}' is not an alphaMode, which are OPAQUE, MASK and BLEND"))
+                );
+            }
         };
         let opacity = match (picture, threshold) {
             (Some(info), _) => {
@@ -222,13 +230,13 @@ impl<'d> Gltf<'d, '_, '_> {
             draft.set("specular_roughness", even.sqrt() as f32, at.clone());
         }
         let picture = extension.get("anisotropyTexture");
-        if let Some(picture) = picture {
-            let what = "of a picture of anisotropy the strength is used, and the direction is not";
-            self.oddities.note(what, || picture.at());
-        }
         self.scalar(draft, "specular_roughness_anisotropy", 1.0 - ratio, picture, Channel::B, &at)?;
         let turns = extension.number("anisotropyRotation")?.unwrap_or(0.0) / TAU + 0.25;
-        draft.set("anisotropy_rotation", turns.rem_euclid(1.0) as f32, at);
+        let rotation = match picture {
+            Some(info) => self.angles(info, turns, &mut draft.uv_sets)?,
+            None => (turns.rem_euclid(1.0) as f32).into(),
+        };
+        draft.set("anisotropy_rotation", rotation, at);
         Ok(())
     }
 
@@ -309,28 +317,6 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "fuzz_roughness", rough, extension.get("sheenRoughnessTexture"), Channel::A, &at)
     }
 
-    /// Theirs is in nm, between two thicknesses where a picture tells.
-    fn film(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
-        let Some(extension) = node.extension("KHR_materials_iridescence") else { return Ok(()) };
-        let weight = extension.number("iridescenceFactor")?.unwrap_or(0.0);
-        if weight <= 0.0 {
-            return Ok(());
-        }
-        let at = extension.at();
-        let picture = extension.get("iridescenceTexture");
-        self.scalar(draft, "thin_film_weight", weight, picture, Channel::R, &at)?;
-        let ior = extension.number("iridescenceIor")?.unwrap_or(1.3);
-        draft.set("thin_film_ior", ior as f32, at.clone());
-        let least = extension.number("iridescenceThicknessMinimum")?.unwrap_or(100.0);
-        let most = extension.number("iridescenceThicknessMaximum")?.unwrap_or(400.0);
-        let picture = extension.get("iridescenceThicknessTexture");
-        if let (Some(picture), true) = (picture, least != 0.0) {
-            let what = "the picture of a film's thickness is taken from 0, not from its least";
-            self.oddities.note(what, || picture.at());
-        }
-        self.scalar(draft, "thin_film_thickness", most / 1000.0, picture, Channel::G, &at)
-    }
-
     fn diffuse_transmission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_diffuse_transmission") else { return Ok(()) };
         let weight = extension.number("diffuseTransmissionFactor")?.unwrap_or(0.0);
@@ -379,7 +365,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn scalar(
+    pub(super) fn scalar(
         &mut self,
         draft: &mut Draft,
         key: &str,

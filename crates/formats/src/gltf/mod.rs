@@ -22,18 +22,20 @@ mod meshopt;
 mod place;
 mod primitive;
 mod reader;
+mod remapped;
 mod skin;
 mod soundness;
 mod tangents;
 mod textures;
-mod thin;
 mod topology;
 mod uri;
+mod validate;
 mod variants;
 mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 /// In the extras of a scene that we write: what is around it besides what the file holds, which is "none".
 const SURROUNDINGS: &str = "surroundings";
@@ -47,6 +49,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["gltf", "glb"],
     capabilities: &[
+        "points and lines",
         "triangles",
         "normals",
         "uv",
@@ -62,6 +65,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "variants",
     ],
     sniff,
+    up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
     write: Some(write::write),
 };

@@ -12,7 +12,7 @@ pub(super) fn local(node: Node, index: usize, pose: &Pose) -> Result<DMat4, Form
         let matrix = DMat4::from_cols_array(&columns);
         let last = matrix.row(3).to_array();
         if last != [0.0, 0.0, 0.0, 1.0] {
-            let message = format!("this matrix ends in the row {last:?}, but has to in [0, 0, 0, 1]");
+            let message = format!("the last row of this matrix is {last:?}, but must be [0, 0, 0, 1]");
             return Err(FormatError::malformed(message, node.at_key("matrix")));
         }
         return Ok(matrix);
@@ -23,7 +23,7 @@ pub(super) fn local(node: Node, index: usize, pose: &Pose) -> Result<DMat4, Form
     let rotation = pose.numbers(index, Moves::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
     let scale = pose.numbers(index, Moves::Scale).or(scale).unwrap_or([1.0; 3]);
     compose(translation, rotation, scale).ok_or_else(|| {
-        FormatError::malformed("this rotation is zero, and turns nothing", node.at_key("rotation"))
+        FormatError::malformed("this rotation is zero, which turns nothing", node.at_key("rotation"))
     })
 }
 

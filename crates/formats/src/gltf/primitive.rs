@@ -5,8 +5,8 @@ use super::json::Node;
 use super::material::UsedMaterial;
 use super::reader::Gltf;
 use super::skin::Joints;
+use super::tangents;
 use super::topology::Mode;
-use super::{tangents, thin};
 use crate::FormatError;
 use bilux_math::glam::Vec4;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -27,8 +27,6 @@ pub(super) struct Worn<'a> {
     /// Of morph targets.
     pub(super) weights: &'a [f64],
     pub(super) joints: Option<&'a Joints>,
-    /// By which lengths grow from the mesh to the world.
-    pub(super) scale: f64,
 }
 
 /// Attributes that are read, or told of elsewhere.
@@ -40,7 +38,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let mode = Mode::of(node)?;
         let attributes = node.need("attributes")?;
         let Some(position) = attributes.get("POSITION") else {
-            self.oddities.note("a primitive has no positions and is left out", || node.at());
+            self.oddities.note("a primitive has no POSITION and is left out", || node.at());
             return Ok(None);
         };
         let mut mesh = Mesh { name: worn.name.to_owned(), ..Mesh::default() };
@@ -59,7 +57,7 @@ impl<'d> Gltf<'d, '_, '_> {
             self.bend(node, joints, &mut mesh)?;
         }
         if mesh.positions.iter().any(|p| !p.is_finite()) {
-            let what = "positions have numbers that are infinite or no numbers; they are kept";
+            let what = "positions have numbers that are infinite or not numbers (NaN); they are kept";
             self.oddities.note(what, || position.at());
         }
         self.coordinates(attributes, material, &mut mesh)?;
@@ -69,10 +67,10 @@ impl<'d> Gltf<'d, '_, '_> {
         self.note_unused(attributes, material);
         match mode {
             Mode::Triangles | Mode::Strip | Mode::Fan => self.add_tangents(material, &mut mesh)?,
-            thin => mesh = self.thickened(node, thin, &mesh, worn.scale)?,
+            thin => self.add_strokes(node, thin, &mut mesh)?,
         }
-        if mesh.triangles.is_empty() {
-            self.oddities.note("a primitive has no triangle and is left out", || node.at());
+        if mesh.is_empty() {
+            self.oddities.note("a primitive has nothing to draw and is left out", || node.at());
             return Ok(None);
         }
         Ok(Some(Part { mesh: Arc::new(mesh), material: material.index }))
@@ -89,13 +87,13 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(normal) = attributes.get("NORMAL") {
             mesh.normals = vec3(self.attribute::<3>(normal, Some(count))?);
             if mesh.normals.iter().any(|n| (n.length_squared() - 1.0).abs() > 0.1) {
-                self.oddities.note("normals are not of length one: taken as directions", || normal.at());
+                self.oddities.note("normals do not have length one; they are normalized", || normal.at());
             }
         }
         if let Some(tangent) = attributes.get("TANGENT").filter(|_| material.has_direction) {
             let tangents = self.attribute::<4>(tangent, Some(count))?;
             if tangents.iter().any(|t| t[3].abs() != 1.0) {
-                let what = "the fourth number of a tangent has to be 1 or -1: its sign is used";
+                let what = "the fourth number of a tangent must be 1 or -1; its sign is used";
                 self.oddities.note(what, || tangent.at());
             }
             mesh.tangents = tangents.into_iter().map(Vec4::from).collect();
@@ -125,7 +123,7 @@ impl<'d> Gltf<'d, '_, '_> {
                     .map(|[u, v]| Vec2::new(u, 1.0 - v))
                     .collect(),
                 None if material.uv_sets[slot].is_some() => {
-                    let what = "a material looks up textures by texture coordinates that its mesh has not: taken as 0";
+                    let what = "a material needs texture coordinates that its mesh does not have; they are taken as 0";
                     self.oddities.note(what, || attributes.at());
                     self.reading.budget.take_bytes(count as u64 * 8, &self.file)?;
                     vec![Vec2::Y; count]
@@ -178,14 +176,13 @@ impl<'d> Gltf<'d, '_, '_> {
     fn morph(&mut self, node: Node<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
         let targets = node.list("targets")?;
         if targets.len() != weights.len() && !weights.is_empty() {
-            let what = "there are not as many weights as morph targets";
+            let what = "the number of weights is not that of the morph targets";
             self.oddities.note(what, || node.at_key("targets"));
         }
         for (target, &weight) in targets.into_iter().zip(weights) {
             for (key, used) in target.entries() {
                 if !matches!(key, "POSITION" | "NORMAL" | "TANGENT") && !key.starts_with('_') {
-                    let what =
-                        "a morph target moves what does not move here: positions, normals and tangents do";
+                    let what = "a morph target moves something other than positions, normals and tangents, which is ignored";
                     self.oddities.note(what, || used.at());
                 }
             }
@@ -220,29 +217,19 @@ impl<'d> Gltf<'d, '_, '_> {
             let is_used = ATTRIBUTES.contains(&key) || used_uv(key) || is_skin || key.starts_with('_');
             // Sets of texture coordinates that nothing looks up change nothing.
             if !is_used && !key.starts_with("TEXCOORD_") {
-                self.oddities.note("an attribute of a mesh is not used", || node.at());
+                self.oddities.note("an attribute of a mesh is ignored", || node.at());
             }
         }
     }
 
-    /// Points and lines with a body.
-    fn thickened(
-        &mut self,
-        node: Node<'d>,
-        mode: Mode,
-        bare: &Mesh,
-        scale: f64,
-    ) -> Result<Mesh, FormatError> {
-        let corners = self.corners(node, bare.positions.len())?;
-        let (balls, tubes) = mode.balls_and_tubes(&corners);
-        let size = self.size_of_scene()?;
-        let share = if tubes.is_empty() { 1.0 / 300.0 } else { 1.0 / 600.0 };
-        let what = if tubes.is_empty() { "points are balls" } else { "lines are tubes" };
-        let what =
-            format!("{what} with a radius of 1/{:.0} of the scene, since they have no surface", 1.0 / share);
-        self.oddities.note(&what, || node.at());
-        self.reading.budget.take_bytes(thin::bytes(balls.len(), tubes.len()), &self.file)?;
-        Ok(thin::solid(bare, &balls, &tubes, (size * share / scale) as f32))
+    /// The points or the lines of a primitive.
+    fn add_strokes(&mut self, node: Node<'d>, mode: Mode, mesh: &mut Mesh) -> Result<(), FormatError> {
+        let corners = self.corners(node, mesh.positions.len())?;
+        self.reading.budget.take_bytes(corners.len() as u64 * 8, &self.file)?;
+        (mesh.points, mesh.lines) = mode.points_and_lines(corners);
+        // They are round, so that these say nothing.
+        (mesh.normals, mesh.tangents) = (Vec::new(), Vec::new());
+        Ok(())
     }
 }
 

@@ -13,8 +13,7 @@ use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
 use crate::sharing::share_trees;
 use bilux_math::motion::Motion;
-use bilux_math::transcendental::powf_f64;
-use bilux_math::{DMat4, DVec3, Transform};
+use bilux_math::{DMat4, Transform};
 use bilux_scene::texture::Image;
 use bilux_scene::{Object, SceneBuilder, Span};
 use std::collections::HashMap;
@@ -29,7 +28,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let json = parse(reading, container.json, source)?;
     let root = Node::root(&json, source.name);
     if !root.is_object() {
-        return Err(root.error("this JSON is no glTF, which begins with '{'"));
+        return Err(root.error("this JSON is not glTF, which is an object in braces"));
     }
     check_version(root)?;
     extensions::check(root, &mut oddities)?;
@@ -38,6 +37,11 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let mut gltf = Gltf::new(&document, source, reading, oddities, time);
     gltf.decode_ahead()?;
     gltf.scene()?;
+    if gltf.reading.options.validate {
+        gltf.validate()?;
+    } else {
+        gltf.check_data()?;
+    }
     let Gltf { mut scene, oddities, meshes, materials, images, .. } = gltf;
     if reading.options.whole_movement && scene.inventory.moves() {
         let made = Made { meshes, materials, images };
@@ -148,7 +152,6 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             self.place(&placed)?;
         }
         share_trees(&mut self.scene);
-        self.check_data()?;
         let root = self.document.root;
         let skins = root.list("skins")?;
         self.scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
@@ -192,7 +195,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         };
         for world in places.iter() {
             let Some(transform) = Transform::from_matrix(world) else {
-                self.oddities.note("a node is scaled to nothing and not drawn", || node.at());
+                self.oddities.note("a node is scaled to nothing and is not drawn", || node.at());
                 continue;
             };
             let motion = Motion::still(transform);
@@ -221,13 +224,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             return Ok(parts.clone());
         }
         let joints = skin.map(|skin| self.joints(skin)).transpose()?;
-        let scale = if joints.is_some() { 1.0 } else { powf_f64(user.world.determinant().abs(), 1.0 / 3.0) };
-        let worn = Worn {
-            name: mesh.name(),
-            weights: &weights,
-            joints: joints.as_ref(),
-            scale: if scale > 0.0 && scale.is_finite() { scale } else { 1.0 },
-        };
+        let worn = Worn { name: mesh.name(), weights: &weights, joints: joints.as_ref() };
         let mut parts = Vec::new();
         for primitive in mesh.need("primitives")?.items()? {
             parts.extend(self.primitive(primitive, &worn)?);
@@ -237,29 +234,9 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         Ok(parts)
     }
 
-    /// From corner to corner of the box around all that is placed, as its accessors say.
-    pub(super) fn size_of_scene(&self) -> Result<f64, FormatError> {
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for placed in &self.nodes {
-            let Some(index) = placed.node.get("mesh") else { continue };
-            for primitive in self.document.named("meshes", index)?.list("primitives")? {
-                let Some(position) = primitive.get("attributes").and_then(|a| a.get("POSITION")) else {
-                    continue;
-                };
-                let accessor = self.document.named("accessors", position)?;
-                let (Some(min), Some(max)) = (accessor.numbers::<3>("min")?, accessor.numbers::<3>("max")?)
-                else {
-                    continue;
-                };
-                for corner in 0..8 {
-                    let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
-                    let p = placed.world.transform_point3(DVec3::new(pick(0), pick(1), pick(2)));
-                    (low, high) = (low.min(p), high.max(p));
-                }
-            }
-        }
-        let size = (high - low).length();
-        Ok(if size > 0.0 && size.is_finite() { size } else { 1.0 })
+    /// True when a picture has been read, as numbers or as colours.
+    pub(super) fn has_read(&self, image: usize, is_data: bool) -> bool {
+        self.images.contains_key(&(image, is_data))
     }
 }
 
@@ -271,10 +248,35 @@ fn parse(reading: &mut Reading, bytes: &[u8], source: &Source) -> Result<serde_j
     serde_json::from_slice(bytes).map_err(|error| {
         let (line, column) = (error.line() as u32, error.column() as u32);
         let text = error.to_string();
-        let what = text.split(" at line ").next().unwrap_or(&text);
-        let message = format!("this is no JSON: {what}; export the file again");
+        let what = syntax_fault(text.split(" at line ").next().unwrap_or(&text));
+        let message = format!("this is not JSON: {what}");
         FormatError::malformed(message, Span { file: source.name.clone(), line, column })
     })
+}
+
+/// Reports of the JSON parser, by a part of each, and what they mean.
+const SYNTAX_FAULTS: &[(&str, &str)] = &[
+    ("EOF", "the file ends in the middle of it, and was cut off"),
+    ("expected value", "a value should stand here"),
+    ("`,` or `}`", "a comma or a closing brace should stand here"),
+    ("`,` or `]`", "a comma or a closing bracket should stand here"),
+    ("`:`", "a colon should stand here"),
+    ("expected ident", "a value should stand here"),
+    ("trailing comma", "a comma stands before a closing bracket or brace"),
+    ("trailing characters", "something stands after its end"),
+    ("key must be a string", "a name in double quotes should stand here"),
+    ("control character", "a control character stands in a text, where it must be escaped"),
+    ("escape", "a text has an escape that does not exist"),
+    ("surrogate", "a text has half of a Unicode character"),
+    ("unicode", "a text has a Unicode character that does not exist"),
+    ("number out of range", "this number is too large"),
+    ("invalid number", "this is not a number"),
+    ("recursion", "lists and objects are nested too deep"),
+];
+
+fn syntax_fault(report: &str) -> &'static str {
+    let found = SYNTAX_FAULTS.iter().find(|(part, _)| report.contains(part));
+    found.map_or("it has a mistake here", |(_, meaning)| meaning)
 }
 
 /// Major versions change the meaning of files, minor ones add to it.
@@ -284,14 +286,17 @@ fn check_version(root: Node) -> Result<(), FormatError> {
         let Some(text) = node.get(key) else { return Ok(None) };
         let parts = text.as_text()?.split_once('.');
         let version = parts.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
-        version.map(Some).ok_or_else(|| text.error("a version is two numbers, as in \"2.0\""))
+        version
+            .map(Some)
+            .ok_or_else(|| text.error("a version is two numbers with a point between, such as 2.0"))
     };
     let wrong = |major: u32, minor: u32| {
-        let message = format!("this is glTF {major}.{minor}, and 2.0 is read: export it as glTF 2.0");
+        let message =
+            format!("this is glTF {major}.{minor}, and only 2.0 can be read: export it as glTF 2.0");
         Err(FormatError::malformed(message, asset.at()))
     };
     let Some((major, minor)) = parse(asset, "version")? else {
-        return Err(asset.error("the version is missing here; it has to be \"2.0\""));
+        return Err(asset.error("'version' is missing here: it must be \"2.0\""));
     };
     match parse(asset, "minVersion")? {
         Some((major, minor)) if (major, minor) > (2, 0) => wrong(major, minor),

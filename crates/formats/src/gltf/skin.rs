@@ -82,7 +82,7 @@ impl<'d> Gltf<'d, '_, '_> {
             }
         }
         if sums.iter().any(|&sum| (sum - 1.0).abs() > 0.02) {
-            let what = "the weights of a skin do not add up to one: taken as parts of their sum";
+            let what = "the weights of a skin do not add up to one; they are divided by their sum";
             self.oddities.note(what, || attributes.at());
         }
         if sums.contains(&0.0) {

@@ -15,10 +15,12 @@ impl<'d> Gltf<'d, '_, '_> {
             let wanted = buffer.count("byteLength")?;
             let is_stand_in = buffer.extension(meshopt::NAME).is_some();
             if wanted == Some(0) {
-                self.oddities
-                    .note("a buffer has no bytes, but has to have one", || buffer.at_key("byteLength"));
+                self.oddities.note("a buffer must have at least 1 byte, and this has none", || {
+                    buffer.at_key("byteLength")
+                });
             } else if buffer.get("uri").is_none() && !self.document.has_binary() && !is_stand_in {
-                self.oddities.note("a buffer says nothing of where its bytes are", || buffer.at());
+                self.oddities
+                    .note("a buffer has no uri, and no binary chunk brings its bytes", || buffer.at());
             }
         }
         for view in root.list("bufferViews")? {
@@ -36,14 +38,14 @@ impl<'d> Gltf<'d, '_, '_> {
 
     fn check_accessor(&mut self, number: usize, node: Node<'d>) -> Result<(), FormatError> {
         if node.get("byteOffset").is_some() && node.get("bufferView").is_none() {
-            let what = "a byteOffset without a bufferView says nothing";
+            let what = "a byteOffset has no effect without a bufferView";
             self.oddities.note(what, || node.at_key("byteOffset"));
         }
         match Accessor::open(self.document, number, node, &mut self.reading.budget) {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => self.oddities.note(&error.without_place(), || node.at()),
             Ok(accessor) if !accessor.is_aligned(self.document)? => {
-                let what = "elements do not begin at multiples of their size: read as they are";
+                let what = "elements do not begin at multiples of their size; they are read as they are";
                 self.oddities.note(what, || node.at());
             }
             Ok(_) => {}

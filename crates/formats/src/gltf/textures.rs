@@ -108,8 +108,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// The picture of a texture and its name; none, with a warning, where it cannot be had.
     fn picture(&mut self, texture: Node<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
         let Some(index) = source(texture) else {
-            let what =
-                "a texture has no picture that is understood: a checker of magenta stands in its place";
+            let what = "a texture has no picture that can be read, and is replaced by a magenta checker";
             self.oddities.note(what, || texture.at());
             return Ok(None);
         };
@@ -128,7 +127,7 @@ impl<'d> Gltf<'d, '_, '_> {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => {
                 let reason = error.without_place();
-                let what = format!("a checker of magenta stands in place of a texture: {reason}");
+                let what = format!("a texture is replaced by a magenta checker: {reason}");
                 self.oddities.note(&what, || image.at());
                 None
             }
@@ -137,7 +136,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(decoded)
     }
 
-    fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
+    pub(super) fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
         let at = image.at();
         let (name, bytes) = self.encoded(image)?;
         let kind = image.text("mimeType")?.unwrap_or_default();
@@ -188,7 +187,7 @@ fn wrap<'d>(sampler: Node<'d>, key: &'d str) -> Result<Wrap, FormatError> {
         Some(33071) => Wrap::Clamp,
         Some(33648) => Wrap::Mirror,
         Some(other) => {
-            let message = format!("{other} is no way to wrap; there are 10497, 33071 and 33648");
+            let message = format!("{other} is not a way to wrap, which are 10497, 33071 and 33648");
             return Err(FormatError::malformed(message, sampler.at_key(key)));
         }
     })

@@ -30,27 +30,23 @@ impl Mode {
             5 => Mode::Strip,
             6 => Mode::Fan,
             other => {
-                return Err(node.error(format!("mode {other} is none; there are 0 to 6, and 4 is triangles")));
+                return Err(
+                    node.error(format!("mode {other} does not exist: modes are 0 to 6, and 4 is triangles"))
+                );
             }
         })
     }
 
-    /// Where points and lines get balls and tubes: at every corner of a point or a line, and along every line.
-    pub(super) fn balls_and_tubes(self, corners: &[u32]) -> (Vec<u32>, Vec<[u32; 2]>) {
+    /// What of a mesh of points or lines is drawn: points at corners, and lines between pairs of them.
+    pub(super) fn points_and_lines(self, corners: Vec<u32>) -> (Vec<u32>, Vec<[u32; 2]>) {
         let pairs = |step: usize| corners.windows(2).step_by(step).map(|pair| [pair[0], pair[1]]);
-        let tubes: Vec<[u32; 2]> = match self {
+        let lines = match self {
             Mode::Lines => pairs(2).collect(),
             Mode::LineStrip => pairs(1).collect(),
             Mode::LineLoop => pairs(1).chain(corners.last().map(|&last| [last, corners[0]])).collect(),
             _ => Vec::new(),
         };
-        let mut balls = match self {
-            Mode::Points => corners.to_vec(),
-            _ => tubes.iter().flatten().copied().collect(),
-        };
-        balls.sort_unstable();
-        balls.dedup();
-        (balls, tubes)
+        (if self == Mode::Points { corners } else { Vec::new() }, lines)
     }
 }
 
@@ -129,13 +125,14 @@ mod tests {
     #[test]
     fn lines_are_pairs_chains_and_loops() {
         let corners = [4, 5, 6, 7];
-        let tubes = |mode: Mode| mode.balls_and_tubes(&corners).1;
-        assert_eq!(tubes(Mode::Lines), [[4, 5], [6, 7]]);
-        assert_eq!(tubes(Mode::LineStrip), [[4, 5], [5, 6], [6, 7]]);
-        assert_eq!(tubes(Mode::LineLoop), [[4, 5], [5, 6], [6, 7], [7, 4]]);
-        assert_eq!(Mode::Points.balls_and_tubes(&[3, 1, 3]), (vec![1, 3], Vec::new()));
-        assert_eq!(Mode::LineLoop.balls_and_tubes(&[]), (Vec::new(), Vec::new()));
-        assert_eq!(Mode::Lines.balls_and_tubes(&corners[..3]).0, [4, 5], "the odd one makes no line");
+        let lines = |mode: Mode| mode.points_and_lines(corners.to_vec()).1;
+        assert_eq!(lines(Mode::Lines), [[4, 5], [6, 7]]);
+        assert_eq!(lines(Mode::LineStrip), [[4, 5], [5, 6], [6, 7]]);
+        assert_eq!(lines(Mode::LineLoop), [[4, 5], [5, 6], [6, 7], [7, 4]]);
+        assert_eq!(Mode::Points.points_and_lines(vec![3, 1]), (vec![3, 1], Vec::new()));
+        assert_eq!(Mode::LineLoop.points_and_lines(Vec::new()), (Vec::new(), Vec::new()));
+        let odd = Mode::Lines.points_and_lines(corners[..3].to_vec());
+        assert_eq!(odd.1, [[4, 5]], "the odd one makes no line");
     }
 
     #[test]

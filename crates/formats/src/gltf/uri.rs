@@ -3,9 +3,9 @@
 use crate::FormatError;
 use crate::gltf::json::Node;
 use crate::reading::{Reading, Source};
-use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use base64::{DecodeError, Engine};
 use std::borrow::Cow;
 
 /// What a URI stands for.
@@ -24,24 +24,42 @@ pub(super) fn resolve(reading: &mut Reading, node: Node) -> Result<Resource, For
     let uri = node.as_text()?;
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((kind, payload)) = data.split_once(',') else {
-            return Err(node.error("this data URI has no comma, behind which the data would stand"));
+            return Err(node.error("this data URI has no comma, after which its data would stand"));
         };
         reading.budget.take_bytes(payload.len() as u64, &node.at().file)?;
         if kind.ends_with(";base64") {
             let decoded = BASE64.decode(payload);
+            let start = uri.len() - payload.len();
             return decoded.map(Resource::Data).map_err(|error| {
-                node.error(format!("the base64 of this data URI is broken: {error}; export the file again"))
+                node.error(format!(
+                    "the base64 of this data URI is broken: {}",
+                    fault(&error, payload, start)
+                ))
             });
         }
         return Ok(Resource::Data(percent_decoded(payload).into_owned()));
     }
     if scheme(uri).is_some() || uri.starts_with("//") {
         return Err(node.error(format!(
-            "'{uri}' is an address, and nothing is fetched: put the file beside the scene, and name it here"
+            "'{uri}' is an address, and nothing is fetched from the network: put the file beside the scene, and name it here"
         )));
     }
     let name = String::from_utf8(percent_decoded(uri).into_owned());
     name.map(Resource::File).map_err(|_| node.error("this name is not in UTF-8: rename the file"))
+}
+
+/// What is wrong with base64 that begins at this character of a URI.
+fn fault(error: &DecodeError, payload: &str, start: usize) -> String {
+    match *error {
+        DecodeError::InvalidByte(at, _) | DecodeError::InvalidLastSymbol(at, _) => {
+            let letter = payload.get(at..).and_then(|rest| rest.chars().next()).unwrap_or(' ');
+            let letter =
+                if letter.is_control() { "a control character".to_owned() } else { format!("'{letter}'") };
+            format!("{letter} stands at its character {}, where none may", start + at + 1)
+        }
+        DecodeError::InvalidLength(length) => format!("{length} characters are not a whole number of bytes"),
+        DecodeError::InvalidPadding => "'=' stands where it may not, or is missing at the end".to_owned(),
+    }
 }
 
 /// Whether a data URI has a parameter without a name, as only broken programs write it.

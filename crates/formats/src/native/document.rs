@@ -45,7 +45,7 @@ pub(super) fn parse(bytes: &[u8], name: &Arc<str>) -> Result<Table, FormatError>
     })?;
     let document = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or_else(|| whole_file(name), |span| places.at(span.start));
-        FormatError::malformed(format!("this is no TOML: {}", e.message()), at)
+        FormatError::malformed(format!("this is not TOML: {}", e.message()), at)
     })?;
     table(document.get_ref(), Span { line: 1, column: 1, ..whole_file(name) }, &places)
 }
@@ -74,7 +74,7 @@ fn item(value: &DeValue, at: Span, places: &Places) -> Result<Item, FormatError>
         },
         DeValue::Float(x) => match x.as_str().parse() {
             Ok(x) => Node::Number(x),
-            Err(_) => return refuse("this is no number"),
+            Err(_) => return refuse("this is not a number"),
         },
         DeValue::Datetime(_) => return refuse("a scene has no dates: write text in quotes, or seconds"),
         DeValue::Array(array) => {

@@ -21,6 +21,7 @@ pub use shapes::{SHAPES, ShapeEntry};
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -31,6 +32,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     },
     extensions: &["toml"],
     capabilities: &[
+        "points and lines",
         "models",
         "instances",
         "transforms",
@@ -43,6 +45,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "settings",
     ],
     sniff,
+    up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(scene::read)),
     write: Some(write::write),
 };

@@ -10,6 +10,7 @@ use super::specs::{missing, plain_value};
 use crate::FormatError;
 use crate::formats::{format_named, read_file, unknown};
 use bilux_math::registry::{Entry, ParameterKind};
+use bilux_math::{DMat4, Transform};
 use bilux_scene::generators::GENERATORS;
 use bilux_scene::{Mesh, Object, Reader, SceneBuilder, SceneError, Spec, Value};
 use std::collections::HashMap;
@@ -133,6 +134,15 @@ impl Native<'_, '_> {
         let shown = Path::new(&*table.at.file).with_file_name(name).display().to_string();
         let mut model = read_file(Some(row), self.reading, path, &shown.into())?;
         self.reading.leave();
+        // Where it is placed its own coordinates count.
+        let origin = std::mem::take(&mut model.origin);
+        if let Some(origin) =
+            Transform::from_matrix(DMat4::from_translation(origin)).filter(|t| !t.is_identity())
+        {
+            let moved =
+                model.objects.iter_mut().filter_map(|object| Some((object.motion.then(&origin)?, object)));
+            moved.for_each(|(motion, object)| object.motion = motion);
+        }
         self.scene.warnings.append(&mut model.warnings);
         self.scene.inventory.animations.extend(model.inventory.animations.iter().cloned());
         let model = Arc::new(model);

@@ -194,7 +194,7 @@ fn read_matrix(item: &Item) -> Result<Transform, FormatError> {
     let matrix = DMat4::from_cols_array(&numbers).transpose();
     Transform::from_matrix(matrix).ok_or_else(|| {
         let message =
-            "this matrix places nothing: it has to be invertible, finite, and end in the row [0, 0, 0, 1]";
+            "this matrix places nothing: it must be invertible, finite, and end in the row [0, 0, 0, 1]";
         SceneError::invalid(message, &item.at).into()
     })
 }

@@ -50,7 +50,10 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     native.replace(&replaced)?;
     let mut scene = native.scene;
     if scene.objects.is_empty() && scene.lights.is_empty() {
-        scene.warn("there is no [[model]] in it, so that nothing can be seen", whole_file(source.name));
+        scene.warn(
+            "there is no [[model]] in it, and so there is nothing to render: add one",
+            whole_file(source.name),
+        );
     }
     Ok(scene)
 }

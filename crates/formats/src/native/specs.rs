@@ -143,13 +143,23 @@ impl Native<'_, '_> {
             Ok(texture) => Ok(Some(Arc::new(placed(&texture, table)?))),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
-                let checker = (holds == Texels::Colours).then(|| Arc::new(Texture::missing(name)));
-                let stands = match checker {
-                    Some(_) => "a checker of magenta stands in place of a texture".to_owned(),
-                    None => format!("the default of '{key}' stands in place of a texture"),
+                // Magenta light would colour all of the scene.
+                let (stands_in, texture) = match holds {
+                    Texels::Colours if key == "radiance" => (
+                        "a texture is replaced by an even grey of 0.5".to_owned(),
+                        Some(Texture::missing_light(name)),
+                    ),
+                    Texels::Colours => (
+                        "a texture is replaced by a magenta checker".to_owned(),
+                        Some(Texture::missing(name)),
+                    ),
+                    Texels::Numbers(_) => {
+                        (format!("the default of '{key}' stands in place of a texture"), None)
+                    }
                 };
-                self.scene.warn(format!("{stands}: {}", error.without_place()), file.at.clone());
-                Ok(checker)
+                let message = format!("{stands_in}: {}", error.without_place());
+                self.scene.warn(message, file.at.clone());
+                Ok(texture.map(Arc::new))
             }
         }
     }

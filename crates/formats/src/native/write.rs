@@ -179,9 +179,8 @@ fn texture_text(
 ) -> Result<String, FormatError> {
     let Some(formula) = texture.formula() else {
         if texture.second_uv {
-            writing.warn(
-                "the second texture coordinates of meshes are not written: the first stand in their place",
-            );
+            writing
+                .warn("the second texture coordinates of meshes are not written: the first are used instead");
         }
         let texels = Texture { threshold: None, ..Texture::clone(texture) };
         let mut out = format!("{{ texture = {}", quoted(&writing.texture_file(&texels)?));

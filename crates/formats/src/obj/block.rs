@@ -1,13 +1,15 @@
 //! The lines of one block of an OBJ file, read by themselves: what earlier blocks say is added when they are joined.
 
+use super::index::{Index, index};
+use super::strokes::Stroke;
 use crate::FormatError;
 use crate::budget::Budget;
-use crate::float::parse_f32;
+use crate::float::{parse_f32, parse_f64};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::Oddities;
 use crate::soup::{Corner, NONE};
 use crate::text::{Cursor, Place, name_of, quoted};
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
 
@@ -25,6 +27,8 @@ pub(super) struct Block {
     pub(super) places: Vec<Place>,
     /// Corners that count backwards from where they stand.
     pub(super) backward: Vec<Backward>,
+    /// Points and lines.
+    pub(super) strokes: Vec<Stroke>,
     /// What changes between faces, in order.
     pub(super) turns: Vec<(usize, Turn)>,
     pub(super) oddities: Oddities,
@@ -32,6 +36,8 @@ pub(super) struct Block {
     pub(super) lines: u32,
     /// What reading the block has taken of the budget.
     pub(super) spent: u64,
+    /// The first element that is left out because of what is wrong with it.
+    pub(super) fault: Option<FormatError>,
     /// What ended it early.
     pub(super) failure: Option<FormatError>,
 }
@@ -74,35 +80,49 @@ impl Block {
         self.places.clear();
         self.backward.clear();
         self.turns.clear();
-        Block { oddities: Oddities::default(), failure: None, ..self }
+        self.strokes.clear();
+        Block { oddities: Oddities::default(), fault: None, failure: None, ..self }
     }
 }
 
 /// Reads a block of whole lines into one that is empty.
-pub(super) fn read_block(text: &[u8], file: &Arc<str>, budget: &Budget, block: Block) -> Block {
+pub(super) fn read_block(
+    text: &[u8],
+    (file, origin): (&Arc<str>, DVec3),
+    budget: &Budget,
+    block: Block,
+) -> Block {
     let cursor = Cursor::joining_lines(text);
-    let mut reader = Reader { cursor, file, budget: budget.clone(), block };
+    let mut reader = Reader { cursor, file, origin, budget: budget.clone(), block };
     let failure = reader.statements().err();
     let spent = reader.budget.spent() - budget.spent();
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
 }
 
-/// What is wrong with a corner; `at` is where it stands.
+/// What is wrong with a corner.
 #[cold]
-pub(super) fn bad_corner(word: &[u8], at: Span) -> FormatError {
-    let message = format!(
-        "{} is no corner of a face: it has to be a vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
+pub(super) fn bad_corner(word: &[u8]) -> String {
+    format!(
+        "{} is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or vertex/uv/normal, each \
          counted from 1, or backwards from -1",
         quoted(word)
-    );
-    FormatError::malformed(message, at)
+    )
 }
 
-struct Reader<'a> {
-    cursor: Cursor<'a>,
-    file: &'a Arc<str>,
-    budget: Budget,
-    block: Block,
+/// What becomes of elements that cannot be read.
+const VERTEX_LEFT_OUT: &str = ": this vertex is left out, and with it the faces that it is a corner of";
+const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is taken as 0";
+const FACE_LEFT_OUT: &str = ": this face is left out";
+/// Of these it is known only when blocks are joined.
+pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
+
+pub(super) struct Reader<'a> {
+    pub(super) cursor: Cursor<'a>,
+    pub(super) file: &'a Arc<str>,
+    /// What positions are counted from.
+    origin: DVec3,
+    pub(super) budget: Budget,
+    pub(super) block: Block,
 }
 
 impl<'a> Reader<'a> {
@@ -115,6 +135,8 @@ impl<'a> Reader<'a> {
                 b"vt" => self.texture_coordinates()?,
                 b"vn" => self.normal()?,
                 b"f" | b"fo" => self.face(start)?,
+                b"l" => self.strokes(start, false)?,
+                b"p" => self.strokes(start, true)?,
                 b"o" | b"g" => {
                     let name = name_of(self.cursor.rest_of_line());
                     self.turn(Turn::Name(name));
@@ -143,20 +165,22 @@ impl<'a> Reader<'a> {
     }
 
     /// Where a byte of this line stands.
-    fn at(&self, offset: usize) -> Span {
+    pub(super) fn at(&self, offset: usize) -> Span {
         self.cursor.place(offset).in_file(self.file)
     }
 
-    fn note(&mut self, what: &str, at: Place) {
+    pub(super) fn note(&mut self, what: &str, at: Place) {
         let file = self.file;
         self.block.oddities.note(what, || at.in_file(file));
     }
 
     fn turn(&mut self, turn: Turn) {
         let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
+        let is_drawn_with = self.block.strokes.last().is_some_and(|stroke| stroke.turns == turns.len());
         // Of several of a kind that no face stands between the last one counts.
         if let Some((before, last)) = turns.last_mut()
             && *before == faces
+            && !is_drawn_with
             && !matches!(turn, Turn::Libraries(..))
             && std::mem::discriminant(last) == std::mem::discriminant(&turn)
         {
@@ -169,7 +193,18 @@ impl<'a> Reader<'a> {
     /// `v x y z [w]` or `v x y z r g b`.
     fn vertex(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 8];
-        let count = self.numbers(&mut numbers, 3)?;
+        let mut again = (self.origin != DVec3::ZERO).then(|| self.cursor.clone());
+        let mut count = self.numbers(&mut numbers, 3, VERTEX_LEFT_OUT);
+        if count == 0 {
+            // Its number is kept, so that the faces after it name the right ones.
+            (numbers, count) = ([f32::NAN; 8], 3);
+        } else if let Some(again) = &mut again {
+            // With all of their digits.
+            for (number, origin) in numbers.iter_mut().zip(self.origin.to_array()) {
+                let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
+                *number = (wide - origin) as f32;
+            }
+        }
         self.budget.take::<Vec3>(1, self.file)?;
         let block = &mut self.block;
         block.positions.push(Vec3::from_slice(&numbers));
@@ -187,7 +222,7 @@ impl<'a> Reader<'a> {
 
     fn texture_coordinates(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 1)?;
+        self.numbers(&mut numbers, 1, ATTRIBUTE_LEFT_OUT);
         self.budget.take::<Vec2>(1, self.file)?;
         self.block.uvs.push(Vec2::from_slice(&numbers));
         Ok(())
@@ -195,15 +230,15 @@ impl<'a> Reader<'a> {
 
     fn normal(&mut self) -> Result<(), FormatError> {
         let mut numbers = [0.0; 4];
-        self.numbers(&mut numbers, 3)?;
+        self.numbers(&mut numbers, 3, ATTRIBUTE_LEFT_OUT);
         self.budget.take::<Vec3>(1, self.file)?;
         self.block.normals.push(Vec3::from_slice(&numbers));
         Ok(())
     }
 
-    /// The numbers of a statement, `least` of them or more; how many there are.
+    /// The numbers of a statement, `least` of them or more; how many there are, or 0 where they cannot be read.
     #[inline]
-    fn numbers(&mut self, numbers: &mut [f32], least: usize) -> Result<usize, FormatError> {
+    fn numbers(&mut self, numbers: &mut [f32], least: usize, left_out: &str) -> usize {
         let mut count = 0;
         let mut odd = false;
         while count < numbers.len() {
@@ -217,22 +252,35 @@ impl<'a> Reader<'a> {
                 None if word.is_empty() || word.starts_with(b"#") => break,
                 None => {
                     let at = self.at(self.cursor.offset() - word.len());
-                    return Err(FormatError::malformed(format!("{} is no number", quoted(word)), at));
+                    self.fault(format!("{} is not a number", quoted(word)), left_out, at);
+                    numbers.fill(0.0);
+                    return 0;
                 }
             }
         }
         if count < least {
             let at = self.at(self.cursor.offset());
-            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
-            let message =
-                format!("there are {count} numbers on this line, where {least} are needed{cut_off}");
-            return Err(FormatError::malformed(message, at));
+            let cut_off = if self.cursor.is_done() { ", as the file was cut off here" } else { "" };
+            let message = format!("this line has {count} numbers and needs {least}{cut_off}");
+            self.fault(message, left_out, at);
+            numbers.fill(0.0);
+            return 0;
         }
         if odd {
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.note(what, self.cursor.place(self.cursor.offset()));
         }
-        Ok(count)
+        count
+    }
+
+    /// Notes that an element is left out, and why.
+    #[cold]
+    pub(super) fn fault(&mut self, message: String, left_out: &str, at: Span) {
+        if self.block.fault.is_none() {
+            self.block.fault = Some(FormatError::malformed(message.clone(), at.clone()));
+        }
+        self.block.oddities.note_first(left_out, || message, || at);
+        self.pass_line();
     }
 
     fn face(&mut self, start: Place) -> Result<(), FormatError> {
@@ -242,7 +290,13 @@ impl<'a> Reader<'a> {
             if word.is_empty() || word.starts_with(b"#") {
                 break;
             }
-            let corner = self.corner(word)?;
+            let Some(corner) = self.corner(word) else {
+                self.block.corners.truncate(first);
+                self.block.backward[backward..].iter_mut().for_each(|left_out| left_out.corner = None);
+                let at = self.at(self.cursor.offset() - word.len());
+                self.fault(bad_corner(word), FACE_LEFT_OUT, at);
+                return Ok(());
+            };
             self.block.corners.push(corner);
             if (self.block.corners.len() - first).is_multiple_of(MANY) {
                 self.budget.take::<Corner>(MANY, self.file)?;
@@ -268,25 +322,23 @@ impl<'a> Reader<'a> {
 
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[inline]
-    fn corner(&mut self, word: &[u8]) -> Result<Corner, FormatError> {
+    fn corner(&mut self, word: &[u8]) -> Option<Corner> {
         let mut corner = [NONE; 3];
         let mut rest = word;
         for part in 0..3 {
             let length = rest.iter().position(|&b| b == b'/').unwrap_or(rest.len());
             if length > 0 {
-                corner[part] = match index(&rest[..length]) {
-                    Some(Index::Forward(index)) => index,
-                    Some(Index::Backward(back)) => self.backward(word, part, back),
-                    None => return Err(self.bad_corner(word)),
+                corner[part] = match index(&rest[..length])? {
+                    Index::Forward(index) => index,
+                    Index::Backward(back) => self.backward(word, part, back),
                 };
             }
             match rest.get(length + 1..) {
                 Some(after) => rest = after,
-                None if corner[0] == NONE => return Err(self.bad_corner(word)),
-                None => return Ok(corner),
+                None => return Some(corner).filter(|corner| corner[0] != NONE),
             }
         }
-        Err(self.bad_corner(word))
+        None
     }
 
     /// Notes a part of a corner that counts backwards, and gives what stands in its place until it is known.
@@ -302,11 +354,6 @@ impl<'a> Reader<'a> {
         0
     }
 
-    #[cold]
-    fn bad_corner(&self, word: &[u8]) -> FormatError {
-        bad_corner(word, self.at(self.cursor.offset() - word.len()))
-    }
-
     /// `s off` and `s 0` are flat, any other number is a group that is smooth.
     fn smoothing_group(&mut self, start: Place) -> Result<(), FormatError> {
         let word = self.cursor.word();
@@ -317,8 +364,9 @@ impl<'a> Reader<'a> {
             (_, Some(group)) => group.min(BY_ANGLE - 1),
             _ => {
                 let message =
-                    format!("{} is no smoothing group: it has to be a number or 'off'", quoted(word));
-                return Err(FormatError::malformed(message, start.in_file(self.file)));
+                    format!("{} is not a smoothing group, which is a number or 'off'", quoted(word));
+                self.fault(message, ": this line is left out", start.in_file(self.file));
+                return Ok(());
             }
         };
         self.turn(Turn::Smoothing(smoothing));
@@ -327,76 +375,25 @@ impl<'a> Reader<'a> {
 
     fn other_statement(&mut self, word: &[u8], start: Place) -> Result<(), FormatError> {
         let what = match word {
-            b"l" | b"p" => "lines and points are not drawn".to_owned(),
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
                 "free-form curves and surfaces are not drawn".to_owned()
             }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
             | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
-                format!("the statement {} is left out", quoted(word))
+                format!("the statement {} is ignored", quoted(word))
             }
             _ => {
                 let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
                 if !readable {
-                    let message = format!("{} is no statement of an OBJ file", quoted(word));
+                    let message = format!("{} is not a statement of an OBJ file", quoted(word));
                     return Err(FormatError::malformed(message, start.in_file(self.file)));
                 }
-                format!("the unknown statement {} is left out", quoted(word))
+                format!("the unknown statement {} is ignored", quoted(word))
             }
         };
         self.note(&what, start);
         self.pass_line();
         Ok(())
-    }
-}
-
-/// An index as OBJ counts, as one from 0, or how far back it lies.
-#[derive(Debug, PartialEq)]
-enum Index {
-    Forward(u32),
-    Backward(i64),
-}
-
-/// An index as OBJ counts, from 1, or backwards from -1; whether it exists is looked at when that is known.
-#[inline]
-fn index(text: &[u8]) -> Option<Index> {
-    let (negative, digits) = match text {
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        _ => (false, text),
-    };
-    if digits.is_empty() || digits.len() > 10 {
-        return None;
-    }
-    let mut number = 0i64;
-    for &digit in digits {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        number = number * 10 + i64::from(digit - b'0');
-    }
-    if number == 0 {
-        return None;
-    }
-    if negative {
-        return Some(Index::Backward(number));
-    }
-    u32::try_from(number - 1).ok().filter(|&i| i != NONE).map(Index::Forward)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn indices_count_from_one_or_backwards() {
-        assert_eq!(index(b"1"), Some(Index::Forward(0)));
-        assert_eq!(index(b"+7"), Some(Index::Forward(6)));
-        assert_eq!(index(b"-1"), Some(Index::Backward(1)));
-        assert_eq!(index(b"-8"), Some(Index::Backward(8)));
-        for bad in ["0", "-0", "", "-", "1.5", "4294967296", "99999999999"] {
-            assert_eq!(index(bad.as_bytes()), None, "{bad}");
-        }
     }
 }

@@ -151,10 +151,7 @@ impl Library<'_, '_, '_> {
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
                 let reason = error.without_place();
-                scene.warn(
-                    format!("a checker of magenta stands in place of a texture: {reason}"),
-                    map.at.clone(),
-                );
+                scene.warn(format!("a texture is replaced by a magenta checker: {reason}"), map.at.clone());
                 Ok(Texture::missing(&map.file))
             }
         }

@@ -1,16 +1,19 @@
 //! Wavefront OBJ with MTL. See `docs/formats/obj.md`.
 
 mod block;
+mod index;
 mod maps;
 mod mtl;
 mod mtl_write;
 mod read;
+mod strokes;
 mod surface;
 mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use crate::text::Cursor;
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -20,8 +23,18 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         parameters: &[],
     },
     extensions: &["obj"],
-    capabilities: &["polygons", "normals", "uv", "vertex-kd", "objects", "materials", "textures"],
+    capabilities: &[
+        "points and lines",
+        "polygons",
+        "normals",
+        "uv",
+        "vertex-kd",
+        "objects",
+        "materials",
+        "textures",
+    ],
     sniff,
+    up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Flowing(read::read)),
     write: Some(write::write),
 };

@@ -42,7 +42,8 @@ pub(super) fn read_library(
             }
             (key, Some(draft)) => library.statement(key, start, draft)?,
             (_, None) => {
-                let message = format!("{} stands before the first 'newmtl'", quoted(key));
+                let message =
+                    format!("{} comes before the first 'newmtl', which begins a material", quoted(key));
                 return Err(FormatError::malformed(message, library.places.at(start)));
             }
         }
@@ -144,7 +145,7 @@ impl Library<'_, '_, '_> {
         } else {
             if known(&WITHOUT_USE).is_none() {
                 let places = &self.places;
-                let what = format!("{} of a material is not used", quoted(key));
+                let what = format!("{} of a material is ignored", quoted(key));
                 self.oddities.note(&what, || places.at(start));
             }
             self.cursor.rest_of_line();
@@ -182,12 +183,12 @@ impl Library<'_, '_, '_> {
             Some(value) if value.is_finite() => Ok(Some(value)),
             Some(_) => {
                 let places = &self.places;
-                let what = "a value of a material is infinite or no number; it is not used";
+                let what = "a value of a material is infinite or not a number (NaN), and is ignored";
                 self.oddities.note(what, || places.at(offset));
                 Ok(None)
             }
             None => {
-                let message = format!("{} stands where a number should", quoted(word));
+                let message = format!("{} is not a number", quoted(word));
                 Err(FormatError::malformed(message, self.places.at(offset)))
             }
         }

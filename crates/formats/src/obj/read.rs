@@ -1,7 +1,8 @@
 //! Reading an OBJ file, block by block.
 
-use super::block::{Block, Turn, bad_corner, read_block};
+use super::block::{BACKWARD_LEFT_OUT, Block, Turn, bad_corner, read_block};
 use super::mtl::read_library;
+use super::strokes::{Stroke, Strokes};
 use crate::FormatError;
 use crate::blocks::Blocks;
 use crate::normals::{BY_ANGLE, Smoothing};
@@ -37,14 +38,15 @@ fn read_in_blocks(
         reading,
         source,
         lines: 0,
-        soup: Soup { first_vertex: 1, ..Soup::default() },
-        scene: SceneBuilder::default(),
+        soup: Soup { first_vertex: 1, leaves_out: true, ..Soup::default() },
+        scene: SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() },
         materials: HashMap::new(),
         oddities: Oddities::default(),
         name: String::new(),
         material: None,
         smoothing: BY_ANGLE,
         in_run: false,
+        strokes: Strokes::default(),
     };
     reader.blocks(&mut Blocks::new(from, size)).map_err(|error| no_text(error, source))?;
     reader.finish()
@@ -65,6 +67,7 @@ struct Obj<'a, 'o, 'r> {
     smoothing: Smoothing,
     /// False when the next face begins a new run.
     in_run: bool,
+    strokes: Strokes,
 }
 
 impl Obj<'_, '_, '_> {
@@ -81,9 +84,9 @@ impl Obj<'_, '_, '_> {
                 self.reading.budget.take_bytes(text.len() as u64, file)?;
                 texts.push(text);
             }
-            let budget = &self.reading.budget;
+            let (budget, origin) = (&self.reading.budget, self.reading.origin);
             spare.resize_with(texts.len(), Block::default);
-            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, file, budget, block);
+            let parse = |(block, text): (Block, &Vec<u8>)| read_block(text, (file, origin), budget, block);
             let parts: Vec<Block> = match texts.len() {
                 0 => return Ok(()),
                 1 => spare.drain(..).zip(&texts).map(parse).collect(),
@@ -101,24 +104,25 @@ impl Obj<'_, '_, '_> {
     /// Adds what a block says to what those before it said.
     fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
         self.reading.budget.take_bytes(block.spent, self.source.name)?;
-        self.turn_round(block, text)?;
+        self.turn_round(block, text);
         self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
         self.add_colours(block)?;
+        let before = self.soup.positions.len();
         let soup = &mut self.soup;
         soup.positions.append(&mut block.positions);
         soup.uvs.append(&mut block.uvs);
         soup.normals.append(&mut block.normals);
         let corners = soup.faces.corner_count() + block.corners.len();
         let most = [soup.positions.len(), soup.uvs.len(), soup.normals.len(), corners];
-        self.add_faces(block)?;
+        self.add_faces(block, before)?;
         let end = Place { line: 1, column: 1 }.after(self.lines).after(block.lines);
         self.lines = self.lines.saturating_add(block.lines);
+        let before = end.line - 1 - block.lines;
+        if let Some(fault) = block.fault.take().map(|fault| moved_down(fault, before)) {
+            self.set_fault(fault);
+        }
         match block.failure.take() {
-            Some(FormatError::Malformed { message, mut at }) => {
-                at.line = at.line.saturating_add(end.line - 1 - block.lines);
-                Err(FormatError::Malformed { message, at })
-            }
-            Some(error) => Err(error),
+            Some(error) => Err(moved_down(error, before)),
             // Indices are 32-bit numbers, and the last one means that there is none.
             None if most.iter().any(|&count| count as u64 >= u64::from(NONE)) => {
                 let message = "there are more than 4 billion vertices or corners: cut the file into several";
@@ -128,26 +132,44 @@ impl Obj<'_, '_, '_> {
         }
     }
 
+    /// Keeps the fault that stands first.
+    fn set_fault(&mut self, fault: FormatError) {
+        let line = |fault: &FormatError| match fault {
+            FormatError::Malformed { at, .. } => at.line,
+            _ => 0,
+        };
+        if self.soup.first_fault.as_ref().is_none_or(|first| line(&fault) < line(first)) {
+            self.soup.first_fault = Some(fault);
+        }
+    }
+
     /// Gives corners that count backwards their indices.
-    fn turn_round(&self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
-        let soup = &self.soup;
-        let before = [soup.positions.len(), soup.uvs.len(), soup.normals.len()];
+    fn turn_round(&mut self, block: &mut Block, text: &[u8]) {
+        let before = [self.soup.positions.len(), self.soup.uvs.len(), self.soup.normals.len()];
+        let mut is_first = true;
         for backward in &block.backward {
             let index = before[backward.part as usize] as i64 + backward.index;
-            let index = u32::try_from(index).ok().filter(|&index| index != NONE).ok_or_else(|| {
+            let index = u32::try_from(index).ok().filter(|&index| index != NONE).unwrap_or_else(|| {
+                // Lines are counted once a block: a file may have as many of these as it has corners.
+                if !std::mem::take(&mut is_first) {
+                    self.oddities.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
+                    return NONE;
+                }
                 let mut cursor = Cursor::joining_lines(text);
                 cursor.go_to(backward.offset);
                 let mut at = Places::new(self.source.name, text).at(backward.offset);
                 at.line = at.line.saturating_add(self.lines);
-                bad_corner(cursor.word(), at)
-            })?;
+                let message = bad_corner(cursor.word());
+                self.set_fault(FormatError::malformed(message.clone(), at.clone()));
+                self.oddities.note_first(BACKWARD_LEFT_OUT, || message, || at);
+                NONE
+            });
             // A face that something was wrong with may have ended before its corner was there.
             let corner = backward.corner.and_then(|corner| block.corners.get_mut(corner as usize));
             if let Some(corner) = corner {
                 corner[backward.part as usize] = index;
             }
         }
-        Ok(())
     }
 
     /// Where one vertex has a colour all have.
@@ -163,10 +185,14 @@ impl Obj<'_, '_, '_> {
         Ok(())
     }
 
-    fn add_faces(&mut self, block: &mut Block) -> Result<(), FormatError> {
-        let mut next = 0;
-        for (face, turn) in std::mem::take(&mut block.turns) {
+    /// Adds faces, points and lines, which stand behind so many vertices of earlier blocks.
+    fn add_faces(&mut self, block: &mut Block, before: usize) -> Result<(), FormatError> {
+        let (mut next, mut strokes) = (0, block.strokes.iter().peekable());
+        for (turns, (face, turn)) in std::mem::take(&mut block.turns).into_iter().enumerate() {
             self.faces_up_to(face, &mut next, block)?;
+            while let Some(stroke) = strokes.next_if(|stroke| stroke.turns <= turns) {
+                self.add_stroke(stroke, before)?;
+            }
             match turn {
                 Turn::Name(name) => (self.name, self.in_run) = (name, false),
                 Turn::Material(name, place) => {
@@ -179,7 +205,18 @@ impl Obj<'_, '_, '_> {
                 }
             }
         }
-        self.faces_up_to(block.ends.len(), &mut next, block)
+        self.faces_up_to(block.ends.len(), &mut next, block)?;
+        strokes.try_for_each(|stroke| self.add_stroke(stroke, before))
+    }
+
+    fn add_stroke(&mut self, stroke: &Stroke, before: usize) -> Result<(), FormatError> {
+        self.reading.budget.take::<[u32; 2]>(1, self.source.name)?;
+        let place = stroke.place.after(self.lines);
+        let run = || Run { first_face: 0, name: self.name.clone(), material: self.material.clone() };
+        self.strokes.add(stroke, before, run, place.key()).ok_or_else(|| {
+            let message = "this point or line names a vertex that the file does not have";
+            FormatError::malformed(message, place.in_file(self.source.name))
+        })
     }
 
     fn faces_up_to(&mut self, end: usize, next: &mut usize, block: &Block) -> Result<(), FormatError> {
@@ -243,19 +280,39 @@ impl Obj<'_, '_, '_> {
     }
 
     fn finish(self) -> Result<SceneBuilder, FormatError> {
-        let Obj { reading, source, mut scene, materials, mut oddities, soup, .. } = self;
-        if soup.faces.is_empty() {
-            let message = if soup.positions.is_empty() {
-                "there is no face in it: is this an OBJ file?"
-            } else {
-                "there is no face in it, only points or lines, which are not drawn"
-            };
+        let Obj { reading, source, mut scene, mut materials, mut oddities, mut soup, mut strokes, .. } = self;
+        if let Some(fault) = soup.first_fault.take_if(|_| soup.faces.is_empty() && strokes.is_empty()) {
+            return Err(fault);
+        }
+        if soup.positions.is_empty() {
+            let message = "the file has no faces and no vertices: is this an OBJ file?";
             return Err(FormatError::malformed(message, whole_file(source.name)));
         }
+        if soup.faces.is_empty() && strokes.is_empty() {
+            // What has vertices alone is a cloud of points.
+            reading.budget.take::<u32>(soup.positions.len(), source.name)?;
+            strokes.add_all(soup.positions.len(), source.stem());
+        }
         let place = |key: u64| Place::of_key(key).in_file(source.name);
+        strokes.into_objects(reading, source, &place, &soup, &mut materials, &mut scene, &mut oddities)?;
+        if soup.faces.is_empty() {
+            oddities.into_warnings(&mut scene);
+            return Ok(scene);
+        }
         assemble(reading, source, &place, soup, materials, &mut scene, &mut oddities)?;
         oddities.into_warnings(&mut scene);
         Ok(scene)
+    }
+}
+
+/// The same error where so many lines stand before.
+fn moved_down(error: FormatError, lines: u32) -> FormatError {
+    match error {
+        FormatError::Malformed { message, mut at } => {
+            at.line = at.line.saturating_add(lines);
+            FormatError::Malformed { message, at }
+        }
+        error => error,
     }
 }
 

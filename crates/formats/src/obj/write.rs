@@ -79,6 +79,13 @@ fn faces(mesh: &Mesh, counts: &mut Counts, out: &mut Vec<u8>) {
         }
         out.push(b'\n');
     }
+    for point in &mesh.points {
+        out.extend_from_slice(format!("p {}\n", counts.positions + *point as usize).as_bytes());
+    }
+    for line in &mesh.lines {
+        let [a, b] = line.map(|i| counts.positions + i as usize);
+        out.extend_from_slice(format!("l {a} {b}\n").as_bytes());
+    }
     counts.positions += mesh.positions.len();
     counts.uvs += mesh.uvs.len();
     counts.normals += mesh.normals.len();

@@ -5,6 +5,7 @@ mod write;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 use read::Columns;
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
@@ -19,6 +20,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     sniff: |bytes| {
         Columns::of_word(bytes.split(u8::is_ascii_whitespace).next().unwrap_or_default()).is_some()
     },
+    up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };

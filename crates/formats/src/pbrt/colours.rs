@@ -106,6 +106,14 @@ mod tests {
         assert!((0..3).all(|i| (white[i] - 1.0).abs() < 1e-4), "{white:?}");
     }
 
+    /// By the matrix of the standard, not by primaries: X = 1.0985 and Z = 0.3558 of illuminant A. [IEC 61966-2-1; CIE 15]
+    #[test]
+    fn the_light_of_a_bulb_has_the_colour_that_the_standard_says() {
+        let bulb = of_chromaticity([0.44757, 0.40745]);
+        let wanted = [1.845, 0.826, 0.233];
+        assert!((0..3).all(|i| (bulb[i] - wanted[i]).abs() < 3e-3), "{bulb:?}");
+    }
+
     #[test]
     fn red_of_a_wider_space_is_clipped() {
         let red = ColourSpace::Rec2020.light(Rgb::new(1.0, 0.0, 0.0));

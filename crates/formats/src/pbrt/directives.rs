@@ -12,7 +12,7 @@ use bilux_math::DMat4;
 use bilux_scene::{SceneError, Span};
 use std::sync::Arc;
 
-/// Every directive; those of version 3 among them.
+/// Every directive; those of versions 2 and 3 among them.
 const DIRECTIVES: &[&str] = &[
     "Accelerator",
     "ActiveTransform",
@@ -42,17 +42,20 @@ const DIRECTIVES: &[&str] = &[
     "ObjectInstance",
     "Option",
     "PixelFilter",
+    "Renderer",
     "ReverseOrientation",
     "Rotate",
     "Sampler",
     "Scale",
     "Shape",
+    "SurfaceIntegrator",
     "Texture",
     "Transform",
     "TransformBegin",
     "TransformEnd",
     "TransformTimes",
     "Translate",
+    "VolumeIntegrator",
     "WorldBegin",
     "WorldEnd",
 ];
@@ -89,7 +92,9 @@ pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError>
             | b"ConcatTransform" | b"CoordinateSystem" | b"CoordSysTransform" | b"ActiveTransform"
             | b"TransformTimes" => directive.transform(word)?,
             b"Camera" | b"Film" | b"PixelFilter" | b"Sampler" | b"Integrator" | b"Accelerator"
-            | b"ColorSpace" | b"Option" => directive.option(word)?,
+            | b"ColorSpace" | b"Option" | b"SurfaceIntegrator" | b"VolumeIntegrator" | b"Renderer" => {
+                directive.option(word)?;
+            }
             b"Material" | b"MakeNamedMaterial" | b"NamedMaterial" | b"Texture" => directive.surface(word)?,
             b"MakeNamedMedium" | b"MediumInterface" => directive.medium(word)?,
             b"LightSource" | b"AreaLightSource" => directive.light(word)?,
@@ -157,8 +162,10 @@ impl Directive<'_, '_, '_, '_> {
             return self.error("nothing is open here that this could end: take it out");
         };
         if (began == Opened::Object) != (opened == Opened::Object) {
-            return self
-                .error(format!("this does not end what began at {at}: ends belong to the last beginning"));
+            // Version 3 keeps one stack for both, and its own scenes have them crossed.
+            let what =
+                "an object and attributes are not nested in each other: each end closes what began last";
+            self.pbrt.oddities.note(what, || at);
         }
         if began == Opened::Transform {
             // Of version 3: all but transforms stays.

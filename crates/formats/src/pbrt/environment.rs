@@ -5,7 +5,6 @@ use super::lights::picture_name;
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
 use crate::FormatError;
-use crate::reading::Texels;
 use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};
 use bilux_math::{DMat4, DVec3, Rgb};
 use bilux_scene::{Spec, Texture, Value};
@@ -37,7 +36,7 @@ pub(super) fn infinite(
         let message = "'L' and 'filename' both say what this light gives: take one of them out";
         return Err(FormatError::malformed(message, list.place("L")));
     }
-    let picture = pbrt.file(&name, Texels::Colours, &at)?;
+    let picture = pbrt.light_file(&name, &at)?;
     let is_square = picture.width() == picture.height();
     if !is_square && !is_old {
         let what = "the picture of an infinite light is no square: taken as one by longitude and latitude";
@@ -195,6 +194,26 @@ mod tests {
         }
         let mean = (n * m) as f64 / 16.0;
         assert!(counts.iter().all(|&c| (f64::from(c) / mean - 1.0).abs() < 0.03), "{counts:?}");
+    }
+
+    /// Worked out by hand from the formulas in the book, so that no axis is mirrored or swapped. [pbrt 2023, 3.8.3]
+    #[test]
+    fn places_on_the_square_are_where_the_book_has_them() {
+        let r = 0.661_438; // 0.5 √1.75
+        for ([u, v], wanted) in [
+            ([0.75, 0.5], DVec3::new(r, 0.0, 0.75)),
+            ([0.5, 0.75], DVec3::new(0.0, r, 0.75)),
+            ([0.25, 0.5], DVec3::new(-r, 0.0, 0.75)),
+            ([0.5, 0.25], DVec3::new(0.0, -r, 0.75)),
+            // In a corner, and so below: r = 0.4, and 0.4 √1.84 / √2 is 0.383 667.
+            ([0.9, 0.9], DVec3::new(0.383_667, 0.383_667, -0.84)),
+            ([0.9, 0.1], DVec3::new(0.383_667, -0.383_667, -0.84)),
+        ] {
+            let found = on_the_sphere(u, v);
+            assert!((found - wanted).length() < 1e-5, "{u} {v}: {found}");
+            let [x, y] = Mapping::Square.place(wanted);
+            assert!((x - u).abs() + (y - v).abs() < 1e-5, "{wanted}: {x} {y}");
+        }
     }
 
     #[test]

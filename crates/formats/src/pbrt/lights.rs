@@ -10,7 +10,6 @@ use super::reader::{Entity, Pbrt};
 use super::state::half_tangent;
 use super::unknown;
 use crate::FormatError;
-use crate::reading::Texels;
 use bilux_math::transcendental::cos_f64;
 use bilux_math::{DMat4, DVec3, Rgb, Vec3};
 use bilux_scene::{SceneError, Spec};
@@ -96,7 +95,7 @@ impl Pbrt<'_, '_> {
                     return Err(FormatError::malformed(message, list.place("L")));
                 }
                 let at = list.place("filename");
-                let picture = self.file(name, Texels::Colours, &at)?;
+                let picture = self.light_file(name, &at)?;
                 Ink::Picture(Arc::new(picture)).scaled(self.light_scale(list)?)
             }
             None => Ink::Colour(self.shine(list, "L")?),
@@ -209,7 +208,7 @@ fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<
         Some((name, _)) => {
             let what = "a goniometric light shines in all directions alike, by the mean of its picture";
             pbrt.oddities.note(what, || list.at.clone());
-            let picture = pbrt.file(&name, Texels::Colours, &list.place("filename"))?;
+            let picture = pbrt.light_file(&name, &list.place("filename"))?;
             let mean = Ink::Picture(Arc::new(picture)).mean();
             (mean.r + mean.g + mean.b) / 3.0
         }
@@ -223,9 +222,7 @@ fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<O
     let what = "a projection light shines into a cone, by the mean of its picture";
     pbrt.oddities.note(what, || list.at.clone());
     let mean = match picture_name(list)? {
-        Some((name, _)) => {
-            Ink::Picture(Arc::new(pbrt.file(&name, Texels::Colours, &list.place("filename"))?)).mean()
-        }
+        Some((name, _)) => Ink::Picture(Arc::new(pbrt.light_file(&name, &list.place("filename"))?)).mean(),
         None => {
             let what = "filename (of the picture that is thrown)".to_owned();
             return Err(SceneError::Missing { what, at: list.at.clone() }.into());

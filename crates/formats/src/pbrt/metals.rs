@@ -4,9 +4,21 @@ use super::spectra::{Spectrum, under_daylight};
 use bilux_math::Rgb;
 use bilux_scene::materials::metal_indices;
 
-/// The channels of a metal of our table; those of copper where it is none.
+/// Metals of which pbrt's spectra are other measurements than those of our table: the index and the extinction of each
+/// channel, as [`from_spectra`] has them of the spectra that pbrt brings.
+const MEASURED: [(&str, [Rgb; 2]); 4] = [
+    ("aluminium", [Rgb::new(1.431, 0.929, 0.590), Rgb::new(7.748, 6.605, 5.352)]),
+    ("copper", [Rgb::new(0.215, 0.975, 1.209), Rgb::new(4.158, 2.621, 2.364)]),
+    ("gold", [Rgb::new(0.161, 0.413, 1.559), Rgb::new(3.964, 2.360, 1.719)]),
+    ("silver", [Rgb::new(0.130, 0.124, 0.151), Rgb::new(4.118, 3.335, 2.411)]),
+];
+
+/// The channels of one of pbrt's metals by the name that our table has for it; those of copper where it is none.
 pub(super) fn indices(metal: &str) -> [Rgb; 2] {
-    metal_indices(metal).or_else(|| metal_indices("copper")).unwrap_or([Rgb::WHITE; 2])
+    let measured =
+        |metal: &str| MEASURED.iter().find(|(name, _)| *name == metal).map(|(_, indices)| *indices);
+    let known = measured(metal).or_else(|| metal_indices(metal)).or_else(|| measured("copper"));
+    known.unwrap_or([Rgb::WHITE; 2])
 }
 
 /// Cosine of 82 degrees, where metals differ most from Schlick's law.
@@ -31,22 +43,44 @@ pub(super) fn straight_and_grazing([eta, k]: [Rgb; 2], above: f32) -> [Rgb; 2] {
     })
 }
 
-/// For each channel the one index whose reflectance, straight on and at 82 degrees, is that channel of the colour that the
-/// spectra reflect there under daylight. [Gulbrandsen 2014]
-pub(super) fn from_spectra(eta: &Spectrum, k: &Spectrum) -> [Rgb; 2] {
-    let [straight, grazing] = [1.0, COS_82].map(|cos| {
-        let seen =
-            under_daylight(|wavelength| reflectance(cos, eta.at(wavelength).max(1e-3), k.at(wavelength)));
-        seen.to_array()
-    });
-    let pairs = [0, 1, 2].map(|c| fitted(straight[c].clamp(1e-4, 0.999), grazing[c].clamp(1e-4, 0.9999)));
-    [0, 1].map(|i| Rgb::new(pairs[0][i], pairs[1][i], pairs[2][i]))
+/// What three channels make of the two spectra of a metal.
+pub(super) struct Reduced {
+    /// The index and the extinction.
+    pub(super) indices: [Rgb; 2],
+    /// True when sRGB cannot hold the colour, straight on.
+    pub(super) is_cut: bool,
 }
+
+/// For each channel the one index whose reflectance, straight on and at 82 degrees, is that channel of the colour that the
+/// spectra reflect there under daylight. [Gulbrandsen 2014] A channel is at most what the metal reflects of any
+/// wavelength: sRGB's red of gold is above 1, and no index has such a reflectance.
+pub(super) fn from_spectra(eta: &Spectrum, k: &Spectrum) -> Reduced {
+    let mut is_cut = false;
+    let [straight, grazing] = [1.0, COS_82].map(|cos| {
+        let of = |wavelength| reflectance(cos, eta.at(wavelength).max(1e-3), k.at(wavelength));
+        let most = VISIBLE.map(|nm| of(f64::from(nm))).fold(1e-3, f64::max).min(0.999);
+        let seen = under_daylight(of).to_array();
+        is_cut |= cos == 1.0 && seen.iter().any(|c| !(-TOLERANCE..=most + TOLERANCE).contains(c));
+        seen.map(|c| c.clamp(1e-4, most))
+    });
+    let pairs = [0, 1, 2].map(|c| fitted(straight[c], grazing[c]));
+    Reduced { indices: [0, 1].map(|i| Rgb::new(pairs[0][i], pairs[1][i], pairs[2][i])), is_cut }
+}
+
+/// Wavelengths in nm of which eyes see more than a two-hundredth.
+const VISIBLE: std::ops::RangeInclusive<u16> = 420..=700;
+
+/// Less is too little to tell of.
+const TOLERANCE: f64 = 0.005;
+
+/// The greatest that a material may have.
+const GREATEST_INDEX: f64 = 100.0;
 
 /// Of all indices that reflect so much straight on the one that is nearest at 82 degrees.
 fn fitted(straight: f64, grazing: f64) -> [f32; 2] {
     let root = straight.sqrt();
-    let (least, most) = ((1.0 - straight) / (1.0 + straight), (1.0 + root) / (1.0 - root));
+    let least = (1.0 - straight) / (1.0 + straight);
+    let most = ((1.0 + root) / (1.0 - root)).min(GREATEST_INDEX);
     let extinction = |eta: f64| {
         let k2 = (straight * (eta + 1.0) * (eta + 1.0) - (eta - 1.0) * (eta - 1.0)) / (1.0 - straight);
         k2.max(0.0).sqrt()
@@ -67,7 +101,8 @@ mod tests {
 
     #[test]
     fn even_spectra_give_their_own_index_back() {
-        let [eta, k] = from_spectra(&Spectrum::even(1.5), &Spectrum::even(4.0));
+        let Reduced { indices: [eta, k], is_cut } = from_spectra(&Spectrum::even(1.5), &Spectrum::even(4.0));
+        assert!(!is_cut);
         for c in 0..3 {
             let found = [1.0, COS_82].map(|cos| reflectance(cos, f64::from(eta[c]), f64::from(k[c])));
             let wanted = [1.0, COS_82].map(|cos| reflectance(cos, 1.5, 4.0));
@@ -78,9 +113,56 @@ mod tests {
         }
     }
 
+    /// Wavelength, index and extinction of gold as it was measured. [Johnson 1972]
+    const GOLD: [[f64; 3]; 12] = [
+        [397.4, 1.47, 1.952],
+        [413.3, 1.46, 1.958],
+        [430.5, 1.45, 1.948],
+        [450.9, 1.38, 1.914],
+        [471.4, 1.31, 1.849],
+        [495.9, 1.04, 1.833],
+        [520.9, 0.62, 2.081],
+        [548.6, 0.43, 2.455],
+        [582.1, 0.29, 2.863],
+        [616.8, 0.21, 3.272],
+        [659.5, 0.14, 3.697],
+        [704.5, 0.13, 4.103],
+    ];
+
+    /// In sRGB it is (1.037, 0.728, 0.365) of white, and no index reflects more than all.
+    #[test]
+    fn gold_is_redder_than_colours_can_be_and_has_indices_all_the_same() {
+        let part = |i: usize| Spectrum(GOLD.iter().map(|row| [row[0], row[i]]).collect());
+        let Reduced { indices: [eta, k], is_cut } = from_spectra(&part(1), &part(2));
+        assert!(is_cut);
+        let straight = [0, 1, 2].map(|c| reflectance(1.0, f64::from(eta[c]), f64::from(k[c])));
+        for (found, wanted) in straight.into_iter().zip([0.971, 0.728, 0.365]) {
+            assert!((found - wanted).abs() < 0.005, "{straight:?}");
+        }
+        for c in 0..3 {
+            assert!((0.05..2.0).contains(&eta[c]) && (1.0..6.0).contains(&k[c]), "{eta:?} {k:?}");
+        }
+    }
+
+    /// What pbrt's metals reflect straight on, in linear sRGB. [Akenine-Möller 2018, table 9.2] Gold's red is 1.022 there.
+    #[test]
+    fn metals_by_name_have_the_colours_that_tables_have() {
+        for (name, wanted) in [
+            ("aluminium", [0.913, 0.922, 0.924]),
+            ("brass", [0.910, 0.778, 0.423]),
+            ("copper", [0.955, 0.638, 0.538]),
+            ("gold", [0.962, 0.782, 0.344]),
+            ("silver", [0.972, 0.960, 0.915]),
+        ] {
+            let [found, _] = straight_and_grazing(indices(name), 1.0);
+            assert!((0..3).all(|c| (found[c] - wanted[c]).abs() < 1.5e-3), "{name}: {found:?}");
+        }
+    }
+
     #[test]
     fn known_metals_are_known() {
         assert_ne!(indices("gold"), indices("copper"));
+        assert_eq!(indices("brass"), metal_indices("brass").unwrap());
         assert_eq!(indices("nothing"), indices("copper"));
     }
 }

@@ -25,7 +25,7 @@ mod write;
 use crate::FormatError;
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
-use bilux_scene::{SceneError, Span};
+use bilux_scene::{Axis, SceneError, Span, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -51,6 +51,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "settings",
     ],
     sniff,
+    up: UpHint::Is(Axis::Y),
     read: Some(ReadFormat::Whole(reader::read)),
     write: Some(write::write),
 };

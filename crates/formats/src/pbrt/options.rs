@@ -54,7 +54,11 @@ impl Pbrt<'_, '_> {
             "film" => self.options.film = Some(entity),
             "pixelfilter" => self.options.filter = Some(entity),
             "sampler" => self.options.sampler = Some(entity),
-            "integrator" => self.options.integrator = Some(entity),
+            "integrator" | "surfaceintegrator" => self.options.integrator = Some(entity),
+            "volumeintegrator" | "renderer" => {
+                let message = format!("'{what}' of version 2 is not used");
+                self.oddities.note(&message, || entity.at.clone());
+            }
             _ => {}
         }
     }

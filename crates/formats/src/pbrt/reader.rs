@@ -18,6 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let working_folder = reading.options.working_folder.clone();
+    let before = std::mem::replace(&mut reading.working_folder, working_folder);
+    let scene = read_whole(reading, source);
+    reading.working_folder = before;
+    scene
+}
+
+fn read_whole(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut pbrt = Pbrt {
         reading,
         scene: SceneBuilder::default(),
@@ -174,6 +182,10 @@ impl Pbrt<'_, '_> {
                 "what begins here does not end in the file: close it with AttributeEnd or ObjectEnd";
             return Err(FormatError::malformed(message, at.clone()));
         }
+        if let Some((name, _)) = &self.definition {
+            let message = format!("the object '{name}' does not end in the file: close it with ObjectEnd");
+            return Err(FormatError::malformed(message, crate::text::whole_file(source.name)));
+        }
         if !self.in_world {
             self.oddities.note("there is no WorldBegin in it, so that nothing can be seen", || {
                 crate::text::whole_file(source.name)
@@ -184,7 +196,7 @@ impl Pbrt<'_, '_> {
 
     /// Reads another file as if it stood here.
     pub(super) fn include(&mut self, name: &str, at: &Span) -> Result<(), FormatError> {
-        let path = self.reading.locate(self.folder.as_deref(), name, at)?;
+        let path = self.reading.locate_besides(self.folder.as_deref(), name, &self.open, at)?;
         if self.open.contains(&path) {
             let message = format!("'{name}' includes itself, directly or through others: take it out here");
             return Err(FormatError::malformed(message, at.clone()));

@@ -175,14 +175,31 @@ impl Pbrt<'_, '_> {
 
     /// A picture from a file; a checker of magenta, with a warning, where it cannot be had.
     pub(super) fn file(&mut self, name: &str, holds: Texels, at: &Span) -> Result<Texture, FormatError> {
+        self.file_or(name, holds, at, "a checker of magenta", Texture::missing)
+    }
+
+    /// The picture of a light; an even grey, with a warning, where it cannot be had: in any colour the whole scene
+    /// would be lit by it.
+    pub(super) fn light_file(&mut self, name: &str, at: &Span) -> Result<Texture, FormatError> {
+        self.file_or(name, Texels::Colours, at, "an even grey of 0.5", Texture::missing_light)
+    }
+
+    fn file_or(
+        &mut self,
+        name: &str,
+        holds: Texels,
+        at: &Span,
+        stands_in: &str,
+        make: fn(&str) -> Texture,
+    ) -> Result<Texture, FormatError> {
         match self.reading.texture(self.folder.as_deref(), name, holds, at) {
             Ok(texture) => Ok((*texture).clone()),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
                 let reason = error.without_place();
-                let what = format!("a checker of magenta stands in place of a texture: {reason}");
+                let what = format!("{stands_in} stands in place of a texture: {reason}");
                 self.oddities.note(&what, || at.clone());
-                Ok(Texture::missing(name))
+                Ok(make(name))
             }
         }
     }

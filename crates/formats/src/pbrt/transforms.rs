@@ -5,6 +5,7 @@ use super::lexer::{Token, shown};
 use super::state::{look_at, rotation};
 use super::unknown;
 use crate::FormatError;
+use bilux_math::glam::DVec4;
 use bilux_math::{DMat4, DVec3};
 
 impl Directive<'_, '_, '_, '_> {
@@ -105,11 +106,21 @@ impl Directive<'_, '_, '_, '_> {
                 return Err(self.lexer.error(message, at));
             }
         }
-        let matrix = DMat4::from_cols_array(&numbers);
-        let last = matrix.row(3).to_array();
-        if last != [0.0, 0.0, 0.0, 1.0] {
-            return self.error(format!("this matrix ends in the row {last:?}, but has to in [0, 0, 0, 1]"));
+        Ok(self.affine_part(DMat4::from_cols_array(&numbers)))
+    }
+
+    /// A matrix whose last row is 0 0 0 1. Some exporters leave a 0 in the corner, where only directions matter.
+    fn affine_part(&mut self, matrix: DMat4) -> DMat4 {
+        let last = matrix.row(3);
+        if last == DVec4::W {
+            return matrix;
         }
-        Ok(matrix)
+        let what = "a matrix has another last row than 0 0 0 1: its affine part is used";
+        self.pbrt.oddities.note(what, || self.at.clone());
+        // Points are divided by their last coordinate: a single number there scales all of them.
+        let is_scale = last.truncate() == DVec3::ZERO && last.w != 0.0;
+        let affine = if is_scale { matrix * last.w.recip() } else { matrix };
+        let column = |i: usize| affine.col(i).truncate().extend(if i == 3 { 1.0 } else { 0.0 });
+        DMat4::from_cols(column(0), column(1), column(2), column(3))
     }
 }

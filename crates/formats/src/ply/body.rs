@@ -2,7 +2,7 @@
 
 use super::header::{Element, Encoding, Scalar};
 use crate::FormatError;
-use crate::float::parse_f32;
+use crate::float::{parse_f32, parse_f64};
 use crate::reading::Source;
 use crate::text::{Cursor, Places, quoted};
 
@@ -77,6 +77,19 @@ impl<'a> Body<'a> {
             Scalar::F32 => take!(f32),
             Scalar::F64 => take!(f64),
         })
+    }
+
+    /// The next number with all of its digits.
+    pub(super) fn wide_number(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
+        match (self.encoding, scalar) {
+            (Encoding::Ascii, _) => {
+                let word = self.word()?;
+                parse_f64(word).ok_or_else(|| self.bad_word(word, "number"))
+            }
+            (Encoding::Little, Scalar::F64) => Ok(f64::from_le_bytes(self.take()?)),
+            (Encoding::Big, Scalar::F64) => Ok(f64::from_be_bytes(self.take()?)),
+            _ => self.number(scalar).map(f64::from),
+        }
     }
 
     /// The next number as an index or a count; -1 and the like stay what they are.
@@ -185,6 +198,6 @@ impl<'a> Body<'a> {
     #[cold]
     fn bad_word(&self, word: &[u8], wanted: &str) -> FormatError {
         let at = self.places.at(self.cursor.offset() - word.len());
-        FormatError::malformed(format!("{} is no {wanted}, but one should stand here", quoted(word)), at)
+        FormatError::malformed(format!("{} is not a {wanted}, which should be here", quoted(word)), at)
     }
 }

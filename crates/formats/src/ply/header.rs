@@ -152,7 +152,7 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
             b"" => {}
             word => {
                 let message = format!(
-                    "{} is no word of a PLY header: it has format, comment, obj_info, element, property, end_header",
+                    "{} is not a keyword of a PLY header, which are format, comment, obj_info, element, property, end_header",
                     quoted(word)
                 );
                 return fail(message, start);
@@ -171,7 +171,7 @@ fn read_encoding(cursor: &mut Cursor, places: &Places) -> Result<Encoding, Forma
         b"binary_big_endian" => Encoding::Big,
         _ => {
             let message = format!(
-                "{} is no format of a PLY file: it is ascii, binary_little_endian or binary_big_endian",
+                "{} is not a format of PLY files, which are ascii, binary_little_endian or binary_big_endian",
                 quoted(word)
             );
             return Err(FormatError::malformed(message, places.at(cursor.offset() - word.len())));
@@ -197,7 +197,7 @@ fn read_property(cursor: &mut Cursor, places: &Places) -> Result<Property, Forma
         let word = cursor.word();
         Scalar::named(word).ok_or_else(|| {
             let message = format!(
-                "{} is no type of a PLY file: it is char, uchar, short, ushort, int, uint, float or double",
+                "{} is not a type of PLY files, which are char, uchar, short, ushort, int, uint, float or double",
                 quoted(word)
             );
             FormatError::malformed(message, places.at(cursor.offset() - word.len()))

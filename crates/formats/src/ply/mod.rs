@@ -5,12 +5,14 @@ mod direct;
 mod header;
 mod read;
 mod slots;
+mod strokes;
 mod write;
 
 pub(crate) use write::encode;
 
 use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
@@ -20,8 +22,9 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         parameters: &[],
     },
     extensions: &["ply"],
-    capabilities: &["polygons", "normals", "uv", "vertex-kd", "vertex-ks"],
+    capabilities: &["points and lines", "polygons", "normals", "uv", "vertex-kd", "vertex-ks"],
     sniff: |bytes| bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") || bytes.starts_with(b"ply "),
+    up: UpHint::Usually(Axis::Y),
     read: Some(ReadFormat::Whole(read::read)),
     write: Some(write::write),
 };

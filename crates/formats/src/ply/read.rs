@@ -4,13 +4,14 @@ use super::body::Body;
 use super::direct::can_be;
 use super::header::{Element, Property, Scalar, read_header};
 use super::slots::{MEANINGS, Slots};
+use super::strokes;
 use crate::FormatError;
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
 use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
-use bilux_math::{Rgb, Vec2, Vec3};
+use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::{SceneBuilder, Value};
 use std::collections::HashMap;
 
@@ -25,6 +26,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         soup: Soup::default(),
         vertices: Slots::default(),
         triangles: None,
+        edges: Vec::new(),
         wedge_uvs: Vec::new(),
         wedges: HashMap::new(),
         smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
@@ -56,6 +58,8 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) soup: Soup,
     /// Of all faces, where nothing has to be welded.
     triangles: Option<Vec<[u32; 3]>>,
+    /// Pairs of vertices.
+    pub(super) edges: Vec<[u32; 2]>,
     vertices: Slots,
     /// Texture coordinates of corners rather than vertices, each value once.
     wedge_uvs: Vec<Vec2>,
@@ -77,6 +81,7 @@ impl Ply<'_, '_, '_> {
             "vertex" => self.vertices(element),
             "face" => self.faces(element, false),
             "tristrips" => self.faces(element, true),
+            "edge" if strokes::has_both_ends(element) => self.edges(element),
             _ => self.skip_element(element),
         }
     }
@@ -91,7 +96,7 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
+    pub(super) fn skip(&mut self, property: &Property) -> Result<(), FormatError> {
         let count = match property.count {
             Some(scalar) => self.body.integer(scalar)?,
             None => 1,
@@ -114,7 +119,9 @@ impl Ply<'_, '_, '_> {
         // As many as the bytes that are left can hold, so that all room is made at once.
         self.reading.budget.take_bytes(element.count * 4 * floats as u64, self.source.name)?;
         self.make_room(&slots, element.count as usize);
-        let plain = slots.offsets(element).filter(|_| self.body.is_little());
+        let origin = self.reading.origin;
+        let is_far = origin != DVec3::ZERO;
+        let plain = slots.offsets(element).filter(|_| self.body.is_little() && !is_far);
         for _ in 0..element.count {
             let start = self.body.offset();
             let mut values = [0f32; MEANINGS.len()];
@@ -131,6 +138,9 @@ impl Ply<'_, '_, '_> {
             }
             for (property, meaning) in element.properties.iter().zip(&slots.meaning) {
                 match meaning {
+                    Some(slot @ 0..3) if is_far => {
+                        values[*slot] = (self.body.wide_number(property.scalar)? - origin[*slot]) as f32;
+                    }
                     Some(slot) => values[*slot] = self.body.number(property.scalar)?,
                     None => self.skip(property)?,
                 }
@@ -315,12 +325,11 @@ impl Ply<'_, '_, '_> {
             return self.finish_triangles(texture, scene, triangles);
         }
         if self.soup.faces.is_empty() {
-            let message = if self.soup.positions.is_empty() {
-                "there is no face in it"
-            } else {
-                "there is no face in it: this is a cloud of points; make a surface of it with another program first"
-            };
-            return Err(FormatError::malformed(message, self.places.whole()));
+            return self.finish_strokes(scene);
+        }
+        if !self.edges.is_empty() {
+            let places = self.places;
+            self.oddities.note("edges beside faces are not drawn", || places.whole());
         }
         let (normals, uvs) = (self.vertices.normals, self.vertices.uvs);
         let wedges = std::mem::take(&mut self.wedge_uvs);

@@ -18,6 +18,9 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     }
     let meshes: Vec<Cow<Mesh>> = scene.objects.iter().map(|object| in_place(object, writing)).collect();
     let meshes: Vec<&Mesh> = meshes.iter().map(|mesh| &**mesh).collect();
+    if !holds_all(&meshes) {
+        writing.warn("a PLY file holds faces, lines or points: of a scene with several of these, the first are written");
+    }
     let ascii = writing.options.ascii;
     match encode(&meshes, ascii) {
         Some(bytes) => writing.main = bytes,
@@ -29,13 +32,22 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     Ok(())
 }
 
+/// True where a file holds all that is drawn of some meshes: nothing else beside faces, no points beside lines.
+fn holds_all(meshes: &[&Mesh]) -> bool {
+    let any = |has: fn(&Mesh) -> bool| meshes.iter().any(|mesh| has(mesh));
+    let kinds =
+        [any(|m| !m.triangles.is_empty()), any(|m| !m.lines.is_empty()), any(|m| !m.points.is_empty())];
+    kinds.iter().filter(|has| **has).count() <= 1
+}
+
 /// The bytes of a file with meshes joined; `None` where there are too many vertices.
 pub(crate) fn encode(meshes: &[&Mesh], ascii: bool) -> Option<Vec<u8>> {
     let columns = Columns::of(meshes);
     let vertices: usize = meshes.iter().map(|m| m.positions.len()).sum();
     let triangles: usize = meshes.iter().map(|m| m.triangles.len()).sum();
     i32::try_from(vertices).ok()?;
-    let mut out = columns.header(ascii, vertices, triangles).into_bytes();
+    let lines = if triangles > 0 { 0 } else { meshes.iter().map(|m| m.lines.len()).sum() };
+    let mut out = columns.header(ascii, vertices, triangles, lines).into_bytes();
     for mesh in meshes {
         for i in 0..mesh.positions.len() {
             columns.push_vertex(mesh, i, ascii, &mut out);
@@ -50,6 +62,12 @@ pub(crate) fn encode(meshes: &[&Mesh], ascii: bool) -> Option<Vec<u8>> {
             } else {
                 out.push(3);
                 out.extend(indices.into_iter().flat_map(u32::to_le_bytes));
+            }
+        }
+        for [from, to] in mesh.lines.iter().filter(|_| lines > 0).map(|ends| ends.map(|i| i + first)) {
+            match ascii {
+                true => out.extend_from_slice(format!("{from} {to}\n").as_bytes()),
+                false => out.extend([from, to].into_iter().flat_map(u32::to_le_bytes)),
             }
         }
         first += mesh.positions.len() as u32;
@@ -95,7 +113,7 @@ impl Columns {
         }
     }
 
-    fn header(&self, ascii: bool, vertices: usize, triangles: usize) -> String {
+    fn header(&self, ascii: bool, vertices: usize, triangles: usize, lines: usize) -> String {
         let format = if ascii { "ascii" } else { "binary_little_endian" };
         // Without this our reader smooths what was flat.
         let shading = if self.normals { "" } else { "comment shading flat\n" };
@@ -117,9 +135,12 @@ impl Columns {
         if let Some(colours) = self.ks {
             properties(scalar(colours), &["specular_red", "specular_green", "specular_blue"]);
         }
-        header.push_str(&format!(
-            "element face {triangles}\nproperty list uchar int vertex_indices\nend_header\n"
-        ));
+        if lines > 0 {
+            header.push_str(&format!("element edge {lines}\nproperty int vertex1\nproperty int vertex2\n"));
+        } else {
+            header.push_str(&format!("element face {triangles}\nproperty list uchar int vertex_indices\n"));
+        }
+        header.push_str("end_header\n");
         header
     }
 

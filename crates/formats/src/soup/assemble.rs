@@ -86,14 +86,32 @@ fn check_indices(
     place: &dyn Fn(u64) -> Span,
     oddities: &mut Oddities,
 ) -> Result<(), FormatError> {
+    let mut first_fault = None;
     let counts = [soup.positions.len(), soup.uvs.len(), soup.normals.len()].map(|n| n as u32);
     let places = &soup.places;
+    let mut left_out: Vec<usize> = Vec::new();
     for (face, corner) in soup.faces.corners_mut() {
         if corner[0] >= counts[0] {
+            let is_first = left_out.last() != Some(&face);
+            if is_first {
+                left_out.push(face);
+            }
+            // What has no index at all was reported where it stands.
+            if corner[0] == NONE {
+                continue;
+            }
             let (named, count) = (u64::from(corner[0]) + u64::from(soup.first_vertex), counts[0]);
             let from = if soup.first_vertex == 0 { ", counted from 0" } else { "" };
             let message = format!("this face names vertex {named}, but the file has only {count}{from}");
-            return Err(FormatError::malformed(message, place(places.at(face))));
+            let at = || place(places.at(face));
+            if !soup.leaves_out || count == 0 {
+                return Err(FormatError::malformed(message, at()));
+            }
+            if is_first {
+                first_fault.get_or_insert_with(|| FormatError::malformed(message.clone(), at()));
+                oddities.note_first(": this face is left out", || message, at);
+            }
+            continue;
         }
         for part in [1, 2] {
             if corner[part] != NONE && corner[part] >= counts[part] {
@@ -101,6 +119,17 @@ fn check_indices(
                 let what = "a face names texture coordinates or a normal that the file does not have";
                 oddities.note(what, || place(places.at(face)));
             }
+        }
+    }
+    if left_out.len() == soup.faces.len() {
+        return soup.first_fault.take().or(first_fault).map_or(Ok(()), Err);
+    }
+    // A face whose corners are all one has no area.
+    let mut left_out = left_out.into_iter().peekable();
+    for (face, corner) in soup.faces.corners_mut() {
+        while left_out.next_if(|&gone| gone < face).is_some() {}
+        if left_out.peek() == Some(&face) {
+            corner[0] = 0;
         }
     }
     Ok(())
@@ -143,7 +172,8 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
     Ok(())
 }
 
-fn material_of(
+/// The material of a run: one that was read, or a plain one in its place.
+pub(crate) fn material_of(
     run: &Run,
     soup: &Soup,
     materials: &mut HashMap<String, usize>,
@@ -160,8 +190,9 @@ fn material_of(
         return index;
     }
     if let Some(offset) = offset {
-        let what = "a material is in no library that was read; a plain one stands in its place";
-        oddities.note(what, || place(offset));
+        let what =
+            format!("the material '{name}' is in no library that was read: a plain one is used instead");
+        oddities.note(&what, || place(offset));
     }
     let mut spec = plain_material(!soup.colours.is_empty(), !soup.specular.is_empty());
     if offset.is_some() {

@@ -3,9 +3,10 @@
 mod assemble;
 mod faces;
 
-pub(crate) use assemble::assemble;
+pub(crate) use assemble::{assemble, material_of};
 pub(crate) use faces::{FaceList, Steps};
 
+use crate::FormatError;
 use crate::normals::Smoothing;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -33,6 +34,10 @@ pub(crate) struct Soup {
     pub(crate) runs: Vec<Run>,
     /// What the format calls its first vertex: 1 in OBJ, 0 elsewhere.
     pub(crate) first_vertex: u32,
+    /// Faces that name vertices which do not exist are left out, with a warning.
+    pub(crate) leaves_out: bool,
+    /// The first that is wrong with an element that is left out: the error, where no face is left.
+    pub(crate) first_fault: Option<FormatError>,
 }
 
 /// Faces one after another that have the same name and material.

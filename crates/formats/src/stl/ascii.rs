@@ -101,7 +101,7 @@ impl Ascii<'_, '_, '_> {
                 let at = self.places.at(self.cursor.offset() - word.len());
                 let message = match word {
                     b"" => "a vertex has three numbers, but the line ends before".to_owned(),
-                    word => format!("{} is no number, but a vertex has three", quoted(word)),
+                    word => format!("{} is not a number; a vertex has three", quoted(word)),
                 };
                 FormatError::malformed(message, at)
             })?;

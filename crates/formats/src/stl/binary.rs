@@ -37,7 +37,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let room = body.len() / TRIANGLE;
     if (room as u64) < u64::from(count) {
         let message = format!(
-            "the header says {count} triangles, but there are bytes for {room}: the file was cut off, or is no STL"
+            "the header says {count} triangles, but there are bytes for {room}: the file was cut off, or is not an STL"
         );
         return Err(FormatError::malformed(message, whole()));
     }

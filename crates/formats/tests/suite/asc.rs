@@ -112,7 +112,7 @@ fn broken_files_are_refused_with_their_place() {
             format!("{good}triangle\n0 0 0 0 0 1 0 0\n0 0 0 0"),
             "scene.asc:7:1: this vertex has 4 numbers, where 8",
         ),
-        (good.replace("1 0 0 0 0 2", "1 0 x 0 0 2"), "scene.asc:3:5: 'x' is no number"),
+        (good.replace("1 0 0 0 0 2", "1 0 x 0 0 2"), "scene.asc:3:5: 'x' is not a number"),
         (good.replace("1 0 0 0 0 2 1 0", "1 0 0 0 0 2 1"), "scene.asc:3:1: this vertex has 7 numbers"),
         (good.replace("0 0 0 0 0 1 0 0", "0 0 0 0 0 1 0 0 0 0"), "scene.asc:2:1: a vertex has 8 numbers"),
         (format!("{good}0 0 0 0 0 1 0 0\n"), "scene.asc:5:1: a triangle begins with a line of one word"),

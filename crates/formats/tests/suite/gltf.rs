@@ -151,7 +151,7 @@ fn cameras_and_lights_stand_at_their_nodes() {
         (&*light.kind, light.parameters.find("intensity").unwrap().0),
         ("point", &Rgb::new(4., 0., 0.).into())
     );
-    assert!(warnings(&scene).contains("lights/0: a light's range is not used"));
+    assert!(warnings(&scene).contains("lights/0: a light's range is ignored"));
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
             "without data",
         ),
         ("\"count\":3", "\"count\":-3", "#/accessors/0/count: this is -3"),
-        ("5126", "5124", "is no componentType"),
+        ("5126", "5124", "is not a componentType"),
         ("VEC3", "VEC5", "'VEC5' is no type"),
         ("VEC3", "VEC2", "elements of 2 numbers stand where 3 are wanted"),
         ("\"byteLength\":36}],", "\"byteLength\":37}],", "#/bufferViews/0: 37 bytes from byte 0"),
@@ -205,7 +205,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
             assert!(message.contains(part), "{from} → {to}: {message}");
         }
     }
-    assert!(refusal("gltf", &TRIANGLE[..300]).contains("this is no JSON"));
+    assert!(refusal("gltf", &TRIANGLE[..300]).contains("this is not JSON"));
     let indexed = TRIANGLE
         .replace("\"POSITION\":0}", "\"POSITION\":0},\"indices\":1")
         .replace("\"VEC3\"}]", "\"VEC3\"},{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"}]");
@@ -221,7 +221,7 @@ fn what_is_not_understood_is_told_where_it_stands() {
     let text = TRIANGLE.replace(r#"{"mesh":0}"#, r#"{"mesh":0,"extensions":{"EXT_odd":{}}}"#);
     let told = warnings(&read(&text));
     assert!(
-        told.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not understood"),
+        told.contains("scene.gltf#/nodes/0/extensions/EXT_odd: the extension EXT_odd is not supported"),
         "{told}"
     );
 }
@@ -342,6 +342,46 @@ fn colours_of_highlights_above_one_are_a_greater_index() {
     }
 }
 
+/// Pictures of a direction and of a thickness mean what the extensions say, at every texel.
+#[test]
+fn directions_and_thicknesses_come_from_their_textures() {
+    let folder = tempfile::TempDir::new().unwrap();
+    // Along x, along y, against x, against y; of the least thickness, the greatest, and between.
+    let texels = [[255, 128, 255, 255], [128, 255, 255, 255], [0, 128, 255, 255], [128, 0, 255, 255]];
+    let plane = |c: usize| texels.iter().map(|t: &[u8; 4]| f32::from(t[c]) / 255.0).collect::<Vec<f32>>();
+    let mut picture = bilux_pictures::Picture::new(4, 1).unwrap();
+    for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
+        picture.push_channel(name, plane(c)).unwrap();
+    }
+    picture.colour_space = bilux_pictures::ColourSpace::Srgb;
+    let path = folder.path().join("a.png");
+    bilux_pictures::write(&path, &picture, &bilux_pictures::WriteOptions::default()).unwrap();
+    let material = r#"{"occlusionTexture":{"index":0},"extensions":{
+        "KHR_materials_anisotropy":{"anisotropyStrength":0.8,"anisotropyTexture":{"index":0}},
+        "KHR_materials_iridescence":{"iridescenceFactor":1,"iridescenceThicknessMinimum":100,
+            "iridescenceThicknessMaximum":500,"iridescenceThicknessTexture":{"index":0}}}}"#;
+    let more = r#""textures":[{"source":0}],"images":[{"uri":"a.png"}],"#;
+    let file = folder.path().join("a.gltf");
+    std::fs::write(&file, with_material(material, more)).unwrap();
+    let scene = bilux_formats::read(&file, &bilux_formats::ReadOptions::default()).unwrap();
+    let numbers = |key: &str| {
+        let Some((bilux_scene::Value::Texture(i), _)) = spec_of(&scene).parameters.find(key) else {
+            panic!("{key}: {:?}", spec_of(&scene))
+        };
+        [0.125, 0.375, 0.625, 0.875].map(|u| scene.textures[*i].number(bilux_math::Vec2::new(u, 0.5)))
+    };
+    let (turns, thickness) = (numbers("anisotropy_rotation"), numbers("thin_film_thickness"));
+    for (found, wanted) in turns.into_iter().zip([0.25, 0.5, 0.75, 0.0]) {
+        assert!((found - wanted).abs().min(1.0 - (found - wanted).abs()) < 0.005, "{turns:?}");
+    }
+    for (found, wanted) in thickness.into_iter().zip([0.3, 0.5, 0.3, 0.1]) {
+        assert!((found - wanted).abs() < 0.002, "{thickness:?}");
+    }
+    let said: Vec<String> = scene.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(said.iter().filter(|w| w.contains("occlusion textures are not used")).count(), 1, "{said:?}");
+    assert_eq!(said.len(), 1, "{said:?}");
+}
+
 #[test]
 fn every_extension_gives_a_material_that_can_be_built() {
     let extensions = [
@@ -391,7 +431,7 @@ fn textures_lie_beside_the_scene_and_missing_ones_are_seen() {
     assert_eq!(base.at(Vec2::new(0.9, 0.5)), Rgb::WHITE, "held at the edge");
     assert_eq!(scene.textures[1].width(), 8);
     let told = warnings(&scene);
-    assert!(told.contains("#/images/1: a checker of magenta stands in place of a texture"), "{told}");
+    assert!(told.contains("#/images/1: a texture is replaced by a magenta checker"), "{told}");
     let climbing = with_material(material, &more.replace("gone.png", "../gone.png"));
     std::fs::write(folder.path().join("gone.png"), b"x").unwrap();
     std::fs::write(&path, climbing).unwrap();

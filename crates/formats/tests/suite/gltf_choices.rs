@@ -40,18 +40,18 @@ fn tetrahedron(primitive: &str, more: &str) -> String {
 }
 
 #[test]
-fn points_and_lines_have_a_body_of_a_part_of_the_scene() {
-    let size = 3f32.sqrt();
+fn points_and_lines_are_no_triangles() {
     let points = read(&tetrahedron(r#""mode":0"#, ""), &ReadOptions::default());
     let mesh = &points.objects[0].mesh;
-    assert_eq!((mesh.triangles.len(), mesh.normals.len()), (4 * 20, mesh.positions.len()));
+    assert_eq!((mesh.points.len(), mesh.triangles.len(), mesh.positions.len()), (4, 0, 4));
     assert_eq!(mesh.uvs.len(), mesh.positions.len());
-    assert!((mesh.bounds().extent() - Vec3::splat(1.0)).abs().max_element() < 2.01 * size / 300.0);
-    assert!(warnings(&points).contains("#/meshes/0/primitives/0: points are balls with a radius of 1/300"));
-    for (mode, tubes) in [(1, 2), (2, 4), (3, 3)] {
-        let lines = read(&tetrahedron(&format!(r#""mode":{mode}"#), ""), &ReadOptions::default());
-        assert_eq!(lines.objects[0].mesh.triangles.len(), 4 * 20 + tubes * 16, "mode {mode}");
-        lines.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
+    assert_eq!(mesh.bounds().extent(), Vec3::splat(1.0));
+    assert_eq!(warnings(&points), "");
+    for (mode, lines) in [(1, 2), (2, 4), (3, 3)] {
+        let scene = read(&tetrahedron(&format!(r#""mode":{mode}"#), ""), &ReadOptions::default());
+        let mesh = &scene.objects[0].mesh;
+        assert_eq!((mesh.lines.len(), mesh.triangles.len()), (lines, 0), "mode {mode}");
+        scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
     }
 }
 
@@ -121,7 +121,7 @@ fn textures_are_looked_up_by_two_sets_of_coordinates() {
     scene.build(&Default::default(), [0.0, 0.0], 1.0).map(drop).unwrap();
     let without = text.replace(r#""TEXCOORD_0":1,"#, "");
     let told = warnings(&read(&without, &ReadOptions::default()));
-    assert!(told.contains("by texture coordinates that its mesh has not"), "{told}");
+    assert!(told.contains("texture coordinates that its mesh does not have"), "{told}");
 }
 
 #[test]

@@ -115,8 +115,8 @@ fn animations_are_chosen_by_name_or_number() {
 #[test]
 fn what_is_wrong_with_an_animation_is_told_and_left_out() {
     let cases = [
-        ("[1.0, 3.0]", [3.0, 1.0], "the times of an animation have to be numbers that rise"),
-        ("NaN", [1.0, f32::NAN], "the times of an animation have to be numbers that rise"),
+        ("[1.0, 3.0]", [3.0, 1.0], "the times of an animation must be numbers that increase"),
+        ("NaN", [1.0, f32::NAN], "the times of an animation must be numbers that increase"),
     ];
     for (name, times, part) in cases {
         let mut parts = Parts::default();

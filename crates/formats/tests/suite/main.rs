@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
 mod asc;
+mod clouds;
 mod gltf;
 mod gltf_choices;
 mod gltf_conventions;
@@ -10,9 +11,11 @@ mod gltf_files;
 mod gltf_motion;
 #[cfg(all(feature = "draco", feature = "ktx2"))]
 mod gltf_packed;
+mod gltf_validated;
 mod gltf_written;
 mod hostile;
 mod left_out;
+mod messages;
 mod native;
 mod obj;
 mod off;

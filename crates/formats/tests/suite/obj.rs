@@ -87,7 +87,7 @@ fn names_groups_and_materials_make_objects() {
     assert_eq!(used, ["default", "default", "red paint", "red paint"]);
     assert_eq!(scene.objects[3].mesh.triangles.len(), 2);
     assert!(
-        warnings(&scene).starts_with("scene.obj:8:1: a material is in no library"),
+        warnings(&scene).starts_with("scene.obj:8:1: the material 'red paint' is in no library"),
         "{}",
         warnings(&scene)
     );
@@ -359,21 +359,48 @@ fn textures_of_older_formats_are_shown() {
 #[test]
 fn broken_files_are_refused_with_their_place() {
     let cases = [
-        ("v 0 0\n", "scene.obj:1:6: there are 2 numbers on this line, where 3"),
-        ("v 0 0 zero\n", "scene.obj:1:7: 'zero' is no number"),
+        ("v 0 0\n", "scene.obj:1:6: this line has 2 numbers and needs 3"),
+        ("v 0 0 zero\n", "scene.obj:1:7: 'zero' is not a number"),
         ("v 0 0 0\nf 1 1 2\n", "scene.obj:2:1: this face names vertex 2, but the file has only 1"),
-        ("v 0 0 0\nf 0 1 1\n", "scene.obj:2:3: '0' is no corner"),
-        ("v 0 0 0\nf -2 1 1\n", "'-2' is no corner"),
-        ("v 0 0 0\nf 1/ 1 1/1/1/1\n", "'1/1/1/1' is no corner"),
-        ("v 0 0 0\nf 99999999999999999999 1 1\n", "is no corner"),
-        ("v 0 0 0\ns maybe\n", "scene.obj:2:1: 'maybe' is no smoothing group"),
-        ("v 0 0 0\n\u{1}\u{2}\u{3}\n", "is no statement"),
-        ("# nothing\n", "there is no face in it: is this an OBJ file?"),
+        ("v 0 0 0\nf 0 1 1\n", "scene.obj:2:3: '0' is not a corner"),
+        ("v 0 0 0\nf -2 1 1\n", "'-2' is not a corner"),
+        ("v 0 0 0\nf 1/ 1 1/1/1/1\n", "'1/1/1/1' is not a corner"),
+        ("v 0 0 0\nf 99999999999999999999 1 1\n", "is not a corner"),
+        ("v 0 0 0\ns maybe\n", "scene.obj:2:1: 'maybe' is not a smoothing group"),
+        ("v 0 0 0\n\u{1}\u{2}\u{3}\n", "is not a statement"),
+        ("# nothing\n", "the file has no faces and no vertices: is this an OBJ file?"),
     ];
     for (text, part) in cases {
         let message = refusal("obj", text);
         assert!(message.contains(part), "{text:?}: {message}");
     }
+}
+
+#[test]
+fn one_bad_number_costs_its_element_and_not_the_file() {
+    let text = format!(
+        "{SQUARE}v 1.O 0 0\nvn 0 0 up\nf 1 2 3\nf 1 2 5\nf 1/x 2 3\nf 1 2 77\nf 1 2 -99\nf 4/ 1/1/1/1 2\ns maybe\nf 2 3 4\n"
+    );
+    let scene = read_text("obj", text).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    let is_seen = |t: &&[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        (b - a).cross(c - a).length() > 0.0
+    };
+    assert_eq!(mesh.triangles.iter().filter(is_seen).count(), 2);
+    assert_eq!(
+        warnings(&scene).lines().collect::<Vec<_>>(),
+        [
+            "scene.obj:5:3: '1.O' is not a number: this vertex is left out, and with it the faces that it is a corner of",
+            "scene.obj:6:8: 'up' is not a number: this normal or texture coordinate is taken as 0",
+            "scene.obj:9:3: '1/x' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
+             vertex/uv/normal, each counted from 1, or backwards from -1: this face is left out (3 times; this is the first)",
+            "scene.obj:11:7: '-99' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
+             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to what is not there, and is \
+             left out",
+            "scene.obj:13:1: 'maybe' is not a smoothing group, which is a number or 'off': this line is left out",
+        ]
+    );
 }
 
 #[test]
@@ -392,5 +419,8 @@ fn memory_is_bounded() {
     let text = format!("{SQUARE}{}", "f 1 2 3\n".repeat(10_000));
     let little = ReadOptions { max_memory: 300_000, ..ReadOptions::default() };
     let error = bilux_formats::read_bytes(text.as_bytes(), "obj", None, "big.obj", &little).unwrap_err();
-    assert!(error.to_string().starts_with("big.obj: reading it takes more than the 300000 bytes"), "{error}");
+    assert!(
+        error.to_string().starts_with("big.obj: reading this takes more than the 300000 bytes"),
+        "{error}"
+    );
 }

@@ -79,7 +79,7 @@ fn what_is_wrong_has_its_place() {
         ),
         (
             "reflectance = { kind = \"noise\", octaves = 99 }",
-            "noise.octaves is 99, but has to be a whole number from 1 to 16",
+            "noise.octaves is 99, but must be a whole number from 1 to 16",
         ),
         (
             "reflectance = { kind = \"noise\", octaves = { kind = \"checker\" } }",
@@ -107,11 +107,7 @@ fn what_is_wrong_has_its_place() {
     )
     .unwrap();
     let scene = read(&path, &ReadOptions::default()).unwrap();
-    assert!(
-        warnings(&scene).contains("a checker of magenta stands in place of a texture"),
-        "{}",
-        warnings(&scene)
-    );
+    assert!(warnings(&scene).contains("a texture is replaced by a magenta checker"), "{}", warnings(&scene));
     assert_eq!(texture(&scene, "reflectance").at(Vec2::new(0.05, 0.95)), Rgb::new(0.5, 0.0, 0.5));
 }
 

@@ -84,7 +84,7 @@ fn broken_files_are_refused_with_their_place() {
     let cases = [
         ("plx\n".to_owned(), "scene.ply:1:1: a PLY file begins with"),
         ("ply\nformat ascii 1.0\n".to_owned(), "scene.ply:3:1: the file ends within its header"),
-        (good.replace("ascii", "utf8"), "scene.ply:2:8: 'utf8' is no format"),
+        (good.replace("ascii", "utf8"), "scene.ply:2:8: 'utf8' is not a format"),
         (good.replace("float x", "real x"), "scene.ply:6:10: 'real' is no type"),
         (good.replace("vertex 4", "vertex many"), "scene.ply:5:1: an element has a name and a count"),
         (good.replace("element vertex 4\n", ""), "a property belongs to an element"),
@@ -95,7 +95,7 @@ fn broken_files_are_refused_with_their_place() {
             "scene.ply:16:1: this face names vertex 4, but the file has only 4, counted from 0",
         ),
         (good.replace("0 1 2 3", "0 1 2 -1"), "scene.ply:16:1: this face names vertex -1"),
-        (good.replace("1 1 0", "1 one 0"), "scene.ply:14:3: 'one' is no number"),
+        (good.replace("1 1 0", "1 one 0"), "scene.ply:14:3: 'one' is not a number"),
         (
             good.replace("vertex 4", "vertex 4000000000"),
             "scene.ply:5:1: the header says 4000000000 of the element 'vertex'",

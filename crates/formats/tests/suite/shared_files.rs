@@ -4,14 +4,7 @@ use bilux_formats::{ReadOptions, read};
 use std::path::{Path, PathBuf};
 
 /// Files that must be refused, with a part of the message.
-const REFUSED: &[(&str, &str)] = &[
-    ("asc/teapot.bpt", "no scene format"),
-    ("obj/tinyobj/line-prim.obj", "only points or lines"),
-    ("obj/tinyobj/points-prim.obj", "only points or lines"),
-    ("ply/assimp/points.ply", "a cloud of points"),
-    ("ply/trimesh/points_ascii.ply", "a cloud of points"),
-    ("ply/trimesh/points_bin.ply", "a cloud of points"),
-];
+const REFUSED: &[(&str, &str)] = &[("asc/teapot.bpt", "not a scene format")];
 
 /// Files that belong to others.
 const COMPANIONS: &[&str] = &["mtl", "png", "jpg"];

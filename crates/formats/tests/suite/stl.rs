@@ -63,7 +63,7 @@ fn broken_files_are_refused_with_their_place() {
             "scene.stl:9:1: the file ends within this facet",
         ),
         (format!("solid x\n{}", FACET.replace("1 0 0", "1 0")), "scene.stl:5:13: a vertex has three numbers"),
-        (format!("solid x\n{}", FACET.replace("1 0 0", "1 O 0")), "scene.stl:5:12: 'O' is no number"),
+        (format!("solid x\n{}", FACET.replace("1 0 0", "1 O 0")), "scene.stl:5:12: 'O' is not a number"),
         (
             format!("solid x\n{}", FACET.replace("  vertex 1 0 0\n", "")),
             "scene.stl:7:1: a facet with 2 corners",
@@ -74,5 +74,21 @@ fn broken_files_are_refused_with_their_place() {
     for (text, part) in cases {
         let message = refusal("stl", &text);
         assert!(message.contains(part), "{text:?}: {message}");
+    }
+}
+
+#[test]
+fn lengths_are_millimetres_unless_the_first_line_says_otherwise() {
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    for (name, unit) in [
+        ("part", 0.001),
+        ("part UNITS=inch", 0.0254),
+        ("unit: cm", 0.01),
+        ("Units = m", 1.0),
+        ("unity", 0.001),
+    ] {
+        let scene = crate::read_text("stl", format!("solid {name}\n{facet}")).unwrap();
+        assert_eq!(scene.unit, unit, "{name}");
+        assert_eq!(scene.up, bilux_scene::UpHint::Usually(bilux_scene::Axis::Z));
     }
 }

@@ -13,6 +13,7 @@ use crate::{Picture, PictureError};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 pub use noisy::{Layer, Noisy, Source};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// Every denoiser that there is, the best first.
@@ -23,12 +24,12 @@ pub const DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
 pub struct DenoiserEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// About how long it takes for so many pixels, on so many threads, at least 1.
-    pub time: fn(u64, usize) -> Duration,
+    /// About how long it takes, where the task leaves it the choice.
+    pub time: fn(&Task) -> Duration,
     /// It is in a library of others, which is loaded, and looked for in folders of theirs.
     pub is_library: bool,
-    /// Gets it ready, for so many threads (0 for one each core); else says what is missing, and how to get it.
-    pub find: fn(usize) -> Result<Box<dyn Denoiser>, String>,
+    /// Gets it ready; else says what is missing, and how to get it.
+    pub find: fn(&Task) -> Result<Box<dyn Denoiser>, String>,
 }
 
 /// One that is ready.
@@ -56,14 +57,44 @@ pub struct Chosen {
 /// What is to be denoised, and how long that may take.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Task {
-    /// Pixels in all.
-    pub pixels: u64,
+    /// Pixels across and down, where that is known.
+    pub size: (usize, usize),
     /// Threads; 0 for one each core.
     pub threads: usize,
-    /// What the best denoiser may take at most, if that matters. One that was asked for by its name takes what it takes.
+    /// What the best denoiser may take at most, if that matters: it does as well as it can within that.
     pub time: Option<Duration>,
-    /// No library of others may be loaded, nor looked for.
+    /// No library of others may be loaded; what [`preload`] has loaded before may be used.
     pub sandboxed: bool,
+}
+
+impl Task {
+    /// Pixels in all.
+    pub fn pixels(&self) -> u64 {
+        self.size.0 as u64 * self.size.1 as u64
+    }
+
+    /// Threads, at least 1.
+    pub fn threads_at_work(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        if self.threads == 0 { cores() } else { self.threads }
+    }
+}
+
+/// Libraries that are being loaded on a thread of their own.
+pub struct Preload(JoinHandle<()>);
+
+/// Begins to load what the best denoiser needs, for so many threads (0 for one each core), so that it is there when the picture is
+/// rendered. Only what is asked for after this waits for it.
+pub fn preload(threads: usize) -> Preload {
+    Preload(std::thread::spawn(move || oidn::load(threads)))
+}
+
+impl Preload {
+    /// Waits until all is loaded that can be: from then on [`Task::sandboxed`] holds nothing back.
+    pub fn wait(self) {
+        // That it failed is told when a denoiser is asked for.
+        let _ = self.0.join();
+    }
 }
 
 /// The denoiser of this name, or for `auto` the best that can be had, and has the time.
@@ -72,29 +103,22 @@ pub struct Task {
 /// When there is no such denoiser, or it is not to be had here.
 pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
     let is_auto = name == "auto";
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = if task.threads == 0 { cores() } else { task.threads };
+    // What was asked for by its name takes what it takes.
+    let task = &Task { time: task.time.filter(|_| is_auto), ..*task };
     let mut advice = None;
     for (i, row) in DENOISERS.iter().enumerate().filter(|(_, row)| is_auto || name == row.entry.name) {
-        if task.sandboxed && row.is_library {
-            if is_auto {
-                continue;
+        let time = (row.time)(task);
+        let faster = || DENOISERS[i + 1..].iter().any(|other| (other.time)(task) < time);
+        let is_too_slow = is_auto && task.time.is_some_and(|limit| time > limit) && faster();
+        match (row.find)(task) {
+            Ok(_) if is_too_slow => {
+                let (name, seconds) = (row.entry.name, time.as_secs_f64());
+                let longer =
+                    format!("'{name}' does better, but takes about {seconds:.1} s: --denoise={name}");
+                advice = advice.or(Some(longer));
             }
-            let what = "in a sandbox no library is loaded: ask for 'builtin'".to_owned();
-            return Err(PictureError::NoDenoiser { what });
-        }
-        let time = (row.time)(task.pixels, threads);
-        let is_last = i + 1 == DENOISERS.len();
-        if is_auto && !is_last && task.time.is_some_and(|most| time > most) {
-            let (name, seconds) = (row.entry.name, time.as_secs_f64());
-            let longer =
-                format!("'{name}' does better, but takes about {seconds:.1} s: ask for it by its name");
-            advice = advice.or(Some(longer));
-            continue;
-        }
-        match (row.find)(task.threads) {
             Ok(denoiser) => return Ok(Chosen { denoiser, time, advice }),
-            Err(missing) if is_auto => advice = advice.or(Some(missing)),
+            Err(missing) if is_auto => advice = advice.or(Some(missing).filter(|_| !task.sandboxed)),
             Err(missing) => return Err(PictureError::NoDenoiser { what: missing }),
         }
     }

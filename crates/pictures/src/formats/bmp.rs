@@ -100,7 +100,9 @@ impl Header {
         // The first version has numbers of 16 bits, and entries of three bytes.
         let is_first = size == 12;
         if !is_first && !(16..=124).contains(&size) {
-            return invalid(format!("its header says that it has {size} bytes: 12, or 16 to 124"));
+            return invalid(format!(
+                "its header says that it has {size} bytes, but must have 12, or 16 to 124"
+            ));
         }
         let (width, height, depth) = if is_first {
             (u16_at(bytes, 18)?.into(), u16_at(bytes, 20)?.into(), u16_at(bytes, 24)?)

@@ -1,5 +1,6 @@
 //! OpenEXR: any number of named planes of halves, floats or integers, and texts. [OpenEXR]
 
+use super::faults::exr::explain;
 use super::guard::guarded;
 use super::primaries::to_rec709;
 use super::{PictureFormatEntry, exr_write};
@@ -7,7 +8,6 @@ use crate::limits::zeroed;
 use crate::{Limits, Picture, PictureError};
 use ::exr::block::UncompressedBlock;
 use ::exr::block::chunk::CompressedBlock;
-use ::exr::error::Error;
 use ::exr::math::Vec2;
 use ::exr::meta::MetaData;
 use ::exr::meta::attribute::{AttributeValue, IntegerBounds, SampleType, Text};
@@ -42,20 +42,37 @@ const MOST_CHANNELS: usize = 4096;
 /// several parts, their names go in front of their channels', but for the first one with plain colours.
 /// Colours of other primaries are taken to Rec. 709; all other samples stay as they are.
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
-    let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(explain)?;
+    let header_fault = |error| explain(error, bytes, None);
+    let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(header_fault)?;
     let mut frame = Frame::new(reader.meta_data(), limits)?;
     let meta = reader.meta_data().clone();
-    for chunk in ::exr::block::reader::Reader::all_chunks(reader, false).map_err(explain)? {
-        let chunk = chunk.map_err(explain)?;
+    for chunk in ::exr::block::reader::Reader::all_chunks(reader, false).map_err(header_fault)? {
+        let chunk = chunk.map_err(header_fault)?;
         let smaller_copy = match &chunk.compressed_block {
             CompressedBlock::Tile(tile) => !tile.coordinates.is_largest_resolution_level(),
             _ => false,
         };
         if !smaller_copy {
-            frame.insert(&UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(explain)?)?;
+            let place = place_of(&chunk.compressed_block);
+            let block = UncompressedBlock::decompress_chunk(chunk, &meta, false);
+            frame.insert(&block.map_err(|error| explain(error, bytes, Some(&place)))?)?;
         }
     }
     frame.into_picture(&meta)
+}
+
+/// Which pixels a block has, in words.
+fn place_of(block: &CompressedBlock) -> String {
+    match block {
+        CompressedBlock::ScanLine(lines) => {
+            format!("the block of rows that begins at row {}", lines.y_coordinate)
+        }
+        CompressedBlock::Tile(tile) => {
+            let at = tile.coordinates.tile_index;
+            format!("the tile in column {} and row {}", at.x(), at.y())
+        }
+        _ => "a block of pixels".to_owned(),
+    }
 }
 
 /// The display window, and the planes that fill with what the parts hold.
@@ -269,19 +286,4 @@ fn order(name: &str) -> (String, usize, String) {
     let (layer, component) = name.rsplit_once('.').unwrap_or(("", name));
     let rank = ["R", "G", "B", "Y", "A"].iter().position(|&known| known == component).unwrap_or(usize::MAX);
     (layer.to_owned(), rank, component.to_owned())
-}
-
-fn explain(error: Error) -> PictureError {
-    match error {
-        Error::NotSupported(what) => {
-            unsupported(what.into_owned(), "save it with ZIP or PIZ compression, as a flat picture")
-        }
-        Error::Invalid(what) if what.contains("missing bytes") => {
-            PictureError::truncated(FORMAT, "the header or the pixels")
-        }
-        Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            PictureError::truncated(FORMAT, "the header or the pixels")
-        }
-        other => PictureError::invalid(FORMAT, other.to_string()),
-    }
 }

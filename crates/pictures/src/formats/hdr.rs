@@ -204,7 +204,7 @@ impl<'a> Source<'a> {
             if rest.len() < LONGEST_LINE {
                 PictureError::truncated(FORMAT, part)
             } else {
-                PictureError::invalid(FORMAT, format!("a line of {part} is endlessly long"))
+                PictureError::invalid(FORMAT, format!("a line of {part} at byte {} is too long", self.at))
             }
         })?;
         self.at += end + 1;
@@ -215,13 +215,15 @@ impl<'a> Source<'a> {
     /// One row in any of the three encodings; each row may have its own.
     fn row(&mut self, columns: usize, row: &mut Vec<[u8; 4]>) -> Result<(), PictureError> {
         row.clear();
+        let start = self.at;
         let first = self.pixel()?;
         if !(8..=0x7fff).contains(&columns) || first[0] != 2 || first[1] != 2 || first[2] & 0x80 != 0 {
             return self.old_row(columns, first, row);
         }
         let length = usize::from(first[2]) << 8 | usize::from(first[3]);
         if length != columns {
-            let what = format!("a row says that it has {length} pixels, and the picture is {columns} across");
+            let what =
+                format!("the row at byte {start} has {length} pixels, and the picture is {columns} across");
             return Err(PictureError::invalid(FORMAT, what));
         }
         row.resize(columns, [0; 4]);
@@ -235,7 +237,10 @@ impl<'a> Source<'a> {
             let code = usize::from(self.take(1)?[0]);
             let (count, literal) = if code > 128 { (code - 128, false) } else { (code, true) };
             if count == 0 || count > rest.len() {
-                let what = format!("a run of {count} where {} pixels of the row are left", rest.len());
+                let what = {
+                    let (at, left) = (self.at - 1, rest.len());
+                    format!("the run at byte {at} has {count} pixels, and its row has {left} left")
+                };
                 return Err(PictureError::invalid(FORMAT, what));
             }
             let values = self.take(if literal { count } else { 1 })?;
@@ -258,7 +263,10 @@ impl<'a> Source<'a> {
             if pixel[..3] == [1, 1, 1] && !row.is_empty() {
                 let count = usize::from(pixel[3]).checked_shl(shift).unwrap_or(usize::MAX);
                 if shift > 24 || count > columns - row.len() {
-                    return Err(PictureError::invalid(FORMAT, "a run goes beyond the end of its row"));
+                    return Err(PictureError::invalid(
+                        FORMAT,
+                        format!("the run at byte {} goes beyond the end of its row", self.at - 4),
+                    ));
                 }
                 row.resize(row.len() + count, row[row.len() - 1]);
                 shift += 8;

@@ -1,6 +1,7 @@
 //! JPEG, read only: textures come in it, renderings should not leave in it.
 
 use super::PictureFormatEntry;
+use super::faults::jpeg::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use crate::{Limits, PictureError};
@@ -31,7 +32,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let options =
         DecoderOptions::default().set_max_width(usize::from(u16::MAX)).set_max_height(usize::from(u16::MAX));
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
-    decoder.decode_headers().map_err(explain)?;
+    decoder.decode_headers().map_err(|error| explain(&error, bytes))?;
     let info = decoder.info().ok_or_else(|| PictureError::invalid(FORMAT, "it has no frame header"))?;
     let pixels = limits.check(FORMAT, info.width.into(), info.height.into(), BYTES_PER_PIXEL)?;
     // The decoder makes do with whatever pixels there are; we would rather say so.
@@ -41,7 +42,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
     let (channels, space) = if grey { (1, ColorSpace::Luma) } else { (3, ColorSpace::RGB) };
     decoder.set_options(options.jpeg_set_out_colorspace(space));
-    let mut samples = decoder.decode().map_err(explain)?;
+    let mut samples = decoder.decode().map_err(|error| explain(&error, bytes))?;
     if samples.len() < pixels.saturating_mul(channels) {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
@@ -64,8 +65,4 @@ fn is_whole(bytes: &[u8]) -> bool {
         }
     }
     bytes.get(at..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
-}
-
-fn explain(error: impl std::fmt::Display) -> PictureError {
-    PictureError::invalid(FORMAT, error.to_string().trim_end().to_owned())
 }

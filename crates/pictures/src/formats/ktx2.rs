@@ -1,5 +1,6 @@
 //! KTX2, read only: textures of glTF files come in it, packed by Basis Universal. [KTX 2.0]
 
+use super::faults::ktx2::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, Rgba8};
@@ -95,7 +96,7 @@ impl<'a> Header<'a> {
         };
         let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
         if depth > 1 || layers > 1 || faces != 1 {
-            return invalid("it has layers, faces or a depth: only flat pictures are read".to_owned());
+            return invalid("it has layers, faces or a depth, and only flat pictures can be read".to_owned());
         }
         if levels > 32 {
             return invalid(format!("it has {levels} levels, and there cannot be more than 32"));
@@ -115,7 +116,7 @@ impl<'a> Header<'a> {
             // A level unpacks to a byte a pixel, in whole blocks of 4 x 4.
             let most = (u64::from(width) + 3) * (u64::from(height) + 3) * 4;
             if u64_at(bytes, at + 16)? > most {
-                return invalid(format!("level {level} says that it has more than its pixels"));
+                return invalid(format!("level {level} has more bytes than its pixels can have"));
             }
             if level == 0 {
                 first = packed;
@@ -138,8 +139,8 @@ impl<'a> Header<'a> {
             }
             _ => {
                 return invalid(format!(
-                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} are not read: Basis Universal \
-                     (ETC1S and UASTC) and plain ones of 8 bits are"
+                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} cannot be read; Basis Universal (ETC1S \
+                     and UASTC) and plain pixels of 8 bits can"
                 ));
             }
         };
@@ -148,8 +149,6 @@ impl<'a> Header<'a> {
     }
 
     fn unpacked(&self, bytes: &[u8]) -> Result<Interleaved, PictureError> {
-        let explain =
-            |error: basisu::Error| PictureError::invalid(FORMAT, format!("it cannot be unpacked: {error:?}"));
         let samples = match self.pixels {
             Pixels::Plain(bytes) => bytes.to_vec(),
             Pixels::Packed { has_alpha } => {

@@ -4,6 +4,7 @@ mod bmp;
 mod disk;
 mod exr;
 mod exr_write;
+mod faults;
 mod guard;
 mod hdr;
 mod jpeg;

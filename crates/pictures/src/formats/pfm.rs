@@ -39,7 +39,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
         Ok(number) if number != 0.0 && f32::is_finite(number) => number,
         _ => {
             let what = format!(
-                "the scale is '{scale}'; it has to be a number other than zero, negative for little-endian samples"
+                "the scale is '{scale}'; it must be a number other than zero, negative for little-endian samples"
             );
             return Err(PictureError::invalid(FORMAT, what));
         }

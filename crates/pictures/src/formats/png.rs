@@ -1,15 +1,14 @@
 //! PNG: all that it can hold comes in; 8 or 16 bits, sRGB, go out. [PNG]
 
+use super::faults::png::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use super::{BitDepth, PictureFormatEntry, Rgba8, WriteOptions, display_planes, planes_of};
 use crate::limits::zeroed;
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
-use ::png::{
-    ColorType, Compression, Decoder, DecodingError, Encoder, Info, SrgbRenderingIntent, Transformations,
-};
+use ::png::{ColorType, Compression, Decoder, Encoder, Info, SrgbRenderingIntent, Transformations};
 use bilux_math::registry::Entry;
-use std::io::{Cursor, ErrorKind};
+use std::io::Cursor;
 
 /// The row of `png`.
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
@@ -43,10 +42,10 @@ fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<
     let memory = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), ::png::Limits { bytes: memory });
     decoder.set_transformations(Transformations::EXPAND);
-    let header = decoder.read_header_info().map_err(explain)?;
+    let header = decoder.read_header_info().map_err(|error| explain(&error, bytes))?;
     let (width, height) = (header.width, header.height);
     limits.check(FORMAT, width.into(), height.into(), bytes_per_pixel)?;
-    let mut reader = decoder.read_info().map_err(explain)?;
+    let mut reader = decoder.read_info().map_err(|error| explain(&error, bytes))?;
     // The decoder takes the length of a palette on trust.
     if reader.info().palette.as_ref().is_some_and(|palette| palette.is_empty() || palette.len() % 3 != 0) {
         return Err(PictureError::invalid(FORMAT, "its palette is not a whole number of colours"));
@@ -54,7 +53,7 @@ fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<
     let size =
         reader.output_buffer_size().ok_or_else(|| PictureError::invalid(FORMAT, "its size overflows"))?;
     let mut samples: Vec<u8> = zeroed(FORMAT, size)?;
-    let frame = reader.next_frame(&mut samples).map_err(explain)?;
+    let frame = reader.next_frame(&mut samples).map_err(|error| explain(&error, bytes))?;
     if (frame.width, frame.height) != (width, height) {
         return Err(PictureError::invalid(FORMAT, "its first frame is smaller than the picture"));
     }
@@ -133,20 +132,6 @@ fn read_texts(info: &Info, picture: &mut Picture) {
     }
 }
 
-fn explain(error: DecodingError) -> PictureError {
-    match error {
-        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            PictureError::truncated(FORMAT, "the pixels or what comes before them")
-        }
-        DecodingError::LimitsExceeded => PictureError::Unsupported {
-            format: FORMAT,
-            what: "a chunk that needs more memory than the limit".to_owned(),
-            advice: "raise the memory limit if the file is to be trusted",
-        },
-        other => PictureError::invalid(FORMAT, other.to_string()),
-    }
-}
-
 fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     let planes = display_planes(FORMAT, picture, options)?;
     let mut bytes = Vec::new();
@@ -184,5 +169,10 @@ fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureEr
 }
 
 fn unwritable(error: ::png::EncodingError) -> PictureError {
-    PictureError::Unwritable { format: FORMAT, what: error.to_string() }
+    let what = match error {
+        ::png::EncodingError::IoError(error) => format!("its bytes cannot be written: {error}"),
+        ::png::EncodingError::LimitsExceeded => "it takes more memory than is allowed".to_owned(),
+        _ => "its size, or the name or text of one of its notes, is not what PNG allows".to_owned(),
+    };
+    PictureError::Unwritable { format: FORMAT, what }
 }

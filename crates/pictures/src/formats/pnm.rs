@@ -38,7 +38,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let bitmap = matches!(magic, "P1" | "P4");
     let maximum = if bitmap { 1 } else { tokens.integer("greatest value")? };
     if !(1..=65535).contains(&maximum) {
-        let what = format!("the greatest value is {maximum}; it has to be 1 to 65535");
+        let what = format!("the greatest value is {maximum}; it must be 1 to 65535");
         return Err(PictureError::invalid(FORMAT, what));
     }
     let pixels = limits.check(FORMAT, width, height, 4 * channels)?;

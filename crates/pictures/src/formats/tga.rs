@@ -74,10 +74,10 @@ impl Header {
             1 => Kind::Indices,
             2 => Kind::Colours,
             3 => Kind::Greys,
-            _ => return invalid(format!("there is no type of picture {}", h[2])),
+            _ => return invalid(format!("its type of picture is {}, which does not exist", h[2])),
         };
         if h[1] > 1 {
-            return invalid(format!("there is no type of palette {}", h[1]));
+            return invalid(format!("its type of palette is {}, which does not exist", h[1]));
         }
         let palette = Palette {
             at: 18 + usize::from(h[0]),

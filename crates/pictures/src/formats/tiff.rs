@@ -1,15 +1,16 @@
 //! TIFF, read only: scans, maps and textures of films come in it. [TIFF 6.0]
 
+use super::faults::tiff::{colours, explain, unsupported};
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use super::{PictureFormatEntry, Rgba8};
 use crate::limits::{reserved, zeroed};
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
-use std::io::{Cursor, ErrorKind};
+use std::io::Cursor;
+use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::{SampleFormat, Tag};
-use tiff::{ColorType, TiffError};
 
 /// The row of `tiff`.
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
@@ -97,11 +98,15 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     own.decoding_buffer_size = memory;
     own.intermediate_buffer_size = memory;
     own.ifd_value_size = own.ifd_value_size.min(memory);
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(explain)?.with_limits(own);
-    let (width, height) = decoder.dimensions().map_err(explain)?;
-    let kind = decoder.colortype().map_err(explain)?;
+    let mut decoder =
+        Decoder::new(Cursor::new(bytes)).map_err(|error| explain(error, bytes))?.with_limits(own);
+    let (width, height) = decoder.dimensions().map_err(|error| explain(error, bytes))?;
+    let kind = decoder.colortype().map_err(|error| explain(error, bytes))?;
     let bits = kind.bit_depth();
-    let extra = decoder.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples).map_err(explain)?.unwrap_or_default();
+    let extra = decoder
+        .find_tag_unsigned_vec::<u16>(Tag::ExtraSamples)
+        .map_err(|error| explain(error, bytes))?
+        .unwrap_or_default();
     let opacity = match extra.first() {
         Some(1) => Opacity::Premultiplied,
         Some(2) => Opacity::Straight,
@@ -113,10 +118,13 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         ColorType::RGB(_) => (3, 3, Opacity::None),
         ColorType::RGBA(_) if opacity == Opacity::None => (4, 3, Opacity::Straight),
         ColorType::RGBA(_) => (4, 3, opacity),
-        other => return Err(unsupported(format!("the kind of colours {other:?}"))),
+        other => return Err(unsupported(colours(other).to_owned())),
     };
     if channels > MOST_CHANNELS || usize::from(channels) < colours + usize::from(opacity != Opacity::None) {
-        return Err(PictureError::invalid(FORMAT, format!("there is no picture of {channels} channels")));
+        return Err(PictureError::invalid(
+            FORMAT,
+            format!("it has {channels} channels, which no picture has"),
+        ));
     }
     let each = u64::from(channels) * u64::from(bits.div_ceil(8));
     // Samples as they are stored, again where they are unpacked, and four planes of ours.
@@ -129,9 +137,12 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     if stored > most {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
-    let orientation = decoder.find_tag_unsigned::<u16>(Tag::Orientation).map_err(explain)?.unwrap_or(1);
+    let orientation = decoder
+        .find_tag_unsigned::<u16>(Tag::Orientation)
+        .map_err(|error| explain(error, bytes))?
+        .unwrap_or(1);
     let mut samples = DecodingResult::U8(Vec::new());
-    let layout = decoder.read_image_to_buffer(&mut samples).map_err(explain)?;
+    let layout = decoder.read_image_to_buffer(&mut samples).map_err(|error| explain(error, bytes))?;
     if layout.sample_format == SampleFormat::Int {
         return Err(unsupported("a picture of numbers with a sign".to_owned()));
     }
@@ -275,24 +286,4 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
         picture.push_channel("A", alpha)?;
     }
     Ok(picture)
-}
-
-fn unsupported(what: String) -> PictureError {
-    let advice = "save it as grey or RGB, packed by Deflate or not at all";
-    PictureError::Unsupported { format: FORMAT, what, advice }
-}
-
-fn explain(error: TiffError) -> PictureError {
-    match error {
-        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            PictureError::truncated(FORMAT, "the pixels or what comes before them")
-        }
-        TiffError::UnsupportedError(what) => unsupported(format!("'{what}'")),
-        TiffError::LimitsExceeded => PictureError::Unsupported {
-            format: FORMAT,
-            what: "a part that needs more memory than the limit".to_owned(),
-            advice: "raise the memory limit if the file is to be trusted",
-        },
-        other => PictureError::invalid(FORMAT, other.to_string()),
-    }
 }

@@ -21,21 +21,31 @@ impl<'a> Tokens<'a> {
         while self.bytes.get(self.at).is_some_and(|byte| !byte.is_ascii_whitespace() && *byte != b'#') {
             self.at += 1;
             if self.at - start > LONGEST_WORD {
-                return Err(PictureError::invalid(self.format, format!("the {what} is endlessly long")));
+                return Err(PictureError::invalid(
+                    self.format,
+                    format!("the {what} at byte {start} is too long"),
+                ));
             }
         }
         if start == self.at {
             return Err(PictureError::truncated(self.format, format!("the {what}")));
         }
         let word = std::str::from_utf8(&self.bytes[start..self.at]);
-        word.map_err(|_| PictureError::invalid(self.format, format!("the {what} is no text")))
+        word.map_err(|_| {
+            PictureError::invalid(self.format, format!("the {what} at byte {start} is not text"))
+        })
     }
 
     /// The next word as a whole number.
     pub(super) fn integer(&mut self, what: &'static str) -> Result<u64, PictureError> {
         let word = self.word(what)?;
-        let wrong =
-            || PictureError::invalid(self.format, format!("the {what} is '{word}', not a whole number"));
+        let at = self.at - word.len();
+        let wrong = || {
+            PictureError::invalid(
+                self.format,
+                format!("the {what} at byte {at} is '{word}', not a whole number"),
+            )
+        };
         word.parse().map_err(|_| wrong())
     }
 
@@ -45,7 +55,12 @@ impl<'a> Tokens<'a> {
         let bit = match self.bytes.get(self.at) {
             Some(b'0') => false,
             Some(b'1') => true,
-            Some(_) => return Err(PictureError::invalid(self.format, "a bit is neither 0 nor 1")),
+            Some(_) => {
+                return Err(PictureError::invalid(
+                    self.format,
+                    format!("the bit at byte {} is neither 0 nor 1", self.at),
+                ));
+            }
             None => return Err(PictureError::truncated(self.format, "the pixels")),
         };
         self.at += 1;
@@ -59,7 +74,10 @@ impl<'a> Tokens<'a> {
                 self.at += 1;
                 Ok(&self.bytes[self.at..])
             }
-            Some(_) => Err(PictureError::invalid(self.format, "no blank between the header and the pixels")),
+            Some(_) => Err(PictureError::invalid(
+                self.format,
+                format!("at byte {} a blank should separate the header from the pixels", self.at),
+            )),
             None => Err(PictureError::truncated(self.format, "the header")),
         }
     }

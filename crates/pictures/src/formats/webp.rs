@@ -1,6 +1,7 @@
 //! WebP, read only: textures come in it.
 
 use super::PictureFormatEntry;
+use super::faults::webp::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
 use crate::limits::zeroed;
@@ -27,16 +28,16 @@ const BYTES_PER_PIXEL: u64 = 4 + 8 + 4 * 4;
 
 /// The first picture of one that moves.
 fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
-    let explain = |error: image_webp::DecodingError| PictureError::invalid(FORMAT, error.to_string());
-    let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(explain)?;
+    let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|error| explain(&error, bytes))?;
     decoder.set_memory_limit(usize::try_from(limits.max_bytes).unwrap_or(usize::MAX));
     let (width, height) = decoder.dimensions();
     let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
     let size = pixels
         .checked_mul(if decoder.has_alpha() { 4 } else { 3 })
         .filter(|&size| decoder.output_buffer_size() == Some(size));
-    let size = size.ok_or_else(|| PictureError::invalid(FORMAT, "its size is none"))?;
+    let size =
+        size.ok_or_else(|| PictureError::invalid(FORMAT, "its header says a size that its pixels have not"))?;
     let mut samples = zeroed::<u8>(FORMAT, size)?;
-    decoder.read_image(&mut samples).map_err(explain)?;
+    decoder.read_image(&mut samples).map_err(|error| explain(&error, bytes))?;
     Ok(Interleaved { width: width as usize, height: height as usize, samples })
 }

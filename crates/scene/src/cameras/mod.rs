@@ -85,6 +85,13 @@ pub struct CameraSpec {
     pub keyframes: Vec<(f32, Parameters)>,
 }
 
+impl CameraSpec {
+    /// A camera that does not move.
+    pub fn new(spec: Spec) -> CameraSpec {
+        CameraSpec { spec, keyframes: Vec::new() }
+    }
+}
+
 /// Makes the camera that a spec describes, for a film of this width over height.
 ///
 /// # Errors

@@ -2,7 +2,7 @@
 
 use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
-use crate::geometry::transform_with_error;
+use crate::corners::transform_with_error;
 use crate::surface::{Surface, gamma};
 use crate::texture::{ColourMap, NumberMap, UvPair};
 use bilux_accel::Primitive;

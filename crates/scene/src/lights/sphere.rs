@@ -43,7 +43,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         let radius = reader.number("radius");
         // What the square of is no number, too small a ball for any ray.
         if !(radius * radius).is_normal() {
-            let message = "the radius of a sphere light has to be above 0";
+            let message = "the radius of a sphere light must be above 0";
             return Err(SceneError::invalid(message, reader.span("radius")));
         }
         let emission = if reader.is_given("radiance") {

@@ -11,6 +11,7 @@ use crate::cameras::CameraSpec;
 use crate::error::SceneError;
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
+use bilux_math::transcendental::tan_f64;
 use bilux_math::{DMat3, DVec3, Rgb, Transform, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -37,6 +38,7 @@ pub(super) const SECOND: PresetEntry = PresetEntry {
 
 /// A camera of the course, angles in degrees.
 pub(super) struct View {
+    /// The middle of the image plane, not the eye.
     position: Vec3,
     look_at: Vec3,
     up: Vec3,
@@ -61,6 +63,23 @@ impl View {
         let up = self.up.as_dvec3();
         let y = (up - z * up.dot(z)).normalize();
         DMat3::from_cols(y.cross(z), y, z)
+    }
+
+    /// The centre of projection. That renderer divides x and y by `z tan(fov / 2) + 1`, z being the depth from
+    /// `position`: rays meet where this is zero, 1/tan(fov / 2) behind it.
+    fn eye(&self) -> Vec3 {
+        let behind = 1.0 / tan_f64(f64::from(self.fov).to_radians() / 2.0);
+        (self.position.as_dvec3() - self.axes().z_axis * behind).as_vec3()
+    }
+
+    fn camera(&self) -> CameraSpec {
+        let spec = Spec::new("course", "perspective")
+            .with("position", self.eye())
+            .with("look_at", self.look_at)
+            .with("up", self.up)
+            .with("fov", self.fov)
+            .with("mirrored", true);
+        CameraSpec { spec, keyframes: Vec::new() }
     }
 }
 
@@ -105,13 +124,7 @@ fn apply(scene: &mut SceneBuilder, view: &View) -> Result<(), SceneError> {
         }
     }
     scene.lights = lights(&view.axes());
-    let camera = Spec::new("course", "perspective")
-        .with("position", view.position)
-        .with("look_at", view.look_at)
-        .with("up", view.up)
-        .with("fov", view.fov)
-        .with("mirrored", true);
-    scene.cameras = vec![CameraSpec { spec: camera, keyframes: Vec::new() }];
+    scene.cameras = vec![view.camera()];
     let settings = [
         ("integrator", Value::from("cast")),
         ("size", Value::from("256x256")),
@@ -141,4 +154,70 @@ pub(super) fn lights(camera: &DMat3) -> Vec<Spec> {
         Spec::new("background", "environment").with("radiance", background).with("backdrop", true),
     ];
     suns.chain(rest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CameraSample;
+    use crate::cameras;
+    use bilux_math::Vec2;
+
+    /// Rows of a picture by that renderer, which its course hands out as an example: the first column that shows the
+    /// square from 0 to 20 in x and z, and the last where no other thing hides it.
+    const ROWS: [(u32, u32, Option<u32>); 10] = [
+        (50, 3, None),
+        (70, 10, None),
+        (90, 17, None),
+        (130, 30, None),
+        (160, 40, Some(117)),
+        (180, 47, Some(119)),
+        (200, 58, Some(121)),
+        (220, 71, Some(123)),
+        (240, 84, Some(125)),
+        (255, 94, Some(127)),
+    ];
+
+    /// The camera of that picture.
+    const EXAMPLE: View = View {
+        position: Vec3::new(-3.0, -25.0, -4.0),
+        look_at: Vec3::new(7.8, 0.7, 6.5),
+        up: Vec3::new(-0.2, 1.0, 0.0),
+        fov: 63.7,
+    };
+
+    /// Pixels that do not see what they see in the picture.
+    fn wrong(camera: &CameraSpec) -> usize {
+        let camera = cameras::build(camera, 1.0).unwrap();
+        let to_model = *model().inverse_matrix();
+        let sees = |i: u32, j: u32| {
+            let film = Vec2::new(i as f32, j as f32) / 256.0;
+            let ray = camera.ray(&CameraSample { film, lens: Vec2::ZERO, time: 0.0 });
+            let (o, d) = (
+                to_model.transform_point3(ray.origin.into()),
+                to_model.transform_vector3(ray.direction.into()),
+            );
+            let at = o - d * (o.y / d.y);
+            o.y / d.y < 0.0 && (0.0..=20.0).contains(&at.x) && (0.0..=20.0).contains(&at.z)
+        };
+        let row = |(j, first, last): (u32, u32, Option<u32>)| {
+            let ends = [
+                Some((first - 1, false)),
+                Some((first, true)),
+                last.map(|i| (i, true)),
+                last.map(|i| (i + 1, false)),
+            ];
+            ends.into_iter().flatten().filter(|(i, wanted)| sees(*i, j) != *wanted).count()
+        };
+        ROWS.into_iter().map(row).sum()
+    }
+
+    #[test]
+    fn the_eye_is_where_a_picture_of_the_course_has_it() {
+        assert_eq!(wrong(&EXAMPLE.camera()), 0);
+        // In the camera's own place it would see something else.
+        let mut there = EXAMPLE.camera();
+        there.spec.parameters.set("position", EXAMPLE.position);
+        assert!(wrong(&there) > 10);
+    }
 }

@@ -5,9 +5,13 @@
 
 mod course;
 mod paper;
+mod stroke_widths;
 mod studio;
 
-pub use studio::{Ground, Studio, complete};
+pub use stroke_widths::set_stroke_widths;
+pub use studio::{
+    Ground, Studio, add_missing, complete, frame, may_be_lit, seems_lit, set_upright, shadow_catcher,
+};
 
 use crate::builder::SceneBuilder;
 use crate::error::SceneError;

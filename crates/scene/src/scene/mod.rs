@@ -1,11 +1,13 @@
 //! The immutable scene, and the [`Tracer`] through which integrators ask it.
 
+mod sheets;
 mod tracer;
 
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
+use crate::corners::corner_uvs;
 use crate::footprint::View;
-use crate::geometry::{Geometry, corner_uvs};
+use crate::geometry::Geometry;
 use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
 use crate::materials::Material;
 use crate::surface::Surface;
@@ -13,6 +15,7 @@ use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
 use bilux_accel::{Accelerator, Query};
 use bilux_math::{Aabb, Rgb, Vec3};
+use sheets::Sheets;
 use std::sync::Arc;
 pub use tracer::Tracer;
 
@@ -139,18 +142,21 @@ pub struct Scene {
     shutter: [f32; 2],
     /// For whom textures are filtered.
     view: Option<View>,
+    /// The gaps of sheets, where there are any.
+    sheets: Option<Sheets>,
 }
 
 impl Scene {
     pub(crate) fn new(parts: Arc<SceneParts>, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
         let accelerator = parts.geometry.top_level(accel, shutter);
         let alone = match parts.geometry.triangle_instances() {
-            [only] if only.mask == u32::MAX && only.motion.is_still() => {
+            [only] if only.mask == u32::MAX && only.motion.is_still() && !parts.geometry.has_strokes() => {
                 only.motion.at(0.0).is_identity().then(|| only.accelerator.clone())
             }
             _ => None,
         };
-        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None }
+        let sheets = Sheets::find(&parts, &accelerator, shutter[0]);
+        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets }
     }
 
     /// The same scene at another time: only the top level is built anew.

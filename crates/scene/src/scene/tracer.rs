@@ -1,5 +1,6 @@
 //! How a scene is asked: what rays meet, and what they pass.
 
+use super::sheets::{End, Sheets};
 use super::{Scene, SceneParts};
 use crate::lights::Sides;
 use crate::surface::Surface;
@@ -47,17 +48,27 @@ impl SceneParts {
         self.has_holes || ray.mask != u32::MAX
     }
 
-    /// True when the surface is there for a ray that hits it: not where the camera sees through its back, and where it has holes
-    /// each ray decides for itself, by a `number` that depends on nothing but the ray and the hit.
-    fn stops(&self, ray: &Ray, number: u64, hit: &Hit) -> bool {
+    /// True when the surface is there for a ray that hits it: not where the camera sees through its back, nor where the ray begins or
+    /// ends on the other shell of a sheet; and where it has holes each ray decides for itself, by a `number` that depends on nothing but the
+    /// ray and the hit.
+    fn stops(
+        &self,
+        ray: &Ray,
+        number: u64,
+        hit: &Hit,
+        (sheets, end): (Option<&Sheets>, Option<End>),
+    ) -> bool {
         let (material, uv) = self.geometry.material_and_uv(hit);
         let material = &self.materials[material as usize];
-        if ray.mask != u32::MAX && material.visible_sides() == Sides::Front {
+        if (ray.mask != u32::MAX || sheets.is_some()) && material.visible_sides() == Sides::Front {
             let outwards = || self.geometry.surface(ray, hit).n_geom;
             let front = self.geometry.front(hit.primitive(), ray.time).unwrap_or_else(outwards);
             let along = front.dot(ray.direction.into());
             let towards_camera = if ray.mask == TO_CAMERA { along } else { -along };
-            if towards_camera <= 0.0 {
+            if ray.mask != u32::MAX && towards_camera <= 0.0 {
+                return false;
+            }
+            if sheets.is_some_and(|sheets| self.is_between_shells(sheets, ray, hit, front, end)) {
                 return false;
             }
         }
@@ -75,23 +86,39 @@ pub struct Tracer<'s> {
     /// What the rays took; only `rays` unless counting is on.
     pub counters: Counters,
     counting: bool,
+    /// Where the rays of the moment end on a surface.
+    end: Option<End>,
 }
 
 impl<'s> Tracer<'s> {
     /// A tracer; with `counting`, every node and triangle test is counted.
     pub fn new(scene: &'s Scene, counting: bool) -> Tracer<'s> {
-        Tracer { scene, counters: Counters::default(), counting }
+        Tracer { scene, counters: Counters::default(), counting, end: None }
+    }
+
+    /// Asks with rays that lie between the origin of `ray` and a point at its parameter 1, on a surface with this
+    /// [normal](Scene::normal_towards); zero where there is no surface. Without this a ray may be blocked by the shell before the one that it
+    /// ends on.
+    #[inline]
+    pub fn ending_on<T>(&mut self, ray: &Ray, n: Vec3, question: impl FnOnce(&mut Self) -> T) -> T {
+        if self.scene.sheets.is_none() || n == Vec3::ZERO {
+            return question(self);
+        }
+        self.end = Some(End { p: Vec3::from(ray.origin) + Vec3::from(ray.direction), n });
+        let answer = question(self);
+        self.end = None;
+        answer
     }
 
     /// Asks for a ray, past what lets it through.
     #[inline(always)]
     fn ask<T>(&mut self, ray: &Ray, question: impl FnOnce(&mut Self, &Ray, &Query) -> T) -> T {
         let scene = self.scene;
-        if !scene.parts.is_patchy_for(ray) {
+        if !scene.parts.is_patchy_for(ray) && scene.sheets.is_none() {
             return question(self, ray, &scene.query);
         }
-        let number = number_of(ray);
-        let stops = |hit: &Hit| scene.parts.stops(ray, number, hit);
+        let (number, shells) = (number_of(ray), (scene.sheets.as_ref(), self.end));
+        let stops = |hit: &Hit| scene.parts.stops(ray, number, hit, shells);
         question(self, ray, &Query { filter: Some(&stops), ..scene.query })
     }
 
@@ -100,6 +127,7 @@ impl<'s> Tracer<'s> {
     pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
         let scene = self.scene;
         let hit = self.ask(ray, Tracer::closest_hit)?;
+        let hit = scene.behind_shells(ray, hit, |ray| self.ask(ray, Tracer::closest_hit));
         let mut surface = scene.parts.geometry.surface(ray, &hit);
         if let Some(view) = &scene.view {
             view.put_on(&mut surface, &scene.parts.geometry);

@@ -134,6 +134,16 @@ impl Texture {
         Texture { filter: Filter::Nearest, ..Texture::of(name, Arc::new(image), false) }
     }
 
+    /// What stands in for the picture of a light that cannot be read: an even grey, whose radiance is 0.5.
+    pub fn missing_light(name: &str) -> Texture {
+        let image = Image {
+            width: 8,
+            height: 8,
+            texels: Texels::Floats { colours: vec![Rgb::grey(0.5); 64], alpha: Vec::new() },
+        };
+        Texture::of(name, Arc::new(image), true)
+    }
+
     /// Texels a row.
     pub fn width(&self) -> usize {
         self.image.width

@@ -22,7 +22,7 @@ pub(crate) fn to_camera<const N: usize>(
     }
     let media = y.media_towards(task.scene(), seen.wi);
     let ray = task.scene().to_camera(y.surface.spawn_to(seen.p));
-    let passed = media.visible(task.tracer, &ray, seen.p.distance(y.surface.p))?;
+    let passed = media.visible(task.tracer, &ray, seen.p.distance(y.surface.p), Vec3::ZERO)?;
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
     let light = task.seen(y.beta * scattered * passed * seen.density, y.is_split());
@@ -66,7 +66,7 @@ pub(crate) fn to_light<const N: usize>(
     }
     let distance = sample.point.map_or(0.0, |point| point.distance(z.surface.p));
     let media = z.media_towards(scene, sample.wi);
-    let passed = media.visible(task.tracer, &z.surface.spawn_to_light(&sample), distance)?;
+    let passed = media.visible(task.tracer, &z.surface.spawn_to_light(&sample), distance, sample.n_light)?;
     let cos_light = sample.cos();
     // Of a light without extent the point is certain: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
@@ -102,7 +102,8 @@ pub(crate) fn to_vertex<const N: usize>(
         return None;
     }
     let media = z.media_towards(task.scene(), direction);
-    let passed = media.visible(task.tracer, &spawn_between(z, y), distance2.sqrt())?;
+    let n = task.scene().normal_towards(&y.surface, -direction);
+    let passed = media.visible(task.tracer, &spawn_between(z, y), distance2.sqrt(), n)?;
     let cos = |vertex: &Vertex<N>| vertex.surface.n_geom.dot(direction).abs();
     let (back_z, back_y) = (TransportMode::Importance, TransportMode::Radiance);
     let from_camera =

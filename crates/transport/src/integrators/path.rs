@@ -214,7 +214,7 @@ impl Path {
         // Beyond the last surface there is no absorbing glass: its boundary would have blocked the ray.
         let distance = sample.point.map_or(0.0, |point| point.distance(surface.p));
         let media = media.towards(task.scene(), surface, wo, sample.wi);
-        match media.visible(task.tracer, &surface.spawn_to_light(&sample), distance) {
+        match media.visible(task.tracer, &surface.spawn_to_light(&sample), distance, sample.n_light) {
             Some(passed) => scattered * sample.li * passed * (weight / light_pdf),
             None => Rgb::BLACK,
         }

@@ -46,9 +46,8 @@ pub(super) fn unpacked(extension: Node, bytes: &[u8], budget: &mut Budget) -> Re
         "TRIANGLES" => Mode::Triangles,
         "INDICES" => Mode::Indices,
         other => {
-            return Err(
-                extension.error(format!("'{other}' is no mode: ATTRIBUTES, TRIANGLES and INDICES are"))
-            );
+            return Err(extension
+                .error(format!("'{other}' is not a mode, which are ATTRIBUTES, TRIANGLES and INDICES")));
         }
     };
     let filter = Filter::named(extension.text("filter")?.unwrap_or("NONE")).ok_or_else(|| {
@@ -82,7 +81,7 @@ pub(super) fn unpacked(extension: Node, bytes: &[u8], budget: &mut Budget) -> Re
         Mode::Indices => indices::unpack_sequence(bytes, stride, &mut elements),
     };
     done.map_err(|Broken| {
-        extension.error("the packed bytes of this view are broken: export the file again")
+        extension.error("the packed bytes of this buffer view cannot be unpacked: export the file again")
     })?;
     filter.undo(stride, &mut elements);
     Ok(elements)

@@ -57,11 +57,11 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    /// Triangles as an accessor of indices.
-    pub(super) fn indices(&mut self, triangles: &[[u32; 3]]) -> usize {
-        let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+    /// An accessor of indices.
+    pub(super) fn indices(&mut self, indices: &[u32]) -> usize {
+        let bytes: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
-        let count = triangles.len() * 3;
+        let count = indices.len();
         self.accessors.push(
             json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }),
         );

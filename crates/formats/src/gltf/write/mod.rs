@@ -85,7 +85,7 @@ impl Document<'_> {
     }
 
     fn object(&mut self, object: &Object, writing: &mut Writing) -> Result<(), FormatError> {
-        if object.mesh.triangles.is_empty() {
+        if object.mesh.is_empty() {
             return Ok(());
         }
         let mesh = self.mesh(&object.mesh, object.material, writing)?;
@@ -107,7 +107,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// A mesh of one primitive; the same for all objects that share it and its material.
+    /// A mesh of one primitive, or of one each for triangles, points and lines; the same for all objects that share it and its material.
     fn mesh(
         &mut self,
         mesh: &Arc<Mesh>,
@@ -142,11 +142,26 @@ impl Document<'_> {
             let colours: Vec<_> = mesh.vertex_kd.iter().map(|c| c.to_array()).collect();
             attributes.insert("COLOR_0".into(), json!(self.buffer.vectors(&colours, false)));
         }
-        let indices = self.buffer.indices(&mesh.triangles);
-        let primitive = json!({ "attributes": attributes, "indices": indices, "material": material });
+        // Modes of a primitive. [glTF 2.0, 5.24.4]
+        const POINTS: u32 = 0;
+        const LINES: u32 = 1;
+        let mut primitives = Vec::new();
+        let kinds = [
+            (None, mesh.triangles.as_flattened()),
+            (Some(POINTS), &mesh.points[..]),
+            (Some(LINES), mesh.lines.as_flattened()),
+        ];
+        for (mode, corners) in kinds.into_iter().filter(|(_, corners)| !corners.is_empty()) {
+            let indices = self.buffer.indices(corners);
+            let mut primitive = json!({ "attributes": attributes, "indices": indices, "material": material });
+            if let Some(mode) = mode {
+                primitive["mode"] = json!(mode);
+            }
+            primitives.push(primitive);
+        }
         let named = if mesh.name.is_empty() { json!({}) } else { json!({ "name": mesh.name }) };
         let mut whole = named;
-        whole["primitives"] = json!([primitive]);
+        whole["primitives"] = json!(primitives);
         let index = self.push("meshes", whole);
         self.meshes.insert((Arc::as_ptr(mesh), material), index);
         Ok(index)

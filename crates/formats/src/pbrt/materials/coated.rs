@@ -87,7 +87,6 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
             None
         }
         Metal::Reflectance(Ink::Colour(colour)) => Some([Rgb::WHITE, extinction_of(colour)]),
-        Metal::Named(name) => Some(super::super::metals::indices(name)),
         Metal::Indices(indices) => Some(indices),
     };
     if let Some(metal) = metal {

@@ -1,7 +1,7 @@
 //! Materials of one layer.
 
 use super::super::inks::{Ink, Meaning};
-use super::super::metals;
+use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
 use super::super::spectra::{Named, named};
@@ -105,8 +105,6 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
 pub(super) enum Metal {
     /// Reflects so much straight on.
     Reflectance(Ink),
-    /// One of our table.
-    Named(&'static str),
     /// By its refractive index and its extinction.
     Indices([Rgb; 2]),
 }
@@ -128,7 +126,7 @@ impl Pbrt<'_, '_> {
             return Ok(Metal::Reflectance(reflectance));
         }
         if !given {
-            return Ok(Metal::Named("copper"));
+            return Ok(Metal::Indices(metals::indices("copper")));
         }
         let metal_of = |name: &'static str| match named(list.find(name)?.text()?)? {
             Named::Metal { metal, .. } => Some(metal),
@@ -137,14 +135,20 @@ impl Pbrt<'_, '_> {
         if let (Some(metal), Some(same)) = (metal_of(eta_name), metal_of(k_name))
             && metal == same
         {
-            return Ok(Metal::Named(metal));
+            return Ok(Metal::Indices(metals::indices(metal)));
         }
         let spectra = match (list.find(eta_name), list.find(k_name)) {
             (Some(eta), Some(k)) => (self.whole_spectrum(eta)?, self.whole_spectrum(k)?),
             _ => (None, None),
         };
         if let (Some(eta), Some(k)) = spectra {
-            return Ok(Metal::Indices(metals::from_spectra(&eta, &k)));
+            let Reduced { indices, is_cut } = metals::from_spectra(&eta, &k);
+            if is_cut {
+                let what =
+                    "a metal is of a stronger colour than sRGB holds: the nearest that it holds is used";
+                self.oddities.note(what, || list.place(eta_name));
+            }
+            return Ok(Metal::Indices(indices));
         }
         let [eta, k] = metals::indices("copper");
         let mut part = |name, default| {
@@ -168,7 +172,6 @@ impl Pbrt<'_, '_> {
         let at = list.place(names[0]);
         match self.metal(list, names)? {
             Metal::Reflectance(ink) => self.set_reflectance(spec, ink, list),
-            Metal::Named(name) => spec.parameters.set_at("metal", name.into(), at),
             Metal::Indices([eta, k]) => {
                 spec.parameters.set_at("eta", eta.into(), at.clone());
                 spec.parameters.set_at("k", k.into(), at);

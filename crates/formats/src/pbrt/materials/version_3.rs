@@ -60,7 +60,6 @@ pub(super) fn metal(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
     let mut spec = Spec::new("", "conductor");
     match pbrt.metal(list, ["eta", "k"])? {
         Metal::Reflectance(ink) => pbrt.set_reflectance(&mut spec, ink, list),
-        Metal::Named(name) => spec.parameters.set("metal", name),
         Metal::Indices([eta, k]) => {
             spec.parameters.set("eta", eta);
             spec.parameters.set("k", k);

@@ -14,10 +14,6 @@ use bilux_math::transcendental::ln;
 use bilux_scene::materials::{metal_indices, with_indices};
 use bilux_scene::{Spec, Value};
 
-/// Metals that pbrt knows by name.
-const METALS: [(&str, &str); 5] =
-    [("aluminium", "Al"), ("brass", "CuZn"), ("copper", "Cu"), ("gold", "Au"), ("silver", "Ag")];
-
 /// Roughness is what we write, and no root of it.
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
@@ -114,17 +110,9 @@ impl Document<'_> {
                     Some((Value::Text(name), _)) => name.as_str(),
                     _ => "aluminium",
                 };
-                match METALS.iter().find(|(ours, _)| *ours == metal) {
-                    Some((_, theirs)) => {
-                        format!(
-                            " \"spectrum eta\" \"metal-{theirs}-eta\" \"spectrum k\" \"metal-{theirs}-k\""
-                        )
-                    }
-                    None => {
-                        let [eta, k] = metal_indices(metal).unwrap_or([Rgb::WHITE; 2]);
-                        rgb("eta", eta) + &rgb("k", k)
-                    }
-                }
+                // Not by name: pbrt's spectra are other measurements.
+                let [eta, k] = metal_indices(metal).unwrap_or([Rgb::WHITE; 2]);
+                rgb("eta", eta) + &rgb("k", k)
             }
             (None, eta, k) => rgb("eta", eta.unwrap_or(Rgb::WHITE)) + &rgb("k", k.unwrap_or(Rgb::WHITE)),
         };

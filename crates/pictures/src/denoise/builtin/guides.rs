@@ -5,7 +5,7 @@ use crate::PictureError;
 use crate::denoise::Noisy;
 
 /// Planes: 1 within the picture and 0 beyond; albedo, normals; depth, how it changes from column to column and from row to row, and one
-/// over what it may differ by from pixel to pixel.
+/// over what it may differ by from pixel to pixel; and one over depth, 0 where nothing is seen.
 pub(super) struct Guides {
     pub(super) planes: Planes,
 }
@@ -17,7 +17,8 @@ pub(super) const NORMAL: usize = 4;
 pub(super) const DEPTH: usize = 7;
 pub(super) const SLOPE: usize = 8;
 pub(super) const TIGHTNESS: usize = 10;
-const COUNT: usize = 11;
+pub(super) const INVERSE: usize = 11;
+const COUNT: usize = 12;
 
 /// Surfaces this near to each other, as a part of their distance, may be one.
 const NEAR: f32 = 0.005;
@@ -42,7 +43,8 @@ impl Guides {
             let (across, down) = (slope(row), slope(column));
             let may_differ = NEAR * depth(i) + 0.5 * (across.abs() + down.abs()) + f32::MIN_POSITIVE;
             let [r, g, b] = albedo;
-            [1.0, r, g, b, nx, ny, nz, depth(i), across, down, (1.0 / may_differ).min(1e9)]
+            let inverse = if depth(i) > 0.0 { (1.0 / depth(i)).min(1e9) } else { 0.0 };
+            [1.0, r, g, b, nx, ny, nz, depth(i), across, down, (1.0 / may_differ).min(1e9), inverse]
         })?;
         debug_assert_eq!(planes.planes.len(), COUNT);
         planes.planes[WITHIN] = {

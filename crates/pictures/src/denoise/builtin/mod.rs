@@ -3,6 +3,7 @@
 //! the noise lets one tell, the same light: small patches are compared, against the variance that is known of both.
 //! Over wider and wider distances, with holes. [Dammertz 2010; Rousselle 2012; Schied 2017]
 
+mod edges;
 mod guides;
 mod outliers;
 mod pass;
@@ -15,7 +16,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use guides::Guides;
 use pass::pass;
-use planes::Light;
+use planes::{Light, Planes};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::time::Duration;
 
@@ -26,9 +27,9 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         source: "Dammertz 2010",
         parameters: &[],
     },
-    time: |pixels, threads| Duration::from_nanos(pixels.saturating_mul(1600) / threads as u64),
+    time: |task| Duration::from_nanos(task.pixels().saturating_mul(1600) / task.threads_at_work() as u64),
     is_library: false,
-    find: |threads| match Builtin::new(threads) {
+    find: |task| match Builtin::new(task.threads) {
         Ok(builtin) => Ok(Box::new(builtin)),
         Err(why) => Err(why.to_string()),
     },
@@ -43,8 +44,9 @@ const MARGIN: usize = 2 * 8 + 1;
 /// Rows that are filtered at a time: memory for so many is all that a picture takes, however high it is.
 const MOST_ROWS: usize = 512;
 
-/// How far away a row may be that shows in another: what the passes look at, and means of variances, outliers and guesses before them.
-const REACH: usize = 34 + 2 + 2 + 1;
+/// How far away a row may be that shows in another: what the passes look at, and means of variances, outliers and guesses before
+/// them, and edges after them.
+const REACH: usize = 34 + 2 + 2 + 1 + edges::RADIUS;
 
 pub(super) struct Builtin {
     pool: ThreadPool,
@@ -83,13 +85,23 @@ impl Denoiser for Builtin {
 fn smoothed(noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     let guides = Guides::of(&noisy)?;
     let Noisy { width, height, layers, albedo, .. } = noisy;
-    let mut sum = vec![Rgb::BLACK; width * height];
+    let mut sum = vec![[0.0; 4]; width * height];
     for layer in layers {
         let light = smooth_light((width, height), layer, albedo.as_deref(), &guides)?;
         let back = |i: usize| albedo.as_ref().map_or(Rgb::WHITE, |albedo| planes::divisor(albedo[i]));
-        sum.iter_mut().enumerate().for_each(|(i, sum)| *sum += light.planes.rgb(i) * back(i));
+        for (i, sum) in sum.iter_mut().enumerate() {
+            let (back, variance) =
+                (back(i), light.planes.planes[3][light.planes.index(i % width, i / width)]);
+            let Rgb { r, g, b } = light.planes.rgb(i) * back;
+            let own = [r, g, b, variance * planes::mean(back * back)];
+            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        }
     }
-    Ok(sum)
+    if albedo.is_none() {
+        return Ok(sum.into_iter().map(|[r, g, b, _]| Rgb::new(r, g, b)).collect());
+    }
+    let colours = Planes::filled((width, height), |i| sum[i])?;
+    Ok(edges::rebuilt(&colours, &guides))
 }
 
 /// A layer's light without its noise, and without the surfaces' own colours.

@@ -121,7 +121,7 @@ impl Light {
     }
 }
 
-fn mean(c: Rgb) -> f32 {
+pub(super) fn mean(c: Rgb) -> f32 {
     (c.r + c.g + c.b) / 3.0
 }
 

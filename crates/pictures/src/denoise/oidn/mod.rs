@@ -1,17 +1,22 @@
 //! `oidn`: Open Image Denoise, where its library is found; nothing of it is linked. Albedo and normals are denoised first, by
-//! themselves, and then taken as clean. [Áfra 2025]
+//! themselves, and then taken as clean, where there is time. [Áfra 2025]
 
+mod effort;
 mod library;
 mod places;
+mod python;
+mod shared;
 
 use super::builtin::Builtin;
-use super::{Denoiser, DenoiserEntry, Source};
+use super::{Denoiser, DenoiserEntry, Noisy, Source, Task};
 use crate::PictureError;
 use crate::limits::reserved;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
-use library::{Device, Image};
-use std::time::Duration;
+use effort::Effort;
+use library::{Device, Filter};
+use std::sync::Arc;
+use std::thread::JoinHandle;
 
 pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
     entry: Entry {
@@ -20,37 +25,98 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
         source: "Áfra 2025",
         parameters: &[],
     },
-    time: |pixels, threads| BEGIN + Duration::from_nanos(pixels.saturating_mul(NANOSECONDS) / threads as u64),
+    time: |task| Effort::within(task.time, task.pixels(), task.threads_at_work()).1,
     is_library: true,
     find,
 };
 
-/// How to get it, for people.
-const ADVICE: &str = "Open Image Denoise does better: pip install pyoidn, or name its library in OIDN_LIB";
+/// Loads the library, if that is not done already. Whether it was found is said when it is asked for.
+pub(super) fn load(threads: usize) {
+    let _ = shared::device(threads, true);
+}
 
-fn find(threads: usize) -> Result<Box<dyn Denoiser>, String> {
-    let mut refused = None;
-    for place in places::places() {
-        match Device::open(&place, threads) {
-            Ok(Some(device)) => return Ok(Box::new(Oidn { device, threads })),
-            Ok(None) => {}
-            Err(why) => refused = refused.or(Some(why)),
-        }
-    }
-    // What was found and does not work is said; that nothing was found needs no reason.
-    Err(refused.map_or(ADVICE.to_owned(), |why| format!("{ADVICE} ({why})")))
+fn find(task: &Task) -> Result<Box<dyn Denoiser>, String> {
+    let device = shared::device(task.threads, !task.sandboxed)?;
+    let (effort, _) = Effort::within(task.time, task.pixels(), task.threads_at_work());
+    Ok(Box::new(Oidn {
+        device: device.clone(),
+        effort,
+        threads: task.threads,
+        ahead: Ahead::begin(task, device, effort),
+    }))
 }
 
 /// Of smaller pictures the network makes another brightness.
-const LEAST_SIDE: usize = 16;
-
-/// What it takes to begin with, and for a pixel on one thread, about: three networks, one after the other.
-const BEGIN: Duration = Duration::from_millis(700);
-const NANOSECONDS: u64 = 6200;
+const MIN_SIDE: usize = 16;
 
 struct Oidn {
-    device: Device,
+    device: Arc<Device>,
+    effort: Effort,
     threads: usize,
+    ahead: Ahead,
+}
+
+/// The filters of a picture: for albedo and for normals, where they are denoised, and for light.
+struct Filters {
+    albedo: Option<Filter>,
+    normal: Option<Filter>,
+    light: Filter,
+}
+
+impl Filters {
+    fn new(
+        device: &Arc<Device>,
+        size: (usize, usize),
+        effort: Effort,
+        [albedo, normal]: [bool; 2],
+    ) -> Result<Filters, String> {
+        let feature = |input| Filter::new(device, size, &Effort::for_feature(input));
+        let cleans = |there: bool| effort.cleans() && there;
+        let inputs: &[&str] = match (albedo, normal) {
+            (true, true) => &["color", "albedo", "normal"],
+            (true, false) => &["color", "albedo"],
+            // Normals help only beside albedo.
+            (false, _) => &["color"],
+        };
+        Ok(Filters {
+            albedo: cleans(albedo).then(|| feature(&["albedo"])).transpose()?,
+            normal: cleans(albedo && normal).then(|| feature(&["normal"])).transpose()?,
+            light: Filter::new(device, size, &effort.for_light(inputs))?,
+        })
+    }
+
+    /// Takes a feature as what helps the light, denoised first where there is a filter for that.
+    fn take_feature(&mut self, name: &str, pixels: &mut dyn Iterator<Item = [f32; 3]>) -> Result<(), String> {
+        let filter = if name == "albedo" { &mut self.albedo } else { &mut self.normal };
+        let Some(to) = self.light.input(name) else { return Ok(()) };
+        match filter {
+            Some(filter) => {
+                filter.input(name).into_iter().flatten().zip(pixels).for_each(|(to, pixel)| *to = pixel);
+                to.copy_from_slice(filter.run()?);
+            }
+            None => to.iter_mut().zip(pixels).for_each(|(to, pixel)| *to = pixel),
+        }
+        Ok(())
+    }
+}
+
+/// Filters that are made ready on a thread of their own, while the picture is rendered; none where its size is not known.
+struct Ahead(std::sync::Mutex<Option<JoinHandle<Option<Filters>>>>, (usize, usize));
+
+impl Ahead {
+    fn begin(task: &Task, device: Arc<Device>, effort: Effort) -> Ahead {
+        let size = task.size;
+        let worth_it = size.0.min(size.1) >= MIN_SIDE;
+        let begin = || std::thread::spawn(move || Filters::new(&device, size, effort, [true; 2]).ok());
+        Ahead(std::sync::Mutex::new(worth_it.then(begin)), size)
+    }
+
+    /// The filters, once, if they are for such a picture.
+    fn take(&self, size: (usize, usize), features: [bool; 2]) -> Option<Filters> {
+        let thread = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take()?;
+        let filters = thread.join().ok().flatten()?;
+        (size == self.1 && features == [true; 2]).then_some(filters)
+    }
 }
 
 impl Denoiser for Oidn {
@@ -60,30 +126,36 @@ impl Denoiser for Oidn {
 
     fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError> {
         let size = source.size();
-        if size.0.min(size.1) < LEAST_SIDE {
+        if size.0.min(size.1) < MIN_SIDE {
             return Builtin::new(self.threads)?.denoise(source);
         }
         let noisy = source.rows(0..size.1)?;
-        let image = |plane: &[Rgb]| Image::new(size, plane.iter().map(|c| c.to_array()));
         let failed = |what: String| PictureError::NoDenoiser { what: format!("Open Image Denoise: {what}") };
-        let albedo = noisy.albedo.as_deref().map(image).transpose()?;
-        let normal = noisy.normal.as_deref().map(|n| Image::new(size, n.iter().copied())).transpose()?;
-        let clean = |name: &str, plane: Option<Image>| {
-            plane.map(|plane| self.device.filter(&[(name, &plane)], false).map_err(failed)).transpose()
+        let features = [noisy.albedo.is_some(), noisy.normal.is_some()];
+        let filters = match self.ahead.take(size, features) {
+            Some(filters) => Ok(filters),
+            None => Filters::new(&self.device, size, self.effort, features),
         };
-        // Normals help only beside albedo.
-        let albedo = clean("albedo", albedo)?;
-        let normal = clean("normal", normal.filter(|_| albedo.is_some()))?;
         let mut sum: Vec<Rgb> = reserved("denoising", noisy.pixels())?;
         sum.resize(noisy.pixels(), Rgb::BLACK);
-        for layer in &noisy.layers {
-            let colour = image(&layer.colour)?;
-            let mut inputs = vec![("color", &colour)];
-            inputs.extend(albedo.as_ref().map(|plane| ("albedo", plane)));
-            inputs.extend(normal.as_ref().map(|plane| ("normal", plane)));
-            let smooth = self.device.filter(&inputs, true).map_err(failed)?;
-            sum.iter_mut().zip(smooth.pixels()).for_each(|(sum, pixel)| *sum += Rgb::from_array(pixel));
-        }
+        filters.and_then(|mut filters| add_layers(&mut filters, &noisy, &mut sum)).map_err(failed)?;
         Ok(sum)
     }
+}
+
+/// Adds each layer, without its noise.
+fn add_layers(filters: &mut Filters, noisy: &Noisy, sum: &mut [Rgb]) -> Result<(), String> {
+    if let Some(albedo) = &noisy.albedo {
+        filters.take_feature("albedo", &mut albedo.iter().map(|c| c.to_array()))?;
+    }
+    if let Some(normal) = &noisy.normal {
+        filters.take_feature("normal", &mut normal.iter().copied())?;
+    }
+    for layer in &noisy.layers {
+        let to = filters.light.input("color").into_iter().flatten();
+        to.zip(&layer.colour).for_each(|(to, colour)| *to = colour.to_array());
+        let smooth = filters.light.run()?;
+        sum.iter_mut().zip(smooth).for_each(|(sum, &pixel)| *sum += Rgb::from_array(pixel));
+    }
+    Ok(())
 }

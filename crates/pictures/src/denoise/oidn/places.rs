@@ -1,10 +1,11 @@
 //! Where the library may be.
 
+use super::python;
 use std::env;
 use std::path::{Path, PathBuf};
 
 /// Its file's name.
-const FILE: &str = if cfg!(target_os = "windows") {
+pub(super) const FILE: &str = if cfg!(target_os = "windows") {
     "OpenImageDenoise.dll"
 } else if cfg!(target_os = "macos") {
     "libOpenImageDenoise.2.dylib"
@@ -12,60 +13,24 @@ const FILE: &str = if cfg!(target_os = "windows") {
     "libOpenImageDenoise.so.2"
 };
 
-/// What `OIDN_LIB` names, alone if it is said; else beside this program, where Python keeps packages, and by its name alone, as the
-/// system finds it.
-pub(super) fn places() -> Vec<PathBuf> {
-    if let Some(named) = env::var_os("OIDN_LIB").filter(|named| !named.is_empty()) {
-        let named = PathBuf::from(named);
-        return vec![if named.is_dir() { named.join(FILE) } else { named }];
-    }
-    let mut places = Vec::new();
-    if let Ok(program) = env::current_exe()
-        && let Some(folder) = program.parent()
-    {
-        places.extend([folder.join(FILE), folder.join("../lib").join(FILE)]);
-    }
-    for prefix in python_prefixes() {
-        places.extend(in_packages(&prefix));
-    }
-    places.retain(|place| place.is_file());
-    places.push(PathBuf::from(FILE));
-    places
+/// What the environment variable `OIDN_LIB` names: the library, or the folder that it is in.
+pub(super) fn named() -> Option<PathBuf> {
+    let named = PathBuf::from(env::var_os("OIDN_LIB").filter(|named| !named.is_empty())?);
+    Some(if named.is_dir() { named.join(FILE) } else { named })
 }
 
-/// Where Pythons are installed: the active environment, those on the path, the user's own packages.
-fn python_prefixes() -> Vec<PathBuf> {
-    let named = ["VIRTUAL_ENV", "CONDA_PREFIX"].into_iter().filter_map(env::var_os).map(PathBuf::from);
-    let path = env::var_os("PATH").unwrap_or_default();
-    let has_python =
-        |bin: &PathBuf| ["python3", "python3.exe", "python.exe"].iter().any(|p| bin.join(p).exists());
-    let on_path = env::split_paths(&path).filter(has_python).filter_map(|bin| Some(bin.parent()?.to_owned()));
-    let own = env::var_os("HOME").map(|home| Path::new(&home).join(".local"));
-    let mut prefixes: Vec<PathBuf> = named.chain(on_path).chain(own).collect();
-    let mut seen = Vec::new();
-    prefixes.retain(|prefix| {
-        !seen.contains(prefix) && {
-            seen.push(prefix.clone());
-            true
-        }
-    });
-    prefixes
+/// Every file that may be the library, the likeliest first, each looked for only when those before it were of no use: beside this
+/// program, where Python keeps packages, and where `python3` itself says, which takes some hundredths of a second.
+pub(super) fn files() -> impl Iterator<Item = PathBuf> {
+    let beside = env::current_exe().ok().and_then(|program| program.parent().map(Path::to_owned));
+    let beside = beside.into_iter().flat_map(|folder| [folder.join(FILE), folder.join("../lib").join(FILE)]);
+    let in_packages = python::packages().into_iter().flat_map(|package| in_package(&package));
+    let asked = std::iter::once_with(python::asked).flatten().flat_map(|package| in_package(&package));
+    beside.chain(in_packages).chain(asked).filter(|file| file.is_file())
 }
 
-/// The package pyoidn in all that a prefix has of `lib/python3.x/site-packages`, in order of names.
-fn in_packages(prefix: &Path) -> Vec<PathBuf> {
-    let mut packages = vec![prefix.join("Lib/site-packages")];
-    for lib in ["lib", "lib64", "local/lib"] {
-        let entries = std::fs::read_dir(prefix.join(lib)).into_iter().flatten().flatten();
-        for folder in entries.map(|entry| entry.path()) {
-            let is_python =
-                folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("python3"));
-            if is_python {
-                packages.extend([folder.join("site-packages"), folder.join("dist-packages")]);
-            }
-        }
-    }
-    packages.sort();
-    let inner = if cfg!(target_os = "windows") { "pyoidn/oidn/bin" } else { "pyoidn/oidn/lib" };
-    packages.into_iter().map(|folder| folder.join(inner).join(FILE)).collect()
+/// Where the library is in the package pyoidn.
+fn in_package(package: &Path) -> [PathBuf; 3] {
+    let folder = if cfg!(target_os = "windows") { "bin" } else { "lib" };
+    [package.join("oidn").join(folder).join(FILE), package.join(folder).join(FILE), package.join(FILE)]
 }

@@ -14,13 +14,31 @@ const WALL: f64 = 10.0;
 /// Strips of the bend.
 const STRIPS: u32 = 48;
 
+/// Half the width of a level floor, in radii of the model and as much again as the camera is away.
+const LEVEL: f64 = 60.0;
+
+/// The ground's height: a little below, so that a model with a floor of its own keeps that.
+fn height(framing: &Framing) -> f64 {
+    framing.lowest - framing.radius * 1e-3
+}
+
+/// A level floor below a model. Its front is above, or below where it `faces_down`.
+pub(super) fn level(framing: &Framing, faces_down: bool) -> Mesh {
+    let half = LEVEL * (framing.radius + framing.distance);
+    let middle = DVec3::new(framing.middle.x, height(framing), framing.middle.z);
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    let corner = |(x, z): (f64, f64)| (middle + DVec3::new(x, 0.0, z) * half).as_vec3();
+    let triangles = if faces_down { vec![[0, 2, 1], [0, 3, 2]] } else { vec![[0, 1, 2], [0, 2, 3]] };
+    let positions = corners.map(corner).to_vec();
+    Mesh { name: super::GROUND.to_owned(), positions, triangles, ..Mesh::default() }
+}
+
 /// The cove behind a model, as seen by the studio's camera; it reaches behind that too.
 pub(super) fn cove(framing: &Framing) -> Mesh {
     let radius = framing.radius;
     let [right, ..] = framing.axes;
     let away = DVec3::Y.cross(right);
-    // A little below, so that a model with a floor of its own keeps that.
-    let foot = DVec3::new(framing.middle.x, framing.lowest - radius * 1e-3, framing.middle.z);
+    let foot = DVec3::new(framing.middle.x, height(framing), framing.middle.z);
     let front = -(framing.distance + radius * 8.0);
     let mut profile = vec![(front, 0.0, DVec3::Y)];
     for i in 0..=STRIPS {

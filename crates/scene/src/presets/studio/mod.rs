@@ -2,16 +2,19 @@
 
 mod cove;
 mod framing;
+mod standing;
 
 use super::PresetEntry;
 use crate::builder::{Object, SceneBuilder};
 use crate::cameras::{self, CameraSample};
 use crate::error::SceneError;
+use crate::orientation::{Axis, Orientation};
 use crate::parameters::{Spec, Value};
 use bilux_math::registry::Entry;
 use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use framing::Framing;
+pub use standing::set_upright;
 use std::sync::Arc;
 
 pub(super) const ENTRY: PresetEntry = PresetEntry {
@@ -27,9 +30,9 @@ pub(super) const ENTRY: PresetEntry = PresetEntry {
 /// What a model stands on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
-    /// A matt cove, which takes the model's shadow.
+    /// A matt cove, which takes the model's shadow; of a picture without surroundings, the shadow alone.
     Shadow,
-    /// A polished one, which mirrors it too.
+    /// A level mirror.
     Mirror,
     /// Nothing.
     None,
@@ -53,12 +56,18 @@ pub struct Studio {
     pub ground: Option<Ground>,
     /// From where it is seen: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
+    /// Which of the model's axes is up.
+    pub up: Option<Axis>,
+    /// Which of them is its front.
+    pub front: Option<Axis>,
     /// Focal length in mm, for a picture 24 mm high.
     pub focal: Option<f32>,
     /// Width of the picture over its height, if it is not square.
     pub aspect: Option<f32>,
     /// It is cut out of its surroundings, so that nothing is put around it unasked.
     pub cut_out: bool,
+    /// Whether the scene's own light lights what is seen, as measured; `None` to go by whether there is any.
+    pub lit: Option<bool>,
 }
 
 impl Studio {
@@ -66,6 +75,11 @@ impl Studio {
     pub const ORBIT: [f32; 2] = [26.5, 17.8];
     /// The lens of portraits, or a little more.
     pub const FOCAL: f32 = 45.0;
+
+    /// True where the studio's own camera is asked for, whatever cameras the scene has.
+    fn has_camera(&self) -> bool {
+        self.orbit.is_some() || self.focal.is_some() || self.up.is_some() || self.front.is_some()
+    }
 }
 
 /// The light behind the model.
@@ -81,26 +95,36 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     scene.cameras.clear();
     scene.lights.clear();
     let studio = Studio::default();
+    standing::set_upright(scene, &studio);
     let framing = Framing::of(scene, &studio);
     scene.cameras.push(framing.camera());
     scene.lights.extend(lights(&framing, Ground::Shadow));
-    furnish(scene, &framing, Ground::Shadow);
+    furnish(scene, &framing, Ground::Shadow, false);
     Ok(())
 }
 
 /// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
 /// studio where it has neither. Lamps of a format that has no word for surroundings stand in those of the studio: metal would
 /// mirror nothing. What is asked for in `studio` is there in any case: its camera is the first one then.
-/// Does nothing to a scene that has both where nothing is asked for.
-pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
+/// Does nothing to a scene that has both where nothing is asked for. Gives how the model was turned, if it was.
+pub fn complete(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
+    let orientation = standing::set_upright(scene, studio);
+    add_missing(scene, studio);
+    orientation
+}
+
+/// Does what [`complete`] does, to a scene that stands upright already ([`set_upright`]).
+pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
-    let has_lamps_alone = scene.surroundings_unsaid && has_lights && !glows && !has_surroundings(scene);
-    let lit = (has_lights || glows) && !has_lamps_alone;
+    let has_light = studio.lit.unwrap_or_else(|| seems_lit(scene));
+    let has_lamps_alone =
+        has_light && scene.surroundings_unsaid && has_lights && !glows && !has_surroundings(scene);
+    let lit = has_light && !has_lamps_alone;
     let seen = !scene.cameras.is_empty();
     let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
     let bare = !lit && !seen && !behind;
-    let asked = studio.orbit.is_some() || studio.focal.is_some();
+    let asked = studio.has_camera();
     let ground = studio.ground.unwrap_or(if bare { Ground::Shadow } else { Ground::None });
     if lit && seen && !asked && ground == Ground::None {
         return;
@@ -112,15 +136,38 @@ pub fn complete(scene: &mut SceneBuilder, studio: &Studio) {
         scene.cameras.insert(0, framing.camera());
     }
     if !lit {
-        // It may be close, and have in view what stands behind the model.
-        let is_in_view = |spec: &Spec| spec.name == RIM && seen && !asked;
+        // It may be close, and have in view what stands behind the model; a mirror shows that.
+        let is_in_view = |spec: &Spec| spec.name == RIM && (seen && !asked || ground == Ground::Mirror);
         let is_wanted = |spec: &Spec| if has_lamps_alone { spec.name == ROOM } else { !is_in_view(spec) };
         scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
     }
     if !lit && !seen {
         of_clay(scene);
     }
-    furnish(scene, &framing, ground);
+    furnish(scene, &framing, ground, studio.cut_out);
+}
+
+/// True where a scene has light of its own, and its format no word for what else is around it: whether that light is meant
+/// to light the scene is told by measure alone.
+pub fn may_be_lit(scene: &SceneBuilder) -> bool {
+    let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
+    let emission = |o: &Object| scene.materials.get(o.material).and_then(|m| m.parameters.find("emission"));
+    let glows = || scene.objects.iter().any(|o| emission(o).is_some());
+    scene.surroundings_unsaid && !has_surroundings(scene) && (has_lights || glows())
+}
+
+/// True where a scene has lamps, or parts that are at least as bright as the white of a screen.
+pub fn seems_lit(scene: &SceneBuilder) -> bool {
+    scene.lights.iter().any(|light| !light.is_backdrop())
+        || scene.objects.iter().any(|o| gives_light(scene, o))
+}
+
+/// Gives a scene the camera that [`complete`] would give it, and nothing else.
+pub fn frame(scene: &mut SceneBuilder, studio: &Studio) {
+    if scene.cameras.is_empty() || studio.has_camera() {
+        let camera = Framing::of(scene, studio).camera();
+        scene.cameras.insert(0, camera);
+    }
 }
 
 /// From where a scene's own camera looks; `None` where it has none.
@@ -140,20 +187,29 @@ fn of_clay(scene: &mut SceneBuilder) {
 }
 
 /// Puts something under the model.
-fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground) {
-    let paper = Rgb::new(0.72, 0.71, 0.70);
-    let material = match ground {
-        Ground::None => return,
-        // Who looks up from below would see nothing else.
-        _ if scene.objects.is_empty() || framing.is_below() => return,
-        Ground::Shadow => Spec::new(GROUND, "diffuse").with("reflectance", paper),
-        Ground::Mirror => Spec::new(GROUND, "principled")
-            .with("base_color", paper * 0.8)
-            .with("specular_ior", 2.0f32)
-            .with("specular_roughness", 0.1f32),
+fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out: bool) {
+    // Who looks up from below would see nothing else.
+    if ground == Ground::None || scene.objects.is_empty() || framing.is_below() {
+        return;
+    }
+    let paper = Spec::new(GROUND, "diffuse").with("reflectance", Rgb::new(0.72, 0.71, 0.70));
+    let (material, mesh) = match ground {
+        Ground::Mirror => {
+            (Spec::new(GROUND, "mirror").with("reflectance", 0.85f32), cove::level(framing, false))
+        }
+        // It is there for light alone: the camera looks through its back, and the picture is given the shadow on it.
+        _ if cut_out => (paper.with("visible_sides", "front"), cove::level(framing, true)),
+        _ => (paper, cove::cove(framing)),
     };
     let material = scene.add_material(material);
-    scene.objects.push(Object::new(GROUND, Arc::new(cove::cove(framing)), material));
+    scene.objects.push(Object::new(GROUND, Arc::new(mesh), material));
+}
+
+/// The number of the object that catches the shadow in a scene that was completed for a picture without surroundings.
+pub fn shadow_catcher(scene: &SceneBuilder, studio: &Studio) -> Option<usize> {
+    let is_wanted = studio.cut_out && studio.ground == Some(Ground::Shadow);
+    let last = scene.objects.len().checked_sub(1).filter(|_| is_wanted)?;
+    (scene.objects[last].name == GROUND).then_some(last)
 }
 
 /// True where something lights a scene from all around.

@@ -16,15 +16,15 @@ const STEPS: usize = 6;
 
 /// Nanoseconds of each step, as they were on one machine in a few scenes of some ten thousand triangles: only what they are
 /// to each other matters.
-const LIGHT: f64 = 300.0;
+const LIGHT: f64 = 500.0;
 const CAMERA: f64 = 330.0;
-const SEEN: f64 = 170.0;
+const SEEN: f64 = 290.0;
 const PICKED: f64 = 210.0;
-const JOINED: f64 = 150.0;
+const JOINED: f64 = 140.0;
 const LOOKUP: f64 = 250.0;
 const MERGED: f64 = 80.0;
-/// What a photon takes to be kept, found a cell and looked at by nobody.
-const KEPT: f64 = 150.0;
+/// A step of a photon's path, which is followed among many others, and what it takes to be kept and found a cell.
+const PHOTON: f64 = 450.0;
 
 impl Steps {
     pub(super) fn count(&mut self, step: Step, count: usize) {
@@ -57,7 +57,7 @@ impl Steps {
             sum += of(Step::Joined, JOINED);
         }
         if merges {
-            sum += of(Step::Light, LIGHT + KEPT) * photons + of(Step::Lookup, LOOKUP);
+            sum += of(Step::Light, PHOTON) * photons + of(Step::Lookup, LOOKUP);
             sum += self.merged * f64::from(eta) * MERGED;
         }
         sum

@@ -6,6 +6,7 @@
 
 mod aim;
 mod cost;
+mod outliers;
 mod pilot;
 
 use super::path::Path;
@@ -218,7 +219,8 @@ impl PixelIntegrator for Auto {
             .enumerate()
             .map(|(i, set)| Rival {
                 name: set.name,
-                error: error(&seen.blocks, i + 1),
+                ways: set.ways,
+                error: outliers::error(&seen.blocks, i + 1),
                 lost: lost(&seen.blocks, i + 1),
                 nanoseconds: seen.steps.nanoseconds(set, ways(set).eta.0[0]),
             })
@@ -249,19 +251,6 @@ impl Auto {
         }
         Box::new(Vcm { roulette_depth: self.roulette_depth, merging: set.merging(merging), guide })
     }
-}
-
-/// Relative error of one sample with the ways of a lane, as a mean over blocks. The worst block of a hundred is left out:
-/// what no set of ways finds well tells nothing about any of them.
-fn error(blocks: &[Block], lane: usize) -> f64 {
-    let light: f64 = blocks.iter().map(|block| block.mean).sum();
-    let dark = DARK * light / blocks.len() as f64;
-    let of =
-        |block: &Block, lane: usize| block.variance[lane].max(0.0) / (block.mean * block.mean + dark * dark);
-    let mut kept: Vec<&Block> = blocks.iter().collect();
-    kept.sort_by(|a, b| of(a, 0).total_cmp(&of(b, 0)));
-    kept.truncate(blocks.len() - blocks.len() / 100);
-    kept.iter().map(|block| of(block, lane)).sum::<f64>() / kept.len().max(1) as f64
 }
 
 /// The part of the light that the ways of a lane cannot find.

@@ -6,6 +6,7 @@
 //! number of first samples of the one would have told. [Grittmann 2022, eq. 10 to 13]
 
 use super::cost::Steps;
+use super::outliers::Finds;
 use crate::bidirectional::{Found, Merging, Onlooker, Photons, Step, Tally, Way, Ways};
 use crate::emission::Guide;
 use crate::eye::Eye;
@@ -49,8 +50,10 @@ const LIGHT_PART: u64 = 8;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) mean: f64,
-    /// Expected variance of a pixel, times its samples, for each lane.
+    /// Expected variance of a pixel, times its samples, for each lane: but for the second moment of `finds`.
     pub(super) variance: [f64; LANES],
+    /// What single ways of each lane are expected to find.
+    pub(super) finds: [Finds; LANES],
     /// What the ways of a lane cannot find at all.
     pub(super) lost: [f64; LANES],
 }
@@ -204,7 +207,7 @@ fn one_sample(
             }
             for (film, seen) in &look.seen {
                 let index = grid.tile_at(*film);
-                pilot.blocks[index].add(seen, share(&tiles[index]));
+                pilot.blocks[index].add(&Sample::seen(seen), share(&tiles[index]));
             }
         }
     }
@@ -257,7 +260,7 @@ fn share(tile: &Window) -> f64 {
 struct Look {
     sample: Sample,
     /// What its light path has left on the film.
-    seen: Vec<(Vec2, Sample)>,
+    seen: Vec<(Vec2, Found<LANES>)>,
     steps: Steps,
 }
 
@@ -270,11 +273,19 @@ struct Sample {
     sums: [f64; LANES],
     squares: [f64; LANES],
     /// That sum of squares as foreseen by all ways.
-    foreseen: [f64; LANES],
+    finds: [Finds; LANES],
     lost: [f64; LANES],
 }
 
 impl Sample {
+    /// Of a light path that the camera is shown. They come one by one: there is nothing else of the pixel that this one
+    /// would go with.
+    fn seen(found: &Found<LANES>) -> Sample {
+        let mut sample = Sample::default();
+        sample.take(found);
+        Sample { squares: [0.0; LANES], ..sample }
+    }
+
     fn take(&mut self, found: &Found<LANES>) {
         let Found { light, own, others, favour, .. } = *found;
         let all = own + others;
@@ -292,7 +303,7 @@ impl Sample {
                 continue;
             }
             let found = weighted / ratio;
-            self.foreseen[k] += weighted * found;
+            self.finds[k].add(weighted, found);
             let found = found * f64::from(own.0[k]) / f64::from(own.0[0]);
             self.sums[k] += found * favour;
             // What is foreseen takes the place of these; neither knows of favour.
@@ -318,10 +329,7 @@ impl Tally<LANES> for Look {
     }
 
     fn there(&mut self, film: Vec2, _way: Way, found: &Found<LANES>) {
-        let mut seen = Sample::default();
-        seen.take(found);
-        // Light paths come one by one: there is nothing else of the pixel that this one would go with.
-        self.seen.push((film, Sample { squares: [0.0; LANES], ..seen }));
+        self.seen.push((film, *found));
     }
 }
 
@@ -330,7 +338,8 @@ impl Block {
     fn add(&mut self, sample: &Sample, share: f64) {
         self.mean += share * sample.light;
         for k in 0..LANES {
-            self.variance[k] += share * (sample.foreseen[k] - sample.squares[k]);
+            self.finds[k].plus(&sample.finds[k], share);
+            self.variance[k] -= share * sample.squares[k];
             self.lost[k] += share * sample.lost[k];
         }
     }

@@ -1,25 +1,75 @@
-//! Points and lines, which have no surface: little balls and tubes in their places.
+//! Points and lines for formats that hold triangles alone: little balls and tubes in their places.
 
+use crate::writing::Writing;
 use bilux_math::transcendental::{cos, sin};
 use bilux_math::{Vec2, Vec3};
-use bilux_scene::Mesh;
 use bilux_scene::generators::shapes;
+use bilux_scene::{Mesh, Object, SceneBuilder};
+use std::borrow::Cow;
 use std::f32::consts::TAU;
+use std::sync::Arc;
 
 /// Sides of a tube.
 const SIDES: u32 = 8;
 /// Up to so many balls they have twenty triangles, and beyond eight.
 const FEW_BALLS: usize = 20_000;
-/// Bytes that balls and tubes take, each with its vertices' attributes.
-pub(super) fn bytes(balls: usize, tubes: usize) -> u64 {
-    let ball = if balls > FEW_BALLS { 6 * 52 + 8 * 12 } else { 12 * 52 + 20 * 12 };
-    (balls as u64)
-        .saturating_mul(ball)
-        .saturating_add((tubes as u64).saturating_mul(u64::from(SIDES) * (2 * 52 + 24)))
+
+/// The scene with triangles in place of points and lines, where a format does not hold these.
+pub(crate) fn as_triangles<'a>(
+    scene: Cow<'a, SceneBuilder>,
+    capabilities: &[&str],
+    writing: &mut Writing,
+) -> Cow<'a, SceneBuilder> {
+    let has_strokes = |object: &&Object| object.mesh.stroke_count() > 0;
+    if capabilities.contains(&CAPABILITY) || !scene.objects.iter().any(|object| has_strokes(&object)) {
+        return scene;
+    }
+    writing.warn("the format holds no points and no lines: they are written as little balls and tubes");
+    let widths = scene.stroke_widths.for_size(scene.bounds(0.0).extent().length());
+    let mut scene = scene.into_owned();
+    let mut objects = Vec::new();
+    for object in std::mem::take(&mut scene.objects) {
+        if !has_strokes(&&object) {
+            objects.push(object);
+            continue;
+        }
+        let volume = f64::from(object.motion.at(0.0).matrix().determinant()).abs();
+        let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
+        let bare = &*object.mesh;
+        let mut body = solid(bare, &bare.points, &[], widths.points * 0.5 / scale);
+        if !bare.lines.is_empty() {
+            let mut ends: Vec<u32> = bare.lines.iter().flatten().copied().collect();
+            ends.sort_unstable();
+            ends.dedup();
+            append(&mut body, solid(bare, &ends, &bare.lines, widths.lines * 0.5 / scale));
+        }
+        if !bare.triangles.is_empty() {
+            let rest = Mesh { points: Vec::new(), lines: Vec::new(), ..bare.clone() };
+            objects.push(Object { mesh: Arc::new(rest), ..object.clone() });
+        }
+        objects.push(Object { mesh: Arc::new(body), ..object });
+    }
+    scene.objects = objects;
+    Cow::Owned(scene)
+}
+
+/// What formats say that hold points and lines.
+pub(crate) const CAPABILITY: &str = "points and lines";
+
+/// Adds a mesh that was made of the same.
+fn append(mesh: &mut Mesh, mut more: Mesh) {
+    let first = mesh.positions.len() as u32;
+    mesh.positions.append(&mut more.positions);
+    mesh.normals.append(&mut more.normals);
+    mesh.uvs.append(&mut more.uvs);
+    mesh.uvs2.append(&mut more.uvs2);
+    mesh.vertex_kd.append(&mut more.vertex_kd);
+    mesh.vertex_ks.append(&mut more.vertex_ks);
+    mesh.triangles.extend(more.triangles.iter().map(|t| t.map(|i| first + i)));
 }
 
 /// Balls at the vertices that are named, and tubes between pairs of them, with what `bare` says of its vertices.
-pub(super) fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
+fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
     let mut made = Made { bare, mesh: Mesh { name: bare.name.clone(), ..Mesh::default() }, radius };
     let ball = if balls.len() > FEW_BALLS { octahedron() } else { shapes::icosphere(Vec3::ZERO, 1.0, 0) };
     for &vertex in balls {
@@ -66,6 +116,7 @@ impl Made<'_> {
         again::<Vec2>(&self.bare.uvs, &mut self.mesh.uvs, vertex);
         again::<Vec2>(&self.bare.uvs2, &mut self.mesh.uvs2, vertex);
         again(&self.bare.vertex_kd, &mut self.mesh.vertex_kd, vertex);
+        again(&self.bare.vertex_ks, &mut self.mesh.vertex_ks, vertex);
     }
 
     fn ball(&mut self, vertex: u32, unit: &Mesh) {

@@ -1,0 +1,57 @@
+//! The models: ours, in formats of others, and public ones where they are there.
+
+use bilux::Error;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Ours, by generator, and the file that is made of each.
+const OURS: &[(&str, &str)] = &[
+    ("teapot", "teapot.obj"),
+    ("scan", "scan.stl"),
+    ("trio", "trio.glb"),
+    ("cornell-spheres", "cornell-spheres.glb"),
+    ("interior", "interior.glb"),
+    ("caustics", "caustics.glb"),
+];
+
+/// Public models, in folders beside the repository, where they are there.
+const SHARED: &[&str] = &[
+    "gltf/WaterBottle/glTF/WaterBottle.gltf",
+    "gltf/Suzanne/glTF/Suzanne.gltf",
+    "gltf/SheenCloth/glTF/SheenCloth.gltf",
+    "gltf/IridescenceSuzanne/glTF/IridescenceSuzanne.gltf",
+    "gltf/TransmissionRoughnessTest/glTF/TransmissionRoughnessTest.gltf",
+    "obj/spot.obj",
+];
+
+/// All of them; ours are written into a folder.
+pub(super) fn all(program: &Path, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for (generator, file) in OURS {
+        let (scene, file) = (folder.join(format!("{generator}.toml")), folder.join(file));
+        let mut generate = Command::new(program);
+        generate.args(["generate", generator, "--quiet", "-o"]).arg(&scene);
+        finish(generate)?;
+        let mut convert = Command::new(program);
+        convert.args(["convert", "--quiet", "-o"]).arg(&file).arg(&scene);
+        finish(convert)?;
+        files.push(file);
+    }
+    let shared = Path::new("../shared/scenes");
+    files.extend(SHARED.iter().map(|file| shared.join(file)).filter(|file| file.is_file()));
+    Ok(files)
+}
+
+/// Waits for a command that has to end well.
+pub(super) fn finish(mut command: Command) -> Result<(), Error> {
+    let output = command.output();
+    let failed = |why: &str| {
+        let arguments: Vec<_> = command.get_args().map(|argument| argument.to_string_lossy()).collect();
+        Error::Settings(format!("bilux {}: {why}", arguments.join(" ")))
+    };
+    match output {
+        Ok(output) if output.status.success() => Ok(()),
+        Ok(output) => Err(failed(&String::from_utf8_lossy(&output.stderr))),
+        Err(why) => Err(failed(&why.to_string())),
+    }
+}

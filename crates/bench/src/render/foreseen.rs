@@ -1,0 +1,38 @@
+//! What `auto` foresaw of each integrator, beside what was measured: times to the same error, relative to what it chose.
+
+use super::table::find;
+use super::{Measured, Row};
+
+/// Multiples of the time that `auto` takes to the same error; `None` where nothing was foreseen, or `auto` was not
+/// measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Compared {
+    pub(super) foreseen: Option<f64>,
+    /// By relMSE.
+    pub(super) measured: Option<f64>,
+    /// By relMSE without the worst 0.1% of the pixels.
+    pub(super) measured_trimmed: Option<f64>,
+}
+
+impl Measured {
+    /// A row beside that of `auto` within the same budget.
+    pub(super) fn compared(&self, row: &Row) -> Compared {
+        let Some(auto) = find(self, "auto", row.seconds) else { return Compared::default() };
+        let ways = match row.integrator.split_once(':') {
+            Some((_, ways)) => ways,
+            None => &row.integrator,
+        };
+        let foreseen = auto.choice.as_ref().and_then(|choice| {
+            let best = choice.best();
+            let rival = choice.rivals.iter().find(|rival| rival.ways == ways);
+            let rival = if ways == "auto" { Some(best) } else { rival };
+            rival.map(|rival| rival.time_to_error() / best.time_to_error())
+        });
+        let time = row.took / auto.took;
+        Compared {
+            foreseen,
+            measured: Some(time * row.relmse / auto.relmse),
+            measured_trimmed: Some(time * row.relmse_trimmed / auto.relmse_trimmed),
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What integrators are measured on: scenes that we ship, and files of the user's own.
+
+use super::reference::make_reference;
+use super::{Making, Options, Reference, SCENES, check};
+use crate::Tell;
+use bilux::Error;
+use bilux::scene::generators::GENERATORS;
+use bilux::scene::{SceneBuilder, Spec};
+use std::path::Path;
+
+/// A scene to measure on, and what its picture should come to.
+pub(super) struct Subject {
+    pub(super) name: String,
+    pub(super) summary: String,
+    pub(super) scene: SceneBuilder,
+    pub(super) reference: Reference,
+}
+
+/// All that were asked for. References of files are made here.
+pub(super) fn subjects(options: &Options, tell: Tell) -> Result<Vec<Subject>, Error> {
+    let shipped = if options.scenes.is_empty() && !options.files.is_empty() {
+        Vec::new()
+    } else {
+        chosen_scenes(&options.scenes)?
+    };
+    let mut subjects =
+        shipped.iter().map(|(name, bytes)| of_ours(name, bytes)).collect::<Result<Vec<_>, _>>()?;
+    for file in &options.files {
+        subjects.push(of_the_user(file, options, tell)?);
+    }
+    Ok(subjects)
+}
+
+fn of_ours(name: &str, bytes: &[u8]) -> Result<Subject, Error> {
+    let entry = GENERATORS.iter().find(|row| row.entry.name == name);
+    Ok(Subject {
+        name: name.to_owned(),
+        summary: entry.map_or("", |row| row.entry.summary).to_owned(),
+        scene: generated(name)?,
+        reference: Reference::read(bytes)?,
+    })
+}
+
+fn of_the_user(file: &Path, options: &Options, tell: Tell) -> Result<Subject, Error> {
+    let scene = bilux::load(file, &options.read)?;
+    let making = Making {
+        folder: Default::default(),
+        scenes: Vec::new(),
+        seconds: options.reference_seconds,
+        threads: options.threads,
+    };
+    let (made, p) = make_reference(&file.display().to_string(), &scene, &making, tell)?;
+    let summary = match p {
+        // They are averaged all the same: what the user has to know is that the errors below are uncertain.
+        Some(p) => format!("the two integrators of the reference disagree (least p {p:.1e})"),
+        None => "a file".to_owned(),
+    };
+    Ok(Subject { name: file.display().to_string(), summary, scene, reference: made })
+}
+
+pub(super) fn generated(name: &str) -> Result<SceneBuilder, Error> {
+    bilux::generate(&Spec::new("", name))
+}
+
+/// The rows of [`SCENES`] of these names, in their order there.
+pub(super) fn chosen_scenes(names: &[String]) -> Result<Vec<(&'static str, &'static [u8])>, Error> {
+    let known: Vec<String> = SCENES.iter().map(|(name, _)| (*name).to_owned()).collect();
+    names.iter().try_for_each(|name| check("scene of `bench render`", name, &known))?;
+    let wanted = |name: &str| names.is_empty() || names.iter().any(|n| n == name);
+    Ok(SCENES.iter().copied().filter(|(name, _)| wanted(name)).collect())
+}

@@ -1,0 +1,72 @@
+//! Whether a file's own light is to light its picture, or a studio: by what it brings where the camera looks.
+
+use crate::Error;
+use crate::camera_choice::choose_camera;
+use crate::job::shutter_at;
+use crate::presets::{self, Studio};
+use crate::settings::Settings;
+use bilux_scene::{AccelChoice, Scene, SceneBuilder};
+use bilux_transport::{Illumination, illumination};
+
+/// The part of what is seen that a file's own light has to reach, so that no studio is put around it.
+const ENOUGH: f32 = 0.5;
+
+/// What was measured of a file's own light.
+pub(crate) struct OwnLight {
+    /// It lights what is seen.
+    pub(crate) is_enough: bool,
+    /// What was decided, for people; none where nobody would expect anything else.
+    pub(crate) decision: Option<String>,
+    /// The scene with nothing but its own light, and the trees over it.
+    pub(crate) alone: (SceneBuilder, Scene),
+}
+
+/// Measures the own light of a scene where it says nothing of its surroundings; `None` where there is nothing to decide.
+///
+/// # Errors
+/// When anything in the scene is wrong.
+pub(crate) fn measure(
+    scene: &SceneBuilder,
+    studio: &Studio,
+    settings: &Settings,
+    accel: &AccelChoice,
+) -> Result<Option<OwnLight>, Error> {
+    if !bilux_scene::presets::may_be_lit(scene) {
+        return Ok(None);
+    }
+    let mut framed = scene.clone();
+    presets::frame(&mut framed, studio);
+    let size = [settings.width, settings.height];
+    bilux_scene::presets::set_stroke_widths(&mut framed, &settings.camera, size, settings.time);
+    let aspect = settings.width as f32 / settings.height as f32;
+    let built = framed.build(accel, shutter_at(settings, settings.time), aspect)?;
+    let camera = choose_camera(&built, &settings.camera, &settings.camera_at)?;
+    let measured = illumination(&built, &*camera);
+    let is_enough = measured.surfaces > 0.0 && measured.lit >= ENOUGH;
+    let is_said = is_enough || bilux_scene::presets::seems_lit(scene);
+    let decision = is_said.then(|| decision(&measured, is_enough));
+    Ok(Some(OwnLight { is_enough, decision, alone: (framed, built) }))
+}
+
+/// True where nothing was added to a scene but a camera.
+pub(crate) fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> bool {
+    let counts = |scene: &SceneBuilder| (scene.objects.len(), scene.lights.len(), scene.cameras.len());
+    counts(alone) == counts(completed)
+}
+
+fn decision(measured: &Illumination, is_enough: bool) -> String {
+    let percent = (measured.lit * 100.0).round();
+    if measured.surfaces == 0.0 {
+        return "the studio lights it: all that is seen in it gives light itself, and lights nothing \
+                (--env none: no studio)"
+            .to_owned();
+    }
+    match is_enough {
+        true => {
+            format!("its own light alone lights it: {percent}% of what is seen (--preset studio: the studio)")
+        }
+        false => format!(
+            "the studio lights it: its own light reaches {percent}% of what is seen (--env none: no studio)"
+        ),
+    }
+}

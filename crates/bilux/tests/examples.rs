@@ -1,0 +1,12 @@
+//! The examples run, and what they assert holds.
+
+#[path = "../examples/pick.rs"]
+mod pick;
+#[path = "../examples/render_to_buffer.rs"]
+mod render_to_buffer;
+
+#[test]
+fn every_example_runs() {
+    pick::main().unwrap();
+    render_to_buffer::main().unwrap();
+}

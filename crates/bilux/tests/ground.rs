@@ -1,0 +1,83 @@
+//! What a model stands on: a ground of which the picture has the shadow alone, and a mirror.
+
+use bilux::math::{Aabb, Rgb, Vec3};
+use bilux::prelude::*;
+use std::sync::Arc;
+
+/// A slab above the ground, under the studio's light or one lamp of its own.
+fn slab(lamp: Option<Spec>) -> SceneBuilder {
+    let mut scene = SceneBuilder::default();
+    let red = scene.add_material(Spec::new("", "diffuse").with("reflectance", Rgb::new(0.7, 0.1, 0.1)));
+    let bounds = Aabb { min: Vec3::new(-1.0, 0.0, -0.3), max: Vec3::new(1.0, 1.6, 0.3) };
+    scene.objects.push(Object::new("slab", Arc::new(bilux::scene::generators::shapes::cuboid(bounds)), red));
+    scene.lights.extend(lamp);
+    scene
+}
+
+fn picture(scene: &SceneBuilder, settings: &[(&str, &str)]) -> Picture {
+    let mut all = Parameters::default();
+    for (key, value) in [("size", "48x48"), ("denoise", "off"), ("ground", "shadow")].iter().chain(settings) {
+        all.set(key, *value);
+    }
+    all.set("spp", Value::Integer(64));
+    Job::new(scene, &all).unwrap().render(&Quiet).unwrap().picture().unwrap()
+}
+
+fn alpha(picture: &Picture) -> Vec<f32> {
+    picture.channel("A").expect("a picture without surroundings has alpha").to_vec()
+}
+
+#[test]
+fn a_ground_that_is_not_seen_has_its_shadow_as_alpha() {
+    for lamp in [None, Some(Spec::new("", "directional").with("direction", Vec3::new(0.8, -1.0, 0.1)))] {
+        let has_lamp = lamp.is_some();
+        let cut = picture(&slab(lamp), &[("background", "transparent")]);
+        let (alpha, light) = (alpha(&cut), cut.to_rgb().unwrap());
+        assert!(
+            alpha.iter().filter(|a| **a == 0.0).count() > 48 * 48 / 20 || !has_lamp,
+            "nothing is left of the background"
+        );
+        assert!(alpha.iter().filter(|a| **a == 1.0).count() > 48 * 48 / 10, "the model is opaque");
+        let shaded = alpha.iter().zip(&light).filter(|(a, l)| **a > 0.2 && l.is_black()).count();
+        assert!(shaded > 48 * 48 / 50, "no shadow: {shaded}");
+        // A shadow adds nothing to what is behind it.
+        assert!(alpha.iter().zip(&light).all(|(a, l)| *a >= 0.0 && *a <= 1.0 && (*a > 0.0 || l.is_black())));
+    }
+}
+
+/// Over white the shadow is that on a white ground: of one lamp alone it is as dark as a form factor says.
+#[test]
+fn the_shadow_over_white_is_that_of_the_ground() {
+    // Under an even sky, far below a large lid, the ground keeps what the lid does not cover.
+    let mut scene = SceneBuilder::default();
+    let black = scene.add_material(Spec::new("", "diffuse").with("reflectance", 0.0f32));
+    // The ground lies at the foot of the two posts.
+    let lid = Aabb { min: Vec3::new(-1.0, 1.0, -1.0), max: Vec3::new(1.0, 1.001, 1.0) };
+    let post = Aabb { min: Vec3::new(-0.001, 0.0, -0.001), max: Vec3::new(0.001, 1.0, 0.001) };
+    for bounds in [lid, post] {
+        let mesh = bilux::scene::generators::shapes::cuboid(bounds);
+        scene.objects.push(Object::new("", Arc::new(mesh), black));
+    }
+    scene.lights.push(Spec::new("", "environment").with("radiance", 1.0f32));
+    let camera = Spec::new("", "perspective").with("position", Vec3::new(0.05, 0.5, 0.05));
+    let camera = camera.with("look_at", Vec3::new(0.05, 0.0, 0.0501)).with("fov", 4.0f32);
+    scene.cameras.push(bilux::scene::cameras::CameraSpec { spec: camera, keyframes: Vec::new() });
+    let alpha = alpha(&picture(&scene, &[("background", "transparent")]));
+    let mean = alpha.iter().map(|a| f64::from(*a)).sum::<f64>() / alpha.len() as f64;
+    // A square of side 2 straight above, one unit away. [Howell 2010, C-11]
+    let side = 0.5f32.sqrt();
+    let covered = f64::from(4.0 / std::f32::consts::PI * side * bilux::math::transcendental::atan(side));
+    assert!((mean - covered).abs() < 0.01, "{mean}, of {covered} covered");
+}
+
+#[test]
+fn a_mirror_shows_the_model() {
+    let lamp = Spec::new("", "environment").with("radiance", 1.0f32);
+    let redness = |ground: &str| {
+        let picture = picture(&slab(Some(lamp.clone())), &[("ground", ground)]);
+        let red = |p: &&Rgb| p.r > 2.0 * p.g && p.r > 0.02;
+        picture.to_rgb().unwrap().iter().filter(red).count()
+    };
+    let (bare, mirrored) = (redness("none"), redness("mirror"));
+    assert!(mirrored as f64 > 1.25 * bare as f64, "{mirrored} pixels are red, of the model itself {bare}");
+}

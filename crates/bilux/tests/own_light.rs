@@ -1,0 +1,156 @@
+//! Whether a file's own light is to light its picture, or the studio.
+
+use bilux::math::{Aabb, Rgb, Vec3};
+use bilux::prelude::*;
+use bilux::scene::cameras::CameraSpec;
+use bilux::scene::generators::shapes;
+use std::sync::Arc;
+
+/// A scene of a format that has no word for what is around it, as glTF.
+fn file() -> SceneBuilder {
+    SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() }
+}
+
+fn put(scene: &mut SceneBuilder, mesh: Mesh, material: Spec) {
+    let material = scene.add_material(material.with("visible_sides", "front"));
+    scene.objects.push(Object::new("part", Arc::new(mesh), material));
+}
+
+fn clay(colour: f32) -> Spec {
+    Spec::new("", "principled").with("base_color", Rgb::grey(colour))
+}
+
+fn glowing(emission: f32) -> Spec {
+    clay(0.5).with("emission", Rgb::grey(emission)).with("emission_sides", "front")
+}
+
+fn cuboid(low: Vec3, high: Vec3) -> Mesh {
+    shapes::cuboid(Aabb { min: low, max: high })
+}
+
+/// A panel of two triangles, its front where `u × v` points.
+fn panel(middle: Vec3, u: Vec3, v: Vec3) -> Mesh {
+    let corner = |a: f32, b: f32| middle + u * a + v * b;
+    Mesh {
+        positions: vec![corner(-1., -1.), corner(1., -1.), corner(1., 1.), corner(-1., 1.)],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+fn job(scene: &SceneBuilder) -> Job {
+    let mut settings = Parameters::default();
+    settings.set("size", "24x24");
+    settings.set("spp", Value::Integer(16));
+    settings.set("denoise", "off");
+    Job::new(scene, &settings).unwrap()
+}
+
+/// The luminance that a tenth of the pixels have or exceed: the rest may be of nothing.
+fn bright(job: &Job) -> f32 {
+    let picture = job.render(&Quiet).unwrap().picture().unwrap();
+    let mut seen: Vec<f32> = picture.to_rgb().unwrap().iter().map(|p| p.luminance()).collect();
+    seen.sort_by(f32::total_cmp);
+    seen[seen.len() * 9 / 10]
+}
+
+fn assert_decided(name: &str, scene: &SceneBuilder, by_studio: bool) {
+    let job = job(scene);
+    match job.notes() {
+        [note] => assert_eq!(note.starts_with("the studio lights it"), by_studio, "{name}: {note}"),
+        notes => assert!(notes.is_empty() && name == "a dim sign", "{name}: {notes:?}"),
+    }
+    let has_room = job.scene().lights().iter().any(|light| light.name == "room");
+    assert_eq!(has_room, by_studio, "{name}");
+    assert!(bright(&job) > 0.03, "{name} is dark: {}", bright(&job));
+}
+
+/// A body and two small lamps at its front, as a car has.
+fn car(emission: f32) -> SceneBuilder {
+    let mut scene = file();
+    put(&mut scene, cuboid(Vec3::new(-0.5, 0.0, -1.0), Vec3::new(0.5, 0.6, 1.0)), clay(0.6));
+    for x in [-0.35, 0.35] {
+        put(&mut scene, panel(Vec3::new(x, 0.3, 1.001), Vec3::X * 0.05, Vec3::Y * 0.05), glowing(emission));
+    }
+    scene
+}
+
+#[test]
+fn headlights_do_not_keep_the_studio_away() {
+    assert_decided("a dim sign", &car(0.5), true);
+    for emission in [1.0, 20.0] {
+        assert_decided("a car", &car(emission), true);
+    }
+}
+
+#[test]
+fn what_glows_alone_is_seen_in_the_studio() {
+    let mut scene = file();
+    for (i, strength) in [1.0, 2.0, 4.0, 8.0, 16.0].into_iter().enumerate() {
+        let low = Vec3::new(i as f32 * 1.5, 0.0, 0.0);
+        put(&mut scene, cuboid(low, low + Vec3::ONE), glowing(strength));
+    }
+    assert_decided("glowing cubes", &scene, true);
+}
+
+/// A closed room, seen through the back of one of its walls, with a lamp below the ceiling.
+fn closed_box(emission: f32) -> SceneBuilder {
+    let mut scene = file();
+    let mut walls = cuboid(Vec3::NEG_ONE, Vec3::ONE);
+    walls.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    walls.normals.clear();
+    put(&mut scene, walls, clay(0.7));
+    put(&mut scene, panel(Vec3::Y * 0.99, Vec3::X * 0.3, Vec3::Z * 0.3), glowing(emission));
+    let camera = Spec::new("", "perspective").with("position", Vec3::Z * 3.6).with("look_at", Vec3::ZERO);
+    scene.cameras.push(CameraSpec { spec: camera.with("fov", 36.0f32), ..CameraSpec::default() });
+    scene
+}
+
+#[test]
+fn a_closed_box_is_lit_by_its_own_lamp() {
+    let scene = closed_box(15.0);
+    assert_decided("a box", &scene, false);
+    assert_eq!(job(&scene).scene().lights().len(), 1, "nothing is added");
+    // Without a camera of its own too.
+    let bare = SceneBuilder { cameras: Vec::new(), ..scene };
+    assert_decided("a box without a camera", &bare, false);
+}
+
+/// A bulb above a foot and a table.
+fn lamp(emission: f32) -> SceneBuilder {
+    let mut scene = file();
+    put(&mut scene, panel(Vec3::ZERO, Vec3::Z, Vec3::X), clay(0.6));
+    put(&mut scene, cuboid(Vec3::new(-0.05, 0.0, -0.05), Vec3::new(0.05, 0.6, 0.05)), clay(0.4));
+    put(&mut scene, shapes::icosphere(Vec3::Y * 0.75, 0.1, 2), glowing(emission));
+    scene
+}
+
+#[test]
+fn a_bulb_lights_its_lamp_where_it_is_bright() {
+    assert_decided("a weak bulb", &lamp(1.0), true);
+    assert_decided("a bright bulb", &lamp(60.0), false);
+}
+
+#[test]
+fn a_lamp_that_lights_nothing_leaves_it_to_the_studio() {
+    let mut scene = car(0.0);
+    let lamp = Spec::new("mine", "directional").with("direction", Vec3::Y);
+    scene.lights.push(lamp.with("irradiance", 3.0f32));
+    assert_decided("light from below", &scene, true);
+    assert_eq!(job(&scene).scene().lights().len(), 4, "the whole studio is there");
+}
+
+#[test]
+fn what_is_decided_depends_on_the_scene_alone() {
+    let scene = lamp(12.0);
+    let notes = [1, 2, 5].map(|threads| {
+        let mut settings = Parameters::default();
+        settings.set("size", "20x20");
+        settings.set("threads", Value::Integer(threads));
+        Job::new(&scene, &settings).unwrap().notes().to_vec()
+    });
+    assert!(notes[0].len() == 1 && notes.iter().all(|n| *n == notes[0]), "{notes:?}");
+    // Formats that can say what is around a scene have said it.
+    let said = SceneBuilder { surroundings_unsaid: false, ..car(20.0) };
+    assert!(job(&said).notes().is_empty());
+}

@@ -1,0 +1,57 @@
+//! Whether a picture was done within its time limit, and where the time went where it was not.
+
+use bilux::{Job, Outcome};
+use std::time::Duration;
+
+/// What a picture may take longer than it should, whichever is more: so long, and so much of its limit.
+const TOLERANCE: (Duration, f64) = (Duration::from_millis(200), 0.05);
+
+/// One line that says why a picture took longer than its limit, if it did: `before` rendering, `rendering` seconds, and in `all`.
+pub fn overrun(
+    job: &Job,
+    outcome: &Outcome,
+    before: Duration,
+    rendering: f64,
+    all: Duration,
+) -> Option<String> {
+    let limit = job.settings().stop.time_limit?;
+    if outcome.cancelled || all <= limit + TOLERANCE.0.max(limit.mul_f64(TOLERANCE.1)) {
+        return None;
+    }
+    let samples = outcome.reached.map_or(0, |reached| reached.spp);
+    let [limit, before, all] = [limit, before, all].map(|time| time.as_secs_f64());
+    let after = (all - before - rendering).max(0.0);
+    let plural = if samples == 1 { "" } else { "s" };
+    Some(format!(
+        "took {all:.1} s instead of {limit} s: reading and building {before:.1} s, {samples} sample{plural} of each pixel \
+         {rendering:.1} s, denoising and writing {after:.1} s"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bilux::scene::{Parameters, Spec, Value};
+    use bilux::transport::Silent;
+
+    #[test]
+    fn one_line_says_where_the_time_went_and_nothing_is_said_within_the_tolerance() {
+        let scene = bilux::generate(&Spec::new("", "teapot")).unwrap();
+        let mut user = Parameters::default();
+        for (key, value) in
+            [("size", Value::from("8x8")), ("time_limit", 1.0f32.into()), ("spp", Value::Integer(1))]
+        {
+            user.set(key, value);
+        }
+        let job = Job::new(&scene, &user).unwrap();
+        let outcome = job.render(&Silent).unwrap();
+        let after = |seconds: f64| {
+            let all = Duration::from_secs_f64(seconds);
+            overrun(&job, &outcome, Duration::from_millis(500), 0.5, all)
+        };
+        assert_eq!(after(1.19), None);
+        let line = after(1.5).unwrap();
+        let wanted = "took 1.5 s instead of 1 s: reading and building 0.5 s, 1 sample of each pixel 0.5 s, denoising and writing 0.5 s";
+        assert_eq!(line, wanted);
+    }
+}

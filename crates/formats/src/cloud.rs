@@ -1,0 +1,73 @@
+//! Clouds of points, whose coordinates may be large beside their size: they are counted from an origin of their own, so that
+//! 32-bit floats hold them.
+
+use crate::FormatError;
+use crate::budget::Budget;
+use crate::reading::plain_material;
+use bilux_math::{DVec3, Rgb, Vec3};
+use bilux_scene::{Mesh, Object, SceneBuilder};
+use std::sync::Arc;
+
+/// Points while they are read.
+#[derive(Default)]
+pub(crate) struct Cloud {
+    origin: Option<DVec3>,
+    pub(crate) positions: Vec<Vec3>,
+    /// As many as positions, or none. Linear.
+    pub(crate) colours: Vec<Rgb>,
+}
+
+/// Coordinates beyond this are counted from an origin: below, 32-bit floats tell a tenth of a millimetre of a metre.
+const FAR: f64 = 1024.0;
+
+/// The origin for coordinates like these: whole, and zero where they are small.
+pub(crate) fn origin_for(p: DVec3) -> DVec3 {
+    let of = |c: f64| if c.is_finite() && c.abs() >= FAR { c.round() } else { 0.0 };
+    DVec3::new(of(p.x), of(p.y), of(p.z))
+}
+
+impl Cloud {
+    /// One whose points lie about here.
+    pub(crate) fn around(p: DVec3) -> Cloud {
+        Cloud { origin: Some(origin_for(p)), ..Cloud::default() }
+    }
+
+    /// Makes room for points, with or without colours, which are paid for.
+    pub(crate) fn reserve(
+        &mut self,
+        count: u64,
+        colours: bool,
+        budget: &mut Budget,
+        file: &str,
+    ) -> Result<(), FormatError> {
+        let each = size_of::<(Vec3, u32)>() + if colours { size_of::<Rgb>() } else { 0 };
+        let bytes = count.saturating_mul(each as u64);
+        budget.take_bytes(bytes, file)?;
+        self.positions.reserve_exact(count as usize);
+        self.colours.reserve_exact(if colours { count as usize } else { 0 });
+        Ok(())
+    }
+
+    /// Adds a point.
+    #[inline]
+    pub(crate) fn push(&mut self, p: DVec3) {
+        let origin = *self.origin.get_or_insert_with(|| origin_for(p));
+        self.positions.push((p - origin).as_vec3());
+    }
+
+    /// The scene of it.
+    pub(crate) fn into_scene(self, name: String) -> SceneBuilder {
+        let mut scene = SceneBuilder { origin: self.origin.unwrap_or_default(), ..SceneBuilder::default() };
+        let material = scene.add_material(plain_material(!self.colours.is_empty(), false));
+        let points = (0..self.positions.len() as u32).collect();
+        let mesh = Mesh {
+            name: name.clone(),
+            positions: self.positions,
+            vertex_kd: self.colours,
+            points,
+            ..Mesh::default()
+        };
+        scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+        scene
+    }
+}

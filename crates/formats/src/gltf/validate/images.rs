@@ -1,0 +1,113 @@
+//! Images: where they lie, what they say they are, and what they are. [glTF 2.0, 3.8.3]
+
+use super::{Check, Role, text};
+use crate::FormatError;
+use crate::gltf::json::Node;
+use crate::gltf::reader::Gltf;
+
+pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+    match (node.get("uri"), node.get("bufferView")) {
+        (None, None) => check.report(node, "this image has neither a uri nor a bufferView: it needs one"),
+        (Some(_), Some(_)) => {
+            check.report(node, "this image has both a uri and a bufferView: it needs one of them");
+        }
+        (None, Some(_)) if node.get("mimeType").is_none() => {
+            check.report(node, "'mimeType' is missing here, which an image in a buffer view needs");
+        }
+        _ => {}
+    }
+    check.give_role(node, node, Role::Image);
+    if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri.starts_with("data:")) {
+        let message = "a GLB file should keep its images in its binary chunk, not in a data URI, which takes a third more";
+        check.report_key(node, "uri", message);
+    }
+    let in_uri = text(node, "uri").and_then(|uri| uri.strip_prefix("data:")?.split_once(','));
+    if let Some((kind, _)) = in_uri {
+        let kind = kind.split(';').next().unwrap_or_default();
+        if !kind.starts_with("image/") {
+            let message =
+                format!("the type of an image's data URI must be an image, such as image/png, not '{kind}'");
+            check.report_key(node, "uri", message);
+        }
+    }
+}
+
+/// What the first bytes say, as glTF names it.
+fn recognised(bytes: &[u8]) -> Option<&'static str> {
+    let kinds: [(&[u8], &str); 4] = [
+        (b"\x89PNG\r\n\x1a\n", "image/png"),
+        (b"\xff\xd8\xff", "image/jpeg"),
+        (b"RIFF", "image/webp"),
+        (b"\xabKTX 20\xbb", "image/ktx2"),
+    ];
+    kinds.into_iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, kind)| kind)
+}
+
+/// The extension that an image of this kind needs.
+fn extension_for(kind: &str) -> Option<&'static str> {
+    match kind {
+        "image/webp" => Some("EXT_texture_webp"),
+        "image/ktx2" => Some("KHR_texture_basisu"),
+        _ => None,
+    }
+}
+
+impl<'d> Gltf<'d, '_, '_> {
+    /// Reads the images that no material has asked for, and compares all with what the document says of them.
+    pub(super) fn validate_images(&mut self) -> Result<(), FormatError> {
+        let root = self.document.root;
+        let all: Vec<Node<'d>> = root.get("images").map(|list| list.children().collect()).unwrap_or_default();
+        for (number, image) in all.into_iter().enumerate() {
+            let is_placed = image.get("uri").is_some() != image.get("bufferView").is_some();
+            if !is_placed || !image.is_object() {
+                continue;
+            }
+            match self.encoded(image) {
+                Err(error @ FormatError::TooLarge { .. }) => return Err(error),
+                Err(error) => self.oddities.note(&error.without_place(), || image.at()),
+                Ok((_, bytes)) => {
+                    self.validate_kind(image, number, &bytes);
+                    self.let_go(bytes);
+                    let is_read = [true, false].iter().any(|&is_data| self.has_read(number, is_data));
+                    if !is_read && let Err(error) = self.decode(image, false) {
+                        if let FormatError::TooLarge { .. } = error {
+                            return Err(error);
+                        }
+                        self.oddities.note(&error.without_place(), || image.at());
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn validate_kind(&mut self, image: Node<'d>, number: usize, bytes: &[u8]) {
+        let in_uri = || text(image, "uri")?.strip_prefix("data:")?.split([';', ',']).next();
+        let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
+        let Some(found) = recognised(bytes) else {
+            let what = "this image is neither PNG nor JPEG, the two that glTF has without extensions";
+            return self.oddities.note(what, || image.at());
+        };
+        if let Some(declared) = declared.filter(|declared| *declared != found) {
+            let what = format!("this image is said to be {declared}, but is {found}");
+            self.oddities.note(&what, || image.at());
+        }
+        let Some(extension) = extension_for(found) else { return };
+        let root = self.document.root;
+        let declares = root
+            .get("extensionsUsed")
+            .is_some_and(|list| list.children().any(|name| name.value().as_str() == Some(extension)));
+        if !declares {
+            let what = format!("an image of type {found} needs the extension {extension}");
+            self.oddities.note(&what, || image.at());
+        }
+        for texture in root.get("textures").into_iter().flat_map(|list| list.children()) {
+            if super::whole(texture, "source") == Some(number) {
+                let what = format!(
+                    "the source of a texture must be PNG or JPEG, not {found}: name it in {extension}"
+                );
+                self.oddities.note(&what, || texture.at());
+            }
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Whether a file is what the specification says, in all its parts, shown or not. Tables say what objects hold
+//! ([`core_kinds`], [`material_kinds`], [`extension_kinds`]); rules say how they go together ([`rules`]). A fault becomes a
+//! warning, since most programs show such files nevertheless.
+
+mod accessors;
+mod animations;
+mod attributes;
+mod buffers;
+mod core_kinds;
+mod extension_kinds;
+mod images;
+mod material_kinds;
+mod materials;
+mod meshes;
+mod nodes;
+mod root;
+mod rules;
+mod schema;
+mod skins;
+mod vertices;
+mod walk;
+
+use super::accessor::Accessor;
+use super::document::Document;
+use super::json::Node;
+use super::reader::Gltf;
+use crate::FormatError;
+use crate::budget::Budget;
+use crate::reading::Oddities;
+use std::collections::{HashMap, HashSet};
+
+/// What has been found about a document so far.
+struct Check<'d, 'a> {
+    document: &'d Document<'d>,
+    root: Node<'d>,
+    budget: &'a mut Budget,
+    oddities: &'a mut Oddities,
+    /// List and index of all that something else names.
+    used: HashSet<(&'d str, usize)>,
+    /// Extensions that stand anywhere.
+    extensions: HashSet<&'d str>,
+    /// What buffer views are used for.
+    roles: HashMap<usize, Role>,
+    /// How many attributes lie in buffer views.
+    attributes_in: HashMap<usize, HashSet<usize>>,
+}
+
+/// True for a deviation beyond the tolerance, and for one that is not a number.
+fn is_off(deviation: f32, tolerance: f32) -> bool {
+    deviation.is_nan() || deviation.abs() > tolerance
+}
+
+/// What the data of a buffer view are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Role {
+    Vertices,
+    Indices,
+    Image,
+    InverseBindMatrices,
+    Animation,
+    Sparse,
+}
+
+impl Role {
+    fn words(self) -> &'static str {
+        match self {
+            Role::Vertices => "vertex attributes",
+            Role::Indices => "indices",
+            Role::Image => "an image",
+            Role::InverseBindMatrices => "inverse bind matrices",
+            Role::Animation => "keyframes",
+            Role::Sparse => "sparse elements",
+        }
+    }
+}
+
+impl Gltf<'_, '_, '_> {
+    /// Reports every fault of the document as a warning.
+    ///
+    /// # Errors
+    /// When reading a picture takes more memory than is left.
+    pub(super) fn validate(&mut self) -> Result<(), FormatError> {
+        let mut check = Check {
+            document: self.document,
+            root: self.document.root,
+            budget: &mut self.reading.budget,
+            oddities: &mut self.oddities,
+            used: HashSet::new(),
+            extensions: HashSet::new(),
+            roles: HashMap::new(),
+            attributes_in: HashMap::new(),
+        };
+        check.object(check.root, &core_kinds::ROOT);
+        self.validate_images()
+    }
+}
+
+impl<'d> Check<'d, '_> {
+    /// Reports a fault at a place.
+    fn report(&mut self, at: Node<'d>, message: impl AsRef<str>) {
+        self.oddities.note(message.as_ref(), || at.at());
+    }
+
+    /// Reports a fault at a property, or at the object where it has none of that name.
+    fn report_key(&mut self, at: Node<'d>, key: &'d str, message: impl AsRef<str>) {
+        self.report(at.get(key).unwrap_or(at), message);
+    }
+
+    /// The item that the index under `key` names; none where there is none, which the walk reports.
+    fn named(&self, list: &'static str, node: Node<'d>, key: &'d str) -> Option<(usize, Node<'d>)> {
+        let index = whole(node, key)?;
+        Some((index, self.root.item(list, index)?))
+    }
+
+    /// The items of a list of the document.
+    fn list(&self, list: &'static str) -> Vec<Node<'d>> {
+        self.root.get(list).map(|list| list.children().collect()).unwrap_or_default()
+    }
+
+    /// The numbers of an accessor; none where they cannot be read, which is reported elsewhere.
+    fn numbers(&mut self, index: usize) -> Option<Vec<f32>> {
+        let node = self.root.item("accessors", index)?;
+        let spent = self.budget.spent();
+        let numbers = Accessor::open(self.document, index, node, self.budget)
+            .and_then(|accessor| accessor.numbers(self.budget));
+        self.budget.give_back(self.budget.spent() - spent);
+        self.unless_too_large(node, numbers)
+    }
+
+    /// The whole numbers of an accessor, likewise.
+    fn indices(&mut self, index: usize) -> Option<Vec<u32>> {
+        let node = self.root.item("accessors", index)?;
+        let spent = self.budget.spent();
+        let indices = Accessor::open(self.document, index, node, self.budget)
+            .and_then(|accessor| accessor.indices(self.budget));
+        self.budget.give_back(self.budget.spent() - spent);
+        self.unless_too_large(node, indices)
+    }
+
+    fn unless_too_large<T>(&mut self, node: Node<'d>, read: Result<T, FormatError>) -> Option<T> {
+        if let Err(FormatError::TooLarge { .. }) = &read {
+            self.report(node, "these data were not checked, since that takes more memory than is allowed");
+        }
+        read.ok()
+    }
+
+    /// Notes what a buffer view is used for, and reports a second use that does not go with the first.
+    fn give_role(&mut self, user: Node<'d>, accessor: Node<'d>, role: Role) {
+        let Some((index, view)) = self.named("bufferViews", accessor, "bufferView") else { return };
+        let before = *self.roles.entry(index).or_insert(role);
+        let target = whole(view, "target");
+        let targeted = match target {
+            Some(34962) => Some(Role::Vertices),
+            Some(34963) => Some(Role::Indices),
+            _ => None,
+        };
+        let other = Some(before).filter(|&other| other != role).or(targeted.filter(|&other| other != role));
+        if let Some(other) = other {
+            let (these, those) = (role.words(), other.words());
+            self.report(
+                user,
+                format!(
+                    "its buffer view is for {those} and holds {these}: give each a buffer view of its own"
+                ),
+            );
+        }
+        if role != Role::Vertices && view.get("byteStride").is_some() {
+            let what = role.words();
+            self.report(
+                view,
+                format!("byteStride is for vertex attributes, but this buffer view holds {what}: remove it"),
+            );
+        }
+    }
+}
+
+/// A whole number; none where there is none.
+fn whole(node: Node, key: &str) -> Option<usize> {
+    let value = node.value().get(key)?;
+    value.as_u64().or_else(|| whole_float(value)).and_then(|x| usize::try_from(x).ok())
+}
+
+/// `3.0` counts as 3, as the specification allows.
+fn whole_float(value: &serde_json::Value) -> Option<u64> {
+    value.as_f64().filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x)).map(|x| x as u64)
+}
+
+fn number(node: Node, key: &str) -> Option<f64> {
+    node.value().get(key)?.as_f64()
+}
+
+fn text<'d>(node: Node<'d>, key: &str) -> Option<&'d str> {
+    node.value().get(key)?.as_str()
+}
+
+fn floats(node: Node, key: &str) -> Option<Vec<f64>> {
+    node.value().get(key)?.as_array()?.iter().map(serde_json::Value::as_f64).collect()
+}
+
+/// `1 node`, `2 nodes`.
+fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}

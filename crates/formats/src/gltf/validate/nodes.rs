@@ -1,0 +1,167 @@
+//! Nodes: how they stand, and that they form trees. [glTF 2.0, 3.5]
+
+use super::meshes::target_count;
+use super::{Check, counted, floats, whole};
+use crate::gltf::json::Node;
+use bilux_math::DVec3;
+
+pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+    let Some(matrix) = node.get("matrix") else { return };
+    if let Some(other) = ["translation", "rotation", "scale"].iter().find(|key| node.get(key).is_some()) {
+        check.report(matrix, format!("this node has both a matrix and a {other}: it needs one of them"));
+    }
+    let Some(m) = floats(node, "matrix").filter(|m| m.len() == 16) else { return };
+    let axis = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
+    let axes = [axis(0), axis(1), axis(2)];
+    let is_skewed = (0..3).any(|i| {
+        let (a, b) = (axes[i], axes[(i + 1) % 3]);
+        a.dot(b).abs() > 1e-3 * a.length() * b.length()
+    });
+    if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] || is_skewed {
+        let message = "this matrix is not made of a translation, a rotation and a scale, as it must be";
+        check.report(matrix, message);
+    }
+}
+
+pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+    let Some(q) = floats(node, "rotation").filter(|q| q.len() == 4) else { return };
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    // Programs write four digits and more.
+    if (length - 1.0).abs() > 5e-4 {
+        check.report_key(
+            node,
+            "rotation",
+            format!("the length of this rotation is {length:.4}, but must be 1"),
+        );
+    }
+}
+
+/// True when a primitive of the mesh has joints.
+pub(super) fn has_joints(mesh: Node) -> bool {
+    mesh.get("primitives")
+        .into_iter()
+        .flat_map(|list| list.children())
+        .any(|primitive| primitive.get("attributes").is_some_and(|a| a.value().get("JOINTS_0").is_some()))
+}
+
+pub(super) fn mesh<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+    for key in ["skin", "weights"] {
+        if node.get(key).is_some() && node.get("mesh").is_none() {
+            check.report_key(node, key, format!("'{key}' has no effect on a node without a mesh"));
+        }
+    }
+    let Some((_, mesh)) = check.named("meshes", node, "mesh") else { return };
+    let (has_skin, has_joints) = (node.get("skin").is_some(), has_joints(mesh));
+    if has_skin && !has_joints {
+        check.report(node, "this node has a skin, but no primitive of its mesh has JOINTS_0 and WEIGHTS_0");
+    } else if has_joints && !has_skin {
+        check.report(node, "the mesh of this node has joints, but the node has no skin: it keeps its shape");
+    }
+    let Some(weights) = node.get("weights").filter(|list| list.value().is_array()) else { return };
+    let (have, wanted) = (weights.children().count(), target_count(mesh));
+    if have != wanted {
+        let message = format!("{} for {}", counted(have, "weight"), counted(wanted, "morph target"));
+        check.report(weights, message + ": there must be as many");
+    } else if mesh.get("weights").is_some() {
+        check.report_key(mesh, "weights", "these weights are not used, since the node has its own");
+    }
+}
+
+/// The transform of a node with a skinned mesh, and of those above it, does nothing.
+pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+    let Some((_, mesh)) = check.named("meshes", node, "mesh") else { return };
+    if node.get("skin").is_none() || !has_joints(mesh) {
+        return;
+    }
+    let stands = |node: Node| {
+        ["matrix", "translation", "rotation", "scale"].iter().any(|key| node.value().get(key).is_some())
+    };
+    if stands(node) {
+        check.report(node, "the transform of a node with a skinned mesh has no effect: its joints place it");
+    }
+    let parents = parents(check);
+    let mut above = node.number_in_list().and_then(|index| *parents.get(index)?);
+    for _ in 0..parents.len() {
+        let Some(index) = above else { break };
+        if check.root.item("nodes", index).is_some_and(stands) {
+            let message =
+                "the transforms of the nodes above a skinned mesh have no effect: its joints place it";
+            return check.report(node, message);
+        }
+        above = parents[index];
+    }
+}
+
+/// The parent of each node; the first, where it has several.
+pub(super) fn parents(check: &Check<'_, '_>) -> Vec<Option<usize>> {
+    let nodes = check.list("nodes");
+    let mut parents = vec![None; nodes.len()];
+    for (index, node) in nodes.into_iter().enumerate() {
+        for child in node.get("children").into_iter().flat_map(|list| list.children()) {
+            let child = child.value().as_u64().and_then(|child| usize::try_from(child).ok());
+            if let Some(slot) = child.and_then(|child| parents.get_mut(child)) {
+                slot.get_or_insert(index);
+            }
+        }
+    }
+    parents
+}
+
+pub(super) fn roots<'d>(check: &mut Check<'d, '_>, scene: Node<'d>) {
+    let parents = parents(check);
+    for item in scene.get("nodes").into_iter().flat_map(|list| list.children()) {
+        let index = item.value().as_u64().and_then(|index| usize::try_from(index).ok());
+        if let Some(parent) = index.and_then(|index| *parents.get(index)?) {
+            check.report(item, format!("a scene names roots, and node {parent} is above this one"));
+        }
+    }
+}
+
+pub(super) fn trees<'d>(check: &mut Check<'d, '_>, _: Node<'d>) {
+    let parents = parents(check);
+    for (index, node) in check.list("nodes").into_iter().enumerate() {
+        for child in node.get("children").into_iter().flat_map(|list| list.children()) {
+            let number = child.value().as_u64().and_then(|child| usize::try_from(child).ok());
+            let first = number.and_then(|child| *parents.get(child)?);
+            if first.is_some_and(|first| first != index) {
+                let other = first.unwrap_or(0);
+                check
+                    .report(child, format!("this node is below node {other} already: a node has one parent"));
+            }
+        }
+        let (mut above, mut steps) = (parents[index], 0);
+        while let Some(parent) = above.filter(|_| steps < parents.len()) {
+            if parent == index {
+                check.report(node, "this node is below itself, so that the nodes form no tree");
+                break;
+            }
+            (above, steps) = (parents[parent], steps + 1);
+        }
+    }
+}
+
+/// The number of a node's root.
+pub(super) fn root_of(parents: &[Option<usize>], mut index: usize) -> usize {
+    for _ in 0..parents.len() {
+        match parents.get(index).copied().flatten() {
+            Some(parent) => index = parent,
+            None => break,
+        }
+    }
+    index
+}
+
+/// The index that a value is.
+pub(super) fn as_index(node: Node) -> Option<usize> {
+    node.value().as_u64().and_then(|index| usize::try_from(index).ok())
+}
+
+/// Those that `key` names, of a node or a skin.
+pub(super) fn named_nodes<'d>(node: Node<'d>, key: &'d str) -> Vec<usize> {
+    node.get(key).into_iter().flat_map(|list| list.children()).filter_map(as_index).collect()
+}
+
+/// The index of the skin that a node wears.
+pub(super) fn skin_of(node: Node) -> Option<usize> {
+    whole(node, "skin")
+}

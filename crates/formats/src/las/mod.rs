@@ -1,0 +1,24 @@
+//! LAS, clouds of points from laser scanners. See `docs/formats/las.md`.
+
+mod header;
+mod read;
+
+use crate::formats::{ReadFormat, SceneFormatEntry};
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "las",
+        summary: "LAS 1.0 to 1.4, uncompressed: points of laser scanners",
+        source: "",
+        parameters: &[],
+    },
+    // Compressed files come here too, to be refused in words that help.
+    extensions: &["las", "laz"],
+    capabilities: &["points", "vertex-kd"],
+    sniff: |bytes| bytes.starts_with(header::SIGNATURE),
+    up: UpHint::Is(Axis::Z),
+    read: Some(ReadFormat::Whole(read::read)),
+    write: None,
+};

@@ -1,0 +1,69 @@
+//! Reading LAS.
+
+use super::header::{Header, read_header, u16_at, u32_at};
+use crate::FormatError;
+use crate::cloud::Cloud;
+use crate::reading::{Reading, Source};
+use bilux_math::colour::srgb_decode;
+use bilux_math::{DVec3, Rgb};
+use bilux_scene::SceneBuilder;
+
+/// Where the intensity of a point stands, in all formats.
+const INTENSITY: usize = 12;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let header = read_header(source)?;
+    let records = || source.bytes[header.points..].chunks_exact(header.record).take(header.count as usize);
+    let position = |record: &[u8]| {
+        let number = |at: usize| f64::from(u32_at(record, at) as i32);
+        DVec3::new(number(0), number(4), number(8)) * header.scale + header.offset
+    };
+    let colour_of = colours(&header, records);
+    let first = records().next().map(position).unwrap_or_default();
+    let mut cloud = Cloud::around(first);
+    cloud.reserve(header.count, colour_of.is_some(), &mut reading.budget, source.name)?;
+    for record in records() {
+        cloud.push(position(record));
+        cloud.colours.extend(colour_of.as_ref().map(|of| of(record)));
+    }
+    Ok(cloud.into_scene(source.stem()))
+}
+
+/// What gives a record its colour.
+type ColourOf = Box<dyn Fn(&[u8]) -> Rgb>;
+
+/// The colour of a record, where they have any; else its intensity as a grey, where these differ. Some programs write bytes into
+/// what should be 16 bits.
+fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn() -> I) -> Option<ColourOf> {
+    let one_for = |greatest: u16| if greatest > 255 { 65535.0 } else { 255.0 };
+    if let Some(at) = header.colour {
+        let channels = move |record: &[u8]| [0, 2, 4].map(|channel| u16_at(record, at + channel));
+        let greatest = records().flat_map(channels).max().unwrap_or(0);
+        if greatest > 0 {
+            let one = one_for(greatest);
+            return Some(Box::new(move |record| {
+                Rgb::from_array(channels(record).map(|c| srgb_decode(f32::from(c) / one)))
+            }));
+        }
+    }
+    let mut histogram = vec![0u64; 1 << 16];
+    records().for_each(|record| histogram[usize::from(u16_at(record, INTENSITY))] += 1);
+    let place = |part: f64| {
+        let mut left = (header.count as f64 * part) as u64;
+        let mut reaches = |count: &u64| {
+            let is_there = left < *count;
+            left = left.saturating_sub(*count);
+            is_there
+        };
+        histogram.iter().position(&mut reaches).unwrap_or(histogram.len() - 1) as f32
+    };
+    // A few mirrors are brighter than all else.
+    let (dark, bright) = (place(0.02), place(0.98));
+    (bright > dark).then(|| {
+        let grey = move |record: &[u8]| {
+            let part = (f32::from(u16_at(record, INTENSITY)) - dark) / (bright - dark);
+            Rgb::grey(srgb_decode(0.15 + 0.8 * part.clamp(0.0, 1.0)))
+        };
+        Box::new(grey) as Box<dyn Fn(&[u8]) -> Rgb>
+    })
+}

@@ -1,0 +1,180 @@
+//! Points and lines of an OBJ file.
+
+use super::block::Reader;
+use super::index::{Index, index};
+use crate::FormatError;
+use crate::reading::{Oddities, Reading, Source};
+use crate::soup::{NONE, Run, Soup, material_of};
+use crate::text::{Place, quoted};
+use bilux_math::{Rgb, Vec3};
+use bilux_scene::{Mesh, Object, SceneBuilder, Span};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A point, or a line between two vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke {
+    /// How many turns stand before it.
+    pub(super) turns: usize,
+    /// Twice the same of a point.
+    pub(super) ends: [End; 2],
+    pub(super) is_point: bool,
+    pub(super) place: Place,
+}
+
+/// A vertex of a point or a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum End {
+    /// Counted from 0.
+    Whole(u32),
+    /// From the first vertex of the block, negative before it.
+    OfBlock(i64),
+}
+
+impl Reader<'_> {
+    /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
+    pub(super) fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
+        let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
+        loop {
+            let word = self.cursor.word();
+            if word.is_empty() || word.starts_with(b"#") {
+                break;
+            }
+            let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
+            let end = match index(digits) {
+                Some(Index::Forward(index)) => End::Whole(index),
+                Some(Index::Backward(back)) => End::OfBlock(self.block.positions.len() as i64 - back),
+                None => {
+                    let at = self.at(self.cursor.offset() - word.len());
+                    let message = format!(
+                        "{} is not a vertex of a point or a line: write a number, counted from 1, or backwards from -1",
+                        quoted(word)
+                    );
+                    self.block.strokes.truncate(first);
+                    self.fault(message, ": this point or line is left out", at);
+                    return Ok(());
+                }
+            };
+            let ends = if are_points { Some([end; 2]) } else { last.map(|last| [last, end]) };
+            if let Some(ends) = ends {
+                self.budget.take::<Stroke>(1, self.file)?;
+                let turns = self.block.turns.len();
+                self.block.strokes.push(Stroke { turns, ends, is_point: are_points, place });
+            }
+            last = Some(end);
+            count += 1;
+        }
+        if count < 2 - usize::from(are_points) {
+            self.note("a line with fewer than 2 vertices, or a point without one, is left out", place);
+        }
+        Ok(())
+    }
+}
+
+/// All of a file, those of one name and material together.
+#[derive(Default)]
+pub(super) struct Strokes {
+    groups: Vec<Group>,
+}
+
+struct Group {
+    run: Run,
+    points: Vec<u32>,
+    lines: Vec<[u32; 2]>,
+    /// Where the first stands.
+    place: u64,
+}
+
+impl Strokes {
+    pub(super) fn is_empty(&self) -> bool {
+        self.groups.is_empty()
+    }
+
+    /// Adds one of the name and material of a run; `None` where it names a vertex before the first.
+    pub(super) fn add(
+        &mut self,
+        stroke: &Stroke,
+        before: usize,
+        run: impl FnOnce() -> Run,
+        place: u64,
+    ) -> Option<()> {
+        let run = run();
+        let same =
+            |group: &Group| group.run.name == run.name && group.run.material_name() == run.material_name();
+        if !self.groups.last().is_some_and(same) {
+            self.groups.push(Group { run, points: Vec::new(), lines: Vec::new(), place });
+        }
+        let vertex = |end: End| match end {
+            End::Whole(index) => Some(index),
+            End::OfBlock(index) => u32::try_from(before as i64 + index).ok(),
+        };
+        let [a, b] = stroke.ends.map(vertex);
+        let (a, b, group) = (a?, b?, self.groups.last_mut()?);
+        match stroke.is_point {
+            true => group.points.push(a),
+            false => group.lines.push([a, b]),
+        }
+        Some(())
+    }
+
+    /// Makes points of all vertices.
+    pub(super) fn add_all(&mut self, vertices: usize, name: String) {
+        let run = Run { first_face: 0, name, material: None };
+        let points = (0..vertices as u32).collect();
+        self.groups.push(Group { run, points, lines: Vec::new(), place: 0 });
+    }
+
+    /// An object of each group, with the vertices that it names.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn into_objects(
+        self,
+        reading: &mut Reading,
+        source: &Source,
+        place: &dyn Fn(u64) -> Span,
+        soup: &Soup,
+        materials: &mut HashMap<String, usize>,
+        scene: &mut SceneBuilder,
+        oddities: &mut Oddities,
+    ) -> Result<(), FormatError> {
+        if self.groups.is_empty() {
+            return Ok(());
+        }
+        reading.budget.take_bytes(soup.positions.len() as u64 * 4, source.name)?;
+        let mut places = vec![NONE; soup.positions.len()];
+        for mut group in self.groups {
+            let mut mesh = Mesh::default();
+            let mut used = Vec::new();
+            let mut failure = None;
+            let ends = group.points.iter_mut().chain(group.lines.iter_mut().flatten());
+            for vertex in ends {
+                let Some(slot) = places.get_mut(*vertex as usize) else {
+                    failure = Some(*vertex);
+                    break;
+                };
+                if *slot == NONE {
+                    *slot = used.len() as u32;
+                    used.push(*vertex);
+                }
+                *vertex = *slot;
+            }
+            if let Some(vertex) = failure {
+                let (named, count) = (u64::from(vertex) + 1, soup.positions.len());
+                let message =
+                    format!("a point or a line names vertex {named}, but the file has only {count}");
+                return Err(FormatError::malformed(message, place(group.place)));
+            }
+            reading.budget.take::<(Vec3, Rgb)>(used.len(), source.name)?;
+            mesh.positions = used.iter().map(|&i| soup.positions[i as usize]).collect();
+            if !soup.colours.is_empty() {
+                mesh.vertex_kd = used.iter().map(|&i| soup.colours[i as usize]).collect();
+            }
+            used.iter().for_each(|&i| places[i as usize] = NONE);
+            (mesh.points, mesh.lines) = (group.points, group.lines);
+            let name = if group.run.name.is_empty() { source.stem() } else { group.run.name.clone() };
+            mesh.name.clone_from(&name);
+            let material = material_of(&group.run, soup, materials, place, scene, oddities);
+            scene.objects.push(Object::new(&name, Arc::new(mesh), material));
+        }
+        Ok(())
+    }
+}

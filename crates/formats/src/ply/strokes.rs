@@ -1,0 +1,73 @@
+//! Vertices without faces: lines along edges, or a cloud of points.
+
+use super::header::Element;
+use super::read::Ply;
+use crate::FormatError;
+use crate::reading::plain_material;
+use crate::soup::NONE;
+use bilux_scene::{Mesh, Object, SceneBuilder};
+use std::sync::Arc;
+
+/// What the properties of an edge are called.
+const ENDS: [&str; 2] = ["vertex1", "vertex2"];
+
+pub(super) fn has_both_ends(element: &Element) -> bool {
+    ENDS.iter().all(|end| element.properties.iter().any(|p| p.name == *end && p.count.is_none()))
+}
+
+impl Ply<'_, '_, '_> {
+    /// Pairs of vertices, `vertex1` and `vertex2`.
+    pub(super) fn edges(&mut self, element: &Element) -> Result<(), FormatError> {
+        for _ in 0..element.count {
+            let start = self.body.offset();
+            let mut ends = [NONE; 2];
+            for property in &element.properties {
+                let which = ENDS.iter().position(|end| *end == property.name);
+                match which.filter(|_| property.count.is_none()) {
+                    // What is no index is one that no file has.
+                    Some(end) => {
+                        ends[end] = u32::try_from(self.body.integer(property.scalar)?).unwrap_or(NONE);
+                    }
+                    None => self.skip(property)?,
+                }
+            }
+            self.end_row(start);
+            self.reading.budget.take::<[u32; 2]>(1, self.source.name)?;
+            self.edges.push(ends);
+        }
+        Ok(())
+    }
+
+    /// Vertices that no face joins: lines where there are edges, else a cloud of points.
+    pub(super) fn finish_strokes(mut self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
+        let (soup, mut lines) = (std::mem::take(&mut self.soup), std::mem::take(&mut self.edges));
+        let known = soup.positions.len();
+        if known == 0 {
+            return Err(FormatError::malformed("there is no face and no vertex in it", self.places.whole()));
+        }
+        let given = lines.len();
+        lines.retain(|ends| ends.iter().all(|&end| (end as usize) < known));
+        if lines.len() < given {
+            let places = self.places;
+            let what = "edges name vertices that the file does not have; they are left out";
+            self.oddities.note(what, || places.whole());
+        }
+        self.reading.budget.take_bytes(known as u64 * 4, self.source.name)?;
+        let points = if lines.is_empty() { (0..known as u32).collect() } else { Vec::new() };
+        let material =
+            scene.add_material(plain_material(!soup.colours.is_empty(), !soup.specular.is_empty()));
+        let mesh = Mesh {
+            name: self.source.stem(),
+            positions: soup.positions,
+            uvs: soup.uvs,
+            vertex_kd: soup.colours,
+            vertex_ks: soup.specular,
+            points,
+            lines,
+            ..Mesh::default()
+        };
+        scene.objects.push(Object::new(&self.source.stem(), Arc::new(mesh), material));
+        self.oddities.into_warnings(&mut scene);
+        Ok(scene)
+    }
+}

@@ -1,0 +1,98 @@
+//! What the numbers of a line mean.
+
+use crate::text::Cursor;
+
+/// The most numbers that are looked at on a line.
+pub(super) const MOST: usize = 16;
+
+/// Where in a line the parts of a point stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Columns {
+    pub(super) position: [usize; 3],
+    pub(super) colour: Option<[usize; 3]>,
+    pub(super) intensity: Option<usize>,
+}
+
+/// Names that columns are given in a first line, in lower case.
+const NAMES: [&[&str]; 7] = [
+    &["x", "east", "easting", "x_coord"],
+    &["y", "north", "northing", "y_coord"],
+    &["z", "height", "elevation", "z_coord"],
+    &["r", "red", "rf"],
+    &["g", "green", "gf"],
+    &["b", "blue", "bf"],
+    &["intensity", "i", "scalar_intensity", "reflectance"],
+];
+
+impl Columns {
+    /// By the names of a first line; `None` where they do not tell where x, y and z are.
+    pub(super) fn named(names: &[String]) -> Option<Columns> {
+        let column = |meaning: usize| {
+            names.iter().take(MOST).position(|name| {
+                let name = name.trim_matches(['"', '/', '#']).to_lowercase();
+                NAMES[meaning].contains(&name.as_str())
+            })
+        };
+        let three = |first: usize| Some([column(first)?, column(first + 1)?, column(first + 2)?]);
+        Some(Columns { position: three(0)?, colour: three(3), intensity: column(6) })
+    }
+
+    /// By how many there are, and by the numbers of the first points, as programs write them: `x y z`, then an intensity, a
+    /// colour, a normal, an intensity and a colour, or a colour and a normal in either order.
+    pub(super) fn guessed(count: usize, rows: &[[f64; MOST]]) -> Columns {
+        let plain = Columns { position: [0, 1, 2], colour: None, intensity: None };
+        let colour_at = |at: usize| Columns { colour: Some([at, at + 1, at + 2]), ..plain };
+        let normals_at = |at: usize| {
+            let is_unit = |row: &[f64; MOST]| {
+                let n = &row[at..at + 3];
+                (n.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 0.02
+            };
+            !rows.is_empty() && rows.iter().all(is_unit)
+        };
+        match count {
+            0..=3 => plain,
+            4 | 5 => Columns { intensity: Some(3), ..plain },
+            6 if normals_at(3) => plain,
+            6 => colour_at(3),
+            7 | 8 => Columns { intensity: Some(3), ..colour_at(4) },
+            _ if normals_at(3) => colour_at(6),
+            _ => colour_at(3),
+        }
+    }
+}
+
+/// What stands between numbers beside blanks.
+pub(super) const fn is_separator(byte: u8) -> bool {
+    matches!(byte, b',' | b';')
+}
+
+/// True when the first lines are numbers, three or more on each but for a count before them.
+pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(4096)];
+    let mut cursor = Cursor::new(head);
+    let mut lines = 0;
+    while !cursor.is_done() && lines < 4 {
+        let line = cursor.rest_of_line();
+        cursor.end_line();
+        let words = words_of(line);
+        if words.is_empty() || line.starts_with(b"#") || line.starts_with(b"//") {
+            continue;
+        }
+        if !words.iter().all(|word| crate::float::parse_f32(word).is_some()) {
+            return false;
+        }
+        let is_count = lines == 0 && words.len() == 1;
+        // The last line may be cut off.
+        if !is_count && words.len() < 3 && !(cursor.is_done() && lines > 0) {
+            return false;
+        }
+        lines += 1;
+    }
+    lines > 1
+}
+
+/// The words of a line.
+pub(super) fn words_of(line: &[u8]) -> Vec<&[u8]> {
+    let is_between = |b: &u8| b.is_ascii_whitespace() || is_separator(*b) || *b == 0;
+    line.split(is_between).filter(|word| !word.is_empty()).take(MOST).collect()
+}

@@ -1,0 +1,23 @@
+//! Clouds of points as lines of numbers. See `docs/formats/xyz.md`.
+
+mod columns;
+mod read;
+
+use crate::formats::{ReadFormat, SceneFormatEntry};
+use bilux_math::registry::Entry;
+use bilux_scene::{Axis, UpHint};
+
+pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
+    entry: Entry {
+        name: "xyz",
+        summary: "XYZ and PTS: points as lines of numbers, with colours or normals or intensities",
+        source: "",
+        parameters: &[],
+    },
+    extensions: &["xyz", "pts", "txt", "xyzrgb", "xyzn", "xyzi"],
+    capabilities: &["points", "vertex-kd"],
+    sniff: columns::looks_like_points,
+    up: UpHint::Usually(Axis::Z),
+    read: Some(ReadFormat::Whole(read::read)),
+    write: None,
+};

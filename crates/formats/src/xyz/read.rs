@@ -1,0 +1,218 @@
+//! Reading XYZ.
+
+use super::columns::{Columns, MOST, words_of};
+use crate::FormatError;
+use crate::cloud::Cloud;
+use crate::float::parse_f64;
+use crate::reading::{Oddities, Reading, Source};
+use crate::text::{Cursor, Places, no_text, quoted};
+use bilux_math::colour::srgb_decode;
+use bilux_math::{DVec3, Rgb};
+use bilux_scene::SceneBuilder;
+
+pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
+    let places = Places::new(source.name, source.bytes);
+    let mut reader = Xyz {
+        reading,
+        source,
+        places: &places,
+        cursor: Cursor::new(source.bytes),
+        cloud: Cloud::default(),
+        colours: Vec::new(),
+        intensities: Vec::new(),
+        oddities: Oddities::default(),
+    };
+    reader.lines().map_err(|error| no_text(error, source))?;
+    reader.finish()
+}
+
+struct Xyz<'a, 'o, 'r> {
+    reading: &'r mut Reading<'o>,
+    source: &'a Source<'a>,
+    places: &'a Places<'a>,
+    cursor: Cursor<'a>,
+    cloud: Cloud,
+    /// As they stand in the file.
+    colours: Vec<[f32; 3]>,
+    intensities: Vec<f32>,
+    oddities: Oddities,
+}
+
+/// A line of numbers.
+struct Row {
+    numbers: [f64; MOST],
+    count: usize,
+    start: usize,
+}
+
+/// What a line is.
+enum Line {
+    Nothing,
+    Numbers(Row),
+    Words(Vec<String>),
+}
+
+/// Points that are looked at before it is decided what their columns mean.
+const FIRST: usize = 32;
+
+impl Xyz<'_, '_, '_> {
+    fn lines(&mut self) -> Result<(), FormatError> {
+        let mut columns = None;
+        let mut lines = 0;
+        while !self.cursor.is_done() {
+            let start = self.cursor.offset();
+            let line = self.line()?;
+            self.cursor.end_line();
+            match line {
+                Line::Nothing => continue,
+                Line::Numbers(row) if row.count == 1 && lines == 0 => self.refuse_molecule()?,
+                // Some scanners write the size of their grid before the points.
+                Line::Numbers(row) if row.count < 3 && columns.is_none() => {}
+                Line::Numbers(row) => {
+                    if columns.is_none() {
+                        columns = Some(Columns::guessed(row.count, &self.rows_from(start)?));
+                    }
+                    if let Some(columns) = &columns {
+                        self.point(&row, columns)?;
+                    }
+                }
+                Line::Words(names) if lines == 0 => columns = Columns::named(&names),
+                Line::Words(_) => {
+                    let words = "a line is no point: it has words in place of numbers, and is left out";
+                    let places = self.places;
+                    if self.cloud.positions.is_empty() {
+                        let message = "a point should stand here: three numbers or more, x y z [r g b]";
+                        return Err(FormatError::malformed(message, places.at(start)));
+                    }
+                    self.oddities.note(words, || places.at(start));
+                }
+            }
+            lines += 1;
+        }
+        Ok(())
+    }
+
+    /// The line that the cursor is at.
+    fn line(&mut self) -> Result<Line, FormatError> {
+        let start = self.cursor.offset();
+        let line = self.cursor.rest_of_line();
+        let text = line.split(|&b| b == b'#').next().unwrap_or_default();
+        let is_comment = text.starts_with(b"//");
+        let words = words_of(if is_comment { &text[2..] } else { text });
+        if words.is_empty() {
+            return Ok(Line::Nothing);
+        }
+        let mut row = Row { numbers: [0.0; MOST], count: words.len(), start };
+        for (number, word) in row.numbers.iter_mut().zip(&words) {
+            match parse_f64(word) {
+                Some(value) => *number = value,
+                None if words.len() > 64 || word.iter().any(|b| b.is_ascii_control()) => {
+                    let message = format!("{} is no number of a point", quoted(word));
+                    return Err(FormatError::malformed(message, self.places.at(start)));
+                }
+                None => {
+                    let names = words.iter().map(|word| String::from_utf8_lossy(word).into_owned());
+                    return Ok(Line::Words(names.collect()));
+                }
+            }
+        }
+        Ok(if is_comment { Line::Nothing } else { Line::Numbers(row) })
+    }
+
+    /// A count alone begins PTS files, and those of chemists, in which letters follow.
+    fn refuse_molecule(&mut self) -> Result<(), FormatError> {
+        let mut ahead = self.cursor.clone();
+        let mut at = ahead.offset();
+        let mut words = words_of(ahead.rest_of_line());
+        if words.len() < 4 || parse_f64(words[1]).is_none() {
+            // A line of words of their own comes first.
+            ahead.end_line();
+            at = ahead.offset();
+            words = words_of(ahead.rest_of_line());
+        }
+        let is_atom = |word: &[u8]| word.first().is_some_and(u8::is_ascii_alphabetic) && word.len() <= 3;
+        let are_numbers = |words: &[&[u8]]| words.iter().take(3).all(|word| parse_f64(word).is_some());
+        match words.split_first() {
+            Some((atom, rest)) if is_atom(atom) && rest.len() >= 3 && are_numbers(rest) => {
+                let message =
+                    "this is a molecule, as chemists write it, and no cloud of points: it is not read";
+                Err(FormatError::malformed(message, self.places.at(at)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The numbers of the first points, from one on.
+    fn rows_from(&mut self, start: usize) -> Result<Vec<[f64; MOST]>, FormatError> {
+        let back = self.cursor.clone();
+        self.cursor.go_to(start);
+        let mut rows = Vec::new();
+        while rows.len() < FIRST && !self.cursor.is_done() {
+            if let Line::Numbers(row) = self.line()? {
+                rows.push(row.numbers);
+            }
+            self.cursor.end_line();
+        }
+        self.cursor = back;
+        Ok(rows)
+    }
+
+    fn point(&mut self, row: &Row, columns: &Columns) -> Result<(), FormatError> {
+        let (places, start) = (self.places, row.start);
+        if columns.position.iter().any(|&column| column >= row.count) {
+            let what = "a line has too few numbers for a point, and is left out";
+            self.oddities.note(what, || places.at(start));
+            return Ok(());
+        }
+        self.reading.budget.take::<(DVec3, u32)>(1, self.source.name)?;
+        if self.cloud.positions.len() as u64 >= u64::from(u32::MAX) - 1 {
+            let message = "there are more than 4 billion points: cut the file into several";
+            return Err(FormatError::malformed(message, places.at(start)));
+        }
+        let p = DVec3::from(columns.position.map(|column| row.numbers[column]));
+        if !p.is_finite() {
+            let what = "a point has numbers that are infinite or no numbers, and is left out";
+            self.oddities.note(what, || places.at(start));
+            return Ok(());
+        }
+        self.cloud.push(p);
+        if let Some(colour) = columns.colour {
+            self.reading.budget.take::<Rgb>(1, self.source.name)?;
+            self.colours.push(colour.map(|column| row.numbers[column] as f32));
+        } else if let Some(column) = columns.intensity {
+            self.reading.budget.take::<f32>(1, self.source.name)?;
+            self.intensities.push(row.numbers[column] as f32);
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<SceneBuilder, FormatError> {
+        if self.cloud.positions.is_empty() {
+            let message = "there is no point in it: each is a line of three numbers or more, x y z [r g b]";
+            return Err(FormatError::malformed(message, self.places.whole()));
+        }
+        self.reading.budget.take::<Rgb>(self.cloud.positions.len(), self.source.name)?;
+        // As displays have them: of 1, of 255, or of 65535.
+        let greatest = self.colours.iter().flatten().copied().fold(0.0, f32::max);
+        let one = [1.0, 255.0].into_iter().find(|&one| greatest <= one).unwrap_or(65535.0);
+        let colour = |c: [f32; 3]| Rgb::from_array(c.map(|c| srgb_decode((c / one).clamp(0.0, 1.0))));
+        self.cloud.colours = self.colours.iter().map(|&c| colour(c)).collect();
+        if let Some(grey) = greys(&self.intensities) {
+            self.cloud.colours = grey;
+        }
+        let mut scene = self.cloud.into_scene(self.source.stem());
+        self.oddities.into_warnings(&mut scene);
+        Ok(scene)
+    }
+}
+
+/// Intensities as greys, from the second of a hundred parts of them to the last but one; `None` where they do not differ.
+fn greys(intensities: &[f32]) -> Option<Vec<Rgb>> {
+    let mut sorted = intensities.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let place = |part: f64| sorted.get((sorted.len() as f64 * part) as usize).copied();
+    let (dark, bright) = (place(0.02)?, place(0.98)?);
+    let part = |i: &f32| ((i - dark) / (bright - dark)).clamp(0.0, 1.0);
+    let grey = |i: &f32| Rgb::grey(srgb_decode(0.15 + 0.8 * part(i)));
+    (bright > dark && (bright - dark).is_finite()).then(|| intensities.iter().map(grey).collect())
+}

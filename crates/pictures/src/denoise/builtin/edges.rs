@@ -1,0 +1,190 @@
+//! Pixels on edges of geometry and of textures. No neighbour shows the same mixture of surfaces, so that averages leave them as noisy as they
+//! were, and edges look jagged. But their albedo, normal and depth are known with far less noise than their light, and light is nearly
+//! linear in these within a few pixels: a first-order fit to the smooth pixels around tells what light belongs to the mixture.
+//! [Moon 2014; Bitterli 2016, eq. 4]
+
+use super::guides::{ALBEDO, Guides, INVERSE, NORMAL, WITHIN};
+use super::planes::Planes;
+use bilux_math::Rgb;
+use rayon::prelude::*;
+
+/// How far the pixels of a fit are from its middle.
+pub(super) const RADIUS: usize = 2;
+const SIDE: usize = 2 * RADIUS + 1;
+
+/// Weights of pixels by how far they are away along each axis: a bell of standard deviation 1.4.
+const NEAR: [f32; SIDE] = [0.36, 0.775, 1.0, 0.775, 0.36];
+
+/// From this difference on, in the square, surfaces of neighbours are apart.
+const APART: f32 = 0.01;
+/// What differences of normals and of inverse depths count beside those of albedo, in the square.
+const OF_NORMALS: f32 = 0.25;
+const OF_DEPTHS: f32 = 9.0;
+
+/// By this part of the weights slopes are held down, so that a fit is well-defined where there is but one surface.
+const RIDGE: f32 = 3e-3;
+
+/// Of the square by which a fit misses the light around, so much is taken to be its own fault: the rest is noise of that light.
+const OF_MISSED: f32 = 0.2;
+
+/// Columns of a fit: albedo, normal, inverse depth, and 1.
+const COLUMNS: usize = 8;
+
+/// The picture with the pixels on edges rebuilt. `colours` has three planes, and the variance of each pixel in a fourth.
+pub(super) fn rebuilt(colours: &Planes, guides: &Guides) -> Vec<Rgb> {
+    let (width, height) = (colours.width, colours.height);
+    let is_edge = edges(guides);
+    let row = |y: usize| {
+        let at = |x: usize| {
+            let i = colours.index(x, y);
+            let own = colours.rgb(y * width + x);
+            if is_edge[i] { Fit::around(colours, guides, i).blended(own, colours.planes[3][i]) } else { own }
+        };
+        (0..width).map(at).collect::<Vec<_>>()
+    };
+    (0..height).into_par_iter().flat_map_iter(row).collect()
+}
+
+/// Which pixels have a neighbour that shows another surface; with the margin around the picture, where none has.
+fn edges(guides: &Guides) -> Vec<bool> {
+    let planes = &guides.planes;
+    let (stride, width) = (planes.stride(), planes.width);
+    let mut edges = vec![false; planes.planes[ALBEDO].len()];
+    let (first, last) = (planes.index(0, 0) - super::MARGIN, planes.index(0, planes.height) - super::MARGIN);
+    edges[first..last].par_chunks_mut(stride).enumerate().for_each(|(y, row)| {
+        let p = planes.index(0, y);
+        for offset in [1, stride - 1, stride, stride + 1] {
+            for q in [p - offset, p + offset] {
+                apart(guides, p, q, &mut row[super::MARGIN..super::MARGIN + width]);
+            }
+        }
+    });
+    edges
+}
+
+/// Marks those of a row of pixels from `p` on whose surface is apart from that of the pixels from `q` on.
+fn apart(guides: &Guides, p: usize, q: usize, row: &mut [bool]) {
+    let pair = |plane: usize| {
+        let plane = &guides.planes.planes[plane];
+        (&plane[p..p + row.len()], &plane[q..q + row.len()])
+    };
+    let [ar, ag, ab] = [0, 1, 2].map(|c| pair(ALBEDO + c));
+    let [nx, ny, nz] = [0, 1, 2].map(|c| pair(NORMAL + c));
+    let z = pair(INVERSE);
+    for (x, is_edge) in row.iter_mut().enumerate() {
+        let square = |(p, q): (&[f32], &[f32])| (p[x] - q[x]) * (p[x] - q[x]);
+        let albedo = square(ar) + square(ag) + square(ab);
+        let normal = square(nx) + square(ny) + square(nz);
+        let greater = if z.0[x] > z.1[x] { z.0[x] } else { z.1[x] };
+        // Differences of depth as a part of it, without a division.
+        let differs =
+            albedo + OF_NORMALS * normal > APART || OF_DEPTHS * square(z) > APART * greater * greater;
+        *is_edge |= differs;
+    }
+}
+
+/// The normal equations of a weighted fit around one pixel, with the pixel's own features as the origin: the constant is its light.
+struct Fit {
+    matrix: [[f32; COLUMNS]; COLUMNS],
+    /// By column, for R, G and B.
+    light: [[f32; 4]; COLUMNS],
+    /// Sum of weight · light².
+    squares: f32,
+    /// Between what lies the light that was fitted.
+    bounds: [Rgb; 2],
+}
+
+impl Fit {
+    fn around(colours: &Planes, guides: &Guides, middle: usize) -> Fit {
+        let planes = &guides.planes.planes;
+        let mut fit = Fit {
+            matrix: [[0.0; COLUMNS]; COLUMNS],
+            light: [[0.0; 4]; COLUMNS],
+            squares: 0.0,
+            bounds: [Rgb::grey(f32::INFINITY), Rgb::BLACK],
+        };
+        let first = middle - RADIUS * colours.stride() - RADIUS;
+        let rows = (0..SIDE).map(|row| first + row * colours.stride());
+        let farthest = rows
+            .clone()
+            .flat_map(|row| planes[INVERSE][row..row + SIDE].iter())
+            .fold(0.0, |a: f32, &z| a.max(z));
+        let by_depth = if farthest > 0.0 { 1.0 / farthest } else { 0.0 };
+        for (row, down) in rows.zip(NEAR) {
+            for (column, across) in NEAR.into_iter().enumerate() {
+                let q = row + column;
+                let feature = |plane: usize| planes[plane][q] - planes[plane][middle];
+                let [r, g, b] = [0, 1, 2].map(|c| feature(ALBEDO + c));
+                let [x, y, z] = [0, 1, 2].map(|c| feature(NORMAL + c));
+                let features = [r, g, b, x, y, z, feature(INVERSE) * by_depth, 1.0];
+                let light = [0, 1, 2].map(|c| colours.planes[c][q]);
+                let weight = down * across * planes[WITHIN][q];
+                fit.add(&features, light, weight);
+            }
+        }
+        fit
+    }
+
+    fn add(&mut self, features: &[f32; COLUMNS], [r, g, b]: [f32; 3], weight: f32) {
+        if weight <= 0.0 {
+            return;
+        }
+        for (i, &feature) in features.iter().enumerate() {
+            let scaled = weight * feature;
+            for (sum, other) in self.matrix[i].iter_mut().zip(features) {
+                *sum += scaled * other;
+            }
+            for (sum, light) in self.light[i].iter_mut().zip([r, g, b, 0.0]) {
+                *sum += scaled * light;
+            }
+        }
+        self.squares += weight * (r * r + g * g + b * b);
+        let light = Rgb::new(r, g, b);
+        self.bounds = [each(self.bounds[0], light, f32::min), each(self.bounds[1], light, f32::max)];
+    }
+
+    /// The pixel's light by the fit, and the mean square by which the fit misses the light around, over all channels.
+    fn solved(mut self) -> (Rgb, f32) {
+        let weights = self.matrix[COLUMNS - 1][COLUMNS - 1];
+        let mut missed = self.squares;
+        for i in 0..COLUMNS {
+            if i + 1 < COLUMNS {
+                self.matrix[i][i] += RIDGE * weights;
+            }
+            let one_over = 1.0 / self.matrix[i][i];
+            let light = self.light[i];
+            missed -= (light[0] * light[0] + light[1] * light[1] + light[2] * light[2]) * one_over;
+            if i + 1 == COLUMNS {
+                let constant = Rgb::new(light[0], light[1], light[2]) * one_over;
+                return (constant, (missed / weights).max(0.0));
+            }
+            for j in i + 1..COLUMNS {
+                let factor = self.matrix[j][i] * one_over;
+                for k in i + 1..COLUMNS {
+                    self.matrix[j][k] -= factor * self.matrix[i][k];
+                }
+                for (to, from) in self.light[j].iter_mut().zip(light) {
+                    *to -= factor * from;
+                }
+            }
+        }
+        (Rgb::BLACK, 0.0)
+    }
+
+    /// The fit's light and the pixel's own, each by how far off it may be.
+    fn blended(self, own: Rgb, variance: f32) -> Rgb {
+        let [low, high] = self.bounds;
+        let (light, missed) = self.solved();
+        if !light.is_finite() {
+            return own;
+        }
+        // The light of a mixture lies between that of its parts.
+        let light = each(each(light, low, f32::max), high, f32::min);
+        let trust = variance / (variance + OF_MISSED * missed + f32::MIN_POSITIVE);
+        own + (light - own) * trust
+    }
+}
+
+fn each(a: Rgb, b: Rgb, of: fn(f32, f32) -> f32) -> Rgb {
+    Rgb::new(of(a.r, b.r), of(a.g, b.g), of(a.b, b.b))
+}

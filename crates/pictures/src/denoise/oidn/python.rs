@@ -1,0 +1,100 @@
+//! Where Python keeps the package pyoidn, which brings the library.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+const NAME: &str = "pyoidn";
+
+/// Interpreters by the names that they have on the path.
+const INTERPRETERS: &[&str] =
+    if cfg!(target_os = "windows") { &["python3.exe", "python.exe"] } else { &["python3"] };
+
+/// Folders that are the package, found by where Pythons are installed: the active environment, the interpreters on the path, the
+/// user's own packages. Nothing is executed.
+pub(super) fn packages() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for prefix in prefixes() {
+        for package in in_prefix(&prefix) {
+            if package.is_dir() && !found.contains(&package) {
+                found.push(package);
+            }
+        }
+    }
+    found
+}
+
+fn prefixes() -> Vec<PathBuf> {
+    let named = ["VIRTUAL_ENV", "CONDA_PREFIX"].into_iter().filter_map(env::var_os).map(PathBuf::from);
+    let path = env::var_os("PATH").unwrap_or_default();
+    let on_path: Vec<PathBuf> = env::split_paths(&path)
+        .flat_map(|bin| INTERPRETERS.iter().map(move |name| bin.join(name)))
+        .filter(|interpreter| interpreter.exists())
+        .flat_map(|interpreter| {
+            // A virtual environment's interpreter is a link to the one that it was made from: packages may be with either.
+            let resolved = interpreter.canonicalize().ok();
+            [Some(interpreter), resolved].into_iter().flatten()
+        })
+        .filter_map(|interpreter| Some(interpreter.parent()?.parent()?.to_owned()))
+        .collect();
+    let own = env::var_os("HOME").map(|home| Path::new(&home).join(".local"));
+    named.chain(on_path).chain(own).collect()
+}
+
+/// The package in all that a prefix has of `lib/python3.x/site-packages`, in order of names.
+fn in_prefix(prefix: &Path) -> Vec<PathBuf> {
+    let mut folders = vec![prefix.join("Lib/site-packages")];
+    for lib in ["lib", "lib64", "local/lib"] {
+        let entries = std::fs::read_dir(prefix.join(lib)).into_iter().flatten().flatten();
+        for folder in entries.map(|entry| entry.path()) {
+            let is_python =
+                folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("python3"));
+            if is_python {
+                folders.extend([folder.join("site-packages"), folder.join("dist-packages")]);
+            }
+        }
+    }
+    folders.sort();
+    folders.into_iter().map(|folder| folder.join(NAME)).collect()
+}
+
+/// Prints where `import pyoidn` would find the package. The working directory, which Python looks in first, is left out: a library
+/// is not loaded because a folder of this name happens to be there.
+const QUESTION: &str = "import sys; sys.path = [p for p in sys.path if p]; import importlib.util as u; \
+    s = u.find_spec('pyoidn'); print(*(s.submodule_search_locations if s else []), sep='\\n')";
+
+/// An interpreter that has not answered after this time is left alone.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// What `python3` itself says: it knows of pyenv's versions and of environments that no folder tells of.
+pub(super) fn asked() -> Vec<PathBuf> {
+    let answer = |name: &&str| {
+        let child = Command::new(name)
+            .args(["-c", QUESTION])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn();
+        finished(child.ok()?)
+    };
+    let text = INTERPRETERS.iter().find_map(answer).unwrap_or_default();
+    text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from).collect()
+}
+
+/// What a process printed, if it ended well and in time.
+fn finished(mut child: Child) -> Option<String> {
+    let begun = Instant::now();
+    while child.try_wait().ok()?.is_none() {
+        if begun.elapsed() > PATIENCE {
+            // Whether it could still be stopped changes nothing.
+            let _ = child.kill();
+            let _ = child.wait();
+            return None;
+        }
+        sleep(Duration::from_millis(2));
+    }
+    let output = child.wait_with_output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}

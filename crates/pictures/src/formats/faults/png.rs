@@ -1,0 +1,138 @@
+//! PNG: chunks, each with its length, name and checksum. [PNG, 5.3]
+
+use super::{letters, meaning, u32_at};
+use crate::PictureError;
+use png::DecodingError;
+use std::io::ErrorKind;
+
+const FORMAT: &str = "PNG";
+const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+const PHRASES: &[super::Phrase] = &[
+    ("corrupt deflate", "its compressed pixels cannot be unpacked"),
+    ("enough data for image", "it has fewer pixels than its header says"),
+    ("idat or fdat chunk is missing", "it has no pixels (no IDAT chunk)"),
+    ("before ihdr", "it does not begin with its header (IHDR)"),
+    ("palette entries", "its palette is too short"),
+    ("missing palette", "its pixels are indices, and there is no palette (PLTE) for them"),
+    ("palette", "its palette is wrong"),
+    ("dimensions", "its header says that it has no pixels"),
+    ("color/depth", "its header has a number of bits that its kind of colour cannot have"),
+    ("bit depth", "its header has a number of bits that does not exist"),
+    ("color type", "its header has a kind of colour that does not exist"),
+    ("sbit", "its chunk sBIT is wrong"),
+    ("compression method", "it is packed in an unknown way"),
+    ("filter", "it is filtered in an unknown way"),
+    ("interlace", "it is interlaced in an unknown way"),
+    ("signature", "it does not begin as a PNG does"),
+    ("at most once", "one of its chunks stands there twice"),
+    ("chunk", "its chunks are not in the order that PNG asks for"),
+    ("text", "one of its texts is wrong"),
+    ("frame", "one of its frames is wrong"),
+];
+
+/// Why the decoder refuses these bytes.
+pub(in super::super) fn explain(error: &DecodingError, bytes: &[u8]) -> PictureError {
+    if matches!(error, DecodingError::LimitsExceeded) {
+        return PictureError::Unsupported {
+            format: FORMAT,
+            what: "a chunk that needs more memory than the limit".to_owned(),
+            advice: "raise the memory limit if the file is to be trusted",
+        };
+    }
+    if let Some(found) = structure(bytes) {
+        return found;
+    }
+    match error {
+        DecodingError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            PictureError::truncated(FORMAT, "the pixels")
+        }
+        other => {
+            let what = meaning(&other.to_string(), PHRASES);
+            let place = first(bytes, b"IDAT").filter(|_| what.contains("pixels"));
+            let place = place.map_or_else(String::new, |at| format!(" (they begin at byte {at})"));
+            PictureError::invalid(FORMAT, format!("{what}{place}"))
+        }
+    }
+}
+
+/// Where the first chunk of a name begins.
+fn first(bytes: &[u8], name: &[u8; 4]) -> Option<usize> {
+    Chunks { bytes, at: SIGNATURE.len() }.find(|chunk| chunk.name == name).map(|chunk| chunk.at)
+}
+
+struct Chunk<'a> {
+    at: usize,
+    name: &'a [u8],
+    /// The name, the data and the checksum, as far as they are there.
+    rest: &'a [u8],
+    length: usize,
+}
+
+struct Chunks<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Iterator for Chunks<'a> {
+    type Item = Chunk<'a>;
+
+    fn next(&mut self) -> Option<Chunk<'a>> {
+        let at = self.at;
+        let length = u32_at(self.bytes, at, true)? as usize;
+        let name = self.bytes.get(at + 4..at + 8)?;
+        let end = at.checked_add(12)?.checked_add(length)?;
+        self.at = end;
+        let rest = self.bytes.get(at + 4..end.min(self.bytes.len()))?;
+        Some(Chunk { at, name, rest, length })
+    }
+}
+
+/// The first chunk that is broken in itself.
+fn structure(bytes: &[u8]) -> Option<PictureError> {
+    let invalid = |what: String| Some(PictureError::invalid(FORMAT, what));
+    if !bytes.starts_with(SIGNATURE) {
+        return if SIGNATURE.starts_with(bytes) {
+            Some(PictureError::truncated(FORMAT, "the header"))
+        } else {
+            invalid("its first 8 bytes are not those of a PNG, as when it was copied as text".to_owned())
+        };
+    }
+    let mut chunks = Chunks { bytes, at: SIGNATURE.len() };
+    let mut end = SIGNATURE.len();
+    for chunk in chunks.by_ref() {
+        let at = chunk.at;
+        let Some(name) = letters(chunk.name) else {
+            return invalid(format!("at byte {at} a chunk should begin, and what stands there is none"));
+        };
+        let Some((data, checksum)) =
+            chunk.rest.split_at_checked(chunk.length + 4).filter(|(_, c)| c.len() == 4)
+        else {
+            return Some(PictureError::truncated(
+                FORMAT,
+                format!("the chunk {name}, which begins at byte {at}"),
+            ));
+        };
+        if u32_at(checksum, 0, true) != Some(crc(data)) {
+            return invalid(format!("the checksum of the chunk {name} at byte {at} does not fit its data"));
+        }
+        if at == SIGNATURE.len() && name != "IHDR" {
+            return invalid(format!("its first chunk is {name} and not the header, IHDR"));
+        }
+        if name == "IEND" {
+            return None;
+        }
+        end = at + 12 + chunk.length;
+    }
+    Some(PictureError::truncated(FORMAT, format!("its chunks: after byte {end} more should come")))
+}
+
+/// The checksum of a chunk's name and data. [PNG, annex D]
+fn crc(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |sum, &byte| {
+        (0..8).fold(
+            sum ^ u32::from(byte),
+            |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 },
+        )
+    })
+}

@@ -1,0 +1,113 @@
+//! TIFF: a directory of tags. [TIFF 6.0, section 2]
+
+use super::u32_at;
+use crate::PictureError;
+use std::io::ErrorKind;
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError, TiffFormatError, TiffUnsupportedError};
+
+const FORMAT: &str = "TIFF";
+
+/// Why the decoder refuses these bytes.
+pub(in super::super) fn explain(error: TiffError, bytes: &[u8]) -> PictureError {
+    let invalid = |what: String| PictureError::invalid(FORMAT, what);
+    match error {
+        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            PictureError::truncated(FORMAT, "the pixels or what comes before them")
+        }
+        TiffError::IoError(_) => invalid(super::CONTRADICTION.to_owned()),
+        TiffError::UnsupportedError(error) => unsupported(in_words(&error)),
+        TiffError::LimitsExceeded => PictureError::Unsupported {
+            format: FORMAT,
+            what: "a part that needs more memory than the limit".to_owned(),
+            advice: "raise the memory limit if the file is to be trusted",
+        },
+        TiffError::FormatError(error) => invalid(format_fault(&error, &directory(bytes))),
+        TiffError::IntSizeError => invalid(format!("a number{} is larger than any file", directory(bytes))),
+        TiffError::UsageError(_) => invalid(super::CONTRADICTION.to_owned()),
+    }
+}
+
+/// Refuses what a file may hold, and this program does not read.
+pub(in super::super) fn unsupported(what: String) -> PictureError {
+    let advice = "save it as grey or RGB, packed by Deflate or not at all";
+    PictureError::Unsupported { format: FORMAT, what, advice }
+}
+
+/// A kind of colours in words.
+pub(in super::super) fn colours(kind: ColorType) -> &'static str {
+    match kind {
+        ColorType::Gray(_) | ColorType::GrayA(_) => "grey",
+        ColorType::RGB(_) | ColorType::RGBA(_) => "RGB",
+        ColorType::Palette(_) => "a palette",
+        ColorType::CMYK(_) | ColorType::CMYKA(_) => "CMYK colour",
+        ColorType::YCbCr(_) => "YCbCr colour",
+        ColorType::Lab(_) => "Lab colour",
+        _ => "its kind of colour",
+    }
+}
+
+/// ` in the directory at byte 8`, where the file says where that is.
+fn directory(bytes: &[u8]) -> String {
+    let is_big_endian = bytes.starts_with(b"MM");
+    // Files larger than 4 GiB have their numbers elsewhere.
+    let is_small = bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*");
+    let at = u32_at(bytes, 4, is_big_endian).filter(|at| is_small && (*at as usize) < bytes.len());
+    at.map_or_else(String::new, |at| format!(" in the directory at byte {at}"))
+}
+
+/// Names of tags are those of the specification; others have numbers.
+fn tag(tag: Tag) -> String {
+    match tag {
+        Tag::Unknown(number) => format!("tag {number}"),
+        known => format!("the tag {known:?}"),
+    }
+}
+
+fn format_fault(error: &TiffFormatError, place: &str) -> String {
+    use TiffFormatError as E;
+    match error {
+        E::TiffSignatureNotFound | E::TiffSignatureInvalid => "it does not begin as a TIFF does".to_owned(),
+        E::ImageFileDirectoryNotFound => "it has no directory of tags".to_owned(),
+        E::InconsistentSizesEncountered => "its parts have sizes that do not fit together".to_owned(),
+        E::InvalidDimensions(width, height) => format!("it says that it has {width} x {height} pixels"),
+        E::InvalidTag | E::InvalidTypeForTag => format!("a tag{place} has a value that it cannot have"),
+        E::InvalidTagValueType(of) => format!("{}{place} has a kind of value that it cannot have", tag(*of)),
+        E::RequiredTagNotFound(of) => format!("{}, which every picture needs, is not{place}", tag(*of)),
+        E::InvalidCountForTag(of, count) => {
+            format!("{}{place} has {count} values, which is not the number that it needs", tag(*of))
+        }
+        E::UnknownPredictor(number) => format!("the tag Predictor{place} is {number}, which means nothing"),
+        E::UnknownPlanarConfiguration(number) => {
+            format!("the tag PlanarConfiguration{place} is {number}, which means nothing")
+        }
+        E::StripTileTagConflict => "it says both or neither of where strips and where tiles are".to_owned(),
+        E::CycleInOffsets => "its directories follow each other in a circle".to_owned(),
+        E::SamplesPerPixelIsZero => format!("the tag SamplesPerPixel{place} is 0"),
+        E::CompressedDataCorrupt(_) => "its compressed pixels cannot be unpacked".to_owned(),
+        _ => super::CONTRADICTION.to_owned(),
+    }
+}
+
+fn in_words(error: &TiffUnsupportedError) -> String {
+    use TiffUnsupportedError as E;
+    match error {
+        E::FloatingPointPredictor(_) | E::HorizontalPredictor(_) => "its predictor".to_owned(),
+        E::InconsistentBitsPerSample(_) => {
+            "a picture whose channels have different numbers of bits".to_owned()
+        }
+        E::InterpretationWithBits(..) | E::UnsupportedBitsPerChannel(_) => {
+            "the number of bits that its samples have".to_owned()
+        }
+        E::UnknownInterpretation | E::UnsupportedInterpretation(_) => "its kind of colour".to_owned(),
+        E::UnsupportedColorType(kind) => colours(*kind).to_owned(),
+        E::UnknownCompressionMethod | E::UnsupportedCompressionMethod(_) => {
+            "the way in which its pixels are packed".to_owned()
+        }
+        E::UnsupportedSampleDepth(count) => format!("a picture of {count} samples a pixel"),
+        E::UnsupportedSampleFormat(_) => "the kind of numbers that its samples are".to_owned(),
+        E::UnsupportedPlanarConfig(_) => "the order of its channels".to_owned(),
+        E::ChromaSubsampling => "subsampled colour".to_owned(),
+        _ => "a part of it".to_owned(),
+    }
+}

@@ -1,0 +1,228 @@
+//! What a shape says of how it stands. By hand, from what tells 105 public models apart; see `docs/adr/0029-up-and-front.md`.
+
+use super::Axis;
+use crate::builder::SceneBuilder;
+use bilux_math::DVec3;
+
+/// A point of a surface with its unit normal, which is zero where there is none, and its area.
+#[derive(Clone, Copy)]
+struct Sample {
+    p: DVec3,
+    n: DVec3,
+    area: f64,
+}
+
+/// Points that are looked at.
+const SAMPLES: usize = 1 << 14;
+/// Cells along the longest side of the box in which symmetry is looked for.
+const CELLS: usize = 24;
+
+/// What was found.
+pub(super) struct Shape {
+    /// The sides of its box.
+    extent: DVec3,
+    low: DVec3,
+    middle: DVec3,
+    samples: Vec<Sample>,
+    /// By axis, how much of it is there in the mirror across the middle of the box, 0..=1.
+    symmetry: [f64; 3],
+    /// Triangles behind and before the middle of each axis, over their area.
+    density: [[f64; 2]; 3],
+}
+
+impl Shape {
+    /// `None` for what has no size.
+    pub(super) fn of(scene: &SceneBuilder) -> Option<Shape> {
+        let bounds = scene.bounds(0.0);
+        let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let extent = high - low;
+        if bounds.is_empty() || !extent.is_finite() || extent.max_element() <= 0.0 {
+            return None;
+        }
+        let middle = (low + high) * 0.5;
+        let samples = samples(scene);
+        let mut shape = Shape { extent, low, middle, samples, symmetry: [0.0; 3], density: [[1.0; 2]; 3] };
+        shape.symmetry = shape.symmetries();
+        shape.density = shape.densities(scene);
+        (!shape.samples.is_empty()).then_some(shape)
+    }
+
+    /// The share of filled cells that are filled in the mirror too, or one beside that.
+    fn symmetries(&self) -> [f64; 3] {
+        let longest = self.extent.max_element();
+        let cell = |p: DVec3| -> [usize; 3] {
+            let q = ((p - self.middle) / longest + 0.5) * CELLS as f64;
+            q.to_array().map(|c| (c.max(0.0) as usize).min(CELLS - 1))
+        };
+        let at = |[x, y, z]: [usize; 3]| (x * CELLS + y) * CELLS + z;
+        let mut filled = vec![false; CELLS * CELLS * CELLS];
+        let cells: Vec<[usize; 3]> = self.samples.iter().map(|sample| cell(sample.p)).collect();
+        cells.iter().for_each(|c| filled[at(*c)] = true);
+        let all: Vec<[usize; 3]> =
+            cells.into_iter().filter(|c| std::mem::take(&mut filled[at(*c)])).collect();
+        all.iter().for_each(|c| filled[at(*c)] = true);
+        let is_near = |c: [usize; 3]| {
+            let beside = |axis: usize, by: isize| {
+                let mut near = c;
+                near[axis] = c[axis].checked_add_signed(by).filter(|&i| i < CELLS)?;
+                Some(filled[at(near)])
+            };
+            filled[at(c)] || (0..3).any(|axis| [-1, 1].into_iter().any(|by| beside(axis, by) == Some(true)))
+        };
+        std::array::from_fn(|axis| {
+            let mirrored = |mut c: [usize; 3]| {
+                c[axis] = CELLS - 1 - c[axis];
+                c
+            };
+            let found = all.iter().filter(|c| is_near(mirrored(**c))).count();
+            found as f64 / all.len().max(1) as f64
+        })
+    }
+
+    fn densities(&self, scene: &SceneBuilder) -> [[f64; 2]; 3] {
+        let mut sums = [[[1.0, 0.0]; 2]; 3];
+        for corners in triangles(scene) {
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            for (axis, sums) in sums.iter_mut().enumerate() {
+                let [count, sum] = &mut sums[usize::from(middle[axis] > self.middle[axis])];
+                *count += 1.0;
+                *sum += area(corners);
+            }
+        }
+        sums.map(|halves| halves.map(|[count, area]| count / area.max(f64::MIN_POSITIVE)))
+    }
+
+    /// How well it stands with this axis up, where `usual` is up in most files of its format. The weights are those that put most
+    /// of the models of the record right.
+    pub(super) fn upright(&self, up: Axis, usual: Axis) -> f64 {
+        let axis = up.index();
+        let mut score = match up {
+            up if up == usual => 1.0,
+            up if up.index() == usual.index() => 0.33,
+            Axis::Y | Axis::Z => 0.42,
+            _ => 0.0,
+        };
+        let mut sides = self.extent.to_array();
+        sides.sort_by(f64::total_cmp);
+        // A plate lies; what has no height at all is a picture, and hangs.
+        let flatness = self.extent[axis] / sides[1].max(f64::MIN_POSITIVE);
+        if self.extent[axis] == sides[0] && flatness > 0.01 {
+            score += 4.0 * (1.0 - flatness / 0.16).max(0.0);
+        }
+        // Up lies in the plane that a thing is symmetrical across.
+        let others = (0..3).filter(|other| *other != axis).map(|other| self.symmetry[other]);
+        score += 0.44 * ((others.fold(0.0, f64::max) - self.symmetry[axis]) * 4.0).clamp(-1.0, 1.0);
+        score + self.support(up)
+    }
+
+    /// How broad its foot is, how flat, and how low its weight.
+    fn support(&self, up: Axis) -> f64 {
+        let (axis, longest) = (up.index(), self.extent.max_element());
+        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+        let height = |p: DVec3| {
+            let h = p[axis] - self.low[axis];
+            if up.sign() > 0.0 { h } else { self.extent[axis] - h }
+        };
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let (mut contact, mut area, mut middle) = (0.0, 0.0, DVec3::ZERO);
+        for sample in &self.samples {
+            let h = height(sample.p);
+            area += sample.area;
+            middle += sample.p * sample.area;
+            if h < 0.02 * longest {
+                for (i, side) in [u, v].into_iter().enumerate() {
+                    low[i] = low[i].min(sample.p[side]);
+                    high[i] = high[i].max(sample.p[side]);
+                }
+                if h < 0.01 * longest && sample.n[axis] * up.sign() < -0.95 {
+                    contact += sample.area;
+                }
+            }
+        }
+        if area <= 0.0 {
+            return 0.0;
+        }
+        middle /= area;
+        let cross = (self.extent[u] * self.extent[v]).max(f64::MIN_POSITIVE);
+        let stands = [u, v].into_iter().enumerate().all(|(i, s)| (low[i]..=high[i]).contains(&middle[s]));
+        let foot = if stands { (high[0] - low[0]) * (high[1] - low[1]) / cross } else { 0.0 };
+        let lowness = 0.5 - height(middle) / self.extent[axis].max(f64::MIN_POSITIVE);
+        0.22 * (contact / cross).min(1.0) + 1.08 * foot.min(1.0) + 0.12 * lowness
+    }
+
+    /// True where the head looks back: what is alike on its left and its right has the more of its upper half, and the finer
+    /// triangles, behind the middle.
+    pub(super) fn looks_back(&self, up: Axis, front: Axis) -> bool {
+        let [up_axis, axis] = [up.index(), front.index()];
+        let across = 3 - up_axis - axis;
+        if self.symmetry[across] < 0.97 || self.symmetry[axis] > 0.97 {
+            return false;
+        }
+        let forward = |p: DVec3| (p[axis] - self.middle[axis]) * front.sign() / self.extent[axis];
+        let mut halves = [[0.0; 2]; 2];
+        for sample in &self.samples {
+            let is_upper = (sample.p[up_axis] - self.middle[up_axis]) * up.sign() > 0.0;
+            let [sum, area] = &mut halves[usize::from(is_upper)];
+            *sum += forward(sample.p) * sample.area;
+            *area += sample.area;
+        }
+        let [lower, upper] = halves.map(|[sum, area]| sum / area.max(f64::MIN_POSITIVE));
+        let [behind, before] = self.density[axis];
+        let finer = bilux_math::transcendental::ln(((before / behind) as f32).max(f32::MIN_POSITIVE));
+        let finer = f64::from(finer) * front.sign();
+        (upper - lower) + 0.5 * finer.clamp(-1.5, 1.5) < -0.1
+    }
+}
+
+/// All triangles, in the world.
+fn triangles(scene: &SceneBuilder) -> impl Iterator<Item = [DVec3; 3]> {
+    scene.objects.iter().flat_map(|object| {
+        let (mesh, to_world) = (&object.mesh, object.motion.at(0.0));
+        let at = move |i: u32| mesh.positions.get(i as usize).map(|p| to_world.point(*p).as_dvec3());
+        mesh.triangles.iter().filter_map(move |triangle| {
+            let [a, b, c] = triangle.map(at);
+            Some([a?, b?, c?]).filter(|corners| corners.iter().all(|p| p.is_finite()))
+        })
+    })
+}
+
+fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() * 0.5
+}
+
+/// Points evenly over all triangles, or where there are none those of clouds and the ends of lines.
+fn samples(scene: &SceneBuilder) -> Vec<Sample> {
+    let total: f64 = triangles(scene).map(area).sum();
+    if total > 0.0 && total.is_finite() {
+        return on_triangles(scene, total / SAMPLES as f64);
+    }
+    let count: usize = scene.objects.iter().map(|object| object.mesh.stroke_count()).sum();
+    let points = scene.objects.iter().flat_map(|object| {
+        let (mesh, to_world) = (&object.mesh, object.motion.at(0.0));
+        let vertices = mesh.points.iter().copied().chain(mesh.lines.iter().map(|line| line[0]));
+        vertices.filter_map(move |i| Some(to_world.point(*mesh.positions.get(i as usize)?).as_dvec3()))
+    });
+    let some = points.step_by((count / SAMPLES).max(1)).filter(|p| p.is_finite());
+    some.map(|p| Sample { p, n: DVec3::ZERO, area: 1.0 }).collect()
+}
+
+/// One for each such part of the area.
+fn on_triangles(scene: &SceneBuilder, part: f64) -> Vec<Sample> {
+    // Of the plastic number: points that fill a square evenly. [Roberts 2018]
+    const STEPS: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_3];
+    let (mut samples, mut sum, mut next) = (Vec::new(), 0.0, 0.5);
+    for [a, b, c] in triangles(scene) {
+        let normal = (b - a).cross(c - a);
+        sum += normal.length() * 0.5 / part;
+        while next < sum && samples.len() <= SAMPLES {
+            let [mut u, mut v] = STEPS.map(|step| (samples.len() as f64 * step).fract());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            let p = a + (b - a) * u + (c - a) * v;
+            samples.push(Sample { p, n: normal.normalize_or_zero(), area: part });
+            next += 1.0;
+        }
+    }
+    samples
+}

@@ -1,0 +1,47 @@
+//! A model set up before it is photographed: turned upright, its front to +z, in metres, and near the origin.
+
+use super::super::{affine, move_all};
+use super::Studio;
+use crate::builder::SceneBuilder;
+use crate::orientation::{Orientation, UpHint};
+use bilux_math::{DMat3, DVec3};
+use std::sync::Arc;
+
+/// Models farther from the origin than so many times their own size are moved there.
+const FAR: f64 = 32.0;
+
+/// Turns a scene as it is asked for, and where nothing is, as its format or its shape says; `None` where it stays as it is. A
+/// scene with a camera of its own stays, unless it is asked for; one with a camera or a light stays where it is.
+pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
+    let is_asked = studio.up.is_some() || studio.front.is_some();
+    let is_bare = scene.cameras.is_empty() && scene.lights.is_empty();
+    if scene.objects.is_empty() || !(is_asked || is_bare) {
+        return None;
+    }
+    let orientation = Orientation::of(scene, studio.up, studio.front)?;
+    let (mut linear, mut shift) = (orientation.upright(), DVec3::ZERO);
+    if is_bare {
+        let seen = scene.inventory.movement.as_deref().unwrap_or(scene);
+        let bounds = seen.bounds(0.0);
+        let middle = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
+        let size = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
+        if !bounds.is_empty() && middle.is_finite() && middle.length() > FAR * size {
+            // As an f32 has it, so that coordinates less that are exact.
+            shift = linear * -middle.as_vec3().as_dvec3();
+        } else if scene.unit > 0.0 && scene.unit.is_finite() {
+            linear *= scene.unit;
+        }
+    }
+    let is_open = scene.up != UpHint::default();
+    if (linear, shift) == (DMat3::IDENTITY, DVec3::ZERO) {
+        return (is_asked || is_open).then_some(orientation);
+    }
+    let by = affine(linear, shift);
+    move_all(scene, &by).ok()?;
+    if let Some(movement) = &mut scene.inventory.movement {
+        move_all(Arc::make_mut(movement), &by).ok()?;
+    }
+    // So that nobody turns it twice.
+    (scene.up, scene.unit) = (UpHint::default(), 0.0);
+    Some(orientation)
+}

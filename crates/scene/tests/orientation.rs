@@ -1,0 +1,168 @@
+//! Which way a model is up, and that it is set up so before it is photographed.
+
+use bilux_math::{Aabb, DMat4, DVec3, Transform, Vec3};
+use bilux_scene::generators::shapes;
+use bilux_scene::presets::{Studio, complete};
+use bilux_scene::{Axis, Because, Mesh, Object, Orientation, SceneBuilder, Spec, UpHint, Value};
+use std::sync::Arc;
+
+fn scene(mesh: Mesh, up: UpHint) -> SceneBuilder {
+    let mut scene = SceneBuilder { up, materials: vec![Spec::new("", "phong")], ..SceneBuilder::default() };
+    scene.objects.push(Object::new("it", Arc::new(mesh), 0));
+    scene
+}
+
+fn joined(boxes: &[[[f32; 3]; 2]]) -> Mesh {
+    let mut all = Mesh::default();
+    for [min, max] in boxes {
+        let part = shapes::cuboid(Aabb { min: (*min).into(), max: (*max).into() });
+        let first = all.positions.len() as u32;
+        all.positions.extend(part.positions);
+        all.triangles.extend(part.triangles.iter().map(|t| t.map(|i| i + first)));
+    }
+    all
+}
+
+/// A bust on a round foot, higher than it is wide, and alike on its left and right alone. Up is y, the front is z.
+fn bust() -> Mesh {
+    joined(&[
+        [[-1.0, 0.0, -1.0], [1.0, 0.3, 1.0]],
+        [[-0.4, 0.3, -0.5], [0.4, 2.2, 0.3]],
+        [[-0.5, 2.2, -0.6], [0.5, 3.2, 0.6]],
+        [[-0.1, 2.5, 0.6], [0.1, 2.8, 0.9]],
+    ])
+}
+
+fn turned(mesh: &Mesh, up: Axis, front: Axis) -> Mesh {
+    let from = Orientation { up, front, because: Because::Asked }.upright().transpose();
+    let mut mesh = mesh.clone();
+    mesh.positions.iter_mut().for_each(|p| *p = (from * p.as_dvec3()).as_vec3());
+    mesh
+}
+
+#[test]
+fn names_of_axes() {
+    for axis in Axis::ALL {
+        assert_eq!(Axis::named(axis.name()), Some(axis));
+        assert_eq!(axis.direction(), -axis.opposite().direction());
+    }
+    assert_eq!(Axis::named(" +Z"), Some(Axis::Z));
+    assert_eq!((Axis::named("auto"), Axis::named("w")), (None, None));
+}
+
+#[test]
+fn up_and_front_are_turned_to_y_and_z() {
+    for up in Axis::ALL {
+        for front in Axis::ALL.into_iter().filter(|front| front.index() != up.index()) {
+            let turn = Orientation { up, front, because: Because::Asked }.upright();
+            assert_eq!((turn * up.direction(), turn * front.direction()), (DVec3::Y, DVec3::Z));
+            assert_eq!(turn.determinant(), 1.0);
+        }
+    }
+}
+
+#[test]
+fn a_shape_that_stands_well_overrules_what_is_usual_and_a_ball_does_not() {
+    for up in [Axis::X, Axis::Y, Axis::Z] {
+        let front = if up == Axis::Z { Axis::NegY } else { Axis::Z };
+        for usual in [Axis::Y, Axis::Z] {
+            let scene = scene(turned(&bust(), up, front), UpHint::Usually(usual));
+            let found = Orientation::of(&scene, None, None).unwrap();
+            assert_eq!(found.up, up, "where {usual:?} is usual");
+            assert_eq!(found.because, if up == usual { Because::Usual } else { Because::Shape });
+        }
+    }
+    let ball = || shapes::icosphere(Vec3::ZERO, 1.0, 3);
+    for usual in [Axis::Y, Axis::Z] {
+        let found = Orientation::of(&scene(ball(), UpHint::Usually(usual)), None, None).unwrap();
+        assert_eq!((found.up, found.because), (usual, Because::Usual));
+    }
+    // A plate lies, and what a format says is not judged.
+    let plate = || joined(&[[[-1.0, -0.7, 0.0], [1.0, 0.7, 0.05]]]);
+    let up_of = |hint| Orientation::of(&scene(plate(), hint), None, None).unwrap().up;
+    assert_eq!(up_of(UpHint::Usually(Axis::Y)).index(), 2);
+    assert_eq!(up_of(UpHint::Is(Axis::Y)), Axis::Y);
+}
+
+#[test]
+fn who_looks_back_is_turned_round() {
+    // Four legs, a long body, and a head that is high and far from the middle.
+    let animal = |head: f32| {
+        let mut parts = vec![[[-0.4, 1.0, -2.0], [0.4, 1.7, 2.0]]];
+        for (x, z) in [(-0.3, -1.8), (0.3, -1.8), (-0.3, 1.8), (0.3, 1.8)] {
+            parts.push([[x - 0.1, 0.0, z - 0.1], [x + 0.1, 1.0, z + 0.1]]);
+        }
+        parts.push([[-0.3, 1.5, head - 0.4], [0.3, 2.8, head + 0.4]]);
+        joined(&parts)
+    };
+    let front = |head: f32| {
+        let scene = scene(animal(head), UpHint::Usually(Axis::Y));
+        let found = Orientation::of(&scene, None, None).unwrap();
+        assert_eq!(found.up, Axis::Y);
+        found.front
+    };
+    assert_eq!((front(1.9), front(-1.9)), (Axis::Z, Axis::NegZ));
+}
+
+#[test]
+fn what_is_asked_for_is_done_and_a_scene_with_its_own_camera_stays() {
+    let height = |scene: &SceneBuilder| scene.bounds(0.0).extent();
+    let asked = |up, front| Studio { up, front, ..Studio::default() };
+    let long = || scene(joined(&[[[0.0, 0.0, 0.0], [1.0, 2.0, 5.0]]]), UpHint::default());
+    let mut up_x = long();
+    let floor = |scene: &SceneBuilder| scene.objects.len();
+    let found = complete(&mut up_x, &asked(Some(Axis::X), None)).unwrap();
+    assert_eq!((found.up, found.because, floor(&up_x)), (Axis::X, Because::Asked, 2));
+    up_x.objects.truncate(1);
+    assert_eq!(height(&up_x).y, 1.0);
+    let mut front_x = long();
+    complete(&mut front_x, &asked(None, Some(Axis::X)));
+    front_x.objects.truncate(1);
+    assert_eq!(height(&front_x), Vec3::new(5.0, 2.0, 1.0));
+    // Its own camera, and nothing asked.
+    let mut own = long();
+    complete(&mut own, &Studio::default());
+    let (before, mut again) = (own.bounds(0.0), SceneBuilder { up: UpHint::Usually(Axis::Z), ..own });
+    assert_eq!(complete(&mut again, &Studio::default()), None);
+    assert_eq!(again.bounds(0.0), before);
+}
+
+#[test]
+fn a_model_far_from_the_origin_is_framed_as_tightly_as_one_at_it() {
+    let placed = |shift: DVec3| {
+        let mut mesh = bust();
+        // Coordinates that f32 holds exactly there too.
+        mesh.positions.iter_mut().for_each(|p| *p = (*p * 16.0).round());
+        mesh.positions.iter_mut().for_each(|p| *p = (p.as_dvec3() + shift).as_vec3());
+        let mut scene = scene(mesh, UpHint::Is(Axis::Z));
+        complete(&mut scene, &Studio::default());
+        let camera = scene.cameras[0].spec.clone();
+        let position = camera.parameters.find("position").unwrap().0.clone();
+        let Value::List(position) = position else { panic!() };
+        let numbers = position.iter().map(|c| match c {
+            Value::Number(x) => *x,
+            Value::Integer(i) => *i as f64,
+            _ => panic!(),
+        });
+        let eye = DVec3::from_slice(&numbers.collect::<Vec<_>>());
+        let bounds = scene.objects[0].motion.at(0.0).bounds(&scene.objects[0].mesh.bounds());
+        (eye - bounds.centre().as_dvec3(), bounds.extent())
+    };
+    let (near, size) = placed(DVec3::ZERO);
+    for shift in [DVec3::new(1e6, 0.0, 0.0), DVec3::new(-1e6, 3e6, 1e6)] {
+        let (far, far_size) = placed(shift);
+        assert_eq!(far_size, size);
+        assert!((far - near).length() < 1e-3 * near.length(), "{near} {far}");
+    }
+}
+
+#[test]
+fn a_unit_is_made_metres_and_an_object_keeps_its_own_place() {
+    let mut millimetres = scene(bust(), UpHint::Is(Axis::Y));
+    let place = Transform::from_matrix(DMat4::from_scale(DVec3::splat(2.0))).unwrap();
+    millimetres.objects[0] = millimetres.objects[0].clone().placed(place);
+    millimetres.unit = 0.001;
+    complete(&mut millimetres, &Studio::default());
+    let height = millimetres.objects[0].motion.at(0.0).bounds(&bust().bounds()).extent().y;
+    assert!((height - 0.0064).abs() < 1e-6, "{height}");
+}

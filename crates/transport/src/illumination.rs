@@ -1,0 +1,131 @@
+//! How well a scene's own light lights what a camera sees, were all of it of clay: by this a studio tells whether it is needed.
+//!
+//! A pure function of the scene and the camera: the same numbers for any number of threads, without a clock.
+
+use crate::light_choice::LightChoice;
+use crate::sampler::PixelSampler;
+use bilux_math::{Frame, Vec2, Vec3, warp};
+use bilux_scene::{Camera, CameraSample, Ray, Scene, Surface, Tracer};
+use rayon::prelude::*;
+
+/// Rows and columns of points on the film.
+const GRID: u32 = 40;
+/// Paths of each.
+const SAMPLES: u32 = 12;
+/// Scattering events of a path at most.
+const MAX_BOUNCES: u32 = 3;
+/// Surfaces of glass that a ray goes straight through at most.
+const MAX_PANES: usize = 32;
+/// What clay reflects.
+const CLAY: f32 = 0.5;
+/// A white surface that sends on less radiance than this is dark.
+const DARK: f32 = 0.05;
+
+/// How a scene's own light lights what its camera sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Illumination {
+    /// The part of the film where surfaces are seen that give no light themselves, glass apart.
+    pub surfaces: f32,
+    /// The part of these that the light reaches.
+    pub lit: f32,
+}
+
+/// Looks at a scene through a camera.
+pub fn illumination(scene: &Scene, camera: &dyn Camera) -> Illumination {
+    let lights = LightChoice::new(scene);
+    let of_row = |y: u32| {
+        let mut tracer = Tracer::new(scene, false);
+        let row = (0..GRID).map(|x| at_point(&mut tracer, camera, &lights, x, y));
+        row.fold((0, 0), |(seen, lit), light| match light {
+            None => (seen, lit),
+            Some(light) => (seen + 1, lit + u32::from(light >= DARK)),
+        })
+    };
+    let (seen, lit) = (0..GRID).into_par_iter().map(of_row).reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    Illumination { surfaces: seen as f32 / (GRID * GRID) as f32, lit: lit as f32 / seen.max(1) as f32 }
+}
+
+/// The radiance, as luminance, that a white surface would send on at a point of the film; `None` where no surface is seen that could.
+fn at_point(tracer: &mut Tracer, camera: &dyn Camera, lights: &LightChoice, x: u32, y: u32) -> Option<f32> {
+    let scene = tracer.scene;
+    let film = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / GRID as f32;
+    let sample = CameraSample { film, lens: Vec2::splat(0.5), time: scene.shutter()[0] };
+    let ray = scene.from_camera(camera.ray(&sample));
+    let surface = beyond_glass(tracer, ray)?;
+    let wo = -Vec3::from(ray.direction);
+    if !scene.emission(&surface, wo).is_black() {
+        return None;
+    }
+    let sum: f32 = (0..SAMPLES)
+        .map(|i| {
+            let mut sampler = PixelSampler::new(0, x, y, i);
+            path(tracer, lights, &mut sampler, surface, wo)
+        })
+        .sum();
+    Some(sum / SAMPLES as f32)
+}
+
+/// What a path of scattering brings to a white surface.
+fn path(
+    tracer: &mut Tracer,
+    lights: &LightChoice,
+    sampler: &mut PixelSampler,
+    mut surface: Surface,
+    mut wo: Vec3,
+) -> f32 {
+    let (mut light, mut beta) = (0.0, 1.0);
+    for bounce in 0..=MAX_BOUNCES {
+        let n = if surface.n_geom.dot(wo) < 0.0 { -surface.n_geom } else { surface.n_geom };
+        light += beta * direct(tracer, lights, sampler, &surface, n);
+        let wi = Frame::from_normal(n).to_world(warp::sample_cosine_hemisphere(sampler.next_2d()));
+        if bounce == MAX_BOUNCES {
+            break;
+        }
+        let Some(next) = beyond_glass(tracer, surface.spawn(wi)) else { break };
+        (surface, wo, beta) = (next, -wi, beta * CLAY);
+    }
+    if light.is_finite() { light } else { 0.0 }
+}
+
+/// The radiance that a white surface sends on of the light that comes straight from lights.
+fn direct(
+    tracer: &mut Tracer,
+    lights: &LightChoice,
+    sampler: &mut PixelSampler,
+    surface: &Surface,
+    n: Vec3,
+) -> f32 {
+    let scene = tracer.scene;
+    let mut sum = 0.0;
+    for index in lights.sample(sampler.next_1d()) {
+        let (u, probability, light) =
+            (sampler.next_2d(), lights.probability(index), &scene.lights()[index].light);
+        if probability == 0.0 {
+            continue;
+        }
+        let Some(sample) = light.sample_li(surface.p, surface.time, u) else { continue };
+        let cos = n.dot(sample.wi);
+        if cos > 0.0 && is_seen(tracer, surface.spawn_to_light(&sample), sample.n_light) {
+            let density = std::f32::consts::PI * sample.pdf_solid_angle * probability;
+            sum += sample.li.luminance() * cos / density;
+        }
+    }
+    sum
+}
+
+/// True when nothing but glass is between a ray's ends.
+fn is_seen(tracer: &mut Tracer, ray: Ray, n: Vec3) -> bool {
+    tracer.ending_on(&ray, n, |tracer| beyond_glass(tracer, ray).is_none())
+}
+
+/// What a ray meets first that is no glass.
+fn beyond_glass(tracer: &mut Tracer, mut ray: Ray) -> Option<Surface> {
+    for _ in 0..MAX_PANES {
+        let surface = tracer.closest(&ray)?;
+        if tracer.scene.material(&surface).classic(&surface).kt.is_black() {
+            return Some(surface);
+        }
+        ray = Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..ray };
+    }
+    None
+}

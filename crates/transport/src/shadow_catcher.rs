@@ -1,0 +1,160 @@
+//! The shadow of a model on a ground that is not seen itself, as alpha: laid over the ground as it would be without the model,
+//! black of this alpha gives the ground with its shadow.
+//!
+//! Of light that comes straight from lights: the part that the model keeps from the ground. Where the model shades nothing, alpha is exactly
+//! 0, without noise.
+
+use crate::error::RenderError;
+use crate::eye::Eye;
+use crate::film::zeroed;
+use crate::integrators::PixelIntegrator;
+use crate::light_choice::LightChoice;
+use crate::render::{RenderSettings, threads};
+use crate::sampler::PixelSampler;
+use bilux_math::Vec3;
+use bilux_scene::{Camera, LightSample, Ray, Scene, Surface, Tracer};
+use rayon::prelude::*;
+
+/// Points on lights that are tried for each pixel, at least.
+const MIN_SAMPLES: u32 = 128;
+/// The random numbers are others than those of the picture's paths.
+const STREAM: u64 = 0x7368_6164;
+/// Surfaces of glass that light goes straight through at most.
+const MAX_PANES: usize = 32;
+
+/// What catches the shadow, and of what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowCatcher {
+    /// The number of the object that is the ground: one that the camera looks through.
+    pub ground: u32,
+    /// So many of the scene's objects are of the file or the studio; after these come the surfaces of lamps, which cast no shadow.
+    pub objects: u32,
+}
+
+/// A pixel's ground while points on lights are tried.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// Camera rays that meet the model, and that meet the ground.
+    model: u32,
+    ground: u32,
+    /// Light on the ground with the model and without.
+    with: f64,
+    without: f64,
+}
+
+/// The alpha of each pixel: 1 where the model is seen, on the ground the part of the light that it keeps from there, in rows of the
+/// film's window, the top one first. `samples` are those of the picture.
+///
+/// # Errors
+/// As [`crate::features()`].
+pub fn shadow_alpha(
+    scene: &Scene,
+    camera: &dyn Camera,
+    integrator: &dyn PixelIntegrator,
+    settings: &RenderSettings,
+    samples: u32,
+    catcher: ShadowCatcher,
+) -> Result<Vec<f32>, RenderError> {
+    settings.check()?;
+    let window = settings.window();
+    let (eye, lights) = (Eye::new(scene, camera, integrator, settings), lamps(scene, catcher));
+    let mut alpha = zeroed::<f32>(window.pixels())?;
+    let tries = MIN_SAMPLES.div_ceil(samples.max(1));
+    let of_row = |(row, alpha): (usize, &mut [f32])| {
+        let mut tracer = Tracer::new(eye.scene, false);
+        for (column, alpha) in alpha.iter_mut().enumerate() {
+            let (x, y) = (window.x + column as u32, window.y + row as u32);
+            let mut sums = Sums::default();
+            for sample in 0..samples {
+                let (ray, _) = eye.sample(&mut tracer, x, y, sample);
+                let mut sampler = PixelSampler::new(settings.seed, x, y, sample);
+                sampler.enter(STREAM);
+                sums.add(&mut tracer, &ray, (&lights, catcher), (&mut sampler, tries));
+            }
+            *alpha = sums.alpha(samples);
+        }
+    };
+    threads(settings)?.install(|| alpha.par_chunks_mut(window.width as usize).enumerate().for_each(of_row));
+    Ok(alpha)
+}
+
+/// Lights that would be there without the model, and the probability of each.
+fn lamps(scene: &Scene, catcher: ShadowCatcher) -> Vec<usize> {
+    let of_model: Vec<usize> =
+        (0..catcher.objects).filter_map(|object| scene.light_index_of(object)).collect();
+    let choice = LightChoice::new(scene);
+    (0..scene.lights().len()).filter(|i| !of_model.contains(i) && choice.probability(*i) > 0.0).collect()
+}
+
+impl Sums {
+    fn add(
+        &mut self,
+        tracer: &mut Tracer,
+        ray: &Ray,
+        (lights, catcher): (&[usize], ShadowCatcher),
+        (sampler, tries): (&mut PixelSampler, u32),
+    ) {
+        if tracer.closest(ray).is_some_and(|surface| surface.object < catcher.objects) {
+            self.model += 1;
+            return;
+        }
+        let Some(ground) =
+            tracer.closest(&Ray { mask: u32::MAX, ..*ray }).filter(|s| s.object == catcher.ground)
+        else {
+            return;
+        };
+        self.ground += 1;
+        let n =
+            if ground.n_geom.dot(Vec3::from(ray.direction)) > 0.0 { -ground.n_geom } else { ground.n_geom };
+        for _ in 0..tries {
+            // One of them, each as likely: they are few in a studio.
+            let picked = (sampler.next_1d() * lights.len() as f32) as usize;
+            let u = sampler.next_2d();
+            let Some(&light) = lights.get(picked.min(lights.len().saturating_sub(1))) else { return };
+            let light = &tracer.scene.lights()[light].light;
+            let Some(sample) = light.sample_li(ground.p, ground.time, u) else { continue };
+            let cos = n.dot(sample.wi);
+            let weight = f64::from(sample.li.luminance() * cos / sample.pdf_solid_angle);
+            if cos > 0.0
+                && weight.is_finite()
+                && let Some(passed) = passed(tracer, &ground, &sample, catcher)
+            {
+                self.with += weight * f64::from(passed);
+                self.without += weight;
+            }
+        }
+    }
+
+    fn alpha(&self, samples: u32) -> f32 {
+        let kept = if self.without > 0.0 { 1.0 - self.with / self.without } else { 0.0 };
+        let sum = f64::from(self.model) + f64::from(self.ground) * kept;
+        (sum / f64::from(samples.max(1))).clamp(0.0, 1.0) as f32
+    }
+}
+
+/// The part of a light that the model lets through to the ground; `None` where a lamp is in its way, model or not.
+fn passed(
+    tracer: &mut Tracer,
+    ground: &Surface,
+    sample: &LightSample,
+    catcher: ShadowCatcher,
+) -> Option<f32> {
+    let mut ray = ground.spawn_to_light(sample);
+    let (direction, mut left) = (Vec3::from(ray.direction), 1.0);
+    for _ in 0..MAX_PANES {
+        let Some(surface) = tracer.closest(&ray) else { return Some(left) };
+        if surface.object >= catcher.objects {
+            return None;
+        }
+        let material = tracer.scene.material(&surface).classic(&surface);
+        if material.thin || surface.n_geom.dot(direction) < 0.0 {
+            // Once for each body: where the light comes in.
+            left *= material.kt.luminance();
+        }
+        if material.kt.is_black() {
+            return Some(0.0);
+        }
+        ray = Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..ray };
+    }
+    Some(0.0)
+}

@@ -1,0 +1,54 @@
+//! `cargo xtask package`: a rehearsal of publishing the libraries, each built from nothing but what its package holds.
+//! `--quick` packs them without building.
+
+use crate::process::{cargo, run as run_process};
+use anyhow::{Result, bail};
+
+/// What others depend on, the lowest first.
+const LIBRARIES: &[&str] = &[
+    "bilux-math",
+    "bilux-accel",
+    "bilux-pictures",
+    "bilux-scene",
+    "bilux-transport",
+    "bilux-formats",
+    "bilux",
+];
+
+/// Rehearses.
+pub(crate) fn run(arguments: &[String]) -> Result<()> {
+    run_process(&mut cargo(&command(arguments)?))
+}
+
+fn command(arguments: &[String]) -> Result<Vec<&'static str>> {
+    let mut command = vec!["publish", "--dry-run", "--locked", "--quiet"];
+    match arguments {
+        [] => {}
+        // What is not committed yet is packed too.
+        [word] if word == "--quick" => command.extend(["--no-verify", "--allow-dirty"]),
+        _ => bail!("only `--quick` can be asked for"),
+    }
+    command.extend(LIBRARIES.iter().flat_map(|name| ["--package", name]));
+    Ok(command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_crate_that_a_library_depends_on_is_a_library() {
+        let packages = crate::workspace::packages().unwrap();
+        for library in packages.iter().filter(|package| LIBRARIES.contains(&&*package.name)) {
+            let parts = crate::workspace::built_into(&library.name, &packages);
+            let ours = parts.iter().filter(|part| part.member).map(|part| &*part.name);
+            assert!(
+                ours.clone().all(|name| LIBRARIES.contains(&name)),
+                "{}",
+                ours.collect::<Vec<_>>().join(" ")
+            );
+        }
+        assert!(command(&["--fast".to_owned()]).is_err());
+        assert!(command(&[]).unwrap().ends_with(&["--package", "bilux"]));
+    }
+}
