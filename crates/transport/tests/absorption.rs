@@ -68,8 +68,8 @@ fn a_lamp_a_floor_and_a_camera_in_one_block_follow_beer() {
         ("path lights", 16, 2e-3),
         ("bdpt", 64, 0.01),
         ("vcm", 64, 0.02),
-        ("light", 1 << 12, 0.03),
-        ("sppm", 512, 0.06),
+        ("light", 1 << 9, 0.06),
+        ("sppm", 128, 0.08),
         ("auto", 16, 0.02),
     ] {
         let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(16, 16, spp) };
