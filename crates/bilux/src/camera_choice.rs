@@ -14,11 +14,17 @@ pub(crate) fn choose_camera(scene: &Scene, wanted: &str, at: &Span) -> Result<Ar
     }
     let names: Vec<&str> = cameras.iter().map(|(name, _)| name.as_str()).filter(|n| !n.is_empty()).collect();
     if names.is_empty() || wanted.parse::<usize>().is_ok() {
-        let message = format!(
-            "there is no camera '{wanted}': this scene has {}, counted from 0{}",
-            cameras.len(),
-            if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
-        );
+        let known = cameras.iter().enumerate().map(|(i, (name, _))| match name.as_str() {
+            "" => i.to_string(),
+            name => format!("{i} ({name})"),
+        });
+        let known: Vec<String> = known.collect();
+        let message = match known.as_slice() {
+            [one] => format!("there is no camera '{wanted}': this scene has only camera {one}"),
+            known => {
+                format!("there is no camera '{wanted}': this scene has the cameras {}", known.join(", "))
+            }
+        };
         return Err(SceneError::invalid(message, at).into());
     }
     Err(SceneError::unknown("camera", wanted, names, at).into())

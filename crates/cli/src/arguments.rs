@@ -1,58 +1,69 @@
-//! Everything that can be typed. Help, completions and the man page are made from this one description.
+//! The command line. Help, completions and the man pages are made from this one description.
 
 use crate::choices::{Choices, Posed};
 pub use crate::comparison::Compare;
 pub use crate::denoising::Denoise;
+use crate::help;
 pub use crate::measuring::{Bench, BenchKind};
 use crate::studio::StudioArguments;
 use crate::values::{
-    Exposure, parse_bytes, parse_crop, parse_exposure, parse_frames, parse_replay, parse_samples,
-    parse_seconds, parse_vector,
+    Exposure, parse_bytes, parse_count, parse_crop, parse_duration, parse_exposure, parse_frames,
+    parse_noise, parse_quality, parse_replay, parse_samples, parse_seconds, parse_seed, parse_spp,
+    parse_vector,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Physically right pictures of 3D scenes on plain CPUs, with light traced from both ends.
+/// Render physically based pictures of 3D scenes on the CPU
 #[derive(Parser)]
-#[command(name = "bilux", version = crate::version::text(), about, long_about = None, max_term_width = 100)]
+#[command(name = "bilux", about = "Render physically based pictures of 3D scenes on the CPU", long_about = None, version = crate::version::text(), max_term_width = 100)]
+#[command(help_template = help::TEMPLATE, disable_help_flag = true, disable_version_flag = true)]
 #[command(after_help = "Examples:\n  \
-    bilux generate trio -o trio.toml             a scene that we ship\n  \
-    bilux render trio.toml -o trio.png           its picture\n  \
-    bilux render model.obj -o model.png          a bare model, framed and lit\n  \
-    bilux render pot.asc --preset course -i cast -o pot.ppm\n  \
-    bilux list integrators")]
+    bilux generate trio -o trio.toml             Write a built-in scene to a file\n  \
+    bilux render trio.toml -o trio.png           Render it\n  \
+    bilux render model.glb -o model.png          Render a model in a photo studio\n  \
+    bilux render model.glb -o model.jpg --env sunset.hdr --ground shadow\n  \
+    bilux info model.glb                         Show what is in a file\n  \
+    bilux list integrators                       List what --integrator can name")]
 pub struct Arguments {
     #[command(flatten)]
     pub common: Common,
+    /// Print the version, the commit, the CPU level in use and whether the kernel enforces --sandbox
+    #[arg(short = 'V', long, action = clap::ArgAction::Version, help_heading = help::OUTPUT)]
+    version: Option<bool>,
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What every command understands.
+/// Options of every command.
 #[derive(Args)]
 pub struct Common {
-    /// Say nothing but errors
-    #[arg(short, long, global = true)]
-    pub quiet: bool,
-    /// Say more
-    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
-    pub verbose: u8,
-    /// Progress: a bar on a terminal, lines elsewhere
-    #[arg(long, global = true, value_enum, default_value = "auto", value_name = "HOW")]
-    pub progress: ProgressStyle,
-    /// Most memory that reading a file may take, and about that of rendering it
-    #[arg(long, global = true, default_value = "8G", value_name = "SIZE", value_parser = parse_bytes)]
+    /// Limit the memory for reading a file and, approximately, for rendering it
+    #[arg(long, global = true, default_value = "8G", value_name = "SIZE", value_parser = parse_bytes, help_heading = help::FILES)]
     pub max_memory: u64,
-    /// Turn warnings into errors
-    #[arg(long, global = true)]
+    /// Treat warnings as errors
+    #[arg(long, global = true, help_heading = help::FILES)]
     pub strict: bool,
-    /// Let scene files name files outside of their own folder
-    #[arg(long, global = true)]
+    /// Let scene files refer to files outside their own folder
+    #[arg(long, global = true, help_heading = help::FILES)]
     pub allow_outside: bool,
-    /// For files of strangers: opens nothing outside of a scene's folder, loads no library, writes nothing but OUT
-    #[arg(long, global = true, conflicts_with = "allow_outside")]
+    /// For files from strangers: read nothing outside the scene's folder and write nothing outside the folder of OUT;
+    /// on Linux the kernel enforces it (see -V)
+    #[arg(long, global = true, conflicts_with = "allow_outside", help_heading = help::FILES)]
     pub sandbox: bool,
+    /// Print nothing but errors
+    #[arg(short, long, global = true, help_heading = help::OUTPUT)]
+    pub quiet: bool,
+    /// Print more: what was chosen, and why
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = help::OUTPUT)]
+    pub verbose: u8,
+    /// Show progress as a bar or as lines [default: a bar on a terminal, lines elsewhere]
+    #[arg(long, global = true, value_enum, default_value = "auto", hide_default_value = true, value_name = "HOW", help_heading = help::OUTPUT)]
+    pub progress: ProgressStyle,
+    /// Print this help
+    #[arg(short, long, global = true, action = clap::ArgAction::Help, help_heading = help::OUTPUT)]
+    help: Option<bool>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -65,232 +76,257 @@ pub enum ProgressStyle {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Make pictures from scenes
+    /// Render pictures of scenes
     Render(Box<Render>),
-    /// Say what is in a scene
+    /// Show what is in a scene file
     Info(Info),
-    /// Turn a scene or a picture into another format
+    /// Convert a scene or a picture to another format
     Convert(Convert),
-    /// Take the noise out of a picture
+    /// Remove the noise from a picture
     Denoise(Denoise),
-    /// Say how far picture A is from the reference B
+    /// Measure how much a picture differs from a reference
     Compare(Compare),
-    /// Make one of the scenes that we ship
+    /// Write a built-in scene to a file
     Generate(Generate),
-    /// Join partial films into one picture
+    /// Merge partial renders into one picture
     Merge(Merge),
-    /// Measure
+    /// Run a benchmark
     Bench(Box<Bench>),
-    /// List what there is: integrators, accels, materials, …
+    /// List integrators, accelerators, materials, formats and more
     List(List),
     /// Print completions for a shell
     Completions {
-        /// For which shell
+        /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the man page, or write the pages of all commands into a folder
+    /// Print the man page, or write the man pages of all commands to a folder
     Man {
-        /// Folder for the pages of all commands
+        /// The folder for the man pages of all commands
         folder: Option<PathBuf>,
     },
-    /// Print the JSON schema of scene files, for editors
+    /// Print the JSON Schema of scene files, for editors
     Schema,
-    /// Print the licences of Bilux and of what it is built from
+    /// Print the licences of Bilux and of its dependencies
     Licenses,
 }
 
-/// Make pictures from scenes.
+/// Render pictures of scenes
 #[derive(Args)]
+#[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  \
     bilux render scene.toml -o scene.png\n  \
+    bilux render model.glb -o model.png --size 1920x1080 --time-limit 30\n  \
+    bilux render model.glb -o model.jpg --orbit 40,20 --ground mirror\n  \
+    bilux render model.glb -o model.png --env sunset.hdr --ground shadow\n  \
+    bilux render model.glb -o 'model-{frame}.png' --turntable 36\n  \
     bilux render *.obj -o '{stem}.png'\n  \
-    bilux render chair.glb -o chair.png --orbit 40,20 --ground mirror\n  \
-    bilux render chair.glb -o chair.png --env sunset.hdr --ground shadow\n  \
-    bilux render chair.glb -o 'chair-{frame}.png' --turntable 36\n  \
-    bilux render walk.toml --frames 0-47 -o 'walk-{frame}.png'\n  \
-    bilux render fox.glb --animation Walk --at 0.5 -o fox.png\n  \
-    bilux render scene.toml --samples 0..64 -o a.exr    one half here,\n  \
-    bilux render scene.toml --samples 64..128 -o b.exr  the other there:\n  \
-    bilux merge a.exr b.exr -o scene.png\n  \
-    bilux render scene.toml --spp 64 --aov albedo,normal,depth,variance -o noisy.exr\n  \
-    bilux denoise noisy.exr -o smooth.exr")]
+    bilux render fox.glb -o fox.png --animation Walk --at 0.5\n  \
+    bilux render walk.toml -o 'walk-{frame}.png' --frames 0-47\n  \
+    bilux render scene.toml -o noisy.exr --spp 64 --aov albedo,normal,depth,variance\n  \
+    bilux render scene.toml -o a.exr --samples 0..64    One half here,\n  \
+    bilux render scene.toml -o b.exr --samples 64..128  the other half elsewhere:\n  \
+    bilux merge a.exr b.exr -o scene.png                Merge them\n\n\
+    Exit status:\n  \
+    0 when every picture was written, 1 when something failed, 2 when the command line is wrong,\n  \
+    124 when --timeout, 130 or 143 when a signal ended it early (the picture so far is saved),\n  \
+    141 when standard output was closed")]
 pub struct Render {
-    /// Scene files; `-` reads standard input (with --input-format)
+    /// The scene files; `-` reads standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// The picture; `{stem}` and `{frame}` are filled in, `-` writes PNG to standard output
-    #[arg(short, long, value_name = "OUT")]
+    /// The picture; its extension sets the format, `{stem}` stands for the scene's name, `{frame}` for a frame's number,
+    /// and `-` writes PNG to standard output
+    #[arg(short, long, value_name = "OUT", help_heading = help::MOST_USED)]
     pub output: PathBuf,
-    /// Format of a scene on standard input
-    #[arg(long, value_name = "NAME")]
-    pub input_format: Option<String>,
-    #[command(flatten)]
-    pub choices: Choices,
-    /// How light is followed (`bilux list integrators`)
-    #[arg(short, long, value_name = "NAME")]
-    pub integrator: Option<String>,
-    /// What finds the triangles that rays hit (`bilux list accels`)
-    #[arg(long, value_name = "NAME")]
-    pub accel: Option<String>,
-    /// Time that it may take to build [default: auto, by samples a triangle]
-    #[arg(long, value_name = "fast|balanced|best")]
-    pub build: Option<String>,
-    /// Width and height
-    #[arg(long, value_name = "WxH")]
+    /// The width and height in pixels [default: 512x512]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::MOST_USED)]
     pub size: Option<String>,
-    /// Samples per pixel
-    #[arg(long, value_name = "N")]
+    /// Take this number of samples in each pixel; the picture is then the same on every machine
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::MOST_USED)]
     pub spp: Option<u32>,
-    /// Stop when the noise is at most this part of the light, on average: 0.02 is smooth. See pixel by pixel what is left
-    /// with --aov interval
-    #[arg(long, value_name = "REL")]
+    /// Stop when the noise is at most this part of the light, on average: 2% looks smooth
+    #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::MOST_USED)]
     pub noise: Option<f32>,
-    /// The cleanest picture that about a second gives, for thumbnails: reading and denoising included
-    #[arg(long, conflicts_with_all = ["spp", "noise", "time_limit"])]
-    pub fast: bool,
-    /// Be done after this time, reading and denoising included; where that is impossible, a line says why
-    #[arg(long, value_name = "SECONDS")]
+    /// Finish within this time, including reading and denoising; where that is impossible, a line says why
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::MOST_USED)]
     pub time_limit: Option<f32>,
-    /// End the whole command after this time, with the picture as it is by then (exit status 124)
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
-    pub timeout: Option<Duration>,
-    /// Another number gives other noise
-    #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
-    /// Threads; 0 for all cores
-    #[arg(long, value_name = "N")]
-    pub threads: Option<u32>,
-    /// Scattering events after the camera; 0 is emission only
-    #[arg(long, value_name = "N")]
-    pub max_depth: Option<u32>,
-    /// Which camera
-    #[arg(long, value_name = "NAME|INDEX")]
+    /// The integrator, which finds the light (`bilux list integrators`) [default: auto]
+    #[arg(short, long, value_name = "NAME", help_heading = help::MOST_USED)]
+    pub integrator: Option<String>,
+    /// The camera of the scene to use, by name or by number from 0
+    #[arg(long, value_name = "NAME|INDEX", help_heading = help::MOST_USED)]
     pub camera: Option<String>,
     #[command(flatten)]
     pub studio: StudioArguments,
-    /// When, in moving scenes
-    #[arg(long, value_name = "SECONDS")]
+    #[command(flatten)]
+    pub choices: Choices,
+    /// The format of the scene on standard input; auto goes by its first bytes
+    #[arg(long, value_name = "NAME|auto", default_value = "auto", help_heading = help::WHAT)]
+    pub input_format: String,
+    /// The time to show, in scenes that move
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, help_heading = help::WHAT)]
     pub at: Option<f32>,
-    /// Frames A to B, both included; needs {frame} in OUT
-    #[arg(long, value_name = "A-B", value_parser = parse_frames)]
+    /// Render frames A to B, both included
+    #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::WHAT)]
     pub frames: Option<(u32, u32)>,
-    /// Only samples A up to (not including) B of each pixel: a partial film, in an .exr
-    #[arg(long, value_name = "A..B", value_parser = parse_samples)]
-    pub samples: Option<(u32, u32)>,
-    /// Only a window of the picture
-    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_crop)]
+    /// Render only a window of the picture
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = parse_crop, help_heading = help::PICTURE)]
     pub crop: Option<[u32; 4]>,
-    /// Brighten by powers of two; or to the brightness of a photograph
-    #[arg(long, value_name = "EV|auto", allow_negative_numbers = true, value_parser = parse_exposure)]
+    /// Brighten by powers of two, or automatically to the brightness of a photograph
+    #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, value_parser = parse_exposure, help_heading = help::PICTURE)]
     pub exposure: Option<Exposure>,
-    /// Tone curve (`bilux list tonemaps`)
-    #[arg(long, value_name = "NAME")]
+    /// The tone curve (`bilux list tonemaps`)
+    #[arg(long, value_name = "NAME", help_heading = help::PICTURE)]
     pub tonemap: Option<String>,
-    /// Take the noise away, by the best that there is or by what is named (`bilux list denoisers`). Pictures for a display
-    /// that noise or time ends are denoised unless this is off
+    /// Denoise with the best denoiser there is, or with the one named (`bilux list denoisers`) [default: auto for pictures
+    /// that are shown on a display and that --noise or --time-limit ends, else off]
     #[arg(long, value_name = "auto|oidn|builtin|off", num_args = 0..=1, default_missing_value = "auto",
-        require_equals = true)]
+        require_equals = true, help_heading = help::PICTURE)]
     pub denoise: Option<String>,
-    /// Bits per sample of PNG and PPM
-    #[arg(long, value_name = "8|16", default_value = "8", value_parser = ["8", "16"])]
-    pub bits: String,
-    /// The highlight of `cast` and `whitted`: Eq. 1's halfway vector, or section 3.1's reflected one
-    #[arg(long, value_name = "halfway|reflect")]
+    /// Render the cleanest picture that about a second gives, reading and denoising included: for thumbnails
+    #[arg(long, conflicts_with_all = ["spp", "noise", "time_limit"], help_heading = help::SPEED)]
+    pub fast: bool,
+    /// End the whole command after this time, with the picture as it is by then (exit status 124)
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_duration, help_heading = help::SPEED)]
+    pub timeout: Option<Duration>,
+    /// The seed of the random numbers; another seed gives other noise
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_seed, help_heading = help::PICTURE)]
+    pub seed: Option<u64>,
+    /// Take only samples A to B (excluded) of each pixel, for a partial render in an .exr
+    #[arg(long, value_name = "A..B", value_parser = parse_samples, help_heading = help::PICTURE)]
+    pub samples: Option<(u32, u32)>,
+    /// Any other setting (`bilux list settings`)
+    #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
+    pub set: Vec<String>,
+    /// The maximum number of bounces; 0 shows only what emits light
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::LIGHT)]
+    pub max_depth: Option<u32>,
+    /// The highlights of `cast` and `whitted`: the halfway vector of Eq. 1, or the reflected ray of section 3.1
+    #[arg(long, value_name = "halfway|reflect", help_heading = help::LIGHT)]
     pub specular: Option<String>,
-    /// Local light in `whitted`: off where every light is blocked (paper), or light by light
-    #[arg(long, value_name = "paper|per-light")]
+    /// Shadows in `whitted`: dark where all lights are blocked, as in the paper, or light by light
+    #[arg(long, value_name = "paper|per-light", help_heading = help::LIGHT)]
     pub shadow_rule: Option<String>,
+    /// The number of threads; 0 uses all cores
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::SPEED)]
+    pub threads: Option<u32>,
+    /// The acceleration structure (`bilux list accels`)
+    #[arg(long, value_name = "NAME", help_heading = help::SPEED)]
+    pub accel: Option<String>,
+    /// How much time its construction may take [default: auto, by the number of samples per triangle]
+    #[arg(long, value_name = "fast|balanced|best", help_heading = help::SPEED)]
+    pub build: Option<String>,
     /// How `bsp` chooses its planes
-    #[arg(long, value_name = "mean|fuchs")]
+    #[arg(long, value_name = "mean|fuchs", help_heading = help::SPEED)]
     pub bsp_split: Option<String>,
     /// What `bsp` keeps together
-    #[arg(long, value_name = "polygons|objects")]
+    #[arg(long, value_name = "polygons|objects", help_heading = help::SPEED)]
     pub bsp_group: Option<String>,
-    /// Any other setting (`bilux list settings`)
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
-    /// What else to give (`bilux list aovs`): albedo, normal, depth, ids, variance as layers of an .exr (OUT.layers.exr where OUT is none);
-    /// with `strategies`, each strategy's picture in a folder OUT.strategies; with `interval`, OUT.interval.exr: half of each
-    /// pixel's 95% interval
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    /// The bits per channel of PNG and PPM files
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = ["8", "16"], help_heading = help::OUTPUT)]
+    pub bits: String,
+    /// The quality of a JPEG, from 1 to 100 [default: 92]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
+    pub quality: Option<u8>,
+    /// More outputs (`bilux list aovs`): albedo, normal, depth, ids and variance become layers of an .exr (OUT.layers.exr
+    /// beside other formats), interval writes OUT.interval.exr, strategies writes the folder OUT.strategies
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',', help_heading = help::OUTPUT)]
     pub aov: Vec<String>,
-    /// Write what it took as JSON; counts every node and triangle test, which is slower
-    #[arg(long, value_name = "FILE.json")]
+    /// Print a line of JSON about each picture on standard output
+    #[arg(long, help_heading = help::OUTPUT)]
+    pub json: bool,
+    /// Write statistics as JSON, or print them on standard output with `-`; every node visit and triangle test is
+    /// counted, which is slower
+    #[arg(long, value_name = "FILE.json|-", help_heading = help::OUTPUT)]
     pub stats: Option<PathBuf>,
-    /// Follow one sample again and say what happened to it
-    #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
+    /// Trace one sample again and print what happens to it
+    #[arg(long, value_name = "X,Y,SAMPLE", allow_hyphen_values = true, value_parser = parse_replay, help_heading = help::OUTPUT)]
     pub replay: Option<[u32; 3]>,
 }
 
-/// Say what is in a scene.
+/// Show what is in a scene file
 #[derive(Args)]
+#[command(help_template = help::TEMPLATE)]
+#[command(after_help = "Examples:\n  bilux info model.glb\n  bilux info model.glb --json")]
 pub struct Info {
     /// The scene file
     pub scene: PathBuf,
-    /// As JSON
-    #[arg(long)]
+    /// Print JSON
+    #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
     #[command(flatten)]
     pub posed: Posed,
 }
 
-/// Turn a scene or a picture into another format.
+/// Convert a scene or a picture to another format
 #[derive(Args)]
-#[command(after_help = "Examples:\n  bilux convert pot.asc -o pot.obj\n  bilux convert sky.hdr -o sky.exr")]
+#[command(help_template = help::TEMPLATE)]
+#[command(
+    after_help = "Examples:\n  bilux convert model.obj -o model.glb\n  bilux convert sky.hdr -o sky.exr\n  \
+    bilux convert picture.exr -o picture.jpg --quality 80"
+)]
 pub struct Convert {
-    /// What to turn
+    /// The scene or picture to convert
     pub input: PathBuf,
-    /// Into what, by its extension
-    #[arg(short, long, value_name = "OUT")]
+    /// The file to write; its extension sets the format
+    #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
-    /// Text in place of binary, where the format has both
-    #[arg(long)]
+    /// Write text instead of binary, for PLY and STL
+    #[arg(long, help_heading = help::OUTPUT)]
     pub ascii: bool,
+    /// The quality of a JPEG, from 1 to 100 [default: 92]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
+    pub quality: Option<u8>,
     #[command(flatten)]
     pub posed: Posed,
 }
 
-/// Make one of the scenes that we ship.
+/// Write a built-in scene to a file
 #[derive(Args)]
+#[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Examples:\n  bilux generate teapots --set count=5 -o five.toml\n  \
     bilux generate teapots --from pot.asc --count 3 --offset 4,0,0 -o three.asc")]
 pub struct Generate {
-    /// Which (`bilux list generators`)
+    /// The scene (`bilux list generators`)
     pub name: String,
-    /// Where to, by its extension
-    #[arg(short, long, value_name = "OUT")]
+    /// The file to write; its extension sets the format
+    #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
-    /// How many
-    #[arg(long, value_name = "N")]
+    /// The number of copies
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::WHAT)]
     pub count: Option<u32>,
-    /// From each to the next
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_vector)]
+    /// The distance from each copy to the next
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_vector, help_heading = help::WHAT)]
     pub offset: Option<[f32; 3]>,
-    /// Copies of this file's model in place of our own
-    #[arg(long, value_name = "FILE")]
+    /// Copy the model in this file instead of a built-in one
+    #[arg(long, value_name = "FILE", help_heading = help::WHAT)]
     pub from: Option<PathBuf>,
     /// Any other parameter (`bilux list generators`)
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::WHAT)]
     pub set: Vec<String>,
 }
 
-/// Join partial films into one picture.
+/// Merge partial renders into one picture
 #[derive(Args)]
+#[command(help_template = help::TEMPLATE)]
+#[command(after_help = "Example:\n  bilux merge a.exr b.exr -o scene.png")]
 pub struct Merge {
-    /// Partial films, in any order
+    /// The partial renders, in any order
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
-    /// The picture, or with `.exr` a film that can be joined further
-    #[arg(short, long, value_name = "OUT")]
+    /// The picture; an .exr can be merged again
+    #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
 }
 
-/// List what there is.
+/// List integrators, accelerators, materials, formats and more
 #[derive(Args)]
+#[command(help_template = help::TEMPLATE)]
+#[command(after_help = "Examples:\n  bilux list integrators\n  bilux list materials --json")]
 pub struct List {
-    /// What: integrators, accels, materials, lights, cameras, formats, …
+    /// What to list: integrators, accels, materials, lights, cameras, formats, settings, …
     pub what: String,
-    /// As JSON
-    #[arg(long)]
+    /// Print JSON
+    #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
 }

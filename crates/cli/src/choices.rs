@@ -1,42 +1,45 @@
-//! What is chosen where a scene file leaves a choice, as it is typed.
+//! The options that choose where a scene file leaves a choice.
 
+use crate::help;
 use crate::values::parse_radius;
 use clap::{Args, ValueEnum};
 
-/// What is chosen where a scene file leaves a choice.
+/// Choices that a scene file leaves open.
 #[derive(Args)]
 pub struct Choices {
-    /// The animation to follow, by name or number [default: the first, and those that move other things]
-    #[arg(long, value_name = "NAME|INDEX")]
+    /// The animation to show, by name or by number from 0 [default: the first, with those that move other objects]
+    #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub animation: Option<String>,
-    /// The set of materials to show, where a file has several
-    #[arg(long, value_name = "NAME|INDEX")]
+    /// The variant of the materials to show, by name or by number from 0
+    #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub variant: Option<String>,
-    /// Glass that says nothing of a thickness: `auto` makes closed meshes solid
-    #[arg(long, value_name = "HOW", value_enum, default_value = "auto")]
+    /// How to read glass whose thickness the file does not give
+    #[arg(long, value_name = "HOW", value_enum, default_value = "auto", help_heading = help::WHAT)]
     pub glass: GlassArgument,
-    /// Give point lights of the file a size, in metres
-    #[arg(long, value_name = "RADIUS", default_value_t = 0.0, hide_default_value = true, value_parser = parse_radius)]
+    /// Give the file's point lights this radius, in metres
+    #[arg(long, value_name = "RADIUS", default_value_t = 0.0, hide_default_value = true, allow_hyphen_values = true,
+        value_parser = parse_radius, help_heading = help::LIGHT)]
     pub light_radius: f32,
 }
 
-/// The same, and when.
+/// The same, and the time.
 #[derive(Args)]
 pub struct Posed {
     #[command(flatten)]
     pub choices: Choices,
-    /// When, in seconds, where meshes bend
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true)]
+    /// The time, in files whose meshes bend
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, allow_negative_numbers = true,
+        help_heading = help::WHAT)]
     pub at: f32,
 }
 
 /// See [`Choices::glass`].
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum GlassArgument {
-    /// Solid where the mesh is closed, else a thin wall
+    /// Solid where the mesh is closed, a thin pane elsewhere
     Auto,
-    /// Walls without thickness
+    /// Thin panes
     Thin,
-    /// Solid
+    /// Solid everywhere
     Solid,
 }

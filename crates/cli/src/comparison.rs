@@ -1,39 +1,47 @@
-//! What `bilux compare` is told.
+//! The options of `bilux compare`.
 
+use crate::help;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Say how far picture A is from the reference B.
+/// Measure how much a picture differs from a reference
 #[derive(Args)]
-#[command(after_help = "Exit status: 0 within the bounds, 1 beyond them, 2 trouble.\n\n\
-    Example:\n  bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png")]
+#[command(help_template = help::TEMPLATE)]
+#[command(
+    after_help = "Example:\n  bilux compare a.png reference.png --max-flip 0.02 --heat-map difference.png\n\n\
+    Exit status:\n  \
+    0 when every bound holds, 1 when one does not, 2 when the pictures cannot be compared"
+)]
 pub struct Compare {
     /// The picture
     pub picture: PathBuf,
     /// The reference
     pub reference: PathBuf,
-    /// As JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Most mean FLIP error
-    #[arg(long, value_name = "X")]
+    /// The maximum mean FLIP error
+    #[arg(long, value_name = "X", help_heading = BOUNDS)]
     pub max_flip: Option<f64>,
-    /// Most root mean square error
-    #[arg(long, value_name = "X")]
+    /// The maximum root mean square error
+    #[arg(long, value_name = "X", help_heading = BOUNDS)]
     pub max_rmse: Option<f64>,
-    /// Most relative mean square error
-    #[arg(long, value_name = "X")]
+    /// The maximum relative mean square error
+    #[arg(long, value_name = "X", help_heading = BOUNDS)]
     pub max_relmse: Option<f64>,
-    /// Most error of any sample
-    #[arg(long, value_name = "X")]
+    /// The maximum error of any sample
+    #[arg(long, value_name = "X", help_heading = BOUNDS)]
     pub max_error: Option<f64>,
-    /// Least structural similarity
-    #[arg(long, value_name = "X")]
+    /// The minimum structural similarity
+    #[arg(long, value_name = "X", help_heading = BOUNDS)]
     pub min_ssim: Option<f64>,
-    /// Least peak signal-to-noise ratio, in dB
-    #[arg(long, value_name = "X")]
+    /// The minimum peak signal-to-noise ratio, in dB
+    #[arg(long, value_name = "X", help_heading = BOUNDS)]
     pub min_psnr: Option<f64>,
-    /// Write a picture of where they differ
-    #[arg(long, value_name = "FILE")]
+    /// Print JSON
+    #[arg(long, help_heading = help::OUTPUT)]
+    pub json: bool,
+    /// Write a picture of the differences
+    #[arg(long, value_name = "FILE", help_heading = help::OUTPUT)]
     pub heat_map: Option<PathBuf>,
 }
+
+/// Heading of what decides about the exit status.
+const BOUNDS: &str = "Bounds";

@@ -1,45 +1,51 @@
-//! What `bilux denoise` is told.
+//! The options of `bilux denoise`.
 
 use crate::arguments::{Common, Render};
-use crate::values::{Exposure, parse_exposure};
+use crate::help;
+use crate::values::{Exposure, parse_exposure, parse_quality};
 use anyhow::bail;
 use bilux::pictures::denoise::preload;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Take the noise out of a picture. The layers albedo, normal, depth and variance help much, where it has them: `bilux render
-/// --aov albedo,normal,depth,variance`.
+/// Remove the noise from a picture
 #[derive(Args)]
-#[command(after_help = "Examples:\n  bilux denoise noisy.exr -o smooth.exr\n  \
-    bilux denoise noisy.exr -o smooth.png --tonemap agx\n  \
-    bilux denoise photo.png -o smooth.png --by builtin")]
+#[command(help_template = help::TEMPLATE)]
+#[command(after_help = "Examples:\n  bilux denoise noisy.exr -o clean.exr\n  \
+    bilux denoise noisy.exr -o clean.png --tonemap agx\n  \
+    bilux denoise photo.png -o clean.png --by builtin\n\n\
+    The layers albedo, normal, depth and variance of an .exr help much; this writes them:\n  \
+    bilux render scene.toml -o noisy.exr --aov albedo,normal,depth,variance")]
 pub struct Denoise {
     /// The noisy picture
     pub input: PathBuf,
-    /// The smooth one
-    #[arg(short, long, value_name = "OUT")]
+    /// The picture without noise
+    #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
-    /// What takes the noise away (`bilux list denoisers`)
-    #[arg(long, value_name = "auto|oidn|builtin", default_value = "auto")]
+    /// The denoiser (`bilux list denoisers`)
+    #[arg(long, value_name = "auto|oidn|builtin", default_value = "auto", help_heading = help::PICTURE)]
     pub by: String,
-    /// Threads; 0 for all cores
-    #[arg(long, value_name = "N", default_value = "0")]
-    pub threads: usize,
-    /// Brighten by powers of two, in pictures for a display; or to the brightness of a photograph
-    #[arg(long, value_name = "EV|auto", allow_negative_numbers = true, default_value = "0",
-        value_parser = parse_exposure)]
+    /// Brighten pictures for a display by powers of two, or automatically to the brightness of a photograph
+    #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, default_value = "0",
+        value_parser = parse_exposure, help_heading = help::PICTURE)]
     pub exposure: Exposure,
-    /// Tone curve, in pictures for a display (`bilux list tonemaps`)
-    #[arg(long, value_name = "NAME", default_value = "none")]
+    /// The tone curve of pictures for a display (`bilux list tonemaps`)
+    #[arg(long, value_name = "NAME", default_value = "none", help_heading = help::PICTURE)]
     pub tonemap: String,
+    /// The quality of a JPEG, from 1 to 100 [default: 92]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
+    pub quality: Option<u8>,
+    /// The number of threads; 0 uses all cores
+    #[arg(long, value_name = "N", default_value = "0", help_heading = help::SPEED)]
+    pub threads: usize,
 }
 
-/// Finds out whether a denoiser is taken for a scene, since it stands apart from its flag.
+/// Refuses a denoiser that is taken for a scene because a space stands before it.
 pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
     let is_denoiser =
         |scene: &&PathBuf| bilux::settings::DENOISE.iter().any(|name| scene.as_os_str() == *name);
     if let Some(name) = scenes.iter().find(is_denoiser).filter(|name| !name.exists()) {
-        bail!("'{0}' is no scene: write --denoise={0}, with the sign between", name.display());
+        bail!("'{0}' is not a scene file: write --denoise={0}, with an equals sign", name.display());
     }
     Ok(())
 }

@@ -9,10 +9,12 @@ mod choices;
 mod commands;
 mod comparison;
 mod denoising;
+mod help;
 mod interrupt;
 mod measuring;
 mod output;
 mod progress;
+mod sandbox;
 mod settings_from;
 mod studio;
 mod usage;
@@ -21,33 +23,25 @@ mod version;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// The work failed.
 const FAILED: u8 = 1;
 /// The command line was wrong.
 const WRONG_COMMAND_LINE: u8 = 2;
+/// Whoever read standard output went away: what shells report of a program that a closed pipe has ended.
+const CLOSED_PIPE: u8 = 128 + 13;
 
 fn main() -> ExitCode {
-    tell_faults_of_ours();
-    let arguments = Arguments::parse();
-    let result = match arguments.command {
-        Command::Render(ref render) => commands::render::run(render, &arguments.common),
-        Command::Info(ref info) => commands::info::run(info, &arguments.common),
-        Command::Convert(ref convert) => commands::convert::run(convert, &arguments.common),
-        Command::Denoise(ref denoise) => commands::denoise::run(denoise, &arguments.common),
-        Command::Compare(ref compare) => commands::compare::run(compare),
-        Command::Generate(ref generate) => commands::generate::run(generate, &arguments.common),
-        Command::Merge(ref merge) => commands::merge::run(merge, &arguments.common),
-        Command::Bench(ref bench) => commands::bench::run(bench, &arguments.common),
-        Command::List(ref list) => commands::list::run(list),
-        Command::Completions { shell } => commands::manual::completions(shell),
-        Command::Man { ref folder } => commands::manual::pages(folder.as_deref()),
-        Command::Schema => commands::list::schema(),
-        Command::Licenses => commands::manual::licenses(),
+    report_panics();
+    let result = match Arguments::try_parse() {
+        Ok(arguments) => run(&arguments),
+        Err(answer) => print_answer(&answer),
     };
     match result {
         Ok(code) => ExitCode::from(code),
+        Err(error) if output::is_closed_pipe(&error) => ExitCode::from(CLOSED_PIPE),
         Err(error) => {
             output::error(&error);
             let wrong = usage::is_command_line(&error);
@@ -56,11 +50,40 @@ fn main() -> ExitCode {
     }
 }
 
-/// A panic is a fault of ours, and says so. Those inside picture decoders are caught and become errors.
-fn tell_faults_of_ours() {
+fn run(arguments: &Arguments) -> anyhow::Result<u8> {
+    let common = &arguments.common;
+    match &arguments.command {
+        Command::Render(render) => commands::render::run(render, common),
+        Command::Info(info) => commands::info::run(info, common),
+        Command::Convert(convert) => commands::convert::run(convert, common),
+        Command::Denoise(denoise) => commands::denoise::run(denoise, common),
+        Command::Compare(compare) => commands::compare::run(compare, common),
+        Command::Generate(generate) => commands::generate::run(generate, common),
+        Command::Merge(merge) => commands::merge::run(merge, common),
+        Command::Bench(bench) => commands::bench::run(bench, common),
+        Command::List(list) => commands::list::run(list),
+        Command::Completions { shell } => commands::manual::completions(*shell),
+        Command::Man { folder } => commands::manual::pages(folder.as_deref()),
+        Command::Schema => commands::list::schema(),
+        Command::Licenses => commands::manual::licenses(),
+    }
+}
+
+/// Prints help or the version on standard output, or what is wrong with the command line on standard error.
+fn print_answer(answer: &clap::Error) -> anyhow::Result<u8> {
+    let printed = answer.print().and_then(|()| std::io::stdout().flush());
+    // Where standard error is closed nobody can be told.
+    if !answer.use_stderr() {
+        printed.map_err(output::Unprinted)?;
+    }
+    Ok(u8::try_from(answer.exit_code()).unwrap_or(WRONG_COMMAND_LINE))
+}
+
+/// Reports a panic as a bug of Bilux. Panics inside picture decoders are caught and become errors.
+fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
         if !bilux::pictures::is_decoding() {
-            output::say(format_args!("error: a fault of Bilux itself, please report it: {panic}"));
+            output::say(format_args!("error: this is a bug in Bilux; please report it: {panic}"));
         }
     }));
 }

@@ -2,7 +2,7 @@
 
 use crate::arguments::Render;
 use crate::values::Exposure;
-use anyhow::{Context, bail};
+use anyhow::Context;
 use bilux::scene::{Parameters, Span, Value};
 
 /// What the command line says about a render.
@@ -53,17 +53,9 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         let (key, value) = assignment_of(assignment)?;
         parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
     }
-    if a.spp == Some(0) {
-        bail!("--spp has to be at least 1");
-    }
-    // A number of samples that the scene file gives is no reason to stop short of what was asked for here.
+    // A number of samples that the scene file gives is no reason to stop short of what is asked for here.
     if a.spp.is_none() && (a.noise.is_some() || a.time_limit.is_some()) {
         parameters.set_at("spp", Value::Integer(0), from_flag("--noise"));
-    }
-    for (flag, given) in [("--noise", a.noise), ("--time-limit", a.time_limit)] {
-        if given.is_some_and(|x| x.is_nan() || x <= 0.0) {
-            bail!("{flag} has to be above 0");
-        }
     }
     Ok(parameters)
 }
@@ -72,7 +64,7 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
 pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
     let (key, value) = assignment
         .split_once('=')
-        .with_context(|| format!("'{assignment}' is to be written as KEY=VALUE"))?;
+        .with_context(|| format!("--set {assignment}: write KEY=VALUE, such as --set {assignment}=1; `bilux list settings` names the keys"))?;
     let parts: Vec<&str> = value.trim_matches(['[', ']']).split(',').map(str::trim).collect();
     let value = match parts.as_slice() {
         [one] => scalar(one),

@@ -1,45 +1,47 @@
-//! How a model is photographed, as it is typed.
+//! The options of the studio around a model.
 
 use crate::settings_from::from_flag;
-use crate::usage;
+use crate::values::parse_turntable;
+use crate::{help, usage};
 use anyhow::{Context, bail};
 use bilux::formats::ReadOptions;
 use bilux::presets::Studio;
-use bilux::scene::{Parameters, SceneBuilder, Value};
+use bilux::scene::{Parameters, SceneBuilder, SceneError, Value};
 use bilux::settings::Background;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// What is asked of the studio.
+/// The camera and the surroundings of a model.
 #[derive(Args)]
 pub struct StudioArguments {
-    /// How a bare file is seen (`bilux list presets`)
-    #[arg(long, value_name = "NAME")]
-    pub preset: Option<String>,
-    /// From where a studio's camera looks: degrees to the right of the model's front, and above it
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true)]
+    /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8]
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::MOST_USED)]
     pub orbit: Option<String>,
+    /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none keeps
+    /// the studio away from the lights that a glTF file brings
+    #[arg(long, value_name = "FILE|none", help_heading = help::MOST_USED)]
+    pub env: Option<PathBuf>,
+    /// Put the model in front of nothing (transparent), a colour (white, '#rrggbb' or R,G,B) or a picture, which lights nothing
+    #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::MOST_USED)]
+    pub background: Option<String>,
     /// Which of the model's axes is up: x, y, z, -x, -y or -z [default: auto, by its format and its shape]
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
     pub up: Option<String>,
     /// Which of the model's axes is its front, which the studio's camera sees [default: auto]
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
     pub front: Option<String>,
-    /// Focal length of the studio's camera, in mm for a picture 24 mm high [default: 45]
-    #[arg(long, value_name = "MM")]
+    /// The studio's camera as a preset (`bilux list presets`)
+    #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
+    pub preset: Option<String>,
+    /// The focal length of the studio's camera, in mm for a picture 24 mm high [default: 45]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, help_heading = help::STUDIO)]
     pub focal: Option<f32>,
-    /// What a model stands on [default: a matt cove, where the file has neither camera nor light]
-    #[arg(long, value_name = "shadow|mirror|none")]
+    /// What a model stands on [default: a matte backdrop, where the file has neither camera nor light]
+    #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
-    /// Light all of it by a picture of its surroundings, in longitude and latitude: .hdr, .exr or any other; none leaves a glTF's lamps
-    /// alone, which else stand in the studio's surroundings
-    #[arg(long, value_name = "FILE|none")]
-    pub env: Option<PathBuf>,
-    /// What is behind a model: transparent, or a colour (white, '#rrggbb', R,G,B), or a picture to be seen in place of what lights it
-    #[arg(long, value_name = "transparent|COLOR|FILE")]
-    pub background: Option<String>,
-    /// N pictures from all around, one by one; needs {frame} in OUT
-    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"])]
+    /// Render N pictures from all around the model
+    #[arg(long, value_name = "N", conflicts_with_all = ["frames", "samples"], allow_hyphen_values = true,
+        value_parser = parse_turntable, help_heading = help::STUDIO)]
     pub turntable: Option<u32>,
 }
 
@@ -47,6 +49,10 @@ impl StudioArguments {
     /// Puts around a scene what is asked for.
     pub fn set_up(&self, scene: &mut SceneBuilder, options: &ReadOptions) -> anyhow::Result<()> {
         if let Some(preset) = &self.preset {
+            let names = bilux::presets::PRESETS.iter().map(|row| row.entry.name);
+            if !names.clone().any(|name| name == preset) {
+                return Err(SceneError::unknown("preset", preset, names, &from_flag("--preset")).into());
+            }
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
         if self.env.as_deref() == Some(Path::new("none")) {
@@ -66,11 +72,27 @@ impl StudioArguments {
         self.background.as_deref().filter(|text| !is_setting(text)).map(Path::new)
     }
 
-    /// Finds out before the work whether there is such a background.
+    /// Refuses a background that is neither a setting nor named as a picture is.
     pub fn check(&self) -> anyhow::Result<()> {
-        if let Some(picture) = self.picture_behind().filter(|picture| !picture.exists()) {
-            let text = picture.display();
-            bail!("--background: '{text}' is no file, nor transparent, white, '#rrggbb' or R,G,B of 0 to 1");
+        let is_picture =
+            |path: &&Path| path.exists() || bilux::pictures::format_named(extension(path)).is_some();
+        if let Some(text) = self.picture_behind().filter(|path| !is_picture(path)) {
+            bail!(
+                "--background {}: write transparent, a colour (white, '#rrggbb', or R,G,B from 0 to 1), or the file of a picture",
+                text.display()
+            );
+        }
+        Ok(())
+    }
+
+    /// Finds out before the work whether the pictures that options name can be opened.
+    pub fn check_files(&self) -> anyhow::Result<()> {
+        let env = self.env.as_deref().filter(|path| *path != Path::new("none"));
+        for (flag, path) in [("--env", env), ("--background", self.picture_behind())] {
+            if let Some(path) = path {
+                std::fs::File::open(path)
+                    .with_context(|| format!("{flag}: {}: cannot open it", path.display()))?;
+            }
         }
         Ok(())
     }
@@ -81,11 +103,15 @@ impl StudioArguments {
     }
 }
 
+fn extension(path: &Path) -> &str {
+    path.extension().and_then(|extension| extension.to_str()).unwrap_or_default()
+}
+
 /// The same settings from farther around the model, in turns to the right.
 pub fn turned(user: &Parameters, turns: f32) -> anyhow::Result<Parameters> {
     let orbit = match user.find("orbit") {
         Some((Value::Text(text), _)) => bilux::settings::parse_orbit(text)
-            .with_context(|| format!("'{text}' is no orbit: write AZ,EL in degrees, such as 30,15"))?,
+            .with_context(|| format!("--orbit {text}: write AZ,EL in degrees, such as 30,15"))?,
         _ => Studio::ORBIT,
     };
     let mut turned = user.clone();

@@ -25,8 +25,12 @@ pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
     anyhow::Error::new(WrongCommandLine(error.into()))
 }
 
-/// The error with the scene's name, unless it tells it already.
+/// The error with the scene's name, unless it has it already or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
+    let is_about_scene = !is_command_line(&error) && !error.is::<crate::output::Unprinted>();
+    if !is_about_scene || scene == Path::new("-") {
+        return error;
+    }
     let name = scene.display().to_string();
     if format!("{error:#}").contains(&name) { error } else { error.context(name) }
 }
@@ -38,6 +42,22 @@ pub fn is_command_line(error: &anyhow::Error) -> bool {
             Some(bilux::Error::Scene(scene)) => Some(scene),
             _ => cause.downcast_ref::<bilux::scene::SceneError>(),
         };
-        cause.is::<WrongCommandLine>() || scene.is_some_and(|s| s.at().file.starts_with("--"))
+        cause.is::<WrongCommandLine>()
+            || scene.is_some_and(|s| s.at().file.starts_with("--"))
+            || cause.downcast_ref().is_some_and(is_about_options)
     })
+}
+
+/// True for what only options can have caused.
+fn is_about_options(error: &bilux::Error) -> bool {
+    use bilux::transport::{FilmError, RenderError};
+    let bilux::Error::Render(error) = error else { return false };
+    matches!(
+        error,
+        RenderError::StopOfPart
+            | RenderError::IntervalOfPattern
+            | RenderError::Samples { .. }
+            | RenderError::Pixel { .. }
+            | RenderError::Film(FilmError::Window { .. })
+    )
 }

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 pub fn parse_rival(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, path) = text.split_once('=').ok_or("is written as embree=/path/of/libembree4.so.4")?;
+    let (name, path) =
+        text.split_once('=').ok_or("write a name and a path, such as embree=/usr/lib/libembree4.so.4")?;
     Ok((name.to_owned(), PathBuf::from(path)))
 }
 
@@ -16,55 +17,117 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
         "M" | "MB" | "MIB" => 1 << 20,
         "G" | "GB" | "GIB" => 1u64 << 30,
         "T" | "TB" | "TIB" => 1 << 40,
-        other => return Err(format!("'{other}' is no unit of memory: write 512M or 8G")),
+        other => return Err(format!("'{other}' is not a unit of memory: write 512M or 8G")),
     };
-    let number: f64 = digits.parse().map_err(|_| format!("'{text}' is no size: write 512M or 8G"))?;
-    if number > 0.0 { Ok((number * factor as f64) as u64) } else { Err("has to be more than 0".to_owned()) }
+    let number: f64 =
+        digits.parse().map_err(|_| format!("'{text}' is not an amount of memory: write 512M or 8G"))?;
+    if number > 0.0 {
+        Ok((number * factor as f64) as u64)
+    } else {
+        Err("write more than 0, such as 512M or 8G".to_owned())
+    }
+}
+
+/// A number of samples, which cannot be 0.
+pub fn parse_spp(text: &str) -> Result<u32, String> {
+    at_least_one(text, "the number of samples is a whole number of at least 1, such as 64")
+}
+
+/// A number of pictures around a model.
+pub fn parse_turntable(text: &str) -> Result<u32, String> {
+    at_least_one(text, "the number of pictures is a whole number of at least 1, such as 36")
+}
+
+fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| advice.to_owned())
+}
+
+/// A whole number from 0.
+pub fn parse_count(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| format!("write a whole number from 0 to {}", u32::MAX))
+}
+
+/// A seed.
+pub fn parse_seed(text: &str) -> Result<u64, String> {
+    let seed = text.parse().ok().filter(|&seed| i64::try_from(seed).is_ok());
+    seed.ok_or_else(|| format!("a seed is a whole number from 0 to {}", i64::MAX))
+}
+
+/// The quality of a JPEG.
+pub fn parse_quality(text: &str) -> Result<u8, String> {
+    let quality = text.parse().ok().filter(|quality| (1..=100).contains(quality));
+    quality.ok_or_else(|| "the quality is a whole number from 1 to 100, such as 92".to_owned())
+}
+
+/// A part of the light: `0.02` or `2%`.
+pub fn parse_noise(text: &str) -> Result<f32, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number.trim_end(), 100.0),
+        None => (text, 1.0),
+    };
+    let advice = || "write how much noise may be left, such as 2% or 0.02".to_owned();
+    let noise = number.parse::<f32>().map_err(|_| advice())?;
+    match noise / unit {
+        part if part > 0.0 && part <= 1.0 => Ok(part),
+        part if part > 1.0 && unit == 1.0 && part <= 100.0 => {
+            Err(format!("this is {}% of the light: write {text}% or {}", part * 100.0, part / 100.0))
+        }
+        part if part > 1.0 => Err("more noise than light: write 2% or 0.02".to_owned()),
+        0.0 => Err("no picture is without noise: write 1% or 0.01, or more".to_owned()),
+        _ => Err(advice()),
+    }
+}
+
+/// A time in seconds, above 0.
+pub fn parse_seconds(text: &str) -> Result<f32, String> {
+    let seconds = text.strip_suffix('s').unwrap_or(text).trim_end().parse::<f32>();
+    let seconds = seconds.ok().filter(|&seconds| seconds > 0.0 && seconds.is_finite());
+    seconds.ok_or_else(|| "write a number of seconds above 0, such as 5 or 0.5".to_owned())
 }
 
 pub fn parse_frames(text: &str) -> Result<(u32, u32), String> {
     let (a, b) = text.split_once('-').unwrap_or((text, text));
     match (a.trim().parse(), b.trim().parse()) {
         (Ok(a), Ok(b)) if a <= b => Ok((a, b)),
-        _ => Err("frames are written as 0-47, the first before the last".to_owned()),
+        _ => Err("write the first and the last frame, such as 0-47".to_owned()),
     }
 }
 
 pub fn parse_samples(text: &str) -> Result<(u32, u32), String> {
     match text.split_once("..").map(|(a, b)| (a.trim().parse(), b.trim().parse())) {
         Some((Ok(a), Ok(b))) if a < b => Ok((a, b)),
-        _ => Err("samples are written as 0..64, the end not included".to_owned()),
+        _ => Err("write the first sample and the one after the last, such as 0..64".to_owned()),
     }
 }
 
 fn numbers<T: std::str::FromStr, const N: usize>(text: &str, example: &str) -> Result<[T; N], String> {
     let parsed: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    parsed.and_then(|n| n.try_into().ok()).ok_or_else(|| format!("is written as {example}"))
+    parsed.and_then(|n| n.try_into().ok()).ok_or_else(|| format!("write {example}"))
 }
 
 pub fn parse_crop(text: &str) -> Result<[u32; 4], String> {
-    numbers(text, "X,Y,WIDTH,HEIGHT")
+    numbers(text, "the left and upper edge, the width and the height in pixels, such as 0,0,64,64")
 }
 
 pub fn parse_replay(text: &str) -> Result<[u32; 3], String> {
-    numbers(text, "X,Y,SAMPLE")
+    numbers(text, "the column, the row and the sample, such as 10,20,0")
 }
 
 pub fn parse_vector(text: &str) -> Result<[f32; 3], String> {
-    numbers(text, "X,Y,Z")
+    numbers(text, "three numbers, such as 4,0,0")
 }
 
-/// A time above 0.
-pub fn parse_seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().filter(|&s: &f64| s > 0.0);
-    let time = seconds.and_then(|s| Duration::try_from_secs_f64(s).ok());
-    time.ok_or_else(|| "a number of seconds above 0 is wanted, as in 10 or 0.5".to_owned())
+/// The same as a duration.
+pub fn parse_duration(text: &str) -> Result<Duration, String> {
+    let seconds = parse_seconds(text)?;
+    Duration::try_from_secs_f32(seconds)
+        .map_err(|_| "this is longer than any picture takes: write less".to_owned())
 }
 
 /// A length, 0 or more.
 pub fn parse_radius(text: &str) -> Result<f32, String> {
     let radius = text.parse().ok().filter(|r: &f32| r.is_finite() && *r >= 0.0);
-    radius.ok_or_else(|| "a length in metres is wanted, as in 0.05".to_owned())
+    radius.ok_or_else(|| "write a length in metres, such as 0.05".to_owned())
 }
 
 /// By how much a picture is brightened.
@@ -81,6 +144,6 @@ pub fn parse_exposure(text: &str) -> Result<Exposure, String> {
     match (text, text.parse::<f32>()) {
         ("auto", _) => Ok(Exposure::Auto),
         (_, Ok(stops)) if stops.is_finite() => Ok(Exposure::Stops(stops)),
-        _ => Err("it is a number of powers of two, such as -1 or 0.5, or auto".to_owned()),
+        _ => Err("write a number of powers of two, such as -1 or 0.5, or auto".to_owned()),
     }
 }

@@ -1,9 +1,10 @@
-//! What `-V` says.
+//! What `-V` prints.
 
+use crate::sandbox;
 use bilux::accel::CpuLevel;
 
-/// Version, commit, and the CPU level that kernels are chosen for.
+/// The version, the commit, the CPU level that kernels are chosen for, and what enforces `--sandbox`.
 pub fn text() -> String {
     let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("BILUX_COMMIT"));
-    format!("{version} ({commit}, CPU level {})", CpuLevel::detect().name())
+    format!("{version} ({commit}, CPU level {}, sandbox {})", CpuLevel::detect().name(), sandbox::describe())
 }

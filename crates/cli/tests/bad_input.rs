@@ -80,7 +80,7 @@ fn scene_files_that_say_something_wrong_are_told_where() {
         std::fs::write(path.join("a.toml"), "[[model]]\nfile = 'pot.obj'\n").unwrap();
         render(path, "a.toml", &["--camera", "5"])
     };
-    assert_told((code, said), 2, &["--camera: there is no camera '5': this scene has 1, counted from 0"]);
+    assert_told((code, said), 2, &["--camera: there is no camera '5': this scene has only camera 0"]);
 }
 
 #[test]
@@ -131,8 +131,8 @@ fn command_lines_that_ask_for_what_there_is_not() {
     let path = folder.path();
     std::fs::write(path.join("pot.obj"), PLAIN).unwrap();
     let refused = |more: &[&str], parts: &[&str]| assert_told(render(path, "pot.obj", more), 2, parts);
-    refused(&["--size", "0x0"], &["--size: '0x0' is no size: write it as 640x480"]);
-    refused(&["--size", "99999x9"], &["--size: '99999x9' is no size", "1 to 65536"]);
+    refused(&["--size", "0x0"], &["--size: '0x0' is not a size: each side has 1 to 65536 pixels"]);
+    refused(&["--size", "99999x9"], &["--size: '99999x9' is not a size", "1 to 65536"]);
     refused(&["-o", "out.pgn"], &["out.pgn: 'pgn' is not a picture format", "did you mean 'png'?"]);
     refused(&["-o", "out"], &["out: the name has no extension of a picture format", "there are: png"]);
     refused(&["-o", "none/out.png"], &["there is no folder 'none'", "make it first"]);
@@ -143,7 +143,7 @@ fn command_lines_that_ask_for_what_there_is_not() {
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
     assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyy"]), 2, &["pot.xyy: this is not a scene format"]);
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["that is what `bilux render` does"]);
+    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render` for that"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
     assert_told(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
     assert_told(

@@ -48,12 +48,13 @@ fn what_noise_or_time_ends_is_denoised_for_a_display_and_counted_samples_are_not
 #[test]
 fn with_nothing_said_there_is_a_budget() {
     let folder = folder();
-    let said = render(folder.path(), "a.png", &[]);
+    let said = render(folder.path(), "a.png", &["-v"]);
     assert!(said.contains("until 2% noise or 5 s") && said.contains("denoised by"), "{said}");
-    let said = bilux(folder.path(), &["render", "pot.obj", "-i", "whitted", "--size", "8x8", "-o", "b.png"]);
+    let said =
+        bilux(folder.path(), &["render", "pot.obj", "-v", "-i", "whitted", "--size", "8x8", "-o", "b.png"]);
     assert!(!said.contains("until") && !said.contains("denoised"), "{said}");
     // A part is one of a counted picture.
-    let said = render(folder.path(), "c.exr", &["--crop", "0,0,8,8"]);
+    let said = render(folder.path(), "c.exr", &["-v", "--crop", "0,0,8,8"]);
     assert!(!said.contains("until"), "{said}");
 }
 

@@ -2,6 +2,7 @@
 //! all of it the same keys of one table.
 
 mod background;
+mod size;
 mod studio;
 
 use crate::Error;
@@ -13,8 +14,8 @@ use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Warning};
 use bilux_transport::Stop;
-use bilux_transport::film::MAX_SIDE;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
+pub use size::{no_size, parse_size};
 use std::time::Duration;
 pub use studio::parse_orbit;
 use studio::{as_orbit, studio};
@@ -309,18 +310,6 @@ const MOST_SPP: u32 = 1 << 16;
 fn stop(reader: &Reader) -> Stop {
     let above_zero = |key: &str| Some(reader.number(key)).filter(|&x| x > 0.0);
     Stop { noise: above_zero("noise"), time_limit: above_zero("time_limit").map(Duration::from_secs_f32) }
-}
-
-/// What is said of a text that [`parse_size`] does not take.
-pub fn no_size(text: &str) -> String {
-    format!("'{text}' is no size: write it as 640x480, with sides of 1 to {MAX_SIDE} pixels")
-}
-
-/// `640x480` as two numbers that a film can have.
-pub fn parse_size(text: &str) -> Option<(u32, u32)> {
-    let (w, h) = text.split_once(['x', 'X', '×'])?;
-    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
-    Some((side(w)?, side(h)?))
 }
 
 fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {

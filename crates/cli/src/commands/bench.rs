@@ -2,15 +2,20 @@
 
 use super::{DONE, check_folder, read_options};
 use crate::arguments::{Bench, BenchKind, Common};
-use crate::output;
-use anyhow::Context;
+use crate::{output, usage};
+use anyhow::{Context, anyhow};
 use bilux::settings::{no_size, parse_size};
 use bilux_bench::Options;
 
 pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     let defaults = Options::default();
-    let size = |text: &String| parse_size(text).with_context(|| no_size(text));
-    let size = arguments.size.as_ref().map(size).transpose()?;
+    if common.sandbox {
+        return Err(usage::wrong(anyhow!(
+            "--sandbox: benchmarks load other engines and write files: leave it out"
+        )));
+    }
+    let size = |text: &String| parse_size(text).with_context(|| format!("--size: {}", no_size(text)));
+    let size = arguments.size.as_ref().map(size).transpose().map_err(usage::wrong)?;
     let options = Options {
         counts: arguments.counts.clone(),
         accels: arguments.accel.clone(),
@@ -19,7 +24,8 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         layout: arguments.layout.clone().unwrap_or(defaults.layout),
     };
     if let Some(path) = &arguments.output {
-        check_folder(path)?;
+        check_folder(path).map_err(usage::wrong)?;
+        bilux::pictures::format_of_path(path).map_err(usage::wrong)?;
     }
     let tell = |what: &str| {
         if !common.quiet {
@@ -38,12 +44,12 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         BenchKind::Models => models(arguments, &tell)?,
     };
     if arguments.json {
-        output::print(serde_json::to_string_pretty(&report.json())?);
+        output::print(serde_json::to_string_pretty(&report.json())?)?;
     } else {
-        output::print(report.text.trim_end());
+        output::print(report.text.trim_end())?;
     }
     if let Some(path) = &arguments.output {
-        let picture = report.picture.context("this benchmark makes no picture: leave out -o")?;
+        let picture = report.picture.context("-o: this benchmark makes no picture: leave it out")?;
         bilux::pictures::write(path, &picture, &Default::default())?;
     }
     Ok(DONE)
@@ -87,7 +93,7 @@ fn load(arguments: &Bench, common: &Common, tell: bilux_bench::Tell) -> anyhow::
     }
     let folder = std::env::temp_dir().join(format!("bilux-load-{}", std::process::id()));
     let files = if arguments.scenes.is_empty() {
-        tell("what is made: files of 100 MB, and a million instances");
+        tell("files of 100 MB and a million instances, which are made now");
         std::fs::create_dir_all(&folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
         make(&folder, 100_000_000, 1_000_000)?
     } else {

@@ -1,8 +1,9 @@
 //! `bilux compare`: how far a picture is from its reference.
 
 use super::{DONE, check_folder};
-use crate::arguments::Compare;
+use crate::arguments::{Common, Compare};
 use crate::output;
+use crate::sandbox::Confines;
 use bilux::pictures::metrics::{HeatMap, METRICS, Pair, Report, heat_map};
 use bilux::pictures::{Picture, TONEMAPS};
 use std::path::Path;
@@ -13,8 +14,9 @@ const BEYOND: u8 = 1;
 const TROUBLE: u8 = 2;
 
 /// Exits 0 within the bounds, 1 beyond them, 2 where the pictures cannot be compared.
-pub fn run(arguments: &Compare) -> anyhow::Result<u8> {
-    match compare(arguments) {
+pub fn run(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
+    match compare(arguments, common) {
+        Err(error) if output::is_closed_pipe(&error) => Err(error),
         Ok(code) => Ok(code),
         Err(error) => {
             output::error(&error);
@@ -23,17 +25,24 @@ pub fn run(arguments: &Compare) -> anyhow::Result<u8> {
     }
 }
 
-fn compare(arguments: &Compare) -> anyhow::Result<u8> {
+fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
+    let mut confines = Confines::default().reading(&arguments.picture).reading(&arguments.reference);
+    if let Some(path) = &arguments.heat_map {
+        check_folder(path)?;
+        confines = confines.writing(path);
+        confines.check_written(path, common)?;
+    }
+    confines.enter(common)?;
     let picture = bilux::pictures::read(&arguments.picture)?;
     let reference = bilux::pictures::read(&arguments.reference)?;
     let report = bilux::pictures::compare(&picture, &reference)?;
     if arguments.json {
-        output::print(serde_json::to_string_pretty(&as_json(&report))?);
+        output::print(serde_json::to_string_pretty(&as_json(&report))?)?;
     } else {
         for (name, value) in &report.values {
             let summary =
                 METRICS.iter().find(|row| row.entry.name == *name).map_or("", |row| row.entry.summary);
-            output::print(format_args!("{name:<7} {value:<12.6} {summary}"));
+            output::print(format_args!("{name:<7} {value:<12.6} {summary}"))?;
         }
     }
     if report.non_finite != [0, 0] {
@@ -44,7 +53,7 @@ fn compare(arguments: &Compare) -> anyhow::Result<u8> {
         write_heat_map(&picture, &reference, path)?;
     }
     let broken = broken_bounds(arguments, &report);
-    broken.iter().for_each(|bound| output::say(format_args!("beyond its bound: {bound}")));
+    broken.iter().for_each(|bound| output::say(format_args!("out of bounds: {bound}")));
     Ok(if broken.is_empty() { DONE } else { BEYOND })
 }
 
@@ -54,7 +63,6 @@ fn as_json(report: &Report) -> serde_json::Value {
 }
 
 fn write_heat_map(picture: &Picture, reference: &Picture, path: &Path) -> anyhow::Result<()> {
-    check_folder(path)?;
     let pair = Pair::new(picture, reference, 0.0, &TONEMAPS[0])?;
     Ok(bilux::pictures::write(path, &heat_map(&pair, HeatMap::Flip)?, &Default::default())?)
 }

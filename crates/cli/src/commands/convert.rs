@@ -1,7 +1,10 @@
 //! `bilux convert`: between scene formats, and between picture formats.
 
-use super::{DONE, check_choices, check_folder, read_options_with, tell_warnings};
+use super::{
+    DONE, check_choices, check_folder, check_quality, read_options_with, tell_lost_alpha, tell_warnings,
+};
 use crate::arguments::{Common, Convert};
+use crate::sandbox::Confines;
 use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::WriteOptions;
@@ -12,14 +15,25 @@ use std::path::Path;
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
     check_folder(output).map_err(usage::wrong)?;
+    let confines = Confines::default().reading_scene(input).writing(output);
+    confines.check_written(output, common).map_err(usage::wrong)?;
     match (is_picture(input), is_picture(output)) {
         (true, true) => {
             bilux::pictures::format_of_path(output).map_err(usage::wrong)?;
+            check_quality(arguments.quality, output).map_err(usage::wrong)?;
+            confines.enter(common)?;
             let picture = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
-            bilux::pictures::write(output, &picture, &Default::default())?;
+            tell_lost_alpha(&picture, output, None, common)?;
+            let mut options = bilux::pictures::WriteOptions::default();
+            options.quality = arguments.quality.unwrap_or(options.quality);
+            bilux::pictures::write(output, &picture, &options)?;
         }
         (false, false) => {
             bilux::formats::format_of_path(output).map_err(usage::wrong)?;
+            if arguments.quality.is_some() {
+                return Err(usage::wrong(anyhow!("--quality is for JPEG pictures: leave it out")));
+            }
+            confines.enter(common)?;
             let scene =
                 bilux::load(input, &read_options_with(common, &arguments.posed.choices, arguments.posed.at))?;
             check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
@@ -29,7 +43,7 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             tell_warnings(&lost, common)?;
         }
         (false, true) => {
-            return Err(mismatch(input, output, "a scene", "a picture: that is what `bilux render` does"));
+            return Err(mismatch(input, output, "a scene", "a picture: use `bilux render` for that"));
         }
         (true, false) => {
             return Err(mismatch(input, output, "a picture", "a scene: name a picture, such as out.png"));

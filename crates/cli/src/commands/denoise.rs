@@ -1,7 +1,8 @@
 //! `bilux denoise`: a noisy picture into a smooth one.
 
-use super::{DONE, check_folder};
+use super::{DONE, check_folder, check_quality, tell_lost_alpha};
 use crate::arguments::{Common, Denoise};
+use crate::sandbox::Confines;
 use crate::values::Exposure;
 use crate::{output, usage};
 use bilux::pictures::denoise::{Chosen, Task, denoise, denoiser};
@@ -13,12 +14,16 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
     check_folder(output).map_err(usage::wrong)?;
     format_of_path(output).map_err(usage::wrong)?;
+    check_quality(arguments.quality, output).map_err(usage::wrong)?;
+    let confines = Confines::default().reading(input).writing(output);
+    confines.check_written(output, common).map_err(usage::wrong)?;
     let tone_map = tone_map(&arguments.tonemap).map_err(usage::wrong)?;
     if arguments.by != "builtin" {
         crate::denoising::load(arguments.threads, common);
     }
     let task = Task { threads: arguments.threads, sandboxed: common.sandbox, ..Task::default() };
     let chosen = denoiser(&arguments.by, &task).map_err(usage::wrong)?;
+    confines.enter(common)?;
     let noisy = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
     let begun = Instant::now();
     let smooth = denoise(&noisy, &*chosen.denoiser)?;
@@ -27,7 +32,9 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
         Exposure::Stops(stops) => stops,
         Exposure::Auto => auto_exposure(&smooth),
     };
-    let options = WriteOptions { exposure, tone_map, ..WriteOptions::default() };
+    let mut options = WriteOptions { exposure, tone_map, ..WriteOptions::default() };
+    options.quality = arguments.quality.unwrap_or(options.quality);
+    tell_lost_alpha(&smooth, output, None, common)?;
     bilux::pictures::write(output, &smooth, &options)?;
     if !common.quiet {
         output::say(format_args!("{}: {}", output.display(), told(&chosen, seconds)));
@@ -36,7 +43,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
 }
 
 /// Which denoiser it was, and how to get a better one.
-pub fn told(chosen: &Chosen, seconds: f64) -> String {
+fn told(chosen: &Chosen, seconds: f64) -> String {
     let advice = chosen.advice.as_ref().map(|advice| format!("; {advice}")).unwrap_or_default();
     format!("denoised by {} in {seconds:.2} s{advice}", chosen.denoiser.describe())
 }

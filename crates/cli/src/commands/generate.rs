@@ -2,6 +2,7 @@
 
 use super::{DONE, check_folder, read_options, tell_warnings};
 use crate::arguments::{Common, Generate};
+use crate::sandbox::Confines;
 use crate::settings_from::{assignment_of, from_flag};
 use crate::usage;
 use bilux::formats::WriteOptions;
@@ -11,6 +12,12 @@ use bilux::scene::{Spec, Value};
 pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
     bilux::formats::format_of_path(&arguments.output).map_err(usage::wrong)?;
+    let mut confines = Confines::default().writing(&arguments.output);
+    confines.check_written(&arguments.output, common).map_err(usage::wrong)?;
+    if let Some(file) = &arguments.from {
+        confines = confines.reading_scene(file);
+    }
+    confines.enter(common)?;
     let scene = match &arguments.from {
         Some(file) => {
             let model = bilux::load(file, &read_options(common))?;

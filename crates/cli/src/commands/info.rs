@@ -2,8 +2,8 @@
 
 use super::{DONE, check_choices, read_options_with, tell_warnings};
 use crate::arguments::{Common, Info};
-use crate::output;
-use crate::usage;
+use crate::sandbox::Confines;
+use crate::{output, usage};
 use bilux::formats::ReadOptions;
 use bilux::memory::Memory;
 use bilux::scene::{Mesh, SceneBuilder, Texture};
@@ -14,12 +14,13 @@ use std::sync::Arc;
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
     let options = ReadOptions { validate: true, ..options };
+    Confines::default().reading_scene(&arguments.scene).enter(common)?;
     let scene = bilux::load(&arguments.scene, &options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {
-        output::print(serde_json::to_string_pretty(&as_json(&scene))?);
+        output::print(serde_json::to_string_pretty(&as_json(&scene))?)?;
     } else {
-        output::print(as_text(&scene));
+        output::print(as_text(&scene))?;
         tell_warnings(&scene.warnings, common)?;
     }
     Ok(DONE)

@@ -106,10 +106,10 @@ pub fn run(arguments: &List) -> anyhow::Result<u8> {
     let rows = (table.rows)();
     if arguments.json {
         let rows: Vec<_> = rows.iter().map(row_json).collect();
-        output::print(serde_json::to_string_pretty(&json!({ table.name: rows }))?);
+        output::print(serde_json::to_string_pretty(&json!({ table.name: rows }))?)?;
     } else {
-        output::print(format_args!("{}: {}\n", table.name, table.summary));
-        rows.iter().for_each(|row| output::print(row_text(row)));
+        output::print(format_args!("{}: {}\n", table.name, table.summary))?;
+        rows.iter().try_for_each(|row| output::print(row_text(row)))?;
     }
     Ok(DONE)
 }
@@ -123,7 +123,7 @@ pub fn schema() -> anyhow::Result<u8> {
             settings.push(*parameter);
         }
     }
-    output::print(serde_json::to_string_pretty(&bilux::formats::toml_schema(&settings))?);
+    output::print(serde_json::to_string_pretty(&bilux::formats::toml_schema(&settings))?)?;
     Ok(DONE)
 }
 

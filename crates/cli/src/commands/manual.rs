@@ -10,7 +10,7 @@ use std::path::Path;
 pub fn completions(shell: clap_complete::Shell) -> anyhow::Result<u8> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Arguments::command(), "bilux", &mut text);
-    output::print_bytes(&text);
+    output::print_bytes(&text)?;
     Ok(DONE)
 }
 
@@ -25,13 +25,13 @@ pub fn pages(folder: Option<&Path>) -> anyhow::Result<u8> {
         None => {
             let mut text = Vec::new();
             clap_mangen::Man::new(Arguments::command()).render(&mut text)?;
-            output::print_bytes(&text);
+            output::print_bytes(&text)?;
         }
     }
     Ok(DONE)
 }
 
 pub fn licenses() -> anyhow::Result<u8> {
-    output::print(include_str!("../../../../LICENSES.txt"));
+    output::print(include_str!("../../../../LICENSES.txt"))?;
     Ok(DONE)
 }

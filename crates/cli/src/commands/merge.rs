@@ -1,9 +1,9 @@
-//! `bilux merge`: partial films into one picture.
+//! `bilux merge`: partial renders into one picture.
 
 use super::{DONE, check_folder};
 use crate::arguments::{Common, Merge};
-use crate::output;
-use crate::usage;
+use crate::sandbox::Confines;
+use crate::{output, usage};
 use anyhow::Context;
 use bilux::pictures::Limits;
 use bilux::pictures::formats::format_of_path;
@@ -11,7 +11,13 @@ use bilux::transport::{Film, JoinedLayers};
 
 pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
-    let format = format_of_path(&arguments.output)?;
+    let format = format_of_path(&arguments.output).map_err(usage::wrong)?;
+    let mut confines = Confines::default().writing(&arguments.output);
+    confines.check_written(&arguments.output, common).map_err(usage::wrong)?;
+    for part in &arguments.parts {
+        confines = confines.reading(part);
+    }
+    confines.enter(common)?;
     let is_exr = format.entry.name == "exr";
     let mut layers = JoinedLayers::default();
     let mut joined: Option<Film> = None;
@@ -26,9 +32,11 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
             None => joined = Some(next),
         }
     }
-    let film = joined.context("nothing to merge")?;
+    let film = joined.context("there is nothing to merge: name partial renders")?;
     if layers.left_out() {
-        output::warning(format_args!("the variance of pictures by light paths cannot be joined: left out"));
+        output::warning(format_args!(
+            "the variance of light traced from the lights cannot be merged, and is left out"
+        ));
     }
     // Where a part is still missing, an .exr keeps the sums, so that it can be added later.
     let mut picture = if is_exr { film.to_partial()? } else { film.to_picture()? };
@@ -36,7 +44,7 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     bilux::pictures::write(&arguments.output, &picture, &Default::default())?;
     if !common.quiet {
         let parts = arguments.parts.len();
-        output::say(format_args!("{}: {parts} parts joined", arguments.output.display()));
+        output::say(format_args!("{}: {parts} parts merged", arguments.output.display()));
     }
     Ok(DONE)
 }

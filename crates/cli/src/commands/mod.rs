@@ -8,18 +8,24 @@ pub mod denoise;
 pub mod generate;
 pub mod info;
 pub mod list;
+mod log;
 pub mod manual;
 pub mod merge;
 pub mod render;
 mod stats;
+mod targets;
 mod time_limit;
 
 use crate::arguments::Common;
 use crate::choices::{Choices, GlassArgument};
 use crate::output;
+use crate::sandbox::folder_of;
 use anyhow::bail;
 use bilux::formats::{Glass, ReadOptions};
-use bilux::scene::{SceneBuilder, Warning};
+use bilux::math::Rgb;
+use bilux::pictures::Picture;
+use bilux::pictures::formats::format_of_path;
+use bilux::scene::{SceneBuilder, Span, Warning};
 use std::path::{Path, PathBuf};
 
 /// The work is done.
@@ -55,10 +61,10 @@ fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptio
 /// Refuses a choice between things of which the file has none.
 fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> {
     if choices.animation.is_some() && scene.inventory.animations.is_empty() {
-        bail!("--animation: there are no animations in this file");
+        bail!("--animation: this file has no animations: leave it out");
     }
     if choices.variant.is_some() && scene.inventory.variants.is_empty() {
-        bail!("--variant: there are no variants of materials in this file");
+        bail!("--variant: this file has no variants of its materials: leave it out");
     }
     Ok(())
 }
@@ -66,7 +72,7 @@ fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> 
 /// Says each warning once; under `--strict` the first is an error.
 fn tell_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> {
     if let (true, Some(first)) = (common.strict, warnings.first()) {
-        bail!("{first} (a warning, but --strict was asked for)");
+        bail!("{first} (a warning, which --strict makes an error)");
     }
     if !common.quiet {
         warnings.iter().for_each(output::warning);
@@ -76,15 +82,42 @@ fn tell_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> {
 
 /// Finds out before the work whether a file can be written there.
 fn check_folder(path: &Path) -> anyhow::Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(path);
     if !folder.is_dir() {
         bail!("{}: there is no folder '{}': make it first", path.display(), folder.display());
     }
     if path.is_dir() {
-        bail!("{}: is a folder: name a file in it", path.display());
+        bail!("{}: this is a folder: name a file in it", path.display());
     }
     Ok(())
+}
+
+/// Refuses a quality for what is not a JPEG.
+fn check_quality(quality: Option<u8>, output: &Path) -> anyhow::Result<()> {
+    let format = format_of_path(output)?.entry.name;
+    if quality.is_some() && format != "jpeg" {
+        bail!("{}: --quality is for JPEG: name a .jpg, or leave it out", output.display());
+    }
+    Ok(())
+}
+
+/// Warns where a picture is transparent and its format cannot be.
+fn tell_lost_alpha(
+    picture: &Picture,
+    output: &Path,
+    behind: Option<Rgb>,
+    common: &Common,
+) -> anyhow::Result<()> {
+    let format = format_of_path(output)?;
+    let transparent = picture.channel("A").is_some_and(|alpha| alpha.iter().any(|&alpha| alpha < 1.0));
+    if !transparent || format.holds_alpha || behind.is_some() && format.for_display {
+        return Ok(());
+    }
+    let instead = if format.for_display { "white" } else { "black" };
+    let message = format!(
+        "{}: {} cannot be transparent, and has {instead} there: name a .png or an .exr to keep it",
+        output.display(),
+        format.entry.name
+    );
+    tell_warnings(&[Warning { message, at: Span::default() }], common)
 }

@@ -1,45 +1,51 @@
 //! `bilux render`: pictures from scenes.
 
-use super::{
-    DONE, aov, check_choices, check_folder, denoise, read_options_with, stats, tell_warnings, time_limit,
-};
+use super::targets::{Target, frame_path, is_stdout, targets};
+use super::{DONE, aov, check_choices, log, read_options_with, stats, tell_warnings, time_limit};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
+use crate::sandbox::Confines;
 use crate::{output, settings_from, usage};
-use anyhow::{Context, bail};
-use bilux::budget::{DEFAULT_BUDGET, with_default_budget, with_fast_budget};
+use anyhow::{Context, anyhow, bail};
+use bilux::budget::{with_default_budget, with_fast_budget};
 use bilux::formats::ReadOptions;
 use bilux::pictures::denoise::Chosen;
 use bilux::pictures::formats::{BitDepth, format_of_path};
-use bilux::scene::{Parameters, SceneBuilder};
-use bilux::transport::{Reached, Window};
+use bilux::scene::{Parameters, SceneBuilder, SceneError};
+use bilux::transport::Window;
 use bilux::{Job, Outcome};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     let interrupt = Interrupt::listen()?;
     let user = settings_from::render(arguments).map_err(usage::wrong)?;
+    check_scenes(&arguments.scenes).map_err(usage::wrong)?;
     let targets = targets(arguments).map_err(usage::wrong)?;
     aov::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
+    arguments.studio.check_files()?;
     if let Some(timeout) = arguments.timeout {
         interrupt.end_after(timeout);
     }
     begin_loading(arguments, common);
+    confine(&targets, arguments, common)?;
     let mut failed = 0;
-    for (scene, output) in &targets {
-        match render_one(scene, output, &user, arguments, common, &interrupt) {
+    for target in &targets {
+        match render_one(target, &user, arguments, common, &interrupt) {
             Ok(DONE) => {}
             Ok(status) => return Ok(status),
             Err(error) => {
-                let error = usage::naming(scene, error);
-                // Of many the others are not to wait for one that is broken; what is wrong for all ends it.
-                if targets.len() == 1 || usage::is_command_line(&error) {
+                let error = usage::naming(&target.scene, error);
+                if arguments.json && !output::is_closed_pipe(&error) {
+                    log::print_failure(&target.scene, &target.output, &error)?;
+                }
+                // One broken scene does not stop the others; what is wrong for all of them does.
+                if targets.len() == 1 || usage::is_command_line(&error) || output::is_closed_pipe(&error) {
                     return Err(error);
                 }
                 output::error(&error);
@@ -53,64 +59,69 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// Every scene with its picture's name, found wrong before anything is rendered.
-fn targets(arguments: &Render) -> anyhow::Result<Vec<(PathBuf, PathBuf)>> {
-    let pattern = arguments.output.to_string_lossy();
-    check_scenes(&arguments.scenes)?;
-    if arguments.scenes.len() > 1 && !pattern.contains("{stem}") {
-        bail!("one picture for {} scenes: write -o '{{stem}}.png'", arguments.scenes.len());
+/// Under `--sandbox`: reads scenes with their folders and what options name, and writes beside the picture.
+fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::Result<()> {
+    let studio = &arguments.studio;
+    let mut confines = Confines::default();
+    for scene in targets.iter().map(|target| &target.scene) {
+        // What comes from standard input may name files of the working directory.
+        confines = confines.reading_scene(if is_stdout(scene) { Path::new("./stdin") } else { scene });
     }
-    let mut targets = Vec::new();
-    for scene in &arguments.scenes {
-        let stem = scene.file_stem().map_or("stdin".into(), |s| s.to_string_lossy());
-        let output = PathBuf::from(pattern.replace("{stem}", &stem));
-        if !is_stdout(&output) {
-            check_folder(&output)?;
-            let format = format_of_path(&output)?;
-            if format.write.is_none() {
-                bail!("{}: {} pictures can be read, but not written", output.display(), format.entry.name);
-            }
-            if arguments.samples.is_some() && format.entry.name != "exr" {
-                bail!("{}: a part of the samples needs an .exr, which can hold exact sums", output.display());
-            }
-        }
-        if targets.iter().any(|(_, other)| *other == output) && !is_stdout(&output) {
-            bail!("{}: two scenes would be written there", output.display());
-        }
-        targets.push((scene.clone(), output));
+    for file in studio.env.as_deref().into_iter().chain(studio.picture_behind()) {
+        confines = confines.reading(file);
     }
-    Ok(targets)
-}
-
-fn is_stdout(path: &Path) -> bool {
-    path == Path::new("-")
+    if !is_stdout(&arguments.output) {
+        confines = confines.writing(&arguments.output);
+    }
+    for target in targets {
+        let files = [Some(&target.output), target.stats.as_ref()];
+        for file in files.into_iter().flatten().filter(|file| !is_stdout(file)) {
+            confines.check_written(file, common).map_err(usage::wrong)?;
+        }
+    }
+    confines.enter(common)
 }
 
 /// A scene file, that may have to be read again for another time.
 struct Input<'a> {
     path: &'a Path,
-    /// What came from standard input, which can be read but once, and its format.
-    piped: Option<(Vec<u8>, &'a str)>,
+    /// What came from standard input, which can be read but once.
+    piped: Option<Vec<u8>>,
     arguments: &'a Render,
     common: &'a Common,
+    interrupt: &'a Interrupt,
     /// When the picture was begun that is rendered next.
     begun: Cell<Instant>,
+    /// Every warning so far, for `--json`.
+    warnings: RefCell<Vec<String>>,
 }
 
 impl Input<'_> {
-    fn open<'a>(path: &'a Path, arguments: &'a Render, common: &'a Common) -> anyhow::Result<Input<'a>> {
+    fn open<'a>(
+        path: &'a Path,
+        arguments: &'a Render,
+        common: &'a Common,
+        interrupt: &'a Interrupt,
+    ) -> anyhow::Result<Input<'a>> {
         let mut piped = None;
         if is_stdout(path) {
-            let format = arguments
-                .input_format
-                .as_deref()
-                .context("say what comes from standard input: --input-format toml (see `bilux list formats`)")
-                .map_err(usage::wrong)?;
+            check_input_format(&arguments.input_format).map_err(usage::wrong)?;
             let mut bytes = Vec::new();
-            std::io::stdin().take(common.max_memory).read_to_end(&mut bytes)?;
-            piped = Some((bytes, format));
+            let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
+            input.context("standard input: cannot read it")?;
+            if bytes.is_empty() {
+                bail!("standard input is empty: name a scene file, or send a scene");
+            }
+            piped = Some(bytes);
         }
-        Ok(Input { path, piped, arguments, common, begun: Cell::new(Instant::now()) })
+        let (begun, warnings) = (Cell::new(Instant::now()), RefCell::default());
+        Ok(Input { path, piped, arguments, common, interrupt, begun, warnings })
+    }
+
+    /// Prints warnings, and keeps them for `--json`.
+    fn warn(&self, warnings: &[bilux::scene::Warning]) -> anyhow::Result<()> {
+        self.warnings.borrow_mut().extend(warnings.iter().map(ToString::to_string));
+        tell_warnings(warnings, self.common)
     }
 
     /// The scene as it is at a time in seconds, and for frames as it is at all times.
@@ -118,7 +129,10 @@ impl Input<'_> {
         let choices = &self.arguments.choices;
         let options = ReadOptions { whole_movement, ..read_options_with(self.common, choices, time) };
         let mut scene = match &self.piped {
-            Some((bytes, format)) => {
+            Some(bytes) => {
+                // No name: it goes by its first bytes.
+                let format =
+                    Some(&*self.arguments.input_format).filter(|name| *name != "auto").unwrap_or_default();
                 bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
             }
             None => bilux::load(self.path, &options)?,
@@ -141,6 +155,18 @@ impl Input<'_> {
             job.samples(from..to);
         }
         if let Some([x, y, width, height]) = arguments.crop {
+            let s = job.settings();
+            let fits = |at: u32, side: u32, most: u32| {
+                side > 0 && at.checked_add(side).is_some_and(|end| end <= most)
+            };
+            if !fits(x, width, s.width) || !fits(y, height, s.height) {
+                let size = (s.width, s.height);
+                return Err(usage::wrong(anyhow!(
+                    "--crop {x},{y},{width},{height}: this window has to have pixels and to lie within the picture, which has {}x{}",
+                    size.0,
+                    size.1
+                )));
+            }
             job.crop(Window { x, y, width, height });
         }
         if arguments.stats.is_some() {
@@ -151,23 +177,21 @@ impl Input<'_> {
 }
 
 fn render_one(
-    path: &Path,
-    output: &Path,
+    target: &Target,
     user: &Parameters,
     arguments: &Render,
     common: &Common,
     interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
-    let input = Input::open(path, arguments, common)?;
+    let input = Input::open(&target.scene, arguments, common, interrupt)?;
     let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
-    tell_warnings(&scene.warnings, common)?;
+    input.warn(&scene.warnings)?;
     let Some(count) = arguments.studio.turntable else {
-        return render_scene(&input, &mut scene, output, user, interrupt);
+        return render_scene(&input, &mut scene, target, user);
     };
     for frame in 0..count {
         let turned = crate::studio::turned(user, frame as f32 / count as f32)?;
-        let output = frame_path(output, frame);
-        let status = render_scene(&input, &mut scene, &output, &turned, interrupt)?;
+        let status = render_scene(&input, &mut scene, &numbered(target, frame), &turned)?;
         if status != DONE {
             return Ok(status);
         }
@@ -176,12 +200,20 @@ fn render_one(
     Ok(DONE)
 }
 
+/// The files of one frame.
+fn numbered(target: &Target, frame: u32) -> Target {
+    Target {
+        scene: target.scene.clone(),
+        output: frame_path(&target.output, frame),
+        stats: target.stats.as_deref().map(|path| frame_path(path, frame)),
+    }
+}
+
 fn render_scene(
     input: &Input,
     scene: &mut SceneBuilder,
-    output: &Path,
+    target: &Target,
     user: &Parameters,
-    interrupt: &Interrupt,
 ) -> anyhow::Result<u8> {
     let Input { arguments, common, .. } = *input;
     let begun = Instant::now();
@@ -193,29 +225,24 @@ fn render_scene(
     let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
     let mut job = input.job(scene, &user)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
-        // The time was said elsewhere than by --at.
+        // The time was given elsewhere than by --at.
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
         job = input.job(scene, &user)?;
     }
     let build_seconds = begun.elapsed().as_secs_f64();
-    tell_warnings(job.warnings(), common)?;
+    input.warn(job.warnings())?;
     if !common.quiet {
-        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", output.display())));
+        job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", target.output.display())));
     }
     if let Some([x, y, sample]) = arguments.replay {
-        output::print(job.replay(x, y, sample)?);
+        output::print(job.replay(x, y, sample).context("--replay")?)?;
         return Ok(DONE);
     }
-    if by_default && !common.quiet {
-        let (noise, seconds) = DEFAULT_BUDGET;
-        output::say(format_args!(
-            "{}: until {}% noise or {seconds} s (--noise, --time-limit); the same on every machine with --spp",
-            output.display(),
-            noise * 100.0
-        ));
+    if by_default && common.verbose > 0 {
+        log::tell_budget(&target.output);
     }
     let Some((first, last)) = arguments.frames else {
-        return finish(&mut job, output, input, build_seconds, interrupt);
+        return finish(input, &mut job, target, build_seconds);
     };
     for frame in first..=last {
         let time = frame as f32 / job.settings().fps;
@@ -229,8 +256,7 @@ fn render_scene(
             job = input.job(&posed, &user)?;
         }
         job.at_time(time);
-        let output = frame_path(output, frame);
-        let status = finish(&mut job, &output, input, build_seconds, interrupt)?;
+        let status = finish(input, &mut job, &numbered(target, frame), build_seconds)?;
         if status != DONE {
             return Ok(status);
         }
@@ -238,40 +264,9 @@ fn render_scene(
     Ok(DONE)
 }
 
-/// Says which way is up where that was decided here; once, however many pictures there are.
-fn say_orientation(job: &Job, scene: &Path) {
-    static SAID: std::sync::Once = std::sync::Once::new();
-    if let Some(orientation) = job.orientation() {
-        let (up, front) = (orientation.up.name(), orientation.front.name());
-        let because = orientation.because.words();
-        SAID.call_once(|| {
-            output::say(format_args!(
-                "{}: up is {up}, front is {front}, {because} (--up, --front)",
-                scene.display()
-            ));
-        });
-    }
-}
-
-/// `{frame}` filled in with four digits; put before the extension where it is missing.
-fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
-    let text = pattern.to_string_lossy();
-    if text.contains("{frame}") {
-        return PathBuf::from(text.replace("{frame}", &format!("{frame:04}")));
-    }
-    let stem = pattern.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = pattern.extension().unwrap_or_default().to_string_lossy();
-    pattern.with_file_name(format!("{stem}-{frame:04}.{extension}"))
-}
-
-fn finish(
-    job: &mut Job,
-    output: &Path,
-    input: &Input,
-    build_seconds: f64,
-    interrupt: &Interrupt,
-) -> anyhow::Result<u8> {
-    let Input { path: scene, arguments, common, .. } = *input;
+fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
+    let Input { arguments, common, interrupt, .. } = *input;
+    let output = &target.output;
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
     let report = Report::new(&label, common, interrupt.clone());
     let for_display = is_stdout(output) || format_of_path(output)?.for_display;
@@ -281,52 +276,54 @@ fn finish(
     let outcome = job.render(&report)?;
     let seconds = report.finish();
     let denoiser = denoiser.filter(|_| !outcome.cancelled);
-    let denoised = write(job, &outcome, denoiser.as_ref(), output, arguments)?;
+    let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
     interrupt.renders(false);
     let overrun = time_limit::overrun(job, &outcome, before, seconds, input.begun.get().elapsed());
     tell_odd_samples(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
-    if let Some(path) = &arguments.stats {
-        let stats = stats::of(job, &outcome, scene, build_seconds, seconds);
-        let text = serde_json::to_string_pretty(&stats)?;
-        bilux::pictures::formats::write_atomically(path, text.as_bytes())?;
+    let rendered = log::Rendered {
+        job,
+        outcome: &outcome,
+        scene: input.path,
+        output,
+        build_seconds,
+        seconds,
+        total_seconds: input.begun.get().elapsed().as_secs_f64(),
+        denoiser: denoiser.as_ref().filter(|_| denoised),
+        timed_out: interrupt.timed_out(),
+        overrun,
+        warnings: &input.warnings.borrow(),
+    };
+    write_stats(target, &rendered)?;
+    if arguments.json {
+        output::print(rendered.json())?;
     }
     if !common.quiet {
-        say_orientation(job, scene);
-        if let Some(choice) = &outcome.choice {
-            output::say(format_args!(
-                "{}: {} chose {choice}",
-                output.display(),
-                job.settings().integrator.entry.name
-            ));
-        }
-        let s = job.settings();
-        if let Some(reached) = &outcome.reached {
-            output::say(format_args!("{}: {}", output.display(), how_far(reached)));
-        }
-        if let Some(told) = denoised {
-            output::say(format_args!("{}: {told}", output.display()));
-        }
-        if let Some(overrun) = overrun {
-            output::say(format_args!("{}: {overrun}", output.display()));
-        }
-        output::say(format_args!(
-            "{}: {}x{}, {} by {}, {:.2} s after {build_seconds:.2} s of building, {:.2} Mrays/s{}",
-            output.display(),
-            s.width,
-            s.height,
-            s.integrator.entry.name,
-            s.accel.name,
-            seconds,
-            outcome.counters.rays as f64 / seconds.max(1e-9) / 1e6,
-            match outcome.cancelled {
-                true if interrupt.timed_out() => "; ended by --timeout: this is what there is",
-                true => "; interrupted: this is what there is",
-                false => "",
-            },
-        ));
+        rendered.tell(common.verbose);
     }
     Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
+}
+
+/// Refuses a format of which there is none.
+fn check_input_format(name: &str) -> anyhow::Result<()> {
+    if name == "auto" || bilux::formats::format_named(name).is_some_and(|row| row.reads()) {
+        return Ok(());
+    }
+    let rows = bilux::formats::SCENE_FORMATS.iter().filter(|row| row.reads());
+    let names = rows.map(|row| row.entry.name).chain(["auto"]);
+    Err(SceneError::unknown("scene format", name, names, &settings_from::from_flag("--input-format")).into())
+}
+
+/// `--stats`.
+fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> {
+    let Some(path) = &target.stats else { return Ok(()) };
+    let stats = stats::of(rendered);
+    if is_stdout(path) {
+        return output::print(stats);
+    }
+    let text = serde_json::to_string_pretty(&stats)?;
+    Ok(bilux::pictures::formats::write_atomically(path, text.as_bytes())
+        .map_err(|error| error.in_file(path))?)
 }
 
 /// True for a part of a picture.
@@ -334,29 +331,26 @@ fn is_part(arguments: &Render) -> bool {
     arguments.samples.is_some() || arguments.crop.is_some()
 }
 
-/// A part of a picture goes into an `.exr` with its exact sums; anything else is the picture, denoised if it is to be. Gives what is to be
-/// told about that.
+/// Writes the picture; a part of one goes into an `.exr` with its exact sums. True when it was denoised.
 fn write(
+    input: &Input,
     job: &Job,
     outcome: &Outcome,
     denoiser: Option<&Chosen>,
     output: &Path,
-    arguments: &Render,
-) -> anyhow::Result<Option<String>> {
+) -> anyhow::Result<bool> {
+    let arguments = input.arguments;
     let is_exr = !is_stdout(output) && aov::is_exr(output);
     let is_part = is_exr && (is_part(arguments) || outcome.cancelled);
-    let begun = Instant::now();
-    let (mut picture, told) = match denoiser.filter(|_| !is_part) {
-        Some(chosen) => {
-            let picture = outcome.denoised(chosen)?;
-            (picture, Some(denoise::told(chosen, begun.elapsed().as_secs_f64())))
-        }
-        None if is_part => (job.partial(outcome)?, None),
-        None => (outcome.picture()?, None),
+    let denoiser = denoiser.filter(|_| !is_part);
+    let mut picture = match denoiser {
+        Some(chosen) => outcome.denoised(chosen)?,
+        None if is_part => job.partial(outcome)?,
+        None => outcome.picture()?,
     };
     if is_exr {
         outcome.push_layers(&mut picture, &aov::layers(arguments))?;
-        if told.is_some() {
+        if denoiser.is_some() {
             picture.push_rgb("noisy", &outcome.picture()?.to_rgb().unwrap_or_default())?;
         }
     }
@@ -364,12 +358,14 @@ fn write(
     if arguments.bits == "16" {
         options.bit_depth = BitDepth::Sixteen;
     }
+    options.quality = arguments.quality.unwrap_or(options.quality);
     if is_stdout(output) {
-        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?);
+        output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
     } else {
+        super::tell_lost_alpha(&picture, output, options.behind, input.common)?;
         bilux::pictures::write(output, &picture, &options)?;
     }
-    Ok(told)
+    Ok(denoiser.is_some())
 }
 
 /// Samples that are no number are counted and located, never hidden.
@@ -387,14 +383,4 @@ fn tell_odd_samples(outcome: &Outcome) {
             trouble.overflowed, first.x, first.y, first.sample
         ));
     }
-}
-
-/// Where a picture ended that could end early.
-fn how_far(reached: &Reached) -> String {
-    let noise = reached.noise.map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
-    // The samples by which noise is told are in the mean: said where it may matter.
-    let bias = reached.bias.filter(|bias| *bias >= 0.05);
-    let bias =
-        bias.map(|bias| format!(", shifted by the rule by at most {bias:.2} of it")).unwrap_or_default();
-    format!("{} samples a pixel{noise}{bias}", reached.spp)
 }

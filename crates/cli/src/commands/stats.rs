@@ -1,9 +1,8 @@
 //! What `bilux render --stats` writes.
 
+use super::log::Rendered;
 use bilux::transport::Choice;
-use bilux::{Job, Outcome};
 use serde_json::json;
-use std::path::Path;
 
 /// Which ways of finding light were chosen, and what was expected of each.
 fn choice(choice: &Choice) -> serde_json::Value {
@@ -16,7 +15,8 @@ fn choice(choice: &Choice) -> serde_json::Value {
 }
 
 /// What is known of a picture once it is done.
-pub fn of(job: &Job, outcome: &Outcome, scene: &Path, build_seconds: f64, seconds: f64) -> serde_json::Value {
+pub fn of(rendered: &Rendered) -> serde_json::Value {
+    let Rendered { job, outcome, scene, build_seconds, seconds, .. } = *rendered;
     let (s, c) = (job.settings(), &outcome.counters);
     let trees: Vec<_> = job
         .scene()

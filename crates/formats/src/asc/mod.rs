@@ -47,6 +47,8 @@ fn sniff(bytes: &[u8]) -> bool {
         match (numbers, others) {
             (0, 0) => {}
             (8.., 0) => vertices += 1,
+            // As in the second line of an OFF file: here numbers stand in vertices alone.
+            (1.., 0) => return false,
             _ if vertices > 0 => return false,
             _ => {}
         }

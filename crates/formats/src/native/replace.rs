@@ -33,8 +33,10 @@ impl Native<'_, '_> {
             if material.is_none() && object.is_none() {
                 return Err(missing("material, or object (whose material is replaced)", table));
             }
-            let materials = &self.scene.materials;
-            let is_meant: Vec<bool> = materials.iter().map(|spec| fits(material, &spec.name)).collect();
+            let materials = self.scene.materials.iter().enumerate();
+            let is_meant: Vec<bool> = materials
+                .map(|(i, spec)| self.may_replace(material, i) && fits(material, &spec.name))
+                .collect();
             let mut found = false;
             for (placed, &its) in self.scene.objects.iter_mut().zip(&before) {
                 if is_meant[its] && fits(object, &placed.name) {
@@ -49,6 +51,11 @@ impl Native<'_, '_> {
         Ok(())
     }
 
+    /// A pattern means the materials of models; one that the scene file itself makes is meant by its name alone.
+    fn may_replace(&self, material: Option<&str>, index: usize) -> bool {
+        index >= self.own_materials() || !material.is_some_and(|name| name.contains(['*', '?']))
+    }
+
     /// What is said where nothing goes by the names.
     fn without_match(
         &self,
@@ -58,8 +65,9 @@ impl Native<'_, '_> {
         before: &[usize],
     ) -> FormatError {
         let objects = self.scene.objects.iter().zip(before);
+        let of_models = objects.clone().filter(|(_, its)| self.may_replace(material, **its));
         let materials: BTreeSet<&str> =
-            objects.clone().map(|(_, &its)| self.scene.materials[its].name.as_str()).collect();
+            of_models.map(|(_, &its)| self.scene.materials[its].name.as_str()).collect();
         let names: BTreeSet<&str> = objects.map(|(object, _)| object.name.as_str()).collect();
         for (key, wanted, known) in [("material", material, &materials), ("object", object, &names)] {
             let Some(wanted) = wanted.filter(|wanted| !known.iter().any(|name| matches(wanted, name))) else {

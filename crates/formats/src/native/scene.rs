@@ -133,6 +133,11 @@ impl Native<'_, '_> {
         }
     }
 
+    /// So many materials, the first ones, are the scene file's own.
+    pub(super) fn own_materials(&self) -> usize {
+        self.materials.len()
+    }
+
     /// The material of models that neither name nor bring one.
     pub(super) fn default_material(&mut self) -> usize {
         let scene = &mut self.scene;

@@ -51,6 +51,19 @@ fn materials_are_replaced_by_name_by_pattern_and_by_object() {
 }
 
 #[test]
+fn a_pattern_means_the_materials_of_models_and_not_ones_own() {
+    let floor = "[[model]]\nshape = \"quad\"\nname = \"floor\"\nmaterial = \"white\"\n";
+    let all = format!("{floor}[[replace]]\nmaterial = \"*\"\nwith = \"gold\"\n");
+    assert_eq!(materials(&all), ["gold", "gold", "gold", "white"]);
+    let by_name = format!("{floor}[[replace]]\nmaterial = \"white\"\nwith = \"gold\"\n");
+    assert_eq!(materials(&by_name)[3], "gold");
+    let by_object = format!("{floor}[[replace]]\nobject = \"f*\"\nwith = \"gold\"\n");
+    assert_eq!(materials(&by_object)[3], "gold");
+    let own = format!("{floor}[[replace]]\nmaterial = \"whi*\"\nwith = \"gold\"\n");
+    assert!(made_of(&own).unwrap_err().to_string().contains("there is no material 'whi*'"));
+}
+
+#[test]
 fn a_replacement_of_nothing_is_told_with_the_nearest_name() {
     let refusal = |text: &str| made_of(text).expect_err("this should be refused").to_string();
     let cases = [

@@ -27,6 +27,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["exr"],
     for_display: false,
+    holds_alpha: true,
     sniff: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
     read_rgba8: None,

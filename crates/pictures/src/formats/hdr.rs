@@ -20,6 +20,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["hdr", "rgbe", "pic", "xyze"],
     for_display: false,
+    holds_alpha: false,
     sniff: |bytes| bytes.starts_with(b"#?"),
     read,
     read_rgba8: None,

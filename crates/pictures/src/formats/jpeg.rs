@@ -1,11 +1,12 @@
-//! JPEG, read only: textures come in it, renderings should not leave in it.
+//! JPEG: textures come in it, and pictures for the web leave in it. [JPEG]
 
-use super::PictureFormatEntry;
 use super::faults::jpeg::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
-use crate::{Limits, PictureError};
+use super::{PictureFormatEntry, WriteOptions, check_sides, opaque_planes};
+use crate::{Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
+use jpeg_encoder::{ColorType, Encoder};
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
@@ -13,13 +14,19 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 /// The row of `jpeg`.
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
-    entry: Entry { name: "jpeg", summary: "lossy, 8 bits, sRGB: read only", source: "JPEG", parameters: &[] },
+    entry: Entry {
+        name: "jpeg",
+        summary: "lossy, 8 bits, sRGB, without alpha: small files for the web",
+        source: "JPEG",
+        parameters: &[],
+    },
     extensions: &["jpg", "jpeg", "jpe", "jfif"],
     for_display: true,
+    holds_alpha: false,
     sniff: |bytes| bytes.starts_with(&[0xff, 0xd8, 0xff]),
     read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
-    write: None,
+    write: Some(write),
 };
 
 const FORMAT: &str = "JPEG";
@@ -65,4 +72,19 @@ fn is_whole(bytes: &[u8]) -> bool {
         }
     }
     bytes.get(at..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
+}
+
+/// Baseline, which everything reads. Colours are as fine as brightness from a quality of 90 on, and half as fine below.
+fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let unwritable = |error: jpeg_encoder::EncodingError| PictureError::Unwritable {
+        format: FORMAT,
+        what: error.to_string(),
+    };
+    let [width, height] = check_sides(FORMAT, picture, usize::from(u16::MAX))?;
+    let planes = opaque_planes(FORMAT, picture, options)?;
+    let colours = if planes.names.len() == 1 { ColorType::Luma } else { ColorType::Rgb };
+    let mut bytes = Vec::new();
+    let encoder = Encoder::new(&mut bytes, options.quality.clamp(1, 100));
+    encoder.encode(&planes.to_u8(&planes.names), width, height, colours).map_err(unwritable)?;
+    Ok(bytes)
 }

@@ -18,6 +18,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["ktx2"],
     for_display: true,
+    holds_alpha: false,
     sniff: |bytes| bytes.starts_with(MAGIC),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),

@@ -59,6 +59,8 @@ pub struct PictureFormatEntry {
     pub for_display: bool,
     /// True when a file of this format may begin with these bytes; never, where a format has no mark of its own.
     pub sniff: fn(&[u8]) -> bool,
+    /// True when a file can be transparent; other formats hold the picture in front of a colour.
+    pub holds_alpha: bool,
     /// Reads a whole file.
     pub read: ReadFn,
     /// Reads it where it is stored in sRGB bytes, and gives none where it is not; `None` where that would save nothing.
@@ -85,6 +87,8 @@ pub struct WriteOptions {
     pub tone_map: &'static ToneMapEntry,
     /// What shows through what is transparent, in linear light of a display, in pictures for one.
     pub behind: Option<Rgb>,
+    /// Of a JPEG, from 1 to 100: how true it is to the picture, and how large.
+    pub quality: u8,
 }
 
 /// How many steps a sample of a picture for a display has.
@@ -97,9 +101,18 @@ pub enum BitDepth {
     Sixteen,
 }
 
+/// The quality of a JPEG unless another is asked for: artefacts that nobody sees, in a sixth of a PNG's bytes.
+pub const DEFAULT_QUALITY: u8 = 92;
+
 impl Default for WriteOptions {
     fn default() -> WriteOptions {
-        WriteOptions { bit_depth: BitDepth::default(), exposure: 0.0, tone_map: &TONEMAPS[0], behind: None }
+        WriteOptions {
+            bit_depth: BitDepth::default(),
+            exposure: 0.0,
+            tone_map: &TONEMAPS[0],
+            behind: None,
+            quality: DEFAULT_QUALITY,
+        }
     }
 }
 
@@ -208,6 +221,32 @@ fn display_planes(
         names.push("A");
     }
     Ok(DisplayPlanes { picture, names })
+}
+
+/// The same for a format without alpha: what is transparent shows white, unless the options have another colour.
+fn opaque_planes(
+    format: &'static str,
+    picture: &Picture,
+    options: &WriteOptions,
+) -> Result<DisplayPlanes, PictureError> {
+    let behind = options.behind.or_else(|| picture.channel("A").map(|_| Rgb::WHITE));
+    let mut planes = display_planes(format, picture, &WriteOptions { behind, ..*options })?;
+    planes.names.retain(|&name| name != "A");
+    Ok(planes)
+}
+
+/// Refuses sides that a format has no room for.
+fn check_sides(format: &'static str, picture: &Picture, most: usize) -> Result<[u16; 2], PictureError> {
+    let (width, height) = (picture.width(), picture.height());
+    match [width, height].map(u16::try_from) {
+        [Ok(w), Ok(h)] if width.max(height) <= most => Ok([w, h]),
+        _ => Err(PictureError::Unwritable {
+            format,
+            what: format!(
+                "it has {width} x {height} pixels, and a side has at most {most}; write .png instead"
+            ),
+        }),
+    }
 }
 
 fn require_colour(format: &'static str, picture: &Picture) -> Result<(), PictureError> {

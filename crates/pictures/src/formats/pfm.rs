@@ -16,6 +16,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["pfm"],
     for_display: false,
+    holds_alpha: false,
     sniff: |bytes| matches!(bytes, [b'P', b'F' | b'f', blank, ..] if blank.is_ascii_whitespace()),
     read,
     read_rgba8: None,

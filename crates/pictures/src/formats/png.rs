@@ -20,6 +20,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["png", "apng"],
     for_display: true,
+    holds_alpha: true,
     sniff: |bytes| bytes.starts_with(b"\x89PNG"),
     read: |bytes, limits| guarded(FORMAT, || read(bytes, limits)),
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || read_rgba8(bytes, limits))),

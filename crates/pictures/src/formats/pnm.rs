@@ -1,7 +1,7 @@
 //! PBM, PGM and PPM, in text and binary: the simplest pictures there are. [Netpbm]
 
 use super::tokens::Tokens;
-use super::{BitDepth, PictureFormatEntry, WriteOptions, display_planes};
+use super::{BitDepth, PictureFormatEntry, WriteOptions, opaque_planes};
 use crate::limits::reserved;
 use crate::{ColourSpace, Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
@@ -16,6 +16,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["ppm", "pgm", "pbm", "pnm"],
     for_display: true,
+    holds_alpha: false,
     sniff: |bytes| matches!(bytes, [b'P', b'1'..=b'6', next, ..] if next.is_ascii_whitespace() || *next == b'#'),
     read,
     read_rgba8: None,
@@ -133,14 +134,14 @@ fn read_binary(data: &[u8], layout: &Layout) -> Result<Vec<Vec<f32>>, PictureErr
     Ok(planes)
 }
 
-/// P6 or P5. Alpha is left out: the format has none.
+/// P6 or P5. The format has no alpha.
 fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
-    let planes = display_planes(FORMAT, picture, options)?;
-    let names: Vec<&str> = planes.names.iter().copied().filter(|&name| name != "A").collect();
+    let planes = opaque_planes(FORMAT, picture, options)?;
+    let names = &planes.names;
     let magic = if names.len() == 1 { "P5" } else { "P6" };
     let (maximum, data) = match options.bit_depth {
-        BitDepth::Eight => (255, planes.to_u8(&names)),
-        BitDepth::Sixteen => (65535, planes.to_u16_be(&names)),
+        BitDepth::Eight => (255, planes.to_u8(names)),
+        BitDepth::Sixteen => (65535, planes.to_u16_be(names)),
     };
     let mut bytes = format!("{magic}\n{} {}\n{maximum}\n", picture.width(), picture.height()).into_bytes();
     bytes.extend_from_slice(&data);

@@ -17,6 +17,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     },
     extensions: &["tga", "targa", "vda", "icb", "vst"],
     for_display: true,
+    holds_alpha: false,
     sniff: |_| false,
     read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),

@@ -1,24 +1,30 @@
-//! WebP, read only: textures come in it.
+//! WebP: textures come in it, lossy or not; pictures leave in it without loss. [WebP]
 
-use super::PictureFormatEntry;
 use super::faults::webp::explain;
 use super::guard::guarded;
 use super::rgba8::Interleaved;
+use super::{PictureFormatEntry, WriteOptions, check_sides, display_planes};
 use crate::limits::zeroed;
-use crate::{Limits, PictureError};
+use crate::{Limits, Picture, PictureError};
 use bilux_math::registry::Entry;
-use image_webp::WebPDecoder;
+use image_webp::{ColorType, WebPDecoder, WebPEncoder};
 use std::io::Cursor;
 
 /// The row of `webp`.
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
-    entry: Entry { name: "webp", summary: "8 bits, sRGB: read only", source: "WebP", parameters: &[] },
+    entry: Entry {
+        name: "webp",
+        summary: "8 bits, sRGB, with alpha, written without loss: smaller than PNG, for the web",
+        source: "WebP",
+        parameters: &[],
+    },
     extensions: &["webp"],
     for_display: true,
+    holds_alpha: true,
     sniff: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
     read: |bytes, limits| guarded(FORMAT, || decode(bytes, limits)?.picture(FORMAT)),
     read_rgba8: Some(|bytes, limits| guarded(FORMAT, || Ok(decode(bytes, limits)?.rgba8()))),
-    write: None,
+    write: Some(write),
 };
 
 const FORMAT: &str = "WebP";
@@ -40,4 +46,29 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let mut samples = zeroed::<u8>(FORMAT, size)?;
     decoder.read_image(&mut samples).map_err(|error| explain(&error, bytes))?;
     Ok(Interleaved { width: width as usize, height: height as usize, samples })
+}
+
+/// More have no room in 14 bits.
+const LONGEST_SIDE: usize = 1 << 14;
+
+/// Without loss, as the encoder knows no other way.
+fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
+    let unwritable = |error: image_webp::EncodingError| PictureError::Unwritable {
+        format: FORMAT,
+        what: error.to_string(),
+    };
+    let [width, height] = check_sides(FORMAT, picture, LONGEST_SIDE)?;
+    let planes = display_planes(FORMAT, picture, options)?;
+    let colours = match planes.names.len() {
+        1 => ColorType::L8,
+        2 => ColorType::La8,
+        3 => ColorType::Rgb8,
+        _ => ColorType::Rgba8,
+    };
+    let mut bytes = Vec::new();
+    let samples = planes.to_u8(&planes.names);
+    WebPEncoder::new(&mut bytes)
+        .encode(&samples, width.into(), height.into(), colours)
+        .map_err(unwritable)?;
+    Ok(bytes)
 }

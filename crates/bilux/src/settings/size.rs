@@ -1,0 +1,24 @@
+//! The size of a picture, as it is written: `640x480`.
+
+use bilux_transport::film::MAX_SIDE;
+
+/// Why [`parse_size`] does not take a text, and what to write instead.
+pub fn no_size(text: &str) -> String {
+    let sides = text.split(|c: char| !c.is_ascii_digit()).filter(|side| !side.is_empty());
+    let sides: Vec<u64> = sides.map(|side| side.parse().unwrap_or(u64::MAX)).collect();
+    let fit = sides.iter().all(|side| (1..=u64::from(MAX_SIDE)).contains(side));
+    let advice = match sides[..] {
+        [_, _] | [_] if !fit => format!("each side has 1 to {MAX_SIDE} pixels"),
+        [width, height] => format!("write {width}x{height}"),
+        [side] => format!("write {side}x{side} for a square"),
+        _ => "write the width and the height in pixels, such as 640x480".to_owned(),
+    };
+    format!("'{text}' is not a size: {advice}")
+}
+
+/// `640x480` as two numbers that a film can have.
+pub fn parse_size(text: &str) -> Option<(u32, u32)> {
+    let (w, h) = text.split_once(['x', 'X', '×'])?;
+    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    Some((side(w)?, side(h)?))
+}

@@ -1,0 +1,134 @@
+//! What is said of a picture once it is written: a line for people, or a line of JSON.
+
+use crate::output;
+use bilux::budget::DEFAULT_BUDGET;
+use bilux::pictures::denoise::Chosen;
+use bilux::{Job, Outcome};
+use serde_json::json;
+use std::path::Path;
+
+/// A picture that was rendered.
+pub struct Rendered<'a> {
+    pub job: &'a Job,
+    pub outcome: &'a Outcome,
+    pub scene: &'a Path,
+    pub output: &'a Path,
+    /// Building acceleration structures and the like took so long,
+    pub build_seconds: f64,
+    /// and rendering so long.
+    pub seconds: f64,
+    /// From reading the scene to the last byte written.
+    pub total_seconds: f64,
+    /// What denoised it.
+    pub denoiser: Option<&'a Chosen>,
+    /// `--timeout` ended it.
+    pub timed_out: bool,
+    /// Why it took longer than its time limit, if it did.
+    pub overrun: Option<String>,
+    pub warnings: &'a [String],
+}
+
+impl Rendered<'_> {
+    /// Samples per pixel, on average.
+    fn spp(&self) -> u32 {
+        self.outcome.reached.map_or(self.job.settings().spp, |reached| reached.spp)
+    }
+
+    /// The noise that is left, as a part of the light, where it was measured.
+    fn noise(&self) -> Option<f32> {
+        self.outcome.reached.and_then(|reached| reached.noise)
+    }
+
+    /// Tells people: one line, and more of them with `-v`.
+    pub fn tell(&self, verbose: u8) {
+        let (s, output) = (self.job.settings(), self.output.display());
+        if verbose > 0 {
+            self.tell_more();
+        }
+        let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
+        let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
+        let cut = match self.outcome.cancelled {
+            true if self.timed_out => "; ended by --timeout: this is the picture so far",
+            true => "; interrupted: this is the picture so far",
+            false => "",
+        };
+        self.tell_orientation();
+        if let Some(overrun) = &self.overrun {
+            output::say(format_args!("{output}: {overrun}"));
+        }
+        output::say(format_args!(
+            "{output}: {}x{}, {} samples per pixel, {:.1} s{noise}{}{cut}",
+            s.width,
+            s.height,
+            self.spp(),
+            self.total_seconds,
+            denoised.unwrap_or_default(),
+        ));
+        if let Some(advice) = self.denoiser.and_then(|chosen| chosen.advice.as_ref()) {
+            output::say(format_args!("{output}: {advice}"));
+        }
+    }
+
+    /// Says which way is up where that was decided here; once, however many pictures there are.
+    fn tell_orientation(&self) {
+        static SAID: std::sync::Once = std::sync::Once::new();
+        if let Some(orientation) = self.job.orientation() {
+            let (up, front) = (orientation.up.name(), orientation.front.name());
+            let because = orientation.because.words();
+            let scene = self.scene.display();
+            SAID.call_once(|| {
+                output::say(format_args!("{scene}: up is {up}, front is {front}, {because} (--up, --front)"));
+            });
+        }
+    }
+
+    fn tell_more(&self) {
+        let (s, outcome, output) = (self.job.settings(), self.outcome, self.output.display());
+        if let Some(choice) = &outcome.choice {
+            output::say(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
+        }
+        output::say(format_args!(
+            "{output}: {} with {}, {:.2} s of building, {:.2} s of rendering, {:.2} million rays per second",
+            s.integrator.entry.name,
+            s.accel.name,
+            self.build_seconds,
+            self.seconds,
+            outcome.counters.rays as f64 / self.seconds.max(1e-9) / 1e6,
+        ));
+        // The samples that measure the noise are in the mean: reported where that may matter.
+        if let Some(bias) = outcome.reached.and_then(|reached| reached.bias).filter(|bias| *bias >= 0.05) {
+            output::say(format_args!(
+                "{output}: stopping by the noise shifts the mean by at most {bias:.2} of the noise"
+            ));
+        }
+    }
+
+    /// Tells programs.
+    pub fn json(&self) -> serde_json::Value {
+        let (s, outcome) = (self.job.settings(), self.outcome);
+        json!({
+            "scene": self.scene.to_string_lossy(), "picture": self.output.to_string_lossy(),
+            "width": s.width, "height": s.height, "spp": self.spp(), "noise": self.noise(),
+            "seconds": self.total_seconds, "integrator": s.integrator.entry.name,
+            "denoiser": self.denoiser.map(|chosen| chosen.denoiser.describe()), "seed": s.seed,
+            "complete": !outcome.cancelled, "warnings": self.warnings,
+        })
+    }
+}
+
+/// Tells programs of a scene that could not be rendered.
+pub fn print_failure(scene: &Path, picture: &Path, error: &anyhow::Error) -> anyhow::Result<()> {
+    let (scene, picture) = (scene.to_string_lossy(), picture.to_string_lossy());
+    output::print(json!({ "scene": scene, "picture": picture, "error": output::message(error) }))
+}
+
+/// Says when a picture ends of which nobody says when.
+pub fn tell_budget(output: &Path) {
+    let (noise, seconds) = DEFAULT_BUDGET;
+    output::say(format_args!(
+        "{}: until {}% noise or {seconds} s; --noise and --time-limit change that, and --spp gives the same picture on every \
+         machine",
+        output.display(),
+        noise * 100.0
+    ));
+}

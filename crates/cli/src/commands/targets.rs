@@ -1,0 +1,126 @@
+//! Where the pictures of a render go: found wrong before anything is rendered.
+
+use super::check_folder;
+use crate::arguments::Render;
+use anyhow::bail;
+use bilux::pictures::formats::format_of_path;
+use bilux::scene::error::nearest_name;
+use std::path::{Path, PathBuf};
+
+/// A scene, and where its picture goes.
+pub struct Target {
+    pub scene: PathBuf,
+    /// `-` for standard output.
+    pub output: PathBuf,
+    /// Where its statistics go, if they are wanted.
+    pub stats: Option<PathBuf>,
+}
+
+/// What may stand in braces in the name of a picture.
+const NAMES: [&str; 2] = ["stem", "frame"];
+
+/// Every scene with its picture's name.
+pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
+    check_result(arguments)?;
+    check_names("-o", &arguments.output, arguments)?;
+    if let Some(stats) = arguments.stats.as_deref().filter(|path| !is_stdout(path)) {
+        check_names("--stats", stats, arguments)?;
+        check_folder(stats)?;
+    }
+    let mut targets: Vec<Target> = Vec::new();
+    for scene in &arguments.scenes {
+        let stem =
+            scene.file_stem().filter(|_| !is_stdout(scene)).map_or("stdin".into(), |s| s.to_string_lossy());
+        let named = |pattern: &Path| PathBuf::from(pattern.to_string_lossy().replace("{stem}", &stem));
+        let output = named(&arguments.output);
+        if !is_stdout(&output) {
+            check_output(&output, arguments)?;
+        }
+        if targets.iter().any(|other| other.output == output) && !is_stdout(&output) {
+            bail!("{}: two scenes would be written to this file; rename one of them", output.display());
+        }
+        targets.push(Target { scene: scene.clone(), output, stats: arguments.stats.as_deref().map(named) });
+    }
+    Ok(targets)
+}
+
+/// Standard output takes one thing: a picture, or text about pictures.
+fn check_result(arguments: &Render) -> anyhow::Result<()> {
+    let stats = arguments.stats.as_deref().is_some_and(is_stdout);
+    let takers = [
+        ("-o -", is_stdout(&arguments.output)),
+        ("--json", arguments.json),
+        ("--stats -", stats),
+        ("--replay", arguments.replay.is_some()),
+    ];
+    let takers: Vec<&str> = takers.iter().filter(|(_, takes)| *takes).map(|(flag, _)| *flag).collect();
+    if let [one, other, ..] = takers[..] {
+        bail!("{one} and {other} both write to standard output: leave out one of them, or name a file");
+    }
+    Ok(())
+}
+
+/// Refuses names in braces that stand for nothing, and one name for several pictures.
+fn check_names(flag: &str, pattern: &Path, arguments: &Render) -> anyhow::Result<()> {
+    let text = pattern.to_string_lossy();
+    let numbered = arguments.frames.is_some() || arguments.studio.turntable.is_some();
+    for name in text.split('{').skip(1).filter_map(|rest| rest.split_once('}').map(|(name, _)| name)) {
+        if !NAMES.contains(&name) {
+            let names = NAMES.map(str::to_owned);
+            let hint = nearest_name(name, &names)
+                .map(|near| format!(" (did you mean {{{near}}}?)"))
+                .unwrap_or_default();
+            bail!(
+                "{flag} {text}: {{{name}}} stands for nothing{hint}; known are {{stem}}, the scene's name, and {{frame}}, the \
+                 number of a frame"
+            );
+        }
+        if name == "frame" && !numbered {
+            bail!(
+                "{flag} {text}: {{frame}} needs frames: ask for them with --frames or --turntable, or leave it out"
+            );
+        }
+    }
+    if numbered && flag == "-o" && is_stdout(pattern) {
+        bail!("-o -: standard output takes one picture: name files, such as -o '{{stem}}-{{frame}}.png'");
+    }
+    if arguments.scenes.len() > 1 && !text.contains("{stem}") && !(flag == "--stats" && is_stdout(pattern)) {
+        let extension = pattern.extension().unwrap_or_default().to_string_lossy();
+        let scenes = arguments.scenes.len();
+        bail!("{flag} {text}: this names one file for {scenes} scenes: write {flag} '{{stem}}.{extension}'");
+    }
+    Ok(())
+}
+
+/// Refuses a picture that cannot be written.
+fn check_output(output: &Path, arguments: &Render) -> anyhow::Result<()> {
+    check_folder(output)?;
+    let format = format_of_path(output)?;
+    let (name, path) = (format.entry.name, output.display());
+    if arguments.samples.is_some() && name != "exr" {
+        bail!("{path}: --samples needs an .exr, which keeps exact sums: name one, and merge the parts");
+    }
+    if arguments.bits == "16" && ["jpeg", "webp"].contains(&name) {
+        bail!("{path}: --bits 16 is for PNG and PPM; {name} has 8 bits: name a .png, or leave out --bits");
+    }
+    super::check_quality(arguments.quality, output)
+}
+
+/// True for `-`.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// `{frame}` filled in with four digits; put before the extension where it is missing.
+pub fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
+    let text = pattern.to_string_lossy();
+    if is_stdout(pattern) {
+        return pattern.to_owned();
+    }
+    if text.contains("{frame}") {
+        return PathBuf::from(text.replace("{frame}", &format!("{frame:04}")));
+    }
+    let stem = pattern.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = pattern.extension().unwrap_or_default().to_string_lossy();
+    pattern.with_file_name(format!("{stem}-{frame:04}.{extension}"))
+}

@@ -1,0 +1,14 @@
+//! Systems other than Linux: nothing that a process could lay upon itself by the same means.
+
+use super::Enforcement;
+use std::path::{Path, PathBuf};
+
+/// What this kernel can enforce.
+pub(super) fn available() -> Enforcement {
+    Enforcement::Nothing
+}
+
+/// Restricts nothing.
+pub(super) fn restrict(_: &[PathBuf], _: Option<&Path>) -> anyhow::Result<Enforcement> {
+    Ok(Enforcement::Nothing)
+}

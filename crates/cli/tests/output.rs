@@ -1,0 +1,295 @@
+//! What is written can be trusted: a write that fails is an error, results are what was asked for, and a sandbox holds.
+#![allow(clippy::print_stderr, reason = "a test that skips says so")]
+
+use bilux::pictures::{Picture, read};
+use std::fs::{self, File};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+fn bilux(folder: &Path, command: &str) -> Command {
+    let mut bilux = Command::new(env!("CARGO_BIN_EXE_bilux"));
+    // What cargo adds for its tests would have libraries looked for in more places.
+    bilux.current_dir(folder).env("OIDN_LIB", "nowhere").env_remove("LD_LIBRARY_PATH");
+    bilux.args(command.split_whitespace()).stdin(Stdio::null());
+    bilux
+}
+
+fn run(folder: &Path, command: &str) -> Output {
+    bilux(folder, command).output().unwrap()
+}
+
+/// Runs it and gives the exit status with what is on standard error.
+fn answer(folder: &Path, command: &str) -> (Option<i32>, String) {
+    let output = run(folder, command);
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+#[track_caller]
+fn assert_done(folder: &Path, command: &str) -> String {
+    let (code, said) = answer(folder, command);
+    assert_eq!(code, Some(0), "{command}: {said}");
+    said
+}
+
+/// A folder with a ball in it.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("ball.toml"), "[[model]]\nshape = \"sphere\"\n").unwrap();
+    folder
+}
+
+const SMALL: &str = "--size 16x16 --spp 1";
+
+/// Every command that prints a result.
+fn printing() -> Vec<String> {
+    let mut commands: Vec<String> = [
+        "info ball.toml",
+        "info ball.toml --json",
+        "list materials",
+        "list settings --json",
+        "schema",
+        "licenses",
+        "man",
+        "completions bash",
+        "compare a.png a.png",
+        "--help",
+        "render --help",
+        "--version",
+    ]
+    .map(str::to_owned)
+    .into();
+    for result in ["-o -", "-o out.png --json", "-o out.png --stats -", "-o out.png --replay 1,1,0"] {
+        commands.push(format!("render ball.toml {SMALL} {result}"));
+    }
+    commands
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_cannot_be_printed_is_an_error() {
+    let folder = folder();
+    let path = folder.path();
+    assert_done(path, &format!("render ball.toml {SMALL} -o a.png"));
+    for command in printing() {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let output = bilux(path, &command).stdout(full).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        // As everywhere, `compare` keeps 1 for pictures that differ.
+        let status = if command.starts_with("compare") { 2 } else { 1 };
+        assert_eq!(output.status.code(), Some(status), "{command}: {said}");
+        assert!(
+            said.contains("error: standard output: cannot write to it: No space left"),
+            "{command}: {said}"
+        );
+        let mut child = bilux(path, &command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(141), "{command}: {said}");
+        assert!(!said.contains("error"), "{command}: {said}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_cannot_be_written_is_an_error() {
+    let folder = folder();
+    let path = folder.path();
+    for name in ["full.png", "full.json", "full.toml"] {
+        std::os::unix::fs::symlink("/dev/full", path.join(name)).unwrap();
+    }
+    let render = format!("render ball.toml {SMALL}");
+    for command in [
+        format!("{render} -o full.png"),
+        format!("{render} -o a.png --stats full.json"),
+        "generate teapot -o full.toml".to_owned(),
+        "convert ball.toml -o full.toml".to_owned(),
+    ] {
+        let (code, said) = answer(path, &command);
+        assert_eq!(code, Some(1), "{command}: {said}");
+        assert!(said.contains("full.") && said.contains("No space left"), "{command}: {said}");
+    }
+}
+
+#[test]
+fn jpeg_and_webp_hold_the_picture() {
+    let folder = folder();
+    let path = folder.path();
+    let render = "render ball.toml --size 64x48 --spp 64 --seed 3";
+    assert_done(path, &format!("{render} -o a.png"));
+    assert_done(path, &format!("{render} -o a.webp"));
+    for quality in ["20", "95"] {
+        assert_done(path, &format!("{render} -o q{quality}.jpg --quality {quality}"));
+    }
+    let open = |name: &str| read(path.join(name)).unwrap();
+    assert_eq!(open("a.webp").to_rgb(), open("a.png").to_rgb());
+    let difference = |name: &str| {
+        let (a, b) = (open(name).to_rgb().unwrap(), open("a.png").to_rgb().unwrap());
+        a.iter().zip(&b).map(|(a, b)| (*a - *b).map(f32::abs).max_channel()).sum::<f32>() / a.len() as f32
+    };
+    let (coarse, fine) = (difference("q20.jpg"), difference("q95.jpg"));
+    assert!(fine < 0.01 && fine < coarse && coarse < 0.1, "{fine} {coarse}");
+    let size = |name: &str| fs::metadata(path.join(name)).unwrap().len();
+    assert!(size("q20.jpg") < size("q95.jpg"));
+    assert_done(path, "convert a.png -o b.webp");
+    assert_eq!(fs::read(path.join("b.webp")).unwrap(), fs::read(path.join("a.webp")).unwrap());
+}
+
+#[test]
+fn transparency_is_kept_or_reported_as_lost() {
+    let folder = folder();
+    let path = folder.path();
+    let render = format!("render ball.toml {SMALL} --background transparent");
+    let corner = |name: &str| -> Picture { read(path.join(name)).unwrap() };
+    for name in ["a.png", "a.webp"] {
+        assert!(!assert_done(path, &format!("{render} -o {name}")).contains("warning"));
+        assert_eq!(corner(name).alpha_at(0, 0), 0.0, "{name}");
+    }
+    for name in ["a.jpg", "a.ppm"] {
+        let said = assert_done(path, &format!("{render} -o {name}"));
+        assert!(said.contains("cannot be transparent, and has white there"), "{said}");
+        assert!(corner(name).rgb(0, 0).to_array().iter().all(|c| *c > 0.98), "{name}");
+        let (code, _) = answer(path, &format!("{render} --strict -o strict-{name}"));
+        assert_eq!((code, path.join(format!("strict-{name}")).exists()), (Some(1), false));
+    }
+    let said = assert_done(path, &format!("render ball.toml {SMALL} --background #ff0000 -o red.jpg"));
+    assert!(!said.contains("warning"), "{said}");
+    let red = corner("red.jpg").rgb(0, 0);
+    assert!(red.r > 0.95 && red.g < 0.05, "{red:?}");
+}
+
+#[test]
+fn a_line_of_json_is_printed_for_each_picture() {
+    let folder = folder();
+    let path = folder.path();
+    fs::write(path.join("broken.obj"), "v 1 2\n").unwrap();
+    let lines = |command: &str, status: i32| -> Vec<serde_json::Value> {
+        let output = run(path, command);
+        assert_eq!(output.status.code(), Some(status), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    };
+    let all = lines(&format!("render ball.toml broken.obj {SMALL} --json -o {{stem}}.png"), 1);
+    assert_eq!(all.len(), 2);
+    assert_eq!((&all[0]["scene"], &all[0]["picture"]), (&"ball.toml".into(), &"ball.png".into()));
+    assert_eq!(
+        (&all[0]["width"], &all[0]["spp"], &all[0]["complete"]),
+        (&16.into(), &1.into(), &true.into())
+    );
+    assert!(all[0]["seconds"].as_f64().unwrap() > 0.0 && all[0]["error"].is_null());
+    assert!(all[1]["error"].as_str().unwrap().contains("broken.obj:1"), "{}", all[1]);
+    let turned = lines(&format!("render ball.toml {SMALL} --turntable 2 --json -o t-{{frame}}.png"), 0);
+    let pictures: Vec<_> = turned.iter().map(|line| line["picture"].as_str().unwrap().to_owned()).collect();
+    assert_eq!(pictures, ["t-0000.png", "t-0001.png"]);
+    let stats = lines(&format!("render ball.toml {SMALL} --stats - -o s.png"), 0);
+    assert!(stats.len() == 1 && stats[0]["triangle_tests"].as_u64().unwrap() > 0);
+    assert_done(
+        path,
+        &format!("render ball.toml {SMALL} --turntable 2 --stats t-{{frame}}.json -o t-{{frame}}.png"),
+    );
+    assert!(path.join("t-0000.json").is_file() && path.join("t-0001.json").is_file());
+}
+
+#[test]
+fn standard_input_is_recognised_by_its_first_bytes() {
+    let folder = folder();
+    let path = folder.path();
+    for format in ["toml", "obj", "glb", "ply", "stl", "off", "pbrt", "asc"] {
+        let file = format!("ball.{format}");
+        if format != "toml" {
+            assert_done(path, &format!("convert ball.toml -o {file}"));
+        }
+        for named in ["", "--input-format auto"] {
+            let command = format!("render - {SMALL} {named} -o {format}.png");
+            let output = bilux(path, &command).stdin(File::open(path.join(&file)).unwrap()).output().unwrap();
+            assert!(output.status.success(), "{format}: {}", String::from_utf8_lossy(&output.stderr));
+        }
+    }
+    let (code, said) = answer(path, &format!("render - {SMALL} -o nothing.png"));
+    assert!(code == Some(1) && said.contains("standard input"), "{said}");
+}
+
+/// The log of a picture is one line, of which `-v` makes more.
+#[test]
+fn the_log_of_a_picture_is_one_line() {
+    let folder = folder();
+    let path = folder.path();
+    let render = "render ball.toml --size 16x16 --progress none --denoise=off -o a.png";
+    for more in ["--spp 4", "--noise 20%"] {
+        let said = assert_done(path, &format!("{render} {more}"));
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert!(said.starts_with("a.png: 16x16, ") && said.contains(" samples per pixel, "), "{said}");
+        assert_eq!(said.contains("% noise"), more.contains("noise"), "{said}");
+        let more = assert_done(path, &format!("{render} {more} -v"));
+        assert!(more.lines().count() > 1 && more.contains("auto chose"), "{more}");
+    }
+}
+
+/// A scene in a folder of its own, beside a file that nobody may read or write.
+fn sandboxed() -> TempDir {
+    let folder = folder();
+    let path = folder.path();
+    fs::create_dir(path.join("scene")).unwrap();
+    fs::create_dir(path.join("out")).unwrap();
+    fs::rename(path.join("ball.toml"), path.join("scene/ball.toml")).unwrap();
+    fs::write(path.join("secret.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    folder
+}
+
+#[test]
+fn a_sandbox_writes_only_beside_the_picture() {
+    let folder = sandboxed();
+    let path = folder.path();
+    let render = format!("render scene/ball.toml {SMALL} --sandbox");
+    assert_done(path, &format!("{render} -o out/a.png --stats out/a.json --aov depth,normal"));
+    for name in ["a.png", "a.json", "a.layers.exr"] {
+        assert!(path.join("out").join(name).is_file(), "{name}");
+    }
+    for (more, what) in [
+        ("-o out/b.png --stats stats.json", "stats.json: --sandbox writes only into"),
+        (
+            "-o - --stats stats.json",
+            "stats.json: --sandbox writes no file beside a picture on standard output",
+        ),
+    ] {
+        let (code, said) = answer(path, &format!("{render} {more}"));
+        assert!(code == Some(2) && said.contains(what), "{said}");
+        assert!(!path.join("stats.json").exists());
+    }
+    #[cfg(unix)]
+    {
+        // A link in the folder may lead to a file of somebody else.
+        std::os::unix::fs::symlink("../secret.obj", path.join("out/link.png")).unwrap();
+        let (code, said) = answer(path, &format!("{render} -o out/link.png"));
+        assert!(code == Some(2) && said.contains("--sandbox writes only into"), "{said}");
+        assert!(fs::read_to_string(path.join("secret.obj")).unwrap().starts_with("v 0 0 0"));
+    }
+}
+
+/// That the kernel refuses what it should is tested where it is asked to: `src/sandbox/landlock.rs`.
+#[cfg(target_os = "linux")]
+#[test]
+fn commands_work_within_a_sandbox_and_its_enforcement_is_reported() {
+    let folder = sandboxed();
+    let path = folder.path();
+    let version = String::from_utf8(run(path, "-V").stdout).unwrap();
+    assert!(version.contains("sandbox "), "{version}");
+    let enforced = version.contains("enforced by the kernel (files and network)");
+    fs::create_dir(path.join("out/more")).unwrap();
+    for command in [
+        "info scene/ball.toml",
+        "convert scene/ball.toml -o out/a.obj",
+        "generate teapot -o out/pot.toml",
+        "generate teapots --from secret.obj --count 2 -o out/two.obj",
+        "render scene/ball.toml --size 8x8 --spp 1 -o out/a.exr --aov albedo,normal,variance --samples 0..1",
+        "render scene/ball.toml --size 8x8 --spp 1 -i bdpt --max-depth 2 -o out/b.exr --aov strategies",
+        "render scene/ball.toml --size 8x8 --spp 1 -o out/b.png --env out/a.exr",
+        "merge out/a.exr -o out/c.exr",
+        "denoise out/a.exr -o out/c.png",
+        "compare out/b.png out/b.png --heat-map out/d.png",
+    ] {
+        let said = assert_done(path, &format!("{command} --sandbox"));
+        assert_eq!(said.contains("Landlock"), !enforced, "{command}: {said}");
+    }
+}
