@@ -45,9 +45,14 @@ pub(super) fn parse(bytes: &[u8], name: &Arc<str>) -> Result<Table, FormatError>
     })?;
     let document = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or_else(|| whole_file(name), |span| places.at(span.start));
-        FormatError::malformed(format!("this is not TOML: {}", e.message()), at)
+        FormatError::malformed(format!("this is not TOML: {}", syntax_fault(e.message())), at)
     })?;
     table(document.get_ref(), Span { line: 1, column: 1, ..whole_file(name) }, &places)
+}
+
+/// A report of the parser with quotes as messages have them.
+fn syntax_fault(report: &str) -> String {
+    report.replace("`\"`", "a double quote").replace('`', "'")
 }
 
 fn table(source: &DeTable, at: Span, places: &Places) -> Result<Table, FormatError> {

@@ -180,7 +180,7 @@ impl Pbrt<'_, '_> {
 
     /// A picture from a file; a checker of magenta, with a warning, where it cannot be had.
     pub(super) fn file(&mut self, name: &str, holds: Texels, at: &Span) -> Result<Texture, FormatError> {
-        self.file_or(name, holds, at, "a checker of magenta", Texture::missing)
+        self.file_or(name, holds, at, "a magenta checker", Texture::missing)
     }
 
     /// The picture of a light; an even grey, with a warning, where it cannot be had: in any colour the whole scene
@@ -202,7 +202,7 @@ impl Pbrt<'_, '_> {
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
                 let reason = error.without_place();
-                let what = format!("{stands_in} stands in place of a texture: {reason}");
+                let what = format!("a texture is replaced by {stands_in}: {reason}");
                 self.oddities.note(&what, || at.clone());
                 Ok(make(name))
             }

@@ -61,7 +61,7 @@ fn points_and_lines_of_an_obj_are_objects_beside_its_faces() {
         ("v 0 0 0\nl 1 2\n", "vertex 2, but the file has only 1"),
         ("v 0 0 0\np x\n", "'x' is not a vertex of a point"),
         ("v 0 0 0\nl 1 -3\n", "names a vertex that the file does not have"),
-        ("o nothing\n", "no face in it, and no vertex"),
+        ("o nothing\n", "no faces and no vertices"),
     ] {
         let message = refusal("obj", text);
         assert!(message.contains(wanted), "{text:?}: {message}");

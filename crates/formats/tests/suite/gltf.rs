@@ -168,14 +168,14 @@ fn what_is_broken_is_refused_with_its_pointer() {
         ),
         ("\"count\":3", "\"count\":-3", "#/accessors/0/count: this is -3"),
         ("5126", "5124", "is not a componentType"),
-        ("VEC3", "VEC5", "'VEC5' is no type"),
-        ("VEC3", "VEC2", "elements of 2 numbers stand where 3 are wanted"),
+        ("VEC3", "VEC5", "'VEC5' is not a type"),
+        ("VEC3", "VEC2", "its elements have 2 numbers, but 3 are needed"),
         ("\"byteLength\":36}],", "\"byteLength\":37}],", "#/bufferViews/0: 37 bytes from byte 0"),
         ("\"byteLength\":36}],", "\"byteLength\":36,\"byteStride\":8}],", "stand 8 bytes apart"),
         ("base64,AAAA", "base64,A!AA", "#/buffers/0/uri: the base64"),
         ("data:application/octet-stream;base64", "https://example.org/a.bin?", "nothing is fetched"),
-        ("{\"mesh\":0}", "{\"mesh\":0,\"children\":[0]}", "#/nodes/0/children/0: this node stands below two"),
-        ("{\"nodes\":[0]}", "{\"nodes\":[0,0]}", "#/scenes/0/nodes/1: this node stands below two"),
+        ("{\"mesh\":0}", "{\"mesh\":0,\"children\":[0]}", "#/nodes/0/children/0: this node has two parents"),
+        ("{\"nodes\":[0]}", "{\"nodes\":[0,0]}", "#/scenes/0/nodes/1: this node has two parents"),
         (
             "{\"mesh\":0}",
             "{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,null,1]}",
@@ -184,7 +184,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
         (
             "{\"mesh\":0}",
             "{\"mesh\":0,\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}",
-            "#/nodes/0/matrix: this matrix ends",
+            "#/nodes/0/matrix: the last row of this matrix",
         ),
         ("{\"mesh\":0}", "{\"mesh\":0,\"scale\":[1e300,1,1]}", "finite in 32 bits"),
         ("{\"mesh\":0}", "{\"mesh\":0,\"rotation\":[0,0,0,0]}", "#/nodes/0/rotation: this rotation is zero"),
@@ -193,7 +193,7 @@ fn what_is_broken_is_refused_with_its_pointer() {
         (
             "\"scene\":0",
             "\"scene\":0,\"extensionsRequired\":[\"KHR_texture_procedurals\"]",
-            "without the extension KHR_texture_procedurals",
+            "needs the extension KHR_texture_procedurals",
         ),
         ("]}]}", "]}]", ""),
     ];
@@ -379,7 +379,11 @@ fn directions_and_thicknesses_come_from_their_textures() {
     }
     let said: Vec<String> = scene.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(said.iter().filter(|w| w.contains("occlusion textures are not used")).count(), 1, "{said:?}");
-    assert_eq!(said.len(), 1, "{said:?}");
+    assert_eq!(
+        said.iter().filter(|w| !w.contains("texture coordinates that its mesh does not have")).count(),
+        1,
+        "{said:?}"
+    );
 }
 
 #[test]

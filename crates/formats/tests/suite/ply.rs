@@ -85,7 +85,7 @@ fn broken_files_are_refused_with_their_place() {
         ("plx\n".to_owned(), "scene.ply:1:1: a PLY file begins with"),
         ("ply\nformat ascii 1.0\n".to_owned(), "scene.ply:3:1: the file ends within its header"),
         (good.replace("ascii", "utf8"), "scene.ply:2:8: 'utf8' is not a format"),
-        (good.replace("float x", "real x"), "scene.ply:6:10: 'real' is no type"),
+        (good.replace("float x", "real x"), "scene.ply:6:10: 'real' is not a type"),
         (good.replace("vertex 4", "vertex many"), "scene.ply:5:1: an element has a name and a count"),
         (good.replace("element vertex 4\n", ""), "a property belongs to an element"),
         (good.replace("property float z", "property float w"), "no properties x, y and z"),
@@ -102,7 +102,7 @@ fn broken_files_are_refused_with_their_place() {
         ),
         (good.replace("4 0 1 2 3", "4 0 1 2"), "the file ends before all"),
         (good.replace("4 0 1 2 3", "4000000000 0 1 2"), "the file ends before all"),
-        (good.replace("element", "elements"), "'elements' is no word of a PLY header"),
+        (good.replace("element", "elements"), "'elements' is not a keyword of a PLY header"),
     ];
     for (text, part) in cases {
         let message = refusal("ply", &text);
