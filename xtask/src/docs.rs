@@ -15,9 +15,9 @@ const FOLDER: &str = "docs/reference";
 const TABLES: &[(&str, &str)] = &[
     ("integrators", "Integrators"),
     ("accels", "Accelerators"),
-    ("visibility", "Seeing without rays"),
+    ("visibility", "Hidden-surface removal"),
     ("materials", "Materials"),
-    ("textures", "Textures by formula"),
+    ("textures", "Procedural textures"),
     ("bsdfs", "BSDFs"),
     ("lights", "Lights"),
     ("cameras", "Cameras"),

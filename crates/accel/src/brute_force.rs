@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "brute",
-        summary: "every triangle, one after the other: the truth, and the paper's rival",
+        summary: "a loop over all triangles: the reference, and the paper's baseline",
         source: "",
         parameters: &[],
     },

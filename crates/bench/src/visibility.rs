@@ -1,4 +1,4 @@
-//! Seeing without rays: the algorithms that the paper compares BSP trees with, on its teapots.
+//! Hidden-surface removal: the algorithms that the paper compares BSP trees with, on its teapots.
 
 use crate::{Options, ProgressFn, Report, median, table};
 use bilux::accel::BuildOptions;
@@ -40,7 +40,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
         cells.push(line);
     }
     let (w, h) = options.size_or((512, 512));
-    let title = format!("Seeing without rays: {count} teapots, {} triangles, {w}x{h}", mesh.len());
+    let title = format!("Hidden-surface removal: {count} teapots, {} triangles, {w}x{h}", mesh.len());
     let header = ["algorithm", "seconds", "depth cmp", "sort cmp", "splits", "overdraw", "wrong pixels"];
     Ok(Report { rows, text: table(&title, &header, &cells), picture: None })
 }

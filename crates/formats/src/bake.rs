@@ -8,14 +8,14 @@ use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// The scene with pictures in place of textures by formula, where a format holds none of these.
+/// The scene with pictures in place of procedural textures, where a format holds none of these.
 pub(crate) fn with_pictures<'a>(
     scene: &'a SceneBuilder,
     capabilities: &[&str],
     writing: &mut Writing,
 ) -> Cow<'a, SceneBuilder> {
     let can = |what: &str| capabilities.contains(&what);
-    let holds_formulas = can("textures by formula") || !can("textures");
+    let holds_formulas = can("procedural textures") || !can("textures");
     if holds_formulas || scene.textures.iter().all(|texture| texture.formula().is_none()) {
         return Cow::Borrowed(scene);
     }
@@ -28,7 +28,7 @@ pub(crate) fn with_pictures<'a>(
         if !is_same {
             let (name, width, height) = (&texture.name, picture.width(), picture.height());
             writing.warn(format!(
-                "the format holds no textures by formula: '{name}' is written as a picture of {width} x {height} texels \
+                "the format holds no procedural textures: '{name}' is written as a picture of {width} x {height} texels \
                  that is repeated"
             ));
         }

@@ -58,7 +58,7 @@ pub const AOVS: &[AovEntry] = &[
     AovEntry {
         entry: Entry {
             name: "strategies",
-            summary: "each technique of joining paths from both ends on its own, weighted and not (bdpt, vcm)",
+            summary: "a picture of each bidirectional technique, weighted and unweighted (bdpt, vcm)",
             source: "Veach 1997",
             parameters: &[],
         },
@@ -67,7 +67,7 @@ pub const AOVS: &[AovEntry] = &[
     AovEntry {
         entry: Entry {
             name: "interval",
-            summary: "how far to both sides of a pixel its true light may lie: half of the 95% interval",
+            summary: "half-width of each pixel's 95% confidence interval",
             source: "Owen 1997",
             parameters: &[],
         },

@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "brute-simd",
-        summary: "every triangle, sixteen at a time: what a fast loop without any tree takes",
+        summary: "a loop over all triangles with SIMD, sixteen at a time: the fastest baseline without a tree",
         source: "",
         parameters: &[],
     },

@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bsp",
-        summary: "planes through the mean position of polygons, with their mean orientation: the paper's tree",
+        summary: "the paper's BSP tree: planes through the mean position of the polygons, with their mean orientation",
         source: "Fuchs 1980",
         parameters: PARAMETERS,
     },
@@ -38,14 +38,14 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "bsp_split",
-        summary: "planes by the mean position and orientation, or the polygon's own that cuts fewest",
+        summary: "splitting planes from mean position and orientation, or the polygon's plane that cuts the fewest others",
         unit: "",
         kind: ParameterKind::Choice(&["mean", "fuchs"]),
         default: "mean",
     },
     Parameter {
         name: "bsp_group",
-        summary: "what is kept together",
+        summary: "what is partitioned: polygons or whole objects",
         unit: "",
         kind: ParameterKind::Choice(&["polygons", "objects"]),
         default: "polygons",

@@ -25,7 +25,7 @@ use std::sync::Arc;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bsp-sah",
-        summary: "planes of any orientation, weighed by the surface-area heuristic; many along the axes",
+        summary: "BSP tree with planes of any orientation, chosen by the surface-area heuristic",
         source: "Ize 2008",
         parameters: &[],
     },

@@ -18,7 +18,7 @@ use tree::Tree;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bvh",
-        summary: "boxes in boxes, two by two: fast to build, fast to ask",
+        summary: "binary bounding volume hierarchy: fast to build, scalar traversal",
         source: "Wald 2007",
         parameters: &[],
     },

@@ -37,7 +37,7 @@ pub use storage::StorageError;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bvh8",
-        summary: "boxes in boxes, eight by eight, all eight looked at in one instruction: the fastest",
+        summary: "8-wide bounding volume hierarchy with SIMD traversal: the fastest",
         source: "Wald 2008",
         parameters: &[],
     },

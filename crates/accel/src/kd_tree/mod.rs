@@ -20,7 +20,7 @@ use tree::Tree;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "kd",
-        summary: "space cut along the axes where rays pay least: few tests, slower to build",
+        summary: "k-d tree built with the surface-area heuristic: few triangle tests, slower to build",
         source: "Wald 2006",
         parameters: &[],
     },

@@ -12,7 +12,7 @@ use std::time::Instant;
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "bsp-back-to-front",
-        summary: "a tree of the polygons' own planes gives their order: painted from far to near",
+        summary: "BSP tree of the polygons' planes, painted back to front",
         source: "Fuchs 1980",
         parameters: &[],
     },

@@ -15,7 +15,7 @@ use std::time::Instant;
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "bsp-front-to-back",
-        summary: "the same tree from near to far, with a mask of covered pixels and covered subtrees left out",
+        summary: "the same BSP tree front to back, with a coverage mask and occlusion culling of subtrees",
         source: "Gordon 1991",
         parameters: &[],
     },

@@ -1,4 +1,4 @@
-//! Seeing without rays: what the eye sees at every pixel centre, found by each of the ways that were known
+//! Hidden-surface removal: what the eye sees at every pixel centre, found by each of the ways that were known
 //! before rays were affordable.
 //!
 //! All of them answer one question, with one signature: which triangle is nearest along the ray through

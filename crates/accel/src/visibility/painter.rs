@@ -12,7 +12,7 @@ use bilux_math::{DVec3, registry::Entry};
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "painter",
-        summary: "triangles sorted by the depth of their centres, painted from far to near: not exact",
+        summary: "painter's algorithm: triangles sorted by the depth of their centres; not exact",
         source: "",
         parameters: &[],
     },

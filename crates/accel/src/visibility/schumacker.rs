@@ -20,7 +20,7 @@ use std::time::Instant;
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "schumacker",
-        summary: "clusters in the order of planes between them, faces by priorities that hold from anywhere",
+        summary: "Schumacker's clusters: ordered by separating planes, faces by view-independent priorities",
         source: "Schumacker 1969",
         parameters: &[],
     },

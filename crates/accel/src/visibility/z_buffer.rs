@@ -11,7 +11,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "z-buffer",
-        summary: "triangles in the order given, one depth comparison for each pixel of each",
+        summary: "z-buffer: one depth comparison per pixel and triangle",
         source: "Catmull 1974",
         parameters: &[],
     },

@@ -174,7 +174,7 @@ fn choices(scene: &SceneBuilder) -> String {
 
 fn texture(texture: &Texture) -> String {
     match texture.formula() {
-        Some(_) => format!("{} (by formula)", texture.name),
+        Some(_) => format!("{} (procedural)", texture.name),
         None => format!("{} ({}x{})", texture.name, texture.width(), texture.height()),
     }
 }

@@ -24,17 +24,17 @@ macro_rules! rows {
 const TABLES: &[Table] = &[
     Table {
         name: "integrators",
-        summary: "how light is followed",
+        summary: "light-transport algorithms",
         rows: rows!(bilux::transport::integrators::INTEGRATORS),
     },
     Table {
         name: "accels",
-        summary: "what finds the triangles that rays hit",
+        summary: "acceleration structures for ray queries",
         rows: rows!(bilux::accel::ACCELERATORS),
     },
     Table {
         name: "visibility",
-        summary: "seeing without rays",
+        summary: "hidden-surface removal",
         rows: rows!(bilux::accel::visibility::VISIBILITY),
     },
     Table {
@@ -42,8 +42,12 @@ const TABLES: &[Table] = &[
         summary: "what surfaces are made of",
         rows: rows!(bilux::scene::materials::MATERIALS),
     },
-    Table { name: "textures", summary: "pictures by formula", rows: rows!(bilux::scene::texture::TEXTURES) },
-    Table { name: "bsdfs", summary: "how surfaces scatter light", rows: rows!(bilux::scene::bsdf::BSDFS) },
+    Table { name: "textures", summary: "procedural textures", rows: rows!(bilux::scene::texture::TEXTURES) },
+    Table {
+        name: "bsdfs",
+        summary: "lobes that materials are built from",
+        rows: rows!(bilux::scene::bsdf::BSDFS),
+    },
     Table { name: "lights", summary: "where light comes from", rows: rows!(bilux::scene::lights::LIGHTS) },
     Table {
         name: "cameras",
@@ -52,10 +56,14 @@ const TABLES: &[Table] = &[
     },
     Table {
         name: "generators",
-        summary: "scenes that we ship",
+        summary: "built-in scenes",
         rows: rows!(bilux::scene::generators::GENERATORS),
     },
-    Table { name: "presets", summary: "how bare files are seen", rows: rows!(bilux::presets::PRESETS) },
+    Table {
+        name: "presets",
+        summary: "presets for files without a camera or lights",
+        rows: rows!(bilux::presets::PRESETS),
+    },
     Table { name: "formats", summary: "scene files", rows: rows!(bilux::formats::SCENE_FORMATS) },
     Table {
         name: "picture-formats",
@@ -64,29 +72,25 @@ const TABLES: &[Table] = &[
     },
     Table {
         name: "tonemaps",
-        summary: "curves for pictures for a display",
+        summary: "tone-mapping curves",
         rows: rows!(bilux::pictures::tonemap::TONEMAPS),
     },
     Table {
         name: "denoisers",
-        summary: "what takes noise out of pictures, the best first",
+        summary: "denoisers, the best first",
         rows: rows!(bilux::pictures::DENOISERS),
     },
     Table {
         name: "filters",
-        summary: "how samples are spread over a pixel",
+        summary: "pixel reconstruction filters",
         rows: rows!(bilux::transport::filters::FILTERS),
     },
     Table {
         name: "aovs",
-        summary: "what a render can give beside its picture",
+        summary: "arbitrary output variables: what a render can write beside the picture",
         rows: rows!(bilux::transport::aovs::AOVS),
     },
-    Table {
-        name: "metrics",
-        summary: "how pictures are compared",
-        rows: rows!(bilux::pictures::metrics::METRICS),
-    },
+    Table { name: "metrics", summary: "image metrics", rows: rows!(bilux::pictures::metrics::METRICS) },
     Table {
         name: "settings",
         summary: "what [render] and --set understand",

@@ -39,7 +39,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         "motion",
         "materials",
         "textures",
-        "textures by formula",
+        "procedural textures",
         "lights",
         "cameras",
         "settings",

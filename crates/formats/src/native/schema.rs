@@ -119,7 +119,7 @@ fn values(kind: ParameterKind) -> Value {
     }
 }
 
-/// A texture by formula; one may be made of others.
+/// A procedural texture; one may be made of others.
 fn formula() -> Value {
     json!({ "$ref": "#/$defs/formula" })
 }

@@ -164,7 +164,7 @@ impl Native<'_, '_> {
         }
     }
 
-    /// A texture by formula, and those that it is made of.
+    /// A procedural texture, and those that it is made of.
     fn formula(
         &mut self,
         kind: &str,

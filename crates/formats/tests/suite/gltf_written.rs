@@ -78,6 +78,7 @@ fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
 fn lamps_in_the_dark_come_back_in_the_dark() {
     let folder = tempfile::tempdir().unwrap();
     let mut scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    scene.surroundings_unsaid = false;
     scene.lights.push(Spec::new("lamp", "point").with("intensity", 5.0f32));
     let (mut back, _) = there(&scene, &folder.path().join("a.glb"));
     assert!(!back.surroundings_unsaid);

@@ -1,4 +1,4 @@
-//! Textures by formula: in our own files, in pbrt's, and as pictures where a format holds none.
+//! Procedural textures: in our own files, in pbrt's, and as pictures where a format holds none.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
@@ -124,7 +124,7 @@ fn formats_without_formulas_have_pictures_of_them() {
     let board =
         "reflectance = { kind = \"checker\", a = [1, 0, 0], b = [0, 0, 1], u_scale = 3, v_offset = 0.5 }";
     let clouds = "reflectance = { kind = \"noise\", octaves = 2 }";
-    let is_told = |told: &str| told.contains("no textures by formula");
+    let is_told = |told: &str| told.contains("no procedural textures");
     for (extension, key) in [("pbrt", "reflectance"), ("glb", "base_color"), ("obj", "kd")] {
         let scene = read_text("toml", material(board)).unwrap();
         let (told, back) = written(&scene, folder.path(), extension);

@@ -8,7 +8,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     entry: Entry {
         name: "none",
-        summary: "held within 0 and 1, else unchanged",
+        summary: "no curve: values are clamped to 0 to 1",
         source: "",
         parameters: &[],
     },

@@ -1,5 +1,5 @@
-//! How much of the light along a direction the facets of a rough boundary reflect at once. What they lack to all of it
-//! goes below, or to facets that reflect it again. [Kulla 2017]
+//! How much of the light along a direction the microfacets of a rough boundary reflect at once. What they lack to all of it
+//! goes below, or to microfacets that reflect it again. [Kulla 2017]
 //!
 //! Found by quadrature when it is first asked for, and kept as a table over the cosine, the roughness and the index.
 //! Fresnel's reflectance is split into what it is straight on and the share of the rest that it gains towards grazing:
@@ -19,21 +19,21 @@ const INDICES: usize = 15;
 /// Facets along and across, on one half of the cap, which mirrors the other.
 const FACETS: [u32; 2] = [8, 16];
 
-/// For one cosine and roughness: the gain of each index, and all that facets reflect that let nothing through.
+/// For one cosine and roughness: the gain of each index, and all that microfacets reflect that let nothing through.
 type Entry = [f32; INDICES + 1];
 
 struct Table {
     at: [[Entry; COSINES]; ROUGHNESSES],
     /// Over the hemisphere, weighted by the cosine.
     mean: [Entry; ROUGHNESSES],
-    /// What opaque facets leave on average between each two cosines, and how much of it the first of them hold.
+    /// What opaque microfacets leave on average between each two cosines, and how much of it the first of them hold.
     left: [[f32; COSINES - 1]; ROUGHNESSES],
     left_before: [[f32; COSINES]; ROUGHNESSES],
 }
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// What the facets of a boundary between two media reflect at once.
+/// What the microfacets of a boundary between two media reflect at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Albedo {
     /// Place among the roughnesses.
@@ -48,7 +48,7 @@ impl Albedo {
     /// Nothing: an index of 1.
     pub const NONE: Albedo = Albedo { roughness: 0.0, index: 0.0, straight: 0.0 };
 
-    /// Of facets with an index `eta` of what is below over what is above, at least 1. Facets that have a direction count
+    /// Of microfacets with an index `eta` of what is below over what is above, at least 1. Facets that have a direction count
     /// as rough as along it, where they reflect more.
     pub fn new(ggx: &Ggx, eta: f32) -> Albedo {
         let amplitude = ((eta - 1.0) / (eta + 1.0)).clamp(0.0, 1.0);
@@ -65,7 +65,7 @@ impl Albedo {
         self.entry(cos, self.shared())
     }
 
-    /// The same of facets that let nothing through.
+    /// The same of microfacets that let nothing through.
     #[inline]
     pub fn opaque_at(&self, cos: f32) -> f32 {
         self.entry(cos, |entry| entry[INDICES])
@@ -81,7 +81,7 @@ impl Albedo {
         self.between(|entry| entry[INDICES])
     }
 
-    /// A cosine by how much opaque facets leave of the light along it: with the density over the hemisphere that
+    /// A cosine by how much opaque microfacets leave of the light along it: with the density over the hemisphere that
     /// [`Albedo::left_pdf`] tells.
     pub(super) fn sample_left(&self, u: f32) -> f32 {
         let (row, between) = place(self.roughness, ROUGHNESSES);
@@ -155,7 +155,7 @@ impl Table {
             let roughness = step(row, ROUGHNESSES);
             let ggx = Ggx::new(roughness * roughness);
             std::array::from_fn(|column| {
-                // Light along the surface itself sees no facet from above: the limit is taken.
+                // Light along the surface itself sees no microfacet from above: the limit is taken.
                 let root = step(column, COSINES).max(1e-3);
                 reflected(&ggx, root * root)
             })
@@ -177,7 +177,7 @@ impl Table {
     }
 }
 
-/// An entry of the table, by quadrature over the facets that are seen.
+/// An entry of the table, by quadrature over the microfacets that are seen.
 fn reflected(ggx: &Ggx, cos: f32) -> Entry {
     if ggx.is_smooth() {
         return gained(cos, 1.0);
@@ -187,7 +187,7 @@ fn reflected(ggx: &Ggx, cos: f32) -> Entry {
     let (mut sum, mut shares) = ([0f64; INDICES + 1], 0f64);
     let [across, along] = FACETS;
     for i in 0..across * along {
-        // Few facets are turned far, and what they reflect is not little: they lie the more densely.
+        // Few microfacets are turned far, and what they reflect is not little: they lie the more densely.
         let left = 1.0 - ((i / across) as f32 + 0.5) / along as f32;
         let u = Vec2::new(0.5 * ((i % across) as f32 + 0.5) / across as f32, 1.0 - left * left * left);
         let share = left * left;
@@ -204,7 +204,7 @@ fn reflected(ggx: &Ggx, cos: f32) -> Entry {
     sum.map(|sum| (sum / shares) as f32)
 }
 
-/// The gain of each index at a facet, and all of the light.
+/// The gain of each index at a microfacet, and all of the light.
 fn gained(cos: f32, weight: f32) -> Entry {
     std::array::from_fn(|i| {
         let root = i as f32 / (INDICES - 1) as f32;
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// Against as many facets as it takes, between the table's entries.
+    /// Against as many microfacets as it takes, between the table's entries.
     #[test]
     fn rough_boundaries_reflect_what_their_facets_do() {
         for (alpha, eta) in [(0.03f32, 1.5f32), (0.1, 1.4), (0.3, 1.6), (0.6, 2.0), (0.9, 1.3)] {

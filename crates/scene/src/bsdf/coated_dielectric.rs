@@ -9,8 +9,8 @@ use bilux_math::{Rgb, Vec2, Vec3};
 /// Row of [`super::BSDFS`].
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
-        name: "clear",
-        summary: "glass, smooth or rough, below a coat",
+        name: "coated dielectric",
+        summary: "dielectric transmission, smooth or rough, below a coat",
         source: "Walter 2007",
         parameters: &[],
     },
@@ -48,7 +48,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 /// Glass that tints what it reflects and what it lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedDielectric {
-    /// With facets or without, as it is in the open.
+    /// With microfacets or without, as it is in the open.
     glass: RoughDielectric,
     reflected: Rgb,
     passed: Rgb,

@@ -10,8 +10,8 @@ use std::f32::consts::FRAC_1_PI;
 /// Row of [`super::BSDFS`].
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
-        name: "matt",
-        summary: "diffuse below a boundary: what that lets through",
+        name: "coated diffuse",
+        summary: "diffuse reflection below a dielectric coating",
         source: "Kulla 2017",
         parameters: &[],
     },

@@ -1,4 +1,4 @@
-//! Metal: facets that reflect by Fresnel's equations and let nothing through, smooth or rough. [Walter 2007]
+//! Metal: microfacets that reflect by Fresnel's equations and let nothing through, smooth or rough. [Walter 2007]
 
 use super::{BsdfEntry, BsdfSample, Ggx, Lobe, TransportMode};
 use bilux_math::frame::reflect;
@@ -9,7 +9,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "conductor",
-        summary: "metal: reflects by Fresnel's equations, smooth or rough",
+        summary: "conductor: Fresnel reflection, smooth or with GGX microfacets",
         source: "Walter 2007",
         parameters: &[],
     },
@@ -32,7 +32,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// How much a facet reflects.
+/// How much a microfacet reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fresnel {
     /// By the complex refractive index eta + i·k, over that of the outside.
@@ -76,7 +76,7 @@ impl Fresnel {
         }
     }
 
-    /// The reflected fraction; `cos_theta` of the direction against the facet, 0..=1.
+    /// The reflected fraction; `cos_theta` of the direction against the microfacet, 0..=1.
     #[inline]
     pub fn at(&self, cos_theta: f32) -> Rgb {
         let c = cos_theta.clamp(0.0, 1.0);
@@ -119,9 +119,9 @@ pub fn fresnel_conductor(cos_theta: f32, eta: f32, k: f32) -> f32 {
 /// A metal, on both sides of the surface alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
-    /// How much a facet reflects.
+    /// How much a microfacet reflects.
     pub fresnel: Fresnel,
-    /// How its facets are turned.
+    /// How its microfacets are turned.
     pub ggx: Ggx,
 }
 
@@ -178,8 +178,8 @@ impl Conductor {
     }
 }
 
-/// The two directions seen from above, and the facet that reflects one into the other; `None` where they are on two
-/// sides of the surface, or the surface has no facets.
+/// The two directions seen from above, and the microfacet that reflects one into the other; `None` where they are on two
+/// sides of the surface, or the surface has no microfacets.
 #[inline]
 pub(super) fn facet_between(ggx: &Ggx, wo: Vec3, wi: Vec3) -> Option<(Vec3, Vec3, Vec3)> {
     if wo.z * wi.z <= 0.0 || ggx.is_smooth() {

@@ -8,7 +8,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "dielectric",
-        summary: "smooth glass or water: reflects and refracts",
+        summary: "smooth dielectric: specular reflection and transmission",
         source: "Fresnel 1823",
         parameters: &[],
     },

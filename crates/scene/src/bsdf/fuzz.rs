@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "fuzz",
-        summary: "fine upright fibres, seen where one looks along the surface",
+        summary: "sheen: fine fibres that show at grazing angles",
         source: "Estevez 2017",
         parameters: &[],
     },

@@ -1,4 +1,4 @@
-//! Roughness: how the facets of a rough surface are turned, and how much of them is seen. The distribution of Trowbridge
+//! Roughness: how the microfacets of a rough surface are turned, and how much of them is seen. The distribution of Trowbridge
 //! and Reitz, called GGX, with the masking and shadowing of Smith. [Walter 2007; Heitz 2014]
 //!
 //! Directions are local, with the normal as z, and seen from above: callers mirror what comes from below.
@@ -69,7 +69,7 @@ impl Ggx {
         Vec2::new(xx * x + xy * y, xy * x + yy * y)
     }
 
-    /// Density of facets over the directions that they face, weighted by their cosine. [Walter 2007, eq. 33]
+    /// Density of microfacets over the directions that they face, weighted by their cosine. [Walter 2007, eq. 33]
     #[inline]
     pub(super) fn distribution(&self, m: Vec3) -> f32 {
         let [xx, xy, yy] = self.stretch;
@@ -86,31 +86,31 @@ impl Ggx {
     }
 
     /// Masking and shadowing of two directions together, height-correlated, over 4·cosθo, times 4·cosθo·cosθi over
-    /// that: what facets of density 1 reflect from `wi` to `wo`, f·|cosθi|. [Heitz 2014, eq. 99]
+    /// that: what microfacets of density 1 reflect from `wi` to `wo`, f·|cosθi|. [Heitz 2014, eq. 99]
     #[inline]
     pub(super) fn visible(&self, wo: Vec3, wi: Vec3) -> f32 {
         let sum = self.shadow(wo) * wi.z + self.shadow(wi) * wo.z;
         if sum > 0.0 { 0.5 * wi.z / sum } else { 0.0 }
     }
 
-    /// Density over solid angle of the facets that `wo` sees, as [`Ggx::sample_visible`] draws them with a bound of
+    /// Density over solid angle of the microfacets that `wo` sees, as [`Ggx::sample_visible`] draws them with a bound of
     /// [`Ggx::FULL`], over their distribution and their cosine with `wo`.
     #[inline]
     pub(super) fn seen(&self, wo: Vec3) -> f32 {
         2.0 / (wo.z + self.shadow(wo))
     }
 
-    /// Density over solid angle of directions reflected about facets drawn within [`Ggx::bound`], over the facets'
+    /// Density over solid angle of directions reflected about microfacets drawn within [`Ggx::bound`], over the microfacets'
     /// distribution. [Eto 2023, eq. 8]
     #[inline]
     pub(super) fn reflected_within_bound(&self, wo: Vec3) -> f32 {
         0.5 / (self.bound(wo) * wo.z + self.shadow(wo))
     }
 
-    /// The whole cap of facets that can be seen.
+    /// The whole cap of microfacets that can be seen.
     pub(super) const FULL: f32 = 1.0;
 
-    /// How much of the cap of visible facets can reflect `wo` upwards. [Eto 2023, eq. 5]
+    /// How much of the cap of visible microfacets can reflect `wo` upwards. [Eto 2023, eq. 5]
     #[inline]
     pub(super) fn bound(&self, wo: Vec3) -> f32 {
         let across = 1.0 + (1.0 - wo.z * wo.z).max(0.0).sqrt();
@@ -118,7 +118,7 @@ impl Ggx {
         (1.0 - a2) * s2 / (s2 + a2 * wo.z * wo.z)
     }
 
-    /// A facet that `wo`, above the surface, sees: a point of a spherical cap, since a reflected uniform direction of
+    /// A microfacet that `wo`, above the surface, sees: a point of a spherical cap, since a reflected uniform direction of
     /// the unit sphere is one above the stretched `wo`'s horizon. [Dupuy 2023]
     #[inline]
     pub(super) fn sample_visible(&self, wo: Vec3, u: Vec2, bound: f32) -> Vec3 {

@@ -9,7 +9,7 @@ use std::f32::consts::FRAC_1_PI;
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "lambert",
-        summary: "diffuse: equally bright from everywhere",
+        summary: "Lambertian diffuse reflection",
         source: "Lambert 1760",
         parameters: &[],
     },

@@ -1,4 +1,4 @@
-//! What is reflected at the surface itself, by facets that are glass, metal or a mixture of both. What facets of metal
+//! What is reflected at the surface itself, by microfacets that are glass, metal or a mixture of both. What microfacets of metal
 //! reflect onto each other comes out in the end, spread widely, without being followed: so much that a white metal
 //! loses nothing, and a coloured one is the more saturated. [Kulla 2017]
 
@@ -15,8 +15,8 @@ use std::f32::consts::{FRAC_1_PI, TAU};
 /// Row of [`super::BSDFS`].
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
-        name: "gloss",
-        summary: "reflection at facets of glass, metal or both, what is reflected twice included",
+        name: "microfacet reflection",
+        summary: "microfacet reflection of a dielectric, a conductor or a mixture, with multiple scattering",
         source: "Kulla 2017",
         parameters: &[],
     },
@@ -76,12 +76,12 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MicrofacetReflection {
     ggx: Ggx,
-    /// Index of what is below facets of glass over what is above.
+    /// Index of what is below microfacets of glass over what is above.
     eta: f32,
-    /// Factor on what facets of glass reflect; black where there are none.
+    /// Factor on what microfacets of glass reflect; black where there are none.
     glass: Rgb,
     metal: Fresnel,
-    /// Factor on what facets of metal reflect; black where there are none.
+    /// Factor on what microfacets of metal reflect; black where there are none.
     metal_weight: Rgb,
     albedo: Albedo,
     /// What comes out after more than one reflection, over the two fractions that one reflection leaves.
@@ -120,8 +120,8 @@ impl MicrofacetReflection {
             from_below: 1.0,
         };
         if !metal_weight.is_black() && !ggx.is_smooth() {
-            let (mean, facet) = (albedo.opaque_mean(), metal.mean());
-            let comes_out = facet.map(|f| f * f * mean / (1.0 - f * (1.0 - mean)));
+            let (mean, microfacet) = (albedo.opaque_mean(), metal.mean());
+            let comes_out = microfacet.map(|f| f * f * mean / (1.0 - f * (1.0 - mean)));
             gloss.again = comes_out * metal_weight / (1.0 - mean).max(1e-6);
             gloss.again_share =
                 ((comes_out * metal_weight).luminance() / gloss.strength().max(f32::MIN_POSITIVE)).min(1.0);
@@ -173,7 +173,7 @@ impl MicrofacetReflection {
         bare.lerp(reflected, film.weight)
     }
 
-    /// What is left of light on its way through what covers the facets.
+    /// What is left of light on its way through what covers the microfacets.
     #[inline]
     fn covered(&self, wo: Vec3, wi: Vec3) -> f32 {
         let passed = self.cover.both(wo, wi);

@@ -11,7 +11,7 @@ use std::f32::consts::TAU;
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "phong",
-        summary: "a glossy highlight: a cosine power around the mirrored direction",
+        summary: "Phong lobe: a cosine power around the mirror direction",
         source: "Lafortune 1994",
         parameters: &[],
     },

@@ -1,4 +1,4 @@
-//! Rough glass: facets that reflect and refract by Fresnel's equations and Snell's law. [Walter 2007]
+//! Rough glass: microfacets that reflect and refract by Fresnel's equations and Snell's law. [Walter 2007]
 
 use super::conductor::facet_between;
 use super::dielectric::shares;
@@ -13,7 +13,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     entry: Entry {
         name: "rough dielectric",
-        summary: "frosted glass: reflects and refracts about facets",
+        summary: "rough dielectric: microfacet reflection and transmission",
         source: "Walter 2007",
         parameters: &[],
     },
@@ -51,14 +51,14 @@ pub struct RoughDielectric {
     pub tint: Rgb,
     /// A pane without thickness: what passes goes on as what is reflected would, on the other side.
     pub thin: bool,
-    /// How its facets are turned; not smooth.
+    /// How its microfacets are turned; not smooth.
     pub ggx: Ggx,
     /// On its outside; a pane has it on both sides.
     pub film: Option<ThinFilm>,
 }
 
 impl RoughDielectric {
-    /// True where the roughness shows: facets that hardly bend light let it through as a smooth boundary does, and
+    /// True where the roughness shows: microfacets that hardly bend light let it through as a smooth boundary does, and
     /// their width is lost to rounding.
     pub fn is_rough(eta: f32, thin: bool, ggx: &Ggx) -> bool {
         !ggx.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
@@ -98,7 +98,7 @@ impl RoughDielectric {
         (self.tint * colours[passes] * f, pdf)
     }
 
-    /// Light that comes back from the facets, or through those of a pane; `share` is that of Fresnel's fraction.
+    /// Light that comes back from the microfacets, or through those of a pane; `share` is that of Fresnel's fraction.
     #[inline]
     fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32, f32) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
@@ -108,7 +108,7 @@ impl RoughDielectric {
         (density * self.ggx.visible(wo, wi), density * 0.25 * self.ggx.seen(wo), cos)
     }
 
-    /// Light that passes the facets. [Walter 2007, eq. 21]
+    /// Light that passes the microfacets. [Walter 2007, eq. 21]
     #[inline]
     fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32, f32) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
@@ -156,7 +156,7 @@ impl RoughDielectric {
         Some(BsdfSample { transmits: !reflects, eta, ..sample })
     }
 
-    /// The reflected fraction at a facet, the mean of the channels; of a pane, at both of its faces.
+    /// The reflected fraction at a microfacet, the mean of the channels; of a pane, at both of its faces.
     #[inline]
     fn fresnel(&self, cos: f32, eta: f32, outside: bool) -> f32 {
         if let Some(film) = &self.film {

@@ -1,4 +1,4 @@
-//! Roughness of what scatters diffusely, such as clay or the moon: facets that are matt themselves. Seen from where the
+//! Roughness of what scatters diffusely, such as clay or the moon: microfacets that are matt themselves. Seen from where the
 //! light comes they are brighter, and towards grazing than Lambert has it; what they scatter onto each other comes out in
 //! the end, so that white loses nothing. [Portsmouth 2025]
 
@@ -9,14 +9,14 @@ use std::f32::consts::{FRAC_1_PI, PI};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughDiffuse {
     roughness: f32,
-    /// What a facet scatters at once, over all of it: A of [Portsmouth 2025].
+    /// What a microfacet scatters at once, over all of it: A of [Portsmouth 2025].
     once: f32,
     /// What comes out after more than once, over the two fractions that once leaves.
     again: Rgb,
 }
 
 impl RoughDiffuse {
-    /// Of a roughness, 0..=1, and the colour of the facets, where light gets there along a direction as `gets_in` says.
+    /// Of a roughness, 0..=1, and the colour of the microfacets, where light gets there along a direction as `gets_in` says.
     pub(super) fn new(roughness: f32, colour: Rgb, gets_in: impl Fn(f32) -> f32) -> RoughDiffuse {
         let once = 1.0 / (1.0 + roughness * (0.5 - 2.0 * FRAC_1_PI / 3.0));
         let unscaled = RoughDiffuse { roughness, once, again: Rgb::WHITE };
@@ -28,7 +28,7 @@ impl RoughDiffuse {
             left += here * unscaled.left(t * t);
         }
         let mean = once * (1.0 + roughness * (2.0 / 3.0 - 28.0 / (15.0 * PI)));
-        // Each further time, light takes the facets' colour on.
+        // Each further time, light takes the microfacets' colour on.
         let tinted = colour.map(|c| c * mean / (1.0 - c * (1.0 - mean)));
         RoughDiffuse { again: tinted * (all / left.max(f32::MIN_POSITIVE)), ..unscaled }
     }
@@ -36,7 +36,7 @@ impl RoughDiffuse {
     /// The part of the light along a direction that one scattering does not send on.
     #[inline]
     fn left(&self, cos: f32) -> f32 {
-        // What shadows and facets that face the viewer add to it: the closed form has arcs of cosines in it, and is this
+        // What shadows and microfacets that face the viewer add to it: the closed form has arcs of cosines in it, and is this
         // within 6e-4.
         let x = 1.0 - cos;
         let gained = x * (0.057_108_53 + x * (0.491_881_86 + x * (-0.332_181_44 + x * 0.071_442_99)));
@@ -99,7 +99,7 @@ mod tests {
         }
     }
 
-    /// White facets, in the open, send all light on; and the part that is left is what the mean of one scattering lacks.
+    /// White microfacets, in the open, send all light on; and the part that is left is what the mean of one scattering lacks.
     #[test]
     fn nothing_is_lost() {
         for roughness in [0.2f32, 0.6, 1.0] {

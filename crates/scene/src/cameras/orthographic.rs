@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: CameraEntry = CameraEntry {
     entry: Entry {
         name: "orthographic",
-        summary: "parallel rays, as in a plan",
+        summary: "orthographic camera: parallel rays",
         source: "",
         parameters: &[
             vector("position", "the middle of the film", "0 0 5"),

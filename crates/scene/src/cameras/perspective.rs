@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: CameraEntry = CameraEntry {
     entry: Entry {
         name: "perspective",
-        summary: "a pinhole, or a thin lens where an aperture is given",
+        summary: "perspective camera: a pinhole, or a thin lens if it has an aperture",
         source: "",
         parameters: &[
             vector("position", "where the eye is", "0 0 5"),
@@ -34,14 +34,14 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             },
             Parameter {
                 name: "aperture",
-                summary: "radius of the lens; 0 for a pinhole",
+                summary: "radius of the aperture; 0 for a pinhole",
                 unit: "m",
                 kind: ParameterKind::Number { min: 0.0, max: 1e6 },
                 default: "0",
             },
             Parameter {
                 name: "focus",
-                summary: "distance at which things are sharp; 0 for that of look_at",
+                summary: "focus distance; 0 for the distance of look_at",
                 unit: "m",
                 kind: ParameterKind::Number { min: 0.0, max: 1e9 },
                 default: "0",
@@ -70,7 +70,7 @@ pub(super) const fn vector(name: &'static str, summary: &'static str, default: &
 
 pub(super) const MIRRORED: Parameter = Parameter {
     name: "mirrored",
-    summary: "left and right swapped, as left-handed cameras have it",
+    summary: "swap left and right, as left-handed cameras do",
     unit: "",
     kind: ParameterKind::Bool,
     default: "false",

@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "directional",
-        summary: "light from infinitely far, parallel or of a disc, as from the sun",
+        summary: "distant light: parallel rays, or those of a disc such as the sun",
         source: "",
         parameters: &[
             vector("direction", "where the light goes", "-1 -1 -1"),

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "environment",
-        summary: "light from all around: one colour, a sky that changes with height, or a picture",
+        summary: "environment light: a constant colour, a gradient of height, or an environment map",
         source: "",
         parameters: &[
             Parameter {

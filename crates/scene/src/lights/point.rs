@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "point",
-        summary: "light from a point, the same in all directions",
+        summary: "isotropic point light",
         source: "",
         parameters: &[
             vector("position", "where it is", "0 5 0"),

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "rect",
-        summary: "a flat panel that gives light; seen, and casting soft shadows",
+        summary: "rectangular area light, visible to the camera",
         source: "",
         parameters: &[
             vector("position", "its middle", "0 5 0"),

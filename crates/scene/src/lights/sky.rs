@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "sky",
-        summary: "the sky of a day with its sun, clear or hazy",
+        summary: "analytic daylight sky with its sun, clear or hazy",
         source: "Preetham 1999",
         parameters: &[
             number("elevation", "how high the sun stands", "degrees", [0.0, 90.0], "40"),

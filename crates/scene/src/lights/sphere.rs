@@ -18,7 +18,7 @@ use std::f32::consts::PI;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "sphere",
-        summary: "a ball that gives light outwards; seen, round at every size, and casting soft shadows",
+        summary: "spherical area light, visible to the camera",
         source: "Shirley 1996",
         parameters: &[
             vector("position", "its middle", "0 5 0"),

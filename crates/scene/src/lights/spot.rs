@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "spot",
-        summary: "light from a point into a cone, with a soft edge",
+        summary: "spotlight: a point light that shines into a cone, with a soft edge",
         source: "",
         parameters: &[
             vector("position", "where it is", "0 5 0"),

@@ -15,13 +15,13 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "diffuse",
-        summary: "matt, equally bright from everywhere",
+        summary: "diffuse reflection",
         source: "Lambert 1760",
         parameters: &[
             reflectance("reflectance", "reflected fraction of the light", "0.7"),
             Parameter {
                 name: "roughness",
-                summary: "0 is matt after Lambert, 1 as rough as clay or the moon: brighter where the light comes from behind \
+                summary: "roughness of the diffuse microsurface: 0 is Lambertian, 1 as rough as clay or the moon: brighter where the light comes from behind \
                           the viewer",
                 unit: "",
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },

@@ -11,7 +11,7 @@ use bilux_math::registry::{Parameter, ParameterKind};
 /// Shared by all materials: what a surface gives out by itself.
 pub(super) const EMISSION: Parameter = Parameter {
     name: "emission",
-    summary: "radiance that the surface gives out",
+    summary: "emitted radiance",
     unit: "W/(m² sr)",
     kind: ParameterKind::ColourTexture { min: 0.0, max: 1e12 },
     default: "0",
@@ -20,7 +20,7 @@ pub(super) const EMISSION: Parameter = Parameter {
 /// How bright a picture of that is.
 pub(super) const EMISSION_SCALE: Parameter = Parameter {
     name: "emission_scale",
-    summary: "what a picture as emission is multiplied by",
+    summary: "factor on an emission texture",
     unit: "",
     kind: ParameterKind::Colour { min: 0.0, max: 1e12 },
     default: "1",

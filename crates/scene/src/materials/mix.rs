@@ -15,14 +15,14 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "mix",
-        summary: "two materials in one place, each for a share of the light",
+        summary: "a mixture of two materials",
         source: "",
         parameters: &[
             part("a", "the first material, by its name"),
             part("b", "the second material, by its name; may be a mix itself"),
             Parameter {
                 name: "amount",
-                summary: "how much of the second: 0 is all of the first",
+                summary: "weight of the second material",
                 unit: "",
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
                 default: "0.5",

@@ -235,7 +235,7 @@ const ETA: Parameter = Parameter {
 
 const THIN: Parameter = Parameter {
     name: "thin",
-    summary: "a wall without thickness: light goes straight through",
+    summary: "thin-walled: light passes straight through",
     unit: "",
     kind: ParameterKind::Bool,
     default: "false",

@@ -29,7 +29,7 @@ impl Roughness {
         Ok(Roughness { roughness, anisotropy, rotation, even })
     }
 
-    /// The facets at a point.
+    /// The microfacets at a point.
     #[inline]
     pub(super) fn at(&self, surface: &Surface) -> Ggx {
         // Turned from u towards v, on whichever side of u that is.
@@ -67,7 +67,7 @@ impl Roughness {
 pub(super) const fn roughness(default: &'static str) -> Parameter {
     Parameter {
         name: "roughness",
-        summary: "0 is polished, 1 as rough as can be; the square root of GGX's alpha",
+        summary: "surface roughness: 0 is polished; the square root of GGX's alpha",
         unit: "",
         kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
         default,
@@ -76,7 +76,7 @@ pub(super) const fn roughness(default: &'static str) -> Parameter {
 
 pub(super) const ANISOTROPY: Parameter = Parameter {
     name: "anisotropy",
-    summary: "how much smoother it is along its brushing than across",
+    summary: "anisotropy: how much smoother the surface is along its tangent than across",
     unit: "",
     kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
     default: "0",
@@ -84,7 +84,7 @@ pub(super) const ANISOTROPY: Parameter = Parameter {
 
 pub(super) const ROTATION: Parameter = Parameter {
     name: "rotation",
-    summary: "turns the brushing, which goes along u, or around the y axis of meshes without texture coordinates",
+    summary: "rotation of the anisotropy's direction, which is along u, or around the y axis of meshes without texture coordinates",
     unit: "degrees",
     kind: ParameterKind::Number { min: -360.0, max: 360.0 },
     default: "0",

@@ -1,4 +1,4 @@
-//! Pictures on surfaces, in texels and by formula.
+//! Pictures on surfaces, as images and procedural.
 
 mod image;
 pub(crate) mod levels;

@@ -13,7 +13,7 @@ use bilux_scene::Reader;
 
 pub(crate) const SPECULAR: Parameter = Parameter {
     name: "specular",
-    summary: "highlight by the vector halfway between viewer and light (Equation 1), or by the reflected one",
+    summary: "the specular highlight uses the halfway vector (Equation 1) or the reflected direction",
     unit: "",
     kind: ParameterKind::Choice(&["halfway", "reflect"]),
     default: "halfway",
@@ -30,7 +30,7 @@ pub(crate) const SHADOW_RULE: Parameter = Parameter {
 
 pub(crate) const SHADOWS: Parameter = Parameter {
     name: "shadows",
-    summary: "what glass does to light on its technique to a surface: block it, or colour it without bending it",
+    summary: "how glass affects shadow rays: it blocks light, or tints it without bending it",
     unit: "",
     kind: ParameterKind::Choice(&["opaque", "tinted"]),
     default: "opaque",
@@ -46,7 +46,7 @@ pub(crate) const FRESNEL: Parameter = Parameter {
 
 pub(crate) const CUTOFF: Parameter = Parameter {
     name: "cutoff",
-    summary: "rays that can add less than this to the picture are not followed; 0 follows all",
+    summary: "rays that contribute less than this to the picture are not traced; 0 traces all",
     unit: "",
     kind: ParameterKind::Number { min: 0.0, max: 1.0 },
     default: "0.004",

@@ -17,7 +17,7 @@ use bilux_scene::{Ray, TransportMode};
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "bdpt",
-        summary: "bidirectional path tracing: paths from the camera and from the lights, joined in every technique",
+        summary: "bidirectional path tracing: subpaths from the camera and from the lights, connected in every possible way",
         source: "Veach 1997",
         parameters: &[super::ROULETTE_DEPTH],
     },

@@ -10,12 +10,12 @@ use bilux_scene::Ray;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "cast",
-        summary: "ray casting: Equation 1 where a ray meets the first surface",
+        summary: "ray casting: the Phong model (Equation 1) at the first hit",
         source: "Appel 1968",
         parameters: &[
             Parameter {
                 name: "shadows",
-                summary: "lights that are blocked are off",
+                summary: "cast shadow rays",
                 unit: "",
                 kind: ParameterKind::Bool,
                 default: "true",
@@ -23,7 +23,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             SPECULAR,
             Parameter {
                 name: "viewer",
-                summary: "where highlights are seen from: the eye (local), or far behind the film (infinite)",
+                summary: "the viewer of the highlight: at the eye (local) or infinitely far away (infinite)",
                 unit: "",
                 kind: ParameterKind::Choice(&["local", "infinite"]),
                 default: "local",

@@ -14,7 +14,7 @@ use bilux_scene::Ray;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "light",
-        summary: "light tracing: paths from the lights to what the camera sees, mirrors and glass aside",
+        summary: "light tracing: paths from the lights, each vertex connected to the camera; mirrors and glass are not seen",
         source: "Arvo 1986",
         parameters: &[super::ROULETTE_DEPTH],
     },

@@ -10,7 +10,7 @@ pub(super) const RADIUS: f32 = 0.003;
 pub(super) const fn radius(min: f64) -> Parameter {
     Parameter {
         name: "radius",
-        summary: "how near vertices of both ends must be to count as one at first, as a part of the scene's radius",
+        summary: "initial merging radius, relative to the scene's radius",
         unit: "",
         kind: ParameterKind::Number { min, max: 1.0 },
         default: "0.003",
@@ -19,7 +19,7 @@ pub(super) const fn radius(min: f64) -> Parameter {
 
 pub(super) const ALPHA: Parameter = Parameter {
     name: "alpha",
-    summary: "how slowly that shrinks from iteration to iteration",
+    summary: "how slowly the radius shrinks from iteration to iteration",
     unit: "",
     kind: ParameterKind::Number { min: 0.0, max: 1.0 },
     default: "0.75",
@@ -27,7 +27,7 @@ pub(super) const ALPHA: Parameter = Parameter {
 
 pub(super) const LIGHT_PATHS: Parameter = Parameter {
     name: "light_paths",
-    summary: "the most light paths of an iteration whose vertices are kept",
+    summary: "maximum number of light paths per iteration whose vertices are stored",
     unit: "",
     kind: ParameterKind::Integer { min: 1, max: 1 << 26 },
     default: "1048576",

@@ -120,7 +120,7 @@ pub struct IntegratorEntry {
 /// When roulette begins, for all that play it.
 const ROULETTE_DEPTH: Parameter = Parameter {
     name: "roulette_depth",
-    summary: "scattering events after which weak paths may end by chance",
+    summary: "number of scattering events before Russian roulette starts",
     unit: "",
     kind: ParameterKind::Integer { min: 0, max: 1000 },
     default: "4",

@@ -10,11 +10,11 @@ use bilux_scene::Ray;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "occlusion",
-        summary: "ambient occlusion: how open each point is to the sky, without materials and lights",
+        summary: "ambient occlusion: the share of the hemisphere that is open at each point, without materials and lights",
         source: "Zhukov 1998",
         parameters: &[Parameter {
             name: "distance",
-            summary: "beyond this nothing closes a point in; 0 for no end",
+            summary: "maximum distance of an occluder; 0 for no limit",
             unit: "m",
             kind: ParameterKind::Number { min: 0.0, max: 1e9 },
             default: "0",

@@ -11,12 +11,12 @@ use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "path",
-        summary: "path tracing: all of the light, by chance, right on average",
+        summary: "path tracing with next-event estimation: unbiased",
         source: "Kajiya 1986",
         parameters: &[
             Parameter {
                 name: "sampling",
-                summary: "how lights are found: both techniques, weighted (mis), by picking points on lights, or by \
+                summary: "how direct light is sampled: by multiple importance sampling (mis), by sampling lights alone, or by \
                           scattering alone",
                 unit: "",
                 kind: ParameterKind::Choice(&["mis", "lights", "scattering"]),

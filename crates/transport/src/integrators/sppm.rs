@@ -14,7 +14,7 @@ use bilux_scene::{Ray, TransportMode};
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "sppm",
-        summary: "progressive photon mapping: photons from the lights, counted where the camera's paths arrive",
+        summary: "stochastic progressive photon mapping: photons from the lights, gathered around camera vertices",
         source: "Hachisuka 2009",
         parameters: &[super::ROULETTE_DEPTH, merging::radius(1e-6), merging::ALPHA, merging::LIGHT_PATHS],
     },

@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "vcm",
-        summary: "vertex connection and merging: as bdpt, and photons where neither end can see the other",
+        summary: "vertex connection and merging: bidirectional path tracing combined with photon mapping",
         source: "Georgiev 2012",
         parameters: &[
             super::ROULETTE_DEPTH,

@@ -10,7 +10,7 @@ use bilux_scene::Ray;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "whitted",
-        summary: "recursive ray tracing: Equation 2, with reflection, refraction and shadows",
+        summary: "Whitted ray tracing: Equation 2 with recursive reflection, refraction and shadows",
         source: "Whitted 1980",
         parameters: &[SPECULAR, FRESNEL, SHADOW_RULE, SHADOWS, CUTOFF],
     },

@@ -51,7 +51,7 @@ pub(super) const RULES: &[Rule] = &[
     rule("a stride is for vertex attributes", &BUFFER_VIEW, buffers::stride_target),
     rule("a camera has the lens of its type", &CAMERA, root::camera),
     rule("a lens sees from near to far", &ORTHOGRAPHIC, root::orthographic),
-    rule("a lens sees from near to far", &PERSPECTIVE, root::perspective),
+    rule("a perspective lens sees from near to far", &PERSPECTIVE, root::perspective),
     rule("an image has one source", &IMAGE, images::source),
     rule("a spot light has a cone", &LIGHT, root::spot),
     rule("a variant is mapped once", &MAPPINGS, materials::mappings),

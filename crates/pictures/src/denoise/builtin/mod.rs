@@ -23,7 +23,7 @@ use std::time::Duration;
 pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
     entry: Entry {
         name: "builtin",
-        summary: "averages over what is alike by albedo, normal, depth and, as far as its variance tells, light",
+        summary: "cross-bilateral filter guided by albedo, normal, depth and variance, with first-order regression at edges",
         source: "Dammertz 2010",
         parameters: &[],
     },

@@ -1,7 +1,7 @@
 //! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: plastic, metal, glass, or
 //! a mixture, below a clear coat, below fuzz.
 //!
-//! Below is what scatters diffusely, or metal; at the surface, facets reflect by Fresnel's equations. What they reflect
+//! Below is what scatters diffusely, or metal; at the surface, microfacets reflect by Fresnel's equations. What they reflect
 //! the diffuse part lacks, and no more: a white surface loses nothing. [OpenPBR 1.1; Kulla 2017]
 
 mod maps;
@@ -47,13 +47,13 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             index("specular_ior", "refractive index of what is not metal", "1.5"),
             number(
                 "specular_roughness_anisotropy",
-                "how much smoother it is along its brushing than across",
+                "anisotropy: how much smoother the surface is along its tangent than across",
                 1.0,
                 "0",
             ),
             Parameter {
                 name: "anisotropy_rotation",
-                summary: "turns the brushing, which goes along u",
+                summary: "rotation of the anisotropy's direction, which is along u",
                 unit: "turns",
                 kind: ParameterKind::NumberTexture { min: -1.0, max: 1.0 },
                 default: "0",
@@ -166,7 +166,7 @@ const fn index(name: &'static str, summary: &'static str, default: &'static str)
     Parameter { name, summary, unit: "", kind, default }
 }
 
-const ROUGHNESS: &str = "0 is polished, 1 as rough as can be; the square root of GGX's alpha";
+const ROUGHNESS: &str = "surface roughness: 0 is polished; the square root of GGX's alpha";
 
 const fn number(name: &'static str, summary: &'static str, max: f64, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::NumberTexture { min: 0.0, max }, default }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: TextureEntry = TextureEntry {
     entry: Entry {
         name: "checker",
-        summary: "squares of two colours, as on a board",
+        summary: "checkerboard of two colours",
         source: "",
         parameters: &[
             tone("a", "the square at the lower left, and every second one from there", "1 1 1"),

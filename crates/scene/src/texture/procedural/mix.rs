@@ -10,14 +10,14 @@ use std::sync::Arc;
 pub(super) const ENTRY: TextureEntry = TextureEntry {
     entry: Entry {
         name: "mix",
-        summary: "something of two colours or textures",
+        summary: "mixture of two colours or textures",
         source: "",
         parameters: &[
             tone("a", "the one", "0 0 0"),
             tone("b", "the other", "1 1 1"),
             Parameter {
                 name: "amount",
-                summary: "how much there is of `b`",
+                summary: "weight of `b`",
                 unit: "",
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
                 default: "0.5",

@@ -1,4 +1,4 @@
-//! Pictures by formula: worked out where they are looked up. To add one: a file with its `ENTRY`, and a line in the table.
+//! Procedural textures: worked out where they are looked up. To add one: a file with its `ENTRY`, and a line in the table.
 
 mod checker;
 mod mix;
@@ -14,7 +14,7 @@ use bilux_math::{Rgb, Vec2};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Every kind of texture by formula.
+/// Every kind of procedural texture.
 pub const TEXTURES: &[TextureEntry] = &[checker::ENTRY, ramp::ENTRY, noise::ENTRY, mix::ENTRY, scale::ENTRY];
 
 /// A row of [`TEXTURES`].
@@ -39,7 +39,7 @@ pub trait Pattern: Debug + Send + Sync {
     }
 }
 
-/// A texture by formula: what was said of it, and what that makes.
+/// A procedural texture: what was said of it, and what that makes.
 #[derive(Clone, Debug)]
 pub struct Formula {
     spec: Spec,
@@ -71,7 +71,7 @@ impl Formula {
         let formulas = parts.iter().filter_map(|part| part.formula());
         let cost = formulas.fold(1, |cost: usize, formula| cost.saturating_add(formula.cost));
         if cost > MAX_FORMULAS {
-            let message = format!("textures are made of more than {MAX_FORMULAS} others by formula");
+            let message = format!("procedural textures are made of more than {MAX_FORMULAS} other textures");
             return Err(SceneError::invalid(message, &spec.span));
         }
         let pattern = (row.build)(&Reader::new(&spec, &row.entry)?, &Parts(&parts))?;
@@ -111,7 +111,7 @@ impl Formula {
 }
 
 impl Texture {
-    /// A texture by formula.
+    /// A procedural texture.
     ///
     /// # Errors
     /// As [`Formula::new`].

@@ -14,28 +14,28 @@ use std::sync::{Arc, LazyLock};
 pub(super) const ENTRY: TextureEntry = TextureEntry {
     entry: Entry {
         name: "noise",
-        summary: "clouds between two colours, in several sizes on top of each other",
+        summary: "fractal Perlin noise between two colours",
         source: "Perlin 2002",
         parameters: &[
             tone("a", "what stands for 0", "0 0 0"),
             tone("b", "what stands for 1", "1 1 1"),
             Parameter {
                 name: "octaves",
-                summary: "how many sizes there are, each half of the one before it",
+                summary: "number of octaves",
                 unit: "",
                 kind: ParameterKind::Integer { min: 1, max: 16 },
                 default: "6",
             },
             Parameter {
                 name: "roughness",
-                summary: "how strong each size is against the one before it",
+                summary: "amplitude of each octave relative to the one before",
                 unit: "",
                 kind: ParameterKind::Number { min: 0.0, max: 1.0 },
                 default: "0.5",
             },
             Parameter {
                 name: "seed",
-                summary: "another number gives other clouds",
+                summary: "seed of the noise",
                 unit: "",
                 kind: ParameterKind::Integer { min: 0, max: i64::MAX },
                 default: "0",

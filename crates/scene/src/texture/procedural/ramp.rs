@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: TextureEntry = TextureEntry {
     entry: Entry {
         name: "ramp",
-        summary: "from colour to colour, along a line between each two",
+        summary: "piecewise linear colour ramp",
         source: "",
         parameters: &[
             Parameter {

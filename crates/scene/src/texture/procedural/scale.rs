@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: TextureEntry = TextureEntry {
     entry: Entry {
         name: "scale",
-        summary: "two colours or textures, multiplied",
+        summary: "product of two colours or textures",
         source: "",
         parameters: &[tone("a", "the one", "1 1 1"), tone("b", "what it is multiplied by", "1 1 1")],
     },

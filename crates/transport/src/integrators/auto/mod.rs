@@ -28,19 +28,19 @@ use std::sync::Arc;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "auto",
-        summary: "path tracing, with light paths, joins and photons where a first look finds them worth their time",
+        summary: "path tracing, with light subpaths, connections and photons where a pilot finds that they pay",
         source: "Grittmann 2022",
         parameters: &[
             Parameter {
                 name: "merge",
-                summary: "whether vertices that lie close together may count as one, which blurs a little",
+                summary: "whether vertex merging may be used, which is biased: it blurs a little",
                 unit: "",
                 kind: ParameterKind::Choice(&["auto", "never"]),
                 default: "auto",
             },
             Parameter {
                 name: "ways",
-                summary: "take these techniques of finding light, whatever the first look says",
+                summary: "always use this set of techniques, whatever the pilot suggests",
                 unit: "",
                 kind: ParameterKind::Choice(&WAYS),
                 default: "auto",
@@ -48,7 +48,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             super::ROULETTE_DEPTH,
             Parameter {
                 name: "radius",
-                summary: "as that of vcm; 0 for three pixels as the camera sees them",
+                summary: "initial merging radius, as in vcm; 0 for the footprint of three pixels",
                 unit: "",
                 kind: ParameterKind::Number { min: 0.0, max: 1.0 },
                 default: "0",
@@ -57,7 +57,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             merging::LIGHT_PATHS,
             Parameter {
                 name: "aim",
-                summary: "send most light paths where a first look found them to be of use",
+                summary: "guide light paths to where the pilot found them useful",
                 unit: "",
                 kind: ParameterKind::Bool,
                 default: "true",
