@@ -59,14 +59,16 @@ pub fn error(error: &anyhow::Error) {
 /// An error with its causes, each said once: libraries' messages mostly end with their cause's already.
 pub fn message(error: &anyhow::Error) -> String {
     let mut text = String::new();
-    for cause in error.chain().map(ToString::to_string).filter(|cause| !cause.is_empty()) {
+    for cause in
+        error.chain().map(|cause| without_error_numbers(&cause.to_string())).filter(|cause| !cause.is_empty())
+    {
         match text.as_str() {
             "" => text = cause,
             said if said.ends_with(&cause) => {}
             _ => text += &format!(": {cause}"),
         }
     }
-    without_error_numbers(&text) + &error.chain().find_map(flag_that_helps).unwrap_or_default()
+    text + &error.chain().find_map(flag_that_helps).unwrap_or_default()
 }
 
 /// Leaves out the number that the standard library puts behind what the system says: `(os error 2)`.

@@ -171,7 +171,7 @@ fn little_memory_is_enough_or_is_told() {
     assert_told(
         (code, said),
         1,
-        &["would take about 320001 MB", "320000 the picture", "(--max-memory 299G)"],
+        &["would take about 320001 MB", "320000 MB for the picture", "(--max-memory 299G)"],
     );
 }
 

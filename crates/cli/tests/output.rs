@@ -82,9 +82,9 @@ fn a_result_that_cannot_be_printed_is_an_error() {
             said.contains("error: standard output: cannot write to it: No space left"),
             "{command}: {said}"
         );
-        let mut child = bilux(path, &command).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        drop(child.stdout.take());
-        let output = child.wait_with_output().unwrap();
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = bilux(path, &command).stdout(writer).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(141), "{command}: {said}");
         assert!(!said.contains("error"), "{command}: {said}");
