@@ -23,7 +23,7 @@ const SUITES: &[(&str, &[&str])] = &[
 ];
 
 /// Seconds: a mutant that loops is not waited for, and no test takes as long by itself.
-const LEAST_TIMEOUT: &str = "120";
+const MIN_TIMEOUT: &str = "120";
 
 /// What is asked for.
 #[derive(Debug, PartialEq)]
@@ -81,7 +81,7 @@ fn plant(name: &str, suites: &[&str], diff: &Path, out: &Path, more: &[String]) 
     let mut command = cargo(&["mutants", "--in-diff"]);
     command.arg(diff).arg("--output").arg(out);
     command.args(["--package", &package_in(name), "--test-package", &suites.join(",")]);
-    command.args(["--minimum-test-timeout", LEAST_TIMEOUT, "--timeout-multiplier", "3"]).args(more);
+    command.args(["--minimum-test-timeout", MIN_TIMEOUT, "--timeout-multiplier", "3"]).args(more);
     let status = command.status().context("cannot start cargo-mutants")?;
     // 2: some survived; 3: some ran out of time, which is noticed.
     match status.code() {

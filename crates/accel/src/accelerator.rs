@@ -1,6 +1,6 @@
 //! What every structure can be asked.
 
-use crate::counters::{Count, Counters, Nothing};
+use crate::counters::{Count, Counters, NoCounters};
 use crate::ray::{Hit, Query, Ray};
 use bilux_math::Aabb;
 use std::cmp::Ordering;
@@ -61,13 +61,13 @@ pub trait Traverse: Send + Sync {
     /// See [`Accelerator::closest_hits`]; one by one, unless a structure knows better.
     fn closest_each(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.closest(ray, query, &mut Nothing);
+            *hit = self.closest(ray, query, &mut NoCounters);
         }
     }
     /// See [`Accelerator::any_hits`]; one by one, unless a structure knows better.
     fn any_each(&self, rays: &[Ray], query: &Query, hits: &mut [bool]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.any(ray, query, &mut Nothing);
+            *hit = self.any(ray, query, &mut NoCounters);
         }
     }
     /// See [`Accelerator::bounds`].
@@ -80,10 +80,10 @@ pub trait Traverse: Send + Sync {
 
 impl<T: Traverse> Accelerator for T {
     fn closest_hit(&self, ray: &Ray, query: &Query) -> Option<Hit> {
-        self.closest(ray, query, &mut Nothing).map(Hit::with_positive_zeros)
+        self.closest(ray, query, &mut NoCounters).map(Hit::with_positive_zeros)
     }
     fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
-        self.any(ray, query, &mut Nothing)
+        self.any(ray, query, &mut NoCounters)
     }
     fn closest_hits(&self, rays: &[Ray], query: &Query, hits: &mut [Option<Hit>]) {
         self.closest_each(rays, query, hits);

@@ -25,7 +25,7 @@ impl std::ops::AddAssign for Counters {
     }
 }
 
-/// Something that a traversal reports its work to. [`Nothing`] compiles to nothing.
+/// Something that a traversal reports its work to. [`NoCounters`] compiles to nothing.
 pub trait Count {
     /// A query begins.
     fn ray(&mut self) {}
@@ -45,9 +45,9 @@ pub trait Count {
 
 /// Counts nothing, at no cost.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Nothing;
+pub struct NoCounters;
 
-impl Count for Nothing {}
+impl Count for NoCounters {}
 
 impl Count for Counters {
     fn ray(&mut self) {

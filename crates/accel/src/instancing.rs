@@ -66,16 +66,16 @@ pub struct TwoLevel {
 
 enum Top {
     List,
-    Bvh { tree: Tree, order: Vec<u32>, reach: Reach },
+    Bvh { tree: Tree, order: Vec<u32>, reach: PadBounds },
 }
 
 struct Placed {
     accelerator: Arc<dyn Accelerator>,
-    place: Place,
+    place: InstancePlacement,
     mask: u32,
 }
 
-enum Place {
+enum InstancePlacement {
     Identity,
     Still(IntoLocal),
     Moving(Motion),
@@ -99,7 +99,7 @@ impl TwoLevel {
             TopLevel::List => Top::List,
             TopLevel::Bvh => {
                 let (tree, order) = Tree::over(boxes.len(), |index| boxes[index as usize]);
-                Top::Bvh { tree, order, reach: Reach::of(instances, &boxes, shutter) }
+                Top::Bvh { tree, order, reach: PadBounds::of(instances, &boxes, shutter) }
             }
         };
         drop(boxes);
@@ -149,9 +149,9 @@ impl TwoLevel {
 
     fn local_ray(&self, index: u32, ray: &Ray, t_max: f32) -> Ray {
         let (origin, direction) = match &self.placed[index as usize].place {
-            Place::Identity => (ray.origin, ray.direction),
-            Place::Still(into) => into.apply(ray),
-            Place::Moving(motion) => {
+            InstancePlacement::Identity => (ray.origin, ray.direction),
+            InstancePlacement::Still(into) => into.apply(ray),
+            InstancePlacement::Moving(motion) => {
                 // Written so that a time that is not a number becomes the opening of the shutter.
                 let [open, close] = self.shutter;
                 let time = if ray.time > open { ray.time.min(close) } else { open };
@@ -271,9 +271,13 @@ impl Placed {
         let Instance { accelerator, motion, mask } = instance;
         let place = if motion.is_still_over(shutter) {
             let transform = motion.at(shutter[0]);
-            if transform.is_identity() { Place::Identity } else { Place::Still(IntoLocal::new(&transform)) }
+            if transform.is_identity() {
+                InstancePlacement::Identity
+            } else {
+                InstancePlacement::Still(IntoLocal::new(&transform))
+            }
         } else {
-            Place::Moving(motion.clone())
+            InstancePlacement::Moving(motion.clone())
         };
         Placed { accelerator: accelerator.clone(), place, mask: *mask }
     }
@@ -302,7 +306,7 @@ impl IntoLocal {
 }
 
 /// What the pad of the top level depends on.
-struct Reach {
+struct PadBounds {
     /// Around all boxes, and the points that the instances' own origins go to.
     hull: Aabb,
     /// The greatest κ of all transforms.
@@ -311,10 +315,10 @@ struct Reach {
     growth: f64,
 }
 
-impl Reach {
-    fn of(instances: &[Instance], boxes: &[Aabb], shutter: [f32; 2]) -> Reach {
+impl PadBounds {
+    fn of(instances: &[Instance], boxes: &[Aabb], shutter: [f32; 2]) -> PadBounds {
         let origin = Aabb::of_points([Vec3::ZERO]);
-        let mut reach = Reach { hull: Aabb::EMPTY, condition: 1.0, growth: 1.0 };
+        let mut reach = PadBounds { hull: Aabb::EMPTY, condition: 1.0, growth: 1.0 };
         for (instance, bounds) in instances.iter().zip(boxes) {
             let [grow, shrink] = instance.motion.stretch_over(shutter);
             // In the maximum norm, each is at most √3 of what it is in the Euclidean one.

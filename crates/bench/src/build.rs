@@ -1,7 +1,7 @@
 //! How fast trees are built over teapots, and how large they become.
 
 use crate::accels::{find, threads};
-use crate::{Options, Report, Tell, median, table, timed};
+use crate::{Options, ProgressFn, Report, median, table, timed};
 use bilux::Error;
 use bilux::accel::{ACCELERATORS, Accelerator, TriangleMesh};
 use bilux::math::Vec3;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// When an accelerator is not known.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![1, 5, 25] } else { options.counts.clone() };
     let all = || {
         let names = ACCELERATORS.iter().map(|row| row.entry.name.to_owned());

@@ -1,7 +1,7 @@
 //! Moving scenes: a walk through still teapots, and one teapot moving among them, against building everything
 //! anew for every frame.
 
-use crate::{Options, Report, Tell, table, timed};
+use crate::{Options, ProgressFn, Report, table, timed};
 use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
 use bilux::{Error, Job, Quiet};
 use serde_json::json;
@@ -13,7 +13,7 @@ const FRAMES: u32 = 24;
 ///
 /// # Errors
 /// When an accelerator is not known.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let size = options.size_or((512, 512));
     let count = options.counts.first().copied().unwrap_or(5);
     let default = ["bsp-sah", "bvh"].map(str::to_owned).to_vec();

@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Called with a line about what is being measured.
-pub type Tell<'a> = &'a dyn Fn(&str);
+pub type ProgressFn<'a> = &'a dyn Fn(&str);
 
 /// What a benchmark found.
 pub struct Report {

@@ -2,7 +2,7 @@
 
 mod made;
 
-use crate::{Report, Tell, median, table};
+use crate::{ProgressFn, Report, median, table};
 use bilux::Error;
 use bilux::formats::{ReadOptions, read};
 use bilux::scene::SceneBuilder;
@@ -30,7 +30,7 @@ pub struct Options {
 ///
 /// # Errors
 /// When a file cannot be read.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let mut rows = Vec::new();
     for file in &options.files {
         tell(&file.display().to_string());

@@ -1,7 +1,7 @@
 //! The paper's Figure 1 and section 4.2 anew: one scene by `cast`, `whitted`, `cook` and `path`, how far each is
 //! from a converged `path` inside the mirror, and what Monte Carlo samples cost.
 
-use crate::{Options, Report, Tell, table, timed};
+use crate::{Options, ProgressFn, Report, table, timed};
 use bilux::pictures::Picture;
 use bilux::pictures::{label, side_by_side};
 use bilux::scene::{CameraSample, Parameters, SceneBuilder, Spec, Tracer, Value as Setting};
@@ -20,7 +20,7 @@ const COSTS: [u32; 5] = [1, 4, 16, 64, 256];
 ///
 /// # Errors
 /// When something cannot be rendered.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let scene = bilux::generate(&Spec::new("", "trio"))?;
     let size = options.size_or((256, 144));
     let mask = mirror_mask(&scene, size)?;

@@ -1,6 +1,6 @@
 //! The paper's Figure 2 anew: two to five teapots, with and without a tree.
 
-use crate::{Options, Report, Tell, median, table, timed};
+use crate::{Options, ProgressFn, Report, median, table, timed};
 use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
 use bilux::{Error, Job, Outcome, Quiet};
 use serde_json::{Value, json};
@@ -27,7 +27,7 @@ struct Row {
 ///
 /// # Errors
 /// When an accelerator or a layout is not known.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![2, 3, 4, 5] } else { options.counts.clone() };
     let mut accels = options.accels.clone();
     if accels.is_empty() {
@@ -39,20 +39,22 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
     let mut rows: Vec<Row> = Vec::new();
     for &count in &counts {
         let scene = scene(count, &options.layout)?;
-        let mut rivals =
-            accels.iter().map(|accel| Rival::new(&scene, accel, options)).collect::<Result<Vec<_>, _>>()?;
+        let mut competitors = accels
+            .iter()
+            .map(|accel| Competitor::new(&scene, accel, options))
+            .collect::<Result<Vec<_>, _>>()?;
         for round in 0..options.repeats.max(1) {
-            for rival in &mut rivals {
+            for competitor in &mut competitors {
                 // A loop over all triangles takes long enough to be timed once.
-                if round == 0 || !rival.is_loop() {
-                    tell(&format!("{count} teapots by {}, round {}", rival.accel, round + 1));
-                    rival.race()?;
+                if round == 0 || !competitor.is_loop() {
+                    tell(&format!("{count} teapots by {}, round {}", competitor.accel, round + 1));
+                    competitor.race()?;
                 }
             }
         }
         let first = rows.len();
-        for rival in rivals {
-            rows.push(rival.row(count, &scene)?);
+        for competitor in competitors {
+            rows.push(competitor.row(count, &scene)?);
         }
         let brute = rows[first..].iter().find(|r| r.accel == "brute").map(|r| r.seconds);
         for row in &mut rows[first..] {
@@ -83,7 +85,7 @@ fn settings(accel: &str, size: (u32, u32)) -> Parameters {
 }
 
 /// An accelerator in the race.
-struct Rival {
+struct Competitor {
     accel: String,
     job: Job,
     build_seconds: f64,
@@ -91,10 +93,10 @@ struct Rival {
     outcome: Option<Outcome>,
 }
 
-impl Rival {
-    fn new(scene: &SceneBuilder, accel: &str, options: &Options) -> Result<Rival, Error> {
+impl Competitor {
+    fn new(scene: &SceneBuilder, accel: &str, options: &Options) -> Result<Competitor, Error> {
         let (build_seconds, job) = timed(|| Job::new(scene, &settings(accel, options.size_or((512, 512)))))?;
-        Ok(Rival { accel: accel.to_owned(), job, build_seconds, seconds: Vec::new(), outcome: None })
+        Ok(Competitor { accel: accel.to_owned(), job, build_seconds, seconds: Vec::new(), outcome: None })
     }
 
     /// True where counting costs nothing, so that one run does for time and counts.

@@ -1,6 +1,6 @@
 //! Seeing without rays: the algorithms that the paper compares BSP trees with, on its teapots.
 
-use crate::{Options, Report, Tell, median, table};
+use crate::{Options, ProgressFn, Report, median, table};
 use bilux::accel::BuildOptions;
 use bilux::accel::visibility::{VISIBILITY, View, VisibilityOptions, VisibilityResult, wrong_pixels};
 use bilux::scene::{CameraSample, Parameters, SceneError};
@@ -13,7 +13,7 @@ use std::time::Instant;
 ///
 /// # Errors
 /// When the layout is not known.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let count = options.counts.first().copied().unwrap_or(5);
     let mesh = crate::build::mesh(count, &options.layout)?;
     let view = view(count, options)?;

@@ -5,8 +5,8 @@ use crate::budget::left_for_light;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
 use crate::memory::Memory;
-use crate::oddities::{self, oddities};
 use crate::own_light;
+use crate::scene_warnings::{self, oddities};
 use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
@@ -107,7 +107,7 @@ impl Job {
     /// When anything in the scene is wrong.
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
         let aspect = settings.width as f32 / settings.height as f32;
-        oddities::check_not_empty(scene)?;
+        scene_warnings::check_not_empty(scene)?;
         let mut studio = crate::presets::Studio { aspect: Some(aspect), ..settings.studio };
         let accel_of = |scene: &SceneBuilder| {
             settings.accel_for(scene.objects.iter().map(|object| object.mesh.triangles.len()).sum())
@@ -120,7 +120,7 @@ impl Job {
         let objects = completed.objects.len() as u32;
         let has_ground = completed.objects.len() > scene.objects.len();
         let has_backdrop = completed.lights.iter().any(Spec::is_backdrop);
-        let of_ground = oddities::of_ground(&studio, has_ground, has_backdrop);
+        let of_ground = scene_warnings::of_ground(&studio, has_ground, has_backdrop);
         let catcher = crate::presets::shadow_catcher(&completed, &studio)
             .map(|ground| ShadowCatcher { ground: ground as u32, objects });
         if settings.background.is_cut_out() {

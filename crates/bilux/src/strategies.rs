@@ -15,7 +15,7 @@ const GAP: usize = 4;
 const LINE: usize = 12;
 
 /// No row is made brighter by more powers of two.
-const MOST_STOPS: u32 = 30;
+const MAX_STOPS: u32 = 30;
 
 /// Which light of the strategies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,5 +129,5 @@ fn row_brightness(row: &[StrategyPicture], light: Light) -> f64 {
 fn stops(ratio: f64) -> u32 {
     let is_below =
         |&stops: &u32| ratio.is_finite() && ratio > f64::from(1u32 << stops) * std::f64::consts::SQRT_2;
-    (0..MOST_STOPS).take_while(is_below).count() as u32
+    (0..MAX_STOPS).take_while(is_below).count() as u32
 }

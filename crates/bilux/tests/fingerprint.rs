@@ -69,6 +69,8 @@ const CHANGES: &[Change] = &[
     ("a vertex's specular colour", |s| mesh_of(s).vertex_ks[1].r = 0.5),
     ("the order of corners", |s| mesh_of(s).triangles[0] = [0, 2, 1]),
     ("one triangle more", |s| mesh_of(s).triangles.push([0, 2, 1])),
+    ("a point", |s| mesh_of(s).points.push(1)),
+    ("a line", |s| mesh_of(s).lines.push([0, 1])),
     ("an object's material", |s| s.objects[0].material = 1),
     ("an object's place", |s| {
         s.objects[0].motion =
@@ -150,6 +152,8 @@ const SETTINGS: &[(&str, &str, Effect)] = &[
     ("camera", "b", Changes),
     ("ground", "none", Changes),
     ("orbit", "40,10", Changes),
+    ("up", "z", Changes),
+    ("front", "x", Changes),
     ("focal", "80", Changes),
     ("time", "0.5", Changes),
     ("shutter", "0.5", Changes),
@@ -184,7 +188,7 @@ fn value(parameter: &Parameter, text: &str) -> Value {
 /// Without a camera and a light of its own, where a setting is of the studio.
 fn fingerprint_of(key: &str, value: Option<Value>) -> String {
     let mut scene = scene();
-    if ["ground", "orbit", "focal", "background"].contains(&key) {
+    if ["ground", "orbit", "up", "front", "focal", "background"].contains(&key) {
         scene.cameras.clear();
         scene.lights.clear();
     }

@@ -136,25 +136,25 @@ pub struct Render {
     pub scenes: Vec<PathBuf>,
     /// The picture; its extension sets the format, `{stem}` stands for the scene's name, `{frame}` for a frame's number,
     /// and `-` writes PNG to standard output
-    #[arg(short, long, value_name = "OUT", help_heading = help::MOST_USED)]
+    #[arg(short, long, value_name = "OUT", help_heading = help::MAX_USED)]
     pub output: PathBuf,
     /// The width and height in pixels [default: 512x512]
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::MAX_USED)]
     pub size: Option<String>,
     /// Take this number of samples in each pixel; the picture is then the same on every machine
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::MAX_USED)]
     pub spp: Option<u32>,
     /// Stop when the noise is at most this part of the light, on average: 2% looks smooth
-    #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::MAX_USED)]
     pub noise: Option<f32>,
     /// Finish within this time, including reading and denoising; where that is impossible, a line says why
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::MAX_USED)]
     pub time_limit: Option<f32>,
     /// The integrator, which finds the light (`bilux list integrators`) [default: auto]
-    #[arg(short, long, value_name = "NAME", help_heading = help::MOST_USED)]
+    #[arg(short, long, value_name = "NAME", help_heading = help::MAX_USED)]
     pub integrator: Option<String>,
     /// The camera of the scene to use, by name or by number from 0
-    #[arg(long, value_name = "NAME|INDEX", help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "NAME|INDEX", help_heading = help::MAX_USED)]
     pub camera: Option<String>,
     #[command(flatten)]
     pub studio: StudioArguments,

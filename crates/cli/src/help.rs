@@ -4,7 +4,7 @@
 pub const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\n{all-args}\n";
 
 /// Heading of the ten options that are used most.
-pub const MOST_USED: &str = "Most used";
+pub const MAX_USED: &str = "Most used";
 /// Heading: what of a scene is shown.
 pub const WHAT: &str = "What";
 /// Heading: how the picture looks.

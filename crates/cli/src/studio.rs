@@ -15,14 +15,14 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 pub struct StudioArguments {
     /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8]
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::MAX_USED)]
     pub orbit: Option<String>,
     /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none keeps
     /// the studio away from the lights that a glTF file brings
-    #[arg(long, value_name = "FILE|none", help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "FILE|none", help_heading = help::MAX_USED)]
     pub env: Option<PathBuf>,
     /// Put the model in front of nothing (transparent), a colour (white, '#rrggbb' or R,G,B) or a picture, which lights nothing
-    #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::MOST_USED)]
+    #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::MAX_USED)]
     pub background: Option<String>,
     /// Which of the model's axes is up: x, y, z, -x, -y or -z [default: auto, by its format and its shape]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]

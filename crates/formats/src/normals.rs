@@ -31,7 +31,7 @@ pub(crate) struct CornerNormals {
 }
 
 /// Where more faces meet than this, all are averaged: looking at every pair would take too long.
-const MOST_PAIRED: usize = 256;
+const MAX_PAIRED: usize = 256;
 
 /// Positions that one thread looks at in one go.
 const PIECE: usize = 1 << 14;
@@ -51,7 +51,7 @@ struct Crease {
 
 /// The normals of some positions, and the index among them for each corner there.
 #[derive(Default)]
-struct Found {
+struct PositionNormals {
     normals: Vec<Vec3>,
     indices: Vec<u32>,
     any_smooth: bool,
@@ -83,9 +83,9 @@ impl Faces<'_> {
         let batch = PIECE * rayon::current_num_threads();
         for start in (0..count).step_by(batch) {
             let pieces = (start..(start + batch).min(count)).into_par_iter().step_by(PIECE);
-            let found: Vec<Found> = pieces
+            let found: Vec<PositionNormals> = pieces
                 .map(|start| {
-                    let mut found = Found::default();
+                    let mut found = PositionNormals::default();
                     let mut here = Vec::new();
                     for position in start..(start + PIECE).min(count) {
                         here.clear();
@@ -113,11 +113,11 @@ impl Faces<'_> {
     }
 
     /// The normals of the corners at a position, which are of these faces.
-    fn add_position(&self, here: &[u32], facing: &[Facing], crease: &Crease, found: &mut Found) {
+    fn add_position(&self, here: &[u32], facing: &[Facing], crease: &Crease, found: &mut PositionNormals) {
         let first = found.normals.len();
         let weighted = |&face: &u32| facing[face as usize].unit * facing[face as usize].area;
         let sum: Vec3 = here.iter().map(weighted).sum();
-        let is_crowd = here.len() > MOST_PAIRED;
+        let is_crowd = here.len() > MAX_PAIRED;
         let middle = sum.normalize_or_zero();
         // Who is within half of the angle of the middle is within it of all others.
         let near = |&face: &u32| facing[face as usize].unit.dot(middle) > crease.half + 1e-5;
@@ -134,10 +134,10 @@ impl Faces<'_> {
             let normal = if is_crowd && self.smoothing_of(face) != FLAT {
                 sum.normalize_or(own)
             } else {
-                self.normal_at(&here[..here.len().min(MOST_PAIRED)], face, facing, crease.whole)
+                self.normal_at(&here[..here.len().min(MAX_PAIRED)], face, facing, crease.whole)
             };
             found.any_smooth |= own != Vec3::ZERO && normal.dot(own) < ALIKE;
-            let known = found.normals[first..].iter().take(MOST_PAIRED).position(|&n| n == normal);
+            let known = found.normals[first..].iter().take(MAX_PAIRED).position(|&n| n == normal);
             let index = first + known.unwrap_or(found.normals.len() - first);
             if index == found.normals.len() {
                 found.normals.push(normal);

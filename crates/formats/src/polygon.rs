@@ -15,7 +15,7 @@ pub(crate) struct Triangulator {
 
 /// Cutting a hollow polygon takes the square of its corners at worst; one with more corners than this is
 /// taken as convex.
-const MOST_EARS: usize = 4096;
+const MAX_EARS: usize = 4096;
 
 impl Triangulator {
     /// Triples of corners (counted from 0) that cover a polygon, wound as it is. `None` when the polygon is
@@ -40,7 +40,7 @@ impl Triangulator {
             fan((0..4).find(|&i| self.turns_right(i as usize)).unwrap_or(0));
             return Some(());
         }
-        if count as usize > MOST_EARS {
+        if count as usize > MAX_EARS {
             fan(0);
             return None;
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Meshes whose copies would have more triangles, points and lines than this keep one tree for all of them.
-const MOST_COPIED: usize = 1 << 18;
+const MAX_COPIED: usize = 1 << 18;
 
 /// Keeps one tree for meshes that stand in the scene often.
 pub(crate) fn share_trees(scene: &mut SceneBuilder) {
@@ -15,6 +15,6 @@ pub(crate) fn share_trees(scene: &mut SceneBuilder) {
     }
     for object in &mut scene.objects {
         let copies = uses[&Arc::as_ptr(&object.mesh)] - 1;
-        object.instanced = copies * (object.mesh.triangles.len() + object.mesh.stroke_count()) > MOST_COPIED;
+        object.instanced = copies * (object.mesh.triangles.len() + object.mesh.stroke_count()) > MAX_COPIED;
     }
 }

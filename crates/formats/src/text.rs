@@ -19,14 +19,14 @@ pub(crate) struct Cursor<'a> {
 
 /// Line and column in a file, from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct TextPosition {
     pub(crate) line: u32,
     pub(crate) column: u32,
 }
 
-impl Place {
-    pub(crate) fn of_key(key: u64) -> Place {
-        Place { line: (key >> 32) as u32, column: key as u32 }
+impl TextPosition {
+    pub(crate) fn of_key(key: u64) -> TextPosition {
+        TextPosition { line: (key >> 32) as u32, column: key as u32 }
     }
 
     /// Both numbers in one, rising as one reads.
@@ -35,8 +35,8 @@ impl Place {
     }
 
     /// The same where so many lines stand before.
-    pub(crate) fn after(self, lines: u32) -> Place {
-        Place { line: self.line.saturating_add(lines), ..self }
+    pub(crate) fn after(self, lines: u32) -> TextPosition {
+        TextPosition { line: self.line.saturating_add(lines), ..self }
     }
 
     pub(crate) fn in_file(self, file: &Arc<str>) -> Span {
@@ -69,10 +69,10 @@ impl<'a> Cursor<'a> {
     }
 
     /// Where a byte of the line stands that the cursor is in; not to be asked after [`Cursor::go_to`].
-    pub(crate) fn place(&self, offset: usize) -> Place {
+    pub(crate) fn place(&self, offset: usize) -> TextPosition {
         let (lines, start) = self.line;
         let column = u32::try_from(offset - start + 1).unwrap_or(u32::MAX);
-        Place { line: lines.saturating_add(1), column }
+        TextPosition { line: lines.saturating_add(1), column }
     }
 
     /// How many line ends have been passed.

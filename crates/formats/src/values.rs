@@ -39,7 +39,7 @@ pub(crate) fn texture(spec: &Spec, key: &str) -> Option<usize> {
 }
 
 /// What a format holds of materials.
-pub(crate) struct Holds<'a> {
+pub(crate) struct MaterialSupport<'a> {
     pub(crate) format: &'static str,
     /// The parameters of each kind; other kinds are told elsewhere.
     pub(crate) of_kinds: &'a [(&'a str, &'a [&'a str])],
@@ -49,10 +49,10 @@ pub(crate) struct Holds<'a> {
     pub(crate) pictured: Option<&'a [&'a str]>,
 }
 
-impl Holds<'_> {
+impl MaterialSupport<'_> {
     /// Tells of what a material says that is not held.
     pub(crate) fn tell(&self, spec: &Spec, writing: &mut Writing) {
-        let Holds { format, of_kinds, of_any, pictured } = self;
+        let MaterialSupport { format, of_kinds, of_any, pictured } = self;
         let Some((kind, of_kind)) = of_kinds.iter().find(|(kind, _)| *kind == spec.kind) else { return };
         let Some(row) = MATERIALS.iter().find(|row| row.entry.name == *kind) else { return };
         for key in spec.differing(&row.entry) {

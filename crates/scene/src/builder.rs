@@ -6,7 +6,7 @@ use crate::footprint;
 use crate::geometry::{Geometry, Placed};
 use crate::inventory::Inventory;
 use crate::lights::{self, BuiltLight, Sides};
-use crate::materials::{self, Ingredients, Material};
+use crate::materials::{self, Material, MaterialInputs};
 use crate::mesh::Mesh;
 use crate::orientation::UpHint;
 use crate::parameters::{Parameters, Span, Spec};
@@ -127,7 +127,7 @@ impl SceneBuilder {
         let mut materials: Vec<Arc<dyn Material>> = self
             .materials
             .iter()
-            .map(|spec| materials::build(spec, &Ingredients::new(&self.textures, &self.materials)))
+            .map(|spec| materials::build(spec, &MaterialInputs::new(&self.textures, &self.materials)))
             .collect::<Result<_, _>>()?;
         for object in &self.objects {
             check_mesh(object, materials.len())?;
@@ -163,7 +163,7 @@ impl SceneBuilder {
         let mut glowing = |emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
             let black = Spec::new("", "diffuse").with("reflectance", 0.0).with("emission", emission);
             let black = black.with("emission_sides", sides.name());
-            materials.push(materials::build(&black, &Ingredients::default())?);
+            materials.push(materials::build(&black, &MaterialInputs::default())?);
             Ok(materials.len() - 1)
         };
         for spec in &self.lights {

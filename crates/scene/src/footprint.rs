@@ -15,12 +15,12 @@ use std::sync::Arc;
 
 /// Who looks, and at how many rows of pixels.
 #[derive(Clone)]
-pub(crate) struct View {
+pub(crate) struct FootprintView {
     pub(crate) camera: Arc<dyn Camera>,
     pub(crate) rows: f32,
 }
 
-impl View {
+impl FootprintView {
     /// Tells a surface, which is of the geometry, how much of its textures a pixel sees.
     #[inline(never)]
     pub(crate) fn put_on(&self, surface: &mut Surface, geometry: &Geometry) {

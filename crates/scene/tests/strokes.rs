@@ -114,3 +114,18 @@ fn a_picture_of_twice_the_size_has_half_the_width() {
     assert!(huge.points > 1.0 && huge.points < 2.0, "{huge:?}");
     assert!(small.points >= large.points && small.points < 20.0, "{small:?}");
 }
+
+#[test]
+fn lines_without_a_colour_are_dark_on_the_pale_ground_and_dense_clouds_are_clay() {
+    let kd_of = |mesh: Mesh| {
+        let mut builder = SceneBuilder { materials: vec![Spec::new("", "phong")], ..SceneBuilder::default() };
+        builder.objects.push(Object::new("", Arc::new(mesh), 0));
+        bilux_scene::presets::complete(&mut builder, &Default::default());
+        format!("{:?}", builder.materials[0].parameters.find("kd").map(|(value, _)| value.clone()))
+    };
+    let bare = |mesh: Mesh| Mesh { vertex_kd: Vec::new(), ..mesh };
+    let positions: Vec<Vec3> = (0..6000).map(|i| Vec3::new((i % 80) as f32, (i / 80) as f32, 0.0)).collect();
+    let cloud = Mesh { positions, points: (0..6000).collect(), ..Mesh::default() };
+    let (line, cloud) = (kd_of(bare(mesh())), kd_of(cloud));
+    assert!(line.contains("Number(0.059") && cloud.contains("Number(0.62"), "{line} {cloud}");
+}

@@ -58,7 +58,7 @@ pub const AOVS: &[AovEntry] = &[
     AovEntry {
         entry: Entry {
             name: "strategies",
-            summary: "each way of joining paths from both ends on its own, weighted and not (bdpt, vcm)",
+            summary: "each technique of joining paths from both ends on its own, weighted and not (bdpt, vcm)",
             source: "Veach 1997",
             parameters: &[],
         },

@@ -110,8 +110,8 @@ impl Emission {
 }
 
 /// All cells together; where there are so many lights that each would have none, there is no guide.
-const MOST_CELLS: usize = 1 << 14;
-const MOST_SIDE: usize = 32;
+const MAX_CELLS: usize = 1 << 14;
+const MAX_SIDE: usize = 32;
 
 /// Of all light paths, those that begin as if there were no guide: what it knows was learned from few.
 const UNAIMED: f32 = 0.25;
@@ -120,8 +120,8 @@ impl Guide {
     /// Tells cells apart, and aims at none of them.
     pub(crate) fn untaught(scene: &Scene) -> Option<Guide> {
         let lights = scene.lights().len();
-        let side = ((MOST_CELLS / lights.max(1)) as f64).sqrt() as usize;
-        let side = side.min(MOST_SIDE);
+        let side = ((MAX_CELLS / lights.max(1)) as f64).sqrt() as usize;
+        let side = side.min(MAX_SIDE);
         (side > 0 && lights > 0).then(|| Guide {
             side,
             shares: vec![0.0; lights * side * side],

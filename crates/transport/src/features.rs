@@ -6,8 +6,8 @@
 //! too; depth and ids are those of the first surface itself. Pixels are added up by themselves, each in the order of its samples: the same
 //! bytes for any number of threads, any crop and any range of samples.
 
+use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
-use crate::eye::Eye;
 use crate::film::zeroed;
 use crate::integrators::PixelIntegrator;
 use crate::media::Media;
@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 pub const FEATURE_SAMPLES: u32 = 8;
 
 /// So many smooth surfaces are looked through or into.
-const MOST_SMOOTH: u32 = 12;
+const MAX_SMOOTH: u32 = 12;
 
 /// Planes of a window of the film, in rows, the top one first.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +71,7 @@ pub fn features(
 ) -> Result<Option<Features>, RenderError> {
     settings.check()?;
     let (window, begun) = (settings.window(), Instant::now());
-    let eye = Eye::new(scene, camera, integrator, settings);
+    let eye = CameraRays::new(scene, camera, integrator, settings);
     let empty = |tile: Window| Ok((tile, zeroed::<Sums>(tile.pixels())?));
     let mut tiles = window.tiles(TILE).into_iter().map(empty).collect::<Result<Vec<_>, FilmError>>()?;
     let pool = threads(settings)?;
@@ -109,7 +109,7 @@ pub fn coverage(
 ) -> Result<Vec<f32>, RenderError> {
     settings.check()?;
     let window = settings.window();
-    let eye = Eye::new(scene, camera, integrator, settings);
+    let eye = CameraRays::new(scene, camera, integrator, settings);
     let mut met = zeroed::<f32>(window.pixels())?;
     let of_row = |(row, met): (usize, &mut [f32])| {
         let mut tracer = Tracer::new(eye.scene, false);
@@ -127,7 +127,7 @@ pub fn coverage(
 }
 
 /// One sample of each pixel of a tile.
-fn look(eye: &Eye, tile: &Window, sums: &mut [Sums], sample: u32) {
+fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.scene, false);
     for (i, sum) in sums.iter_mut().enumerate() {
         let (x, y) = tile.position(i);
@@ -141,7 +141,7 @@ impl Sums {
         let scene = tracer.scene;
         let mut media = Media::at_start(tracer, ray);
         let (mut ray, mut beta) = (*ray, Rgb::WHITE);
-        for event in 0..=MOST_SMOOTH {
+        for event in 0..=MAX_SMOOTH {
             let direction = Vec3::from(ray.direction);
             let Some((surface, passed)) = media.closest(tracer, &ray) else {
                 self.albedo += beta * scene.background(direction, event).clamp(0.0, 1.0);
@@ -152,7 +152,7 @@ impl Sums {
                 self.meet(scene, &surface, sample);
             }
             let bsdf = media.bsdf(scene, &surface, &Wavelength::D);
-            let smooth = (bsdf.is_delta() && event < MOST_SMOOTH)
+            let smooth = (bsdf.is_delta() && event < MAX_SMOOTH)
                 .then(|| bsdf.sample(-direction, 0.5, Vec2::splat(0.5), TransportMode::Radiance))
                 .flatten();
             let Some(next) = smooth else {

@@ -8,8 +8,8 @@
 //! scale is held at its end, and both are counted and located, pixel by pixel.
 
 use crate::error::FilmError;
+use crate::failures::{PixelFailures, SampleFailures, SamplePlace};
 use crate::splats::add;
-use crate::trouble::{PixelTrouble, SamplePlace, Trouble};
 use crate::window::{Coverage, Window};
 use bilux_math::Rgb;
 use bilux_math::hash::hash_words;
@@ -38,7 +38,7 @@ pub struct Film {
     pub(crate) splats: Vec<[i64; 3]>,
     pub(crate) iterations: Vec<u32>,
     /// Empty as long as there is none.
-    pub(crate) trouble: Vec<PixelTrouble>,
+    pub(crate) trouble: Vec<PixelFailures>,
     pub(crate) coverage: Coverage,
     /// What the film is of: any text that differs where scene or settings differ; given by the caller. Films
     /// with different fingerprints do not merge.
@@ -160,18 +160,18 @@ impl Film {
     #[cold]
     fn note_non_finite(&mut self, index: usize, sample: u32) {
         let trouble = self.trouble_at(index);
-        trouble.absorb(&PixelTrouble::non_finite_at(sample));
+        trouble.absorb(&PixelFailures::non_finite_at(sample));
     }
 
     #[cold]
     fn note_overflowed(&mut self, index: usize, sample: u32) {
         let trouble = self.trouble_at(index);
-        trouble.absorb(&PixelTrouble::overflowed_at(sample));
+        trouble.absorb(&PixelFailures::overflowed_at(sample));
     }
 
-    pub(crate) fn trouble_at(&mut self, index: usize) -> &mut PixelTrouble {
+    pub(crate) fn trouble_at(&mut self, index: usize) -> &mut PixelFailures {
         if self.trouble.is_empty() {
-            self.trouble = vec![PixelTrouble::default(); self.window.pixels()];
+            self.trouble = vec![PixelFailures::default(); self.window.pixels()];
         }
         &mut self.trouble[index]
     }
@@ -261,8 +261,8 @@ impl Film {
     }
 
     /// What went wrong, over all pixels.
-    pub fn trouble(&self) -> Trouble {
-        let mut total = Trouble::default();
+    pub fn trouble(&self) -> SampleFailures {
+        let mut total = SampleFailures::default();
         for (index, pixel) in self.trouble.iter().enumerate() {
             let at = |sample| {
                 let (x, y) = self.window.position(index);

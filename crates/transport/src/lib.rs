@@ -8,10 +8,11 @@ pub mod aovs;
 mod bidirectional;
 #[cfg(test)]
 extern crate self as bilux_transport;
+mod camera_rays;
 mod classic;
 pub mod emission;
 mod error;
-mod eye;
+mod failures;
 pub mod features;
 pub mod film;
 pub mod filters;
@@ -36,12 +37,12 @@ mod splats;
 pub mod stop;
 pub mod strategies;
 mod task;
-mod trouble;
 pub mod window;
 
 pub use bidirectional::{Merging, Photons};
 pub use emission::{Emission, Guide};
 pub use error::{FilmError, RenderError};
+pub use failures::{SampleFailures, SamplePlace};
 pub use features::{FEATURE_SAMPLES, Features, coverage, features};
 pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};
@@ -51,7 +52,7 @@ pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrato
 pub use interval::{Estimate, Interval, REPLICATES};
 pub use join::JoinedLayers;
 pub use light_choice::LightChoice;
-pub use plan::{Choice, Plan, Rival};
+pub use plan::{Candidate, Choice, Plan};
 pub use render::{
     DEFAULT_MAX_DEPTH, MAX_DEPTH, PixelAnchor, Progress, RenderSettings, Rendered, Silent, render,
 };
@@ -62,5 +63,4 @@ pub use splats::Splats;
 pub use stop::{Reached, Stop};
 pub use strategies::{Strategies, Strategy, StrategyPicture, strategies};
 pub use task::{Event, Task};
-pub use trouble::{SamplePlace, Trouble};
 pub use window::{Coverage, Window};

@@ -11,26 +11,26 @@ use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, Nested, Ray, Scene, Surface, Tracer, Wavelength};
 
 /// So many media may lie in each other; more are passed as if they were not there.
-const MOST_NESTED: usize = 4;
+const MAX_NESTED: usize = 4;
 
 /// No object.
 const NONE: u32 = u32::MAX;
 
 /// Rays that look for what they start in pass so many surfaces at most.
-const MOST_SURFACES: usize = 64;
+const MAX_SURFACES: usize = 64;
 
 /// What a path is in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Media {
     /// Objects of a priority around.
-    around: [u32; MOST_NESTED],
+    around: [u32; MAX_NESTED],
     /// Absorption of what the path goes through, as far as is known.
     sigma_a: Rgb,
 }
 
 impl Media {
     /// Nothing around.
-    const AIR: Media = Media { around: [NONE; MOST_NESTED], sigma_a: Rgb::BLACK };
+    const AIR: Media = Media { around: [NONE; MAX_NESTED], sigma_a: Rgb::BLACK };
 
     /// What a path starts in: what it would leave without having entered it.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
@@ -38,8 +38,8 @@ impl Media {
         if !scene.has_nested() {
             return media;
         }
-        let (mut ray, mut seen) = (*ray, [NONE; MOST_SURFACES]);
-        for i in 0..MOST_SURFACES {
+        let (mut ray, mut seen) = (*ray, [NONE; MAX_SURFACES]);
+        for i in 0..MAX_SURFACES {
             let Some(surface) = tracer.closest(&ray) else { break };
             let leaves = surface.n_geom.dot(Vec3::from(ray.direction)) > 0.0;
             let is_first = !seen.contains(&surface.object);

@@ -1,8 +1,8 @@
 //! Films as pictures, and partial films that lose nothing: their sums travel as integer layers of an EXR.
 
 use crate::error::FilmError;
+use crate::failures::PixelFailures;
 use crate::film::{Film, MAX_SAMPLES, SAMPLE_BITS, zeroed};
-use crate::trouble::PixelTrouble;
 use crate::window::{Coverage, Window};
 use bilux_pictures::Picture;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use std::str::FromStr;
 const FORMAT: (&str, &str) = ("bilux.film", "1");
 
 /// More pieces than any sane set of parts has; keeps checks of strangers' files short.
-const MOST_PIECES: usize = 4096;
+const MAX_PIECES: usize = 4096;
 
 /// The names of the sums' planes: the lower and the upper halves of each channel.
 const SUMS: [[&str; 2]; 3] =
@@ -138,7 +138,7 @@ impl Film {
             let planes = [plane(TROUBLE[0])?, plane(TROUBLE[1])?, plane(TROUBLE[2])?, plane(TROUBLE[3])?];
             self.trouble = zeroed(self.counts.len())?;
             for (i, trouble) in self.trouble.iter_mut().enumerate() {
-                *trouble = PixelTrouble::from_array(planes.map(|plane| plane[i]));
+                *trouble = PixelFailures::from_array(planes.map(|plane| plane[i]));
             }
         }
         Ok(())
@@ -156,13 +156,13 @@ fn push_sums(picture: &mut Picture, names: [[&str; 2]; 3], sums: &[[i64; 3]]) ->
     Ok(())
 }
 
-impl PixelTrouble {
+impl PixelFailures {
     fn to_array(self) -> [u32; 4] {
         [self.non_finite, self.first_non_finite, self.overflowed, self.first_overflowed]
     }
 
-    fn from_array([non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4]) -> PixelTrouble {
-        PixelTrouble { non_finite, first_non_finite, overflowed, first_overflowed }
+    fn from_array([non_finite, first_non_finite, overflowed, first_overflowed]: [u32; 4]) -> PixelFailures {
+        PixelFailures { non_finite, first_non_finite, overflowed, first_overflowed }
     }
 }
 
@@ -180,7 +180,7 @@ fn coverage_of(text: &str, within: &Window) -> Result<Coverage, FilmError> {
         let (window, range) = piece.split_once(':').ok_or_else(wrong)?;
         let (start, end) = range.split_once("..").ok_or_else(wrong)?;
         let (window, samples) = (window_of(window)?, parse(start)?..parse(end)?);
-        if i >= MOST_PIECES || !within.contains(&window) || samples.end > MAX_SAMPLES {
+        if i >= MAX_PIECES || !within.contains(&window) || samples.end > MAX_SAMPLES {
             return Err(wrong());
         }
         let mut one = Coverage::default();

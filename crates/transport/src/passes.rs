@@ -1,7 +1,7 @@
 //! Passes over the film: all its tiles, some samples of each pixel, by all threads.
 
+use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
-use crate::eye::Eye;
 use crate::film::{Film, scale_exponent};
 use crate::render::{Progress, Rendered};
 use crate::splats::{Iterations, Splats};
@@ -20,7 +20,7 @@ const PASS: u32 = 32;
 /// Some passes over all tiles, by all threads.
 pub(crate) fn all_passes(
     pool: &rayon::ThreadPool,
-    eye: Eye,
+    eye: CameraRays,
     tiles: Vec<Window>,
     passes: Vec<Range<u32>>,
     progress: &dyn Progress,
@@ -59,7 +59,7 @@ pub(crate) fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
 
 /// One rendering, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
 struct Work<'a> {
-    eye: Eye<'a>,
+    eye: CameraRays<'a>,
     progress: &'a dyn Progress,
     tiles: Vec<Window>,
     passes: Vec<Range<u32>>,

@@ -20,16 +20,16 @@ pub struct Choice {
     /// Which of the rivals.
     pub chosen: usize,
     /// What there was to choose from.
-    pub rivals: Vec<Rival>,
+    pub candidates: Vec<Candidate>,
 }
 
 /// A set of ways, and what is expected of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rival {
+pub struct Candidate {
     /// What it is called.
     pub name: &'static str,
     /// What it is called where it is asked for: a value of the parameter `ways` of `auto`.
-    pub ways: &'static str,
+    pub techniques: &'static str,
     /// Expected relative variance of one sample of a pixel.
     pub error: f64,
     /// The part of the light that it cannot find, 0..=1.
@@ -41,22 +41,22 @@ pub struct Rival {
 /// So much of the light more or less is none.
 const MAY_BE_LOST: f64 = 1e-4;
 
-impl Rival {
+impl Candidate {
     /// Proportional to the time that a picture of a given error takes.
     pub fn time_to_error(&self) -> f64 {
         self.error * self.nanoseconds
     }
 
     /// True when it misses light that the other finds.
-    pub fn misses_more_than(&self, other: &Rival) -> bool {
+    pub fn misses_more_than(&self, other: &Candidate) -> bool {
         self.lost > other.lost + MAY_BE_LOST
     }
 }
 
 impl Choice {
     /// The set that was chosen.
-    pub fn best(&self) -> &Rival {
-        &self.rivals[self.chosen]
+    pub fn best(&self) -> &Candidate {
+        &self.candidates[self.chosen]
     }
 }
 
@@ -64,15 +64,20 @@ impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.best().name)?;
         let best = self.best().time_to_error();
-        let mut others = self.rivals.iter().enumerate().filter(|(i, _)| *i != self.chosen).peekable();
+        let mut others = self.candidates.iter().enumerate().filter(|(i, _)| *i != self.chosen).peekable();
         if others.peek().is_some() {
             write!(f, " (to the same noise")?;
         }
         let mut mark = "";
-        for (_, rival) in others {
-            write!(f, "{mark} {} takes {:.2} times as long", rival.name, rival.time_to_error() / best)?;
-            if rival.misses_more_than(self.best()) {
-                write!(f, " and misses {:.2}% of the light", rival.lost * 100.0)?;
+        for (_, candidate) in others {
+            write!(
+                f,
+                "{mark} {} takes {:.2} times as long",
+                candidate.name,
+                candidate.time_to_error() / best
+            )?;
+            if candidate.misses_more_than(self.best()) {
+                write!(f, " and misses {:.2}% of the light", candidate.lost * 100.0)?;
             }
             mark = ",";
         }

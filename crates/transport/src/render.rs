@@ -1,8 +1,8 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
 use crate::bidirectional::Photons;
+use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
-use crate::eye::Eye;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
 use crate::halves::{FirstHalf, Halves};
@@ -10,8 +10,8 @@ use crate::integrators::PixelIntegrator;
 use crate::interval::Interval;
 use crate::passes::{all_passes, passes};
 use crate::plan::{Choice, Plan};
-use crate::splats::Shown;
-use crate::stop::{Reached, Stop, Watch};
+use crate::splats::IterationSplats;
+use crate::stop::{Reached, Stop, StopMonitor};
 use crate::window::Window;
 use bilux_accel::Counters;
 use bilux_scene::{Camera, Scene};
@@ -222,7 +222,7 @@ pub fn render(
     };
     let mut halves = Halves::default();
     if settings.stop.is_any() {
-        let mut watch = Watch::new(settings, begun.elapsed());
+        let mut watch = StopMonitor::new(settings, begun.elapsed());
         while !rendered.cancelled
             && let Some(samples) = watch.next()
         {
@@ -261,8 +261,8 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn eye(&self) -> Eye<'a> {
-        Eye::new(self.scene, self.camera, self.integrator, self.settings)
+    fn eye(&self) -> CameraRays<'a> {
+        CameraRays::new(self.scene, self.camera, self.integrator, self.settings)
     }
 
     /// Adds some samples of every pixel.
@@ -275,11 +275,12 @@ impl<'a> Run<'a> {
         let whole = Window::whole(settings.width, settings.height).tiles(TILE);
         for iteration in samples.clone() {
             let mut eye = self.eye();
-            let shown = merging.shows_photons().then(|| Shown::new(settings, self.scale, whole.len()));
+            let shown =
+                merging.shows_photons().then(|| IterationSplats::new(settings, self.scale, whole.len()));
             let shown = shown.transpose()?;
-            let ways = |eta, light_paths| merging.ways(eta, light_paths);
+            let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
             let (photons, counters) =
-                pool.install(|| Photons::trace(&eye, merging, &whole, iteration, ways, shown.as_ref()));
+                pool.install(|| Photons::trace(&eye, merging, &whole, iteration, techniques, shown.as_ref()));
             rendered.counters += counters;
             eye.photons = Some(&photons);
             let pass = passes(&(iteration..iteration + 1));

@@ -1,14 +1,14 @@
 //! One sample once more, with all that happens on its way.
 
 use crate::bidirectional::{Merging, Photons};
+use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
-use crate::eye::Eye;
+use crate::failures::SamplePlace;
 use crate::film::{MAX_SIDE, scale_exponent};
 use crate::integrators::PixelIntegrator;
 use crate::render::RenderSettings;
-use crate::splats::{Shown, Splats};
+use crate::splats::{IterationSplats, Splats};
 use crate::task::Event;
-use crate::trouble::SamplePlace;
 use crate::window::Window;
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Ray, Scene, Tracer};
@@ -52,11 +52,11 @@ pub fn replay(
     }
     let plan = integrator.plan(scene, camera, &settings.as_planned());
     let integrator = plan.as_ref().map_or(integrator, |plan| &*plan.integrator);
-    let mut eye = Eye::new(scene, camera, integrator, settings);
+    let mut eye = CameraRays::new(scene, camera, integrator, settings);
     let whole = Window::whole(width, height);
     let trace = |merging: &Merging| {
-        let ways = |eta, light_paths| merging.ways(eta, light_paths);
-        Photons::trace(&eye, merging, &[whole], sample, ways, None::<&Shown>).0
+        let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
+        Photons::trace(&eye, merging, &[whole], sample, techniques, None::<&IterationSplats>).0
     };
     let photons = integrator.merging().map(trace);
     eye.photons = photons.as_ref();

@@ -4,8 +4,8 @@
 //! Of light that comes straight from lights: the part that the model keeps from the ground. Where the model shades nothing, alpha is exactly
 //! 0, without noise.
 
+use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
-use crate::eye::Eye;
 use crate::film::zeroed;
 use crate::integrators::PixelIntegrator;
 use crate::light_choice::LightChoice;
@@ -57,7 +57,7 @@ pub fn shadow_alpha(
 ) -> Result<Vec<f32>, RenderError> {
     settings.check()?;
     let window = settings.window();
-    let (eye, lights) = (Eye::new(scene, camera, integrator, settings), lamps(scene, catcher));
+    let (eye, lights) = (CameraRays::new(scene, camera, integrator, settings), lamps(scene, catcher));
     let mut alpha = zeroed::<f32>(window.pixels())?;
     let tries = MIN_SAMPLES.div_ceil(samples.max(1));
     let of_row = |(row, alpha): (usize, &mut [f32])| {

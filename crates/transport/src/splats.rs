@@ -5,12 +5,12 @@
 //! iteration counts when all of its light paths have arrived, and not before, since half of them would be half of the
 //! light.
 
-use crate::bidirectional::{Found, Onlooker, Tally, Way};
+use crate::bidirectional::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::error::FilmError;
+use crate::failures::PixelFailures;
 use crate::film::{Film, to_steps, zeroed};
 use crate::filters::Filter;
 use crate::render::{PixelAnchor, RenderSettings};
-use crate::trouble::PixelTrouble;
 use crate::window::Window;
 use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};
@@ -36,7 +36,7 @@ pub(crate) struct Deposit {
     /// The pixel's place in the film's window.
     pub(crate) index: u32,
     pub(crate) steps: [i64; 3],
-    pub(crate) trouble: PixelTrouble,
+    pub(crate) trouble: PixelFailures,
 }
 
 impl<'a> Splats<'a> {
@@ -93,44 +93,44 @@ impl<'a> Splats<'a> {
 
     fn deposit(&mut self, x: u32, y: u32, light: Rgb) {
         let Some(index) = self.window.index(x, y) else { return };
-        let mut deposit = Deposit { index: index as u32, steps: [0; 3], trouble: PixelTrouble::default() };
+        let mut deposit = Deposit { index: index as u32, steps: [0; 3], trouble: PixelFailures::default() };
         if light.is_finite() {
             let dither = hash_words([self.path[0], self.path[1], u64::from(x) << 32 | u64::from(y)]);
             let (steps, overflowed) = to_steps(light, self.scale_exponent, dither);
             deposit.steps = steps;
             if overflowed {
-                deposit.trouble = PixelTrouble::overflowed_at(self.sample);
+                deposit.trouble = PixelFailures::overflowed_at(self.sample);
             }
         } else {
-            deposit.trouble = PixelTrouble::non_finite_at(self.sample);
+            deposit.trouble = PixelFailures::non_finite_at(self.sample);
         }
         self.deposits.push(deposit);
     }
 }
 
 impl<const N: usize> Tally<N> for Splats<'_> {
-    fn here(&mut self, _way: Way, _found: &Found<N>) {}
+    fn here(&mut self, _way: Technique, _found: &Contribution<N>) {}
 
-    fn there(&mut self, film: Vec2, _way: Way, found: &Found<N>) {
+    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution<N>) {
         self.add(film, found.weighted());
     }
 }
 
 /// What the camera sees of the light paths of one iteration, where they are followed before its camera paths.
-pub(crate) struct Shown<'a> {
+pub(crate) struct IterationSplats<'a> {
     settings: &'a RenderSettings,
     scale_exponent: i32,
     iterations: Mutex<Iterations>,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> IterationSplats<'a> {
     pub(crate) fn new(
         settings: &'a RenderSettings,
         scale_exponent: i32,
         tiles: usize,
-    ) -> Result<Shown<'a>, FilmError> {
+    ) -> Result<IterationSplats<'a>, FilmError> {
         let iterations = Mutex::new(Iterations::new(settings.window().pixels(), tiles)?);
-        Ok(Shown { settings, scale_exponent, iterations })
+        Ok(IterationSplats { settings, scale_exponent, iterations })
     }
 
     pub(crate) fn into_iterations(self) -> Iterations {
@@ -138,7 +138,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-impl<'a, const N: usize> Onlooker<N> for Shown<'a> {
+impl<'a, const N: usize> LightPathVisitor<N> for IterationSplats<'a> {
     type Tally = Splats<'a>;
 
     fn tally(&self) -> Splats<'a> {
@@ -157,7 +157,7 @@ impl<'a, const N: usize> Onlooker<N> for Shown<'a> {
 /// The splats of some iterations while they come in.
 pub(crate) struct Iterations {
     sums: Vec<[i64; 3]>,
-    trouble: Vec<(u32, PixelTrouble)>,
+    trouble: Vec<(u32, PixelFailures)>,
     /// Tiles of the film whose light paths are still to come.
     pub(crate) tiles_left: usize,
 }

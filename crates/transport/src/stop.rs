@@ -48,7 +48,7 @@ impl Stop {
 }
 
 /// Watches a film while samples are added.
-pub(crate) struct Watch {
+pub(crate) struct StopMonitor {
     stop: Stop,
     begun: Instant,
     samples: Range<u32>,
@@ -60,13 +60,13 @@ pub(crate) struct Watch {
     pub(crate) reached: Option<Reached>,
 }
 
-impl Watch {
+impl StopMonitor {
     /// So much time was spent before the first sample.
-    pub(crate) fn new(settings: &RenderSettings, spent: Duration) -> Watch {
+    pub(crate) fn new(settings: &RenderSettings, spent: Duration) -> StopMonitor {
         let samples = settings.samples.clone();
         let time_limit = settings.stop.time_limit.map(|limit| limit.saturating_sub(spent));
         let stop = Stop { time_limit, ..settings.stop };
-        Watch { stop, begun: Instant::now(), samples, done: 0, snapshots: [None, None], reached: None }
+        StopMonitor { stop, begun: Instant::now(), samples, done: 0, snapshots: [None, None], reached: None }
     }
 
     /// The next samples to take; `None` when it is enough.
@@ -164,7 +164,7 @@ mod tests {
         let stop = Stop { noise: None, time_limit: Some(Duration::from_secs(1000)) };
         let settings = RenderSettings { stop, ..RenderSettings::new(1, 1, 40) };
         for (spent, more) in [(0, true), (1000, false)] {
-            let mut watch = Watch::new(&settings, Duration::from_secs(spent));
+            let mut watch = StopMonitor::new(&settings, Duration::from_secs(spent));
             watch.done = 1;
             assert_eq!(watch.next().is_some(), more, "{spent} s before");
         }
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn passes_come_in_quarters_of_a_power_of_two() {
         let settings = RenderSettings::new(1, 1, 40);
-        let mut watch = Watch::new(&settings, Duration::ZERO);
+        let mut watch = StopMonitor::new(&settings, Duration::ZERO);
         let mut ends = Vec::new();
         while let Some(samples) = watch.next() {
             watch.done += samples.len() as u32;

@@ -1,13 +1,13 @@
 //! Each strategy's own picture: what joining `s` vertices from the light with `t` from the camera finds, with the weight
 //! that it has among all others and without. [Veach 1997, fig. 10.3]
 
-use crate::bidirectional::{Found, Photons, Tally, Way};
+use crate::bidirectional::{Contribution, Photons, Tally, Technique};
+use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
-use crate::eye::Eye;
 use crate::film::{Film, scale_exponent, zeroed};
 use crate::integrators::PixelIntegrator;
 use crate::render::{Progress, RenderSettings, TILE, threads};
-use crate::splats::{Iterations, Shown, Splats};
+use crate::splats::{IterationSplats, Iterations, Splats};
 use crate::window::Window;
 use bilux_math::{Rgb, Vec2};
 use bilux_scene::{Camera, Counters, Scene, Tracer};
@@ -59,10 +59,10 @@ impl Strategy {
         self.edges + 1 + u32::from(self.merges) - self.s
     }
 
-    fn of(way: Way) -> Strategy {
-        match way {
-            Way::Joined { s, t } => Strategy { edges: s + t - 1, merges: false, s },
-            Way::Merged { s, t } => Strategy { edges: s + t - 2, merges: true, s },
+    fn of(technique: Technique) -> Strategy {
+        match technique {
+            Technique::Joined { s, t } => Strategy { edges: s + t - 1, merges: false, s },
+            Technique::Merged { s, t } => Strategy { edges: s + t - 2, merges: true, s },
         }
     }
 }
@@ -97,14 +97,16 @@ pub fn strategies(
     let tiles = whole.tiles(TILE);
     progress.begin(whole.pixels() as u64 * settings.samples.len() as u64);
     let mut sums = Sums::default();
-    let mut pass = |eye: &Eye, samples: Range<u32>| pool.install(|| sums.add(eye, &tiles, samples, progress));
-    let eye = || Eye::new(scene, camera, integrator, settings);
+    let mut pass =
+        |eye: &CameraRays, samples: Range<u32>| pool.install(|| sums.add(eye, &tiles, samples, progress));
+    let eye = || CameraRays::new(scene, camera, integrator, settings);
     if let Some(merging) = integrator.merging() {
         for iteration in settings.samples.clone() {
             let mut eye = eye();
-            let ways = |eta, light_paths| merging.ways(eta, light_paths);
-            let (photons, _) =
-                pool.install(|| Photons::trace(&eye, merging, &tiles, iteration, ways, None::<&Shown>));
+            let techniques = |eta, light_paths| merging.techniques(eta, light_paths);
+            let (photons, _) = pool.install(|| {
+                Photons::trace(&eye, merging, &tiles, iteration, techniques, None::<&IterationSplats>)
+            });
             eye.photons = Some(&photons);
             pass(&eye, iteration..iteration + 1)?;
         }
@@ -133,7 +135,7 @@ struct Sums {
 impl Sums {
     fn add(
         &mut self,
-        eye: &Eye,
+        eye: &CameraRays,
         tiles: &[Window],
         samples: Range<u32>,
         progress: &dyn Progress,
@@ -234,8 +236,8 @@ impl<'a> Layers<'a> {
 }
 
 impl Tally<1> for Layers<'_> {
-    fn here(&mut self, way: Way, found: &Found) {
-        let (strategy, [x, y, _]) = (Strategy::of(way), self.place);
+    fn here(&mut self, technique: Technique, found: &Contribution) {
+        let (strategy, [x, y, _]) = (Strategy::of(technique), self.place);
         let Some(index) = self.window.index(x, y).filter(|_| strategy.edges <= LONGEST) else { return };
         let pixels = self.window.pixels();
         let light = &mut self.here.entry(strategy).or_insert_with(|| vec![[Rgb::BLACK; 2]; pixels])[index];
@@ -243,8 +245,8 @@ impl Tally<1> for Layers<'_> {
         light[1] += found.light * (1.0 / found.own.0[0]);
     }
 
-    fn there(&mut self, film: Vec2, way: Way, found: &Found) {
-        let strategy = Strategy::of(way);
+    fn there(&mut self, film: Vec2, technique: Technique, found: &Contribution) {
+        let strategy = Strategy::of(technique);
         if strategy.edges > LONGEST {
             return;
         }

@@ -51,14 +51,14 @@ fn a_lamp_a_floor_and_a_camera_in_one_block_follow_beer() {
     look(&mut builder, Vec3::new(-0.5, 1.6, 1.4), Vec3::ZERO, 25.0);
     block(&mut builder, SIGMA);
     let scene = built(&builder);
-    let wanted = |channel: usize, ways: f64| {
+    let wanted = |channel: usize, techniques: f64| {
         let at = |i: usize| {
             let film = Vec2::new((i % 64) as f32 + 0.5, (i / 64) as f32 + 0.5) / 64.0;
             let ray = scene.cameras()[0].1.ray(&CameraSample { film, lens: Vec2::ZERO, time: 0.0 });
             let seen = f64::from(-ray.origin[1] / ray.direction[1]);
             let to_lamp = (lamp - Vec3::from(ray.at(seen as f32))).as_dvec3();
             let distance = to_lamp.length();
-            let passed = exp_f64(-f64::from(SIGMA[channel]) * (distance + ways * seen));
+            let passed = exp_f64(-f64::from(SIGMA[channel]) * (distance + techniques * seen));
             0.5 / PI * 2.0 * to_lamp.y / (distance * distance * distance) * passed
         };
         (0..4096).map(at).sum::<f64>() / 4096.0
@@ -68,8 +68,8 @@ fn a_lamp_a_floor_and_a_camera_in_one_block_follow_beer() {
         ("path lights", 16, 2e-3),
         ("bdpt", 64, 0.01),
         ("vcm", 64, 0.02),
-        ("light", 1 << 12, 0.03),
-        ("sppm", 512, 0.06),
+        ("light", 1 << 9, 0.06),
+        ("sppm", 128, 0.08),
         ("auto", 16, 0.02),
     ] {
         let settings = RenderSettings { max_depth: 1, ..RenderSettings::new(16, 16, spp) };

@@ -29,8 +29,8 @@ const SETS: [&str; 8] =
     ["path", "path-light", "bdpt", "path-few", "path-photons", "path-light-few", "path-light-photons", "vcm"];
 
 /// Told which set to take, whatever it foresees.
-fn told(ways: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
-    let spec = auto().with("ways", ways).with("radius", RADIUS).with("alpha", 1.0f32);
+fn told(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
+    let spec = auto().with("ways", techniques).with("radius", RADIUS).with("alpha", 1.0f32);
     integrators::build(&spec.with("aim", aim)).unwrap()
 }
 
@@ -70,8 +70,8 @@ fn the_noise_of_every_set_is_foreseen() {
     let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
     let mut foreseen = vec![0.0; SETS.len()];
     for seed in 0..60 {
-        for (sum, rival) in foreseen.iter_mut().zip(choice(&scene, &spec, &film(seed)).rivals) {
-            *sum += rival.error / 60.0;
+        for (sum, candidate) in foreseen.iter_mut().zip(choice(&scene, &spec, &film(seed)).candidates) {
+            *sum += candidate.error / 60.0;
         }
     }
     for (set, foreseen) in SETS.into_iter().zip(foreseen) {
@@ -120,7 +120,7 @@ fn burning_glass() -> SceneBuilder {
 fn a_caustic_is_worth_light_paths() {
     let scene = built(&burning_glass());
     let choice = choice(&scene, &auto(), &RenderSettings::new(128, 128, 1));
-    let path = &choice.rivals[0];
+    let path = &choice.candidates[0];
     assert!(path.time_to_error() > 5.0 * choice.best().time_to_error(), "{choice}");
 }
 
@@ -170,9 +170,9 @@ fn light_that_path_cannot_find_is_not_lost() {
     let scene = built(&builder);
     let settings = RenderSettings::new(192, 192, 1);
     let chosen = choice(&scene, &auto().with("merge", "never"), &settings);
-    assert!(chosen.rivals[0].lost > 0.01 && chosen.best().name != "path", "{chosen}");
+    assert!(chosen.candidates[0].lost > 0.01 && chosen.best().name != "path", "{chosen}");
     // What the mirror makes of the lamp, seen in the mirror, only photons find.
-    assert!(chosen.rivals[2].lost > 1e-3 && chosen.rivals[5].lost < 1e-6, "{chosen}");
+    assert!(chosen.candidates[2].lost > 1e-3 && chosen.candidates[5].lost < 1e-6, "{chosen}");
     assert!(choice(&scene, &auto(), &settings).best().name.contains("photons"), "{chosen}");
 }
 
@@ -191,10 +191,10 @@ fn a_camera_that_sees_nothing_gets_a_black_picture() {
     builder.lights.push(Spec::new("", "point").with("position", Vec3::Y));
     look(&mut builder, Vec3::new(0.0, 5.0, 0.0), Vec3::new(0.0, 9.0, 0.1), 40.0);
     let scene = built(&builder);
-    for ways in ["auto", "path-photons", "vcm"] {
-        let auto = integrators::build(&auto().with("ways", ways)).unwrap();
+    for techniques in ["auto", "path-photons", "vcm"] {
+        let auto = integrators::build(&auto().with("ways", techniques)).unwrap();
         let film = shoot(&scene, &*auto, &RenderSettings::new(16, 8, 2)).film;
-        assert!(film.to_rgb().iter().all(|pixel| pixel.is_black()), "{ways}");
+        assert!(film.to_rgb().iter().all(|pixel| pixel.is_black()), "{techniques}");
     }
 }
 

@@ -10,7 +10,7 @@
 //! that seems to disagree is rendered once more, with other seeds and four times the samples. Exits with 1 when it still does.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
-use bilux_validation::agreement::{Comparison, Evidence, Stage, Way, shipped, stages, ways};
+use bilux_validation::agreement::{Comparison, Evidence, Stage, Technique, shipped, stages, ways};
 use bilux_validation::statistics::{bars, evenness, histogram};
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -70,14 +70,14 @@ fn line(pair: &str, found: &Comparison, more: &str) {
 
 /// All pairs of ways on one stage: whether all agree, and of how many cells that can be said.
 fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<(bool, usize), Box<dyn Error>> {
-    let ways: Vec<Way> = ways();
+    let ways: Vec<Technique> = ways();
     let mut rendered = Vec::new();
     for (i, way) in ways.iter().enumerate() {
         let is_wanted = ways.iter().any(|other| other.name != way.name && stage.compares(way, other));
         let seed = (arguments.seed << 16) + ((i as u64) << 12);
         rendered.push(is_wanted.then(|| stage.render_for(way, arguments.seconds, seed)).transpose()?);
     }
-    let samples = |(way, of): (&Way, &Option<Evidence>)| {
+    let samples = |(way, of): (&Technique, &Option<Evidence>)| {
         of.as_ref().map(|of| format!("{} {}", way.name, of.spp * of.cells[0].len() as u32))
     };
     let samples: Vec<String> = ways.iter().zip(&rendered).filter_map(samples).collect();

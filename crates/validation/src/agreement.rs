@@ -39,7 +39,7 @@ const COARSE: f64 = 0.03;
 
 /// A way of finding light.
 #[derive(Clone, Debug)]
-pub struct Way {
+pub struct Technique {
     /// What it is called.
     pub name: &'static str,
     /// The integrator and its parameters.
@@ -51,8 +51,9 @@ pub struct Way {
 }
 
 /// All unbiased ways.
-pub fn ways() -> Vec<Way> {
-    let way = |name, spec, finds_points, finds_mirrored| Way { name, spec, finds_points, finds_mirrored };
+pub fn ways() -> Vec<Technique> {
+    let way =
+        |name, spec, finds_points, finds_mirrored| Technique { name, spec, finds_points, finds_mirrored };
     vec![
         way("path", Spec::new("", "path"), false, true),
         way("light", Spec::new("", "light"), true, false),
@@ -194,7 +195,7 @@ impl Stage {
     }
 
     /// Whether two ways can be compared here.
-    pub fn compares(&self, a: &Way, b: &Way) -> bool {
+    pub fn compares(&self, a: &Technique, b: &Technique) -> bool {
         !self.has_points || (a.finds_points && b.finds_points)
     }
 
@@ -240,7 +241,7 @@ impl Stage {
     ///
     /// # Errors
     /// As [`Stage::render`].
-    pub fn render_for(&self, way: &Way, seconds: f64, first_seed: u64) -> Result<Evidence, Error> {
+    pub fn render_for(&self, way: &Technique, seconds: f64, first_seed: u64) -> Result<Evidence, Error> {
         let integrator = integrators::build(&way.spec)?;
         let mut spp = 1;
         loop {
@@ -257,7 +258,11 @@ impl Stage {
     }
 
     /// Two ways against each other, on what both find.
-    pub fn compare(&self, (a, of_a): (&Way, &Evidence), (b, of_b): (&Way, &Evidence)) -> Comparison {
+    pub fn compare(
+        &self,
+        (a, of_a): (&Technique, &Evidence),
+        (b, of_b): (&Technique, &Evidence),
+    ) -> Comparison {
         let everywhere = a.finds_mirrored && b.finds_mirrored;
         self.comparison(&of_a.cells, &of_b.cells, |cell| everywhere || self.plain[cell / 3])
     }

@@ -12,7 +12,7 @@ const SECTORS: usize = 24;
 /// Directions on each side of a cell at which the density is added up.
 const FINE: usize = 24;
 /// Cells are pooled until this many samples are expected in each. [Cochran 1954]
-const LEAST_EXPECTED: f64 = 5.0;
+const MIN_EXPECTED: f64 = 5.0;
 
 /// Two uniform numbers and a third, the `i`-th of a stream.
 pub fn uniforms(stream: u64, i: u64) -> (f32, Vec2) {
@@ -75,7 +75,7 @@ fn compare(seen: &[u64], expected: &[f64]) -> f64 {
     for i in order {
         pooled_seen += seen[i] as f64;
         pooled_expected += expected[i];
-        if pooled_expected >= LEAST_EXPECTED {
+        if pooled_expected >= MIN_EXPECTED {
             let difference = pooled_seen - pooled_expected;
             statistic += difference * difference / pooled_expected;
             pools += 1;
@@ -83,7 +83,7 @@ fn compare(seen: &[u64], expected: &[f64]) -> f64 {
         }
     }
     // Samples where next to nothing is expected cannot be pooled away.
-    if pooled_seen > LEAST_EXPECTED * 4.0 {
+    if pooled_seen > MIN_EXPECTED * 4.0 {
         return 0.0;
     }
     match ChiSquared::new(f64::from(pools.saturating_sub(1).max(1))) {

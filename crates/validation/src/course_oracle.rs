@@ -15,10 +15,10 @@ const BACKGROUND: [u8; 3] = [128, 112, 96];
 /// The text is keywords, each with three vertices of `x y z nx ny nz u v`. Triangles that reach behind the
 /// image plane are left out.
 pub fn course_picture(asc: &str) -> Option<Vec<u8>> {
-    picture_in(&View::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0), asc)
+    picture_in(&OracleView::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0), asc)
 }
 
-fn picture_in(view: &View, asc: &str) -> Option<Vec<u8>> {
+fn picture_in(view: &OracleView, asc: &str) -> Option<Vec<u8>> {
     let mut depth = vec![f64::INFINITY; SIZE * SIZE];
     let mut picture = BACKGROUND.repeat(SIZE * SIZE);
     for triangle in triangles(asc)? {
@@ -54,17 +54,17 @@ struct Corner {
 }
 
 /// Model and camera in one.
-struct View {
+struct OracleView {
     position: V3,
     axes: [V3; 3],
     tan_half: f64,
 }
 
-impl View {
-    fn new(position: V3, look_at: V3, up: V3, fov_degrees: f64) -> View {
+impl OracleView {
+    fn new(position: V3, look_at: V3, up: V3, fov_degrees: f64) -> OracleView {
         let z = unit(subtract(look_at, position));
         let y = unit(subtract(up, scale(z, dot(up, z))));
-        View {
+        OracleView {
             position,
             axes: [cross(y, z), y, z],
             tan_half: bilux_math::transcendental::tan_f64(fov_degrees.to_radians() / 2.0),
@@ -185,7 +185,7 @@ mod tests {
     #[test]
     fn a_wall_across_the_view_is_shaded_by_hand() {
         // Model space is turned back, so that the wall faces the camera: world normal -z of the camera.
-        let view = View::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0);
+        let view = OracleView::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0);
         let [x, y, z] = view.axes;
         let back = |v: V3| {
             [dot(v, turn([1.0, 0.0, 0.0])), dot(v, turn([0.0, 1.0, 0.0])), dot(v, turn([0.0, 0.0, 1.0]))]
@@ -216,7 +216,7 @@ mod tests {
     /// course hands out, shows the square from 0 to 20 in x and z.
     #[test]
     fn a_square_is_where_a_picture_of_the_course_shows_it() {
-        let view = View::new([-3.0, -25.0, -4.0], [7.8, 0.7, 6.5], [-0.2, 1.0, 0.0], 63.7);
+        let view = OracleView::new([-3.0, -25.0, -4.0], [7.8, 0.7, 6.5], [-0.2, 1.0, 0.0], 63.7);
         let corner = |x: f64, z: f64| format!("{x} 0 {z} 0 1 0 0 0\n");
         let [a, b, c, d] = [corner(0.0, 0.0), corner(0.0, 20.0), corner(20.0, 20.0), corner(20.0, 0.0)];
         let picture = picture_in(&view, &format!("triangle\n{a}{b}{c}triangle\n{a}{d}{c}")).unwrap();

@@ -4,7 +4,7 @@
 use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
 use bilux_transport::{PixelIntegrator, Splats, Task, integrators};
-use bilux_validation::agreement::{Evidence, Stage, Way, stages, ways};
+use bilux_validation::agreement::{Evidence, Stage, Technique, stages, ways};
 use bilux_validation::statistics::{evenness, histogram};
 
 /// Less likely than this by chance: a bug.
@@ -16,7 +16,7 @@ fn pictures(stage: &Stage, integrator: &dyn PixelIntegrator, spp: u32, seed: u64
     stage.render(integrator, spp, seed, PICTURES).unwrap()
 }
 
-fn of_way(stage: &Stage, way: &Way, seed: u64) -> Evidence {
+fn of_way(stage: &Stage, way: &Technique, seed: u64) -> Evidence {
     let spp = if way.name == "light" { 64 } else { 16 };
     pictures(stage, &*integrators::build(&way.spec).unwrap(), spp, seed)
 }
@@ -37,7 +37,8 @@ fn all_unbiased_integrators_agree_block_by_block() {
     let (ways, mut by_chance, mut decided) = (ways(), Vec::new(), 0);
     for (name, scene) in scenes() {
         for stage in stages(name, &scene, [32, 24]).unwrap() {
-            let compared = |way: &Way| ways.iter().any(|b| b.name != way.name && stage.compares(way, b));
+            let compared =
+                |way: &Technique| ways.iter().any(|b| b.name != way.name && stage.compares(way, b));
             let found: Vec<Option<Evidence>> = (ways.iter().enumerate())
                 .map(|(i, way)| compared(way).then(|| of_way(&stage, way, 1000 * i as u64)))
                 .collect();

@@ -4,7 +4,7 @@ use bilux_math::frame::reflect;
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::{BSDFS, BsdfEntry, Dielectric, Lambert, Lobe, Mirror, PhongLobe};
-use bilux_scene::materials::{Ingredients, MATERIALS};
+use bilux_scene::materials::{MATERIALS, MaterialInputs};
 use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Value};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer, the_same_from_both_ends};
 use bilux_validation::chi_square::uniforms;
@@ -28,9 +28,9 @@ fn is_white(lobe: &Lobe) -> bool {
         Lobe::Lambert(l) => l.albedo == Rgb::WHITE,
         Lobe::Mirror(m) => m.reflectance == Rgb::WHITE,
         Lobe::Dielectric(d) => d.tint == Rgb::WHITE,
-        Lobe::Gloss(gloss) => gloss.is_white(),
+        Lobe::MicrofacetReflection(gloss) => gloss.is_white(),
         Lobe::Phong(_) | Lobe::Conductor(_) | Lobe::RoughDielectric(_) => false,
-        Lobe::Matt(_) | Lobe::Clear(_) | Lobe::Fuzz(_) => false,
+        Lobe::CoatedDiffuse(_) | Lobe::CoatedDielectric(_) | Lobe::Fuzz(_) => false,
     }
 }
 
@@ -42,7 +42,7 @@ fn every_registered_material_keeps_the_contract_too() {
         if row.entry.name == "mix" {
             spec = spec.with("a", Value::Material(0)).with("b", Value::Material(1));
         }
-        let material = bilux_scene::materials::build(&spec, &Ingredients::new(&[], &parts)).unwrap();
+        let material = bilux_scene::materials::build(&spec, &MaterialInputs::new(&[], &parts)).unwrap();
         let bsdf = material.bsdf(&flat_surface());
         let reciprocal = row.entry.name != "dielectric";
         for (check, run) in CHECKS {

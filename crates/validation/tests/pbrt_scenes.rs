@@ -11,7 +11,7 @@ use bilux::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// By how much the mean of a channel may differ.
-const MOST_OFF: f64 = 0.02;
+const MAX_OFF: f64 = 0.02;
 
 fn shared(scene: &str) -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes/pbrt").join(scene);
@@ -146,7 +146,7 @@ fn the_cornell_box_agrees_with_its_picture() {
     let whole = apart(found.mean(WHOLE), reference.mean(WHOLE));
     assert!(whole < 0.005, "the whole differs by {whole}");
     let parts = greatest(&found, &reference, &IN_THE_BOX);
-    assert!(parts < MOST_OFF, "a part differs by {parts}");
+    assert!(parts < MAX_OFF, "a part differs by {parts}");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn a_light_or_a_wall_that_is_5_percent_off_would_not() {
     };
     for (key, by) in [("emission", 1.05), ("reflectance", 0.95)] {
         let off = apart(scaled(key, by).mean(WHOLE), reference.mean(WHOLE));
-        assert!(off > MOST_OFF, "{key}: {off}");
+        assert!(off > MAX_OFF, "{key}: {off}");
     }
 }
 
@@ -180,7 +180,7 @@ fn veachs_plates_agree_with_their_picture_in_light_and_colour() {
     let reference = reference(&folder, 160);
     let found = plates(&folder, |_| {});
     let around = greatest(&found, &reference, &AROUND_THE_PLATES);
-    assert!(around < MOST_OFF, "around the plates a part differs by {around}");
+    assert!(around < MAX_OFF, "around the plates a part differs by {around}");
     for part in ON_THE_PLATES {
         let off = apart(hue(found.mean(part)), hue(reference.mean(part)));
         assert!(off < 0.005, "{part:?}: the colour differs by {off}");
@@ -309,5 +309,5 @@ fn boxes_balls_and_lights_are_the_same_as_from_our_own_format() {
     });
     let parts: Vec<[f64; 4]> = sixths.collect();
     let off = greatest(&theirs, &ours, &parts);
-    assert!(off < MOST_OFF, "a part differs by {off}");
+    assert!(off < MAX_OFF, "a part differs by {off}");
 }

@@ -1,7 +1,7 @@
 //! `principled` keeps the contract of scattering over its parameters, in their corners and between.
 
 use bilux_math::{Rgb, Vec2, Vec3};
-use bilux_scene::materials::{Ingredients, build};
+use bilux_scene::materials::{MaterialInputs, build};
 use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Wavelength};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
 use bilux_validation::chi_square::uniforms;
@@ -39,7 +39,7 @@ fn about(n_shade: Vec3, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
 fn at(surface: &Surface, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
     let spec = Spec::new("", "principled").with("base_color", base);
     let spec = numbers.iter().fold(spec, |spec, (key, number)| spec.with(key, *number));
-    build(&spec, &Ingredients::default()).unwrap().bsdf(surface)
+    build(&spec, &MaterialInputs::default()).unwrap().bsdf(surface)
 }
 
 const ORANGE: Rgb = Rgb { r: 0.9, g: 0.5, b: 0.1 };
@@ -102,7 +102,7 @@ fn what_disperses_keeps_it_at_every_wavelength() {
     }
     let pane = Spec::new("", "principled").with("transmission_weight", 1.0f32).with("thin_walled", true);
     let pane = pane.with("transmission_dispersion_scale", 1.0f32);
-    assert!(!build(&pane, &Ingredients::default()).unwrap().disperses());
+    assert!(!build(&pane, &MaterialInputs::default()).unwrap().disperses());
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn a_coat_takes_little_from_white() {
 fn nothing_on_top_leaves_the_diffuse_base() {
     let bare = principled(&[("specular_weight", 0.0)], ORANGE);
     let spec = Spec::new("", "diffuse").with("reflectance", ORANGE);
-    let diffuse = build(&spec, &Ingredients::default()).unwrap().bsdf(&surface(Vec3::Z, Vec3::Z));
+    let diffuse = build(&spec, &MaterialInputs::default()).unwrap().bsdf(&surface(Vec3::Z, Vec3::Z));
     for (c, u) in (0..500).map(|k| uniforms(901, k)) {
         let wo = bilux_math::warp::sample_sphere(u);
         let found = bare.sample(wo, c, u, TransportMode::Radiance);
@@ -322,7 +322,7 @@ fn parameters_out_of_range_are_told() {
         ("specular_ior", 0.0, "1 to 10"),
         ("coat_weight", f32::NAN, "0 to 1"),
     ] {
-        let error = build(&Spec::new("", "principled").with(key, number), &Ingredients::default()).err();
+        let error = build(&Spec::new("", "principled").with(key, number), &MaterialInputs::default()).err();
         let message = error.map(|e| e.to_string()).unwrap_or_default();
         assert!(message.contains(key) && message.contains(range), "{message}");
     }

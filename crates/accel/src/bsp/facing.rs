@@ -88,18 +88,18 @@ const EVALUATION: f32 = 16.0 / 16_777_216.0;
 
 /// What a ray needs to be asked whether it sees backs only.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct View {
+pub(super) struct RayView {
     direction: Vec3,
     length: f32,
     margin: f32,
 }
 
-impl View {
+impl RayView {
     /// For a ray through a mesh of these bounds.
-    pub(super) fn new(ray: &PreparedRay, bounds: &Aabb) -> View {
+    pub(super) fn new(ray: &PreparedRay, bounds: &Aabb) -> RayView {
         let direction = Vec3::from(ray.ray.direction);
         let length = direction.as_dvec3().length() as f32;
-        View { direction, length: length * ROUND_UP, margin: 16.0 * ray.pad(bounds) }
+        RayView { direction, length: length * ROUND_UP, margin: 16.0 * ray.pad(bounds) }
     }
 
     /// True when the triangle test, with back faces culled, is sure to reject every one of these triangles.

@@ -39,7 +39,7 @@ pub(super) struct Path {
 
 /// How a ray passes a plane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Passage {
+pub(super) struct PlaneCrossing {
     /// 1 when the right side is the near one.
     pub(super) flip: u32,
     /// The near side ends here.
@@ -80,9 +80,9 @@ impl Path {
 
     /// Passing a plane perpendicular to an axis.
     #[inline(always)]
-    pub(super) fn across(&self, axis: usize, at: f32) -> Passage {
+    pub(super) fn across(&self, axis: usize, at: f32) -> PlaneCrossing {
         let inverse = self.inverse[axis];
-        Passage {
+        PlaneCrossing {
             flip: self.flip[axis],
             near_until: (at + self.near[axis]) * inverse,
             far_from: (at + self.far[axis]) * inverse,
@@ -91,14 +91,14 @@ impl Path {
 
     /// Passing any plane, given as its normal and place.
     #[inline(always)]
-    pub(super) fn through(&self, [x, y, z, at]: [f32; 4]) -> Passage {
+    pub(super) fn through(&self, [x, y, z, at]: [f32; 4]) -> PlaneCrossing {
         let [ox, oy, oz] = self.origin;
         let [dx, dy, dz] = self.direction;
         let speed = x * dx + y * dy + z * dz;
         let distance = at - (x * ox + y * oy + z * oz);
         let down = speed.is_sign_negative();
         let (ahead, inverse) = (if down { -distance } else { distance }, 1.0 / speed.abs());
-        Passage {
+        PlaneCrossing {
             flip: u32::from(down),
             near_until: (ahead + self.slack) * inverse,
             far_from: (ahead - self.slack) * inverse,

@@ -1,7 +1,7 @@
 //! The tree as rays walk it, whatever rule it was grown by.
 
-use super::facing::{Facing, View, in_runs};
-use super::path::{Passage, Path, earlier, later};
+use super::facing::{Facing, RayView, in_runs};
+use super::path::{Path, PlaneCrossing, earlier, later};
 use super::plane::{Plane, Space};
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
@@ -31,7 +31,7 @@ const STACK: usize = 2 * MAX_DEPTH;
 #[derive(Debug)]
 pub struct BspTree {
     /// In depth-first order: the left child of a fork follows it.
-    nodes: Vec<Node>,
+    nodes: Vec<BspNode>,
     /// Normal and place of planes that are not perpendicular to an axis.
     planes: Vec<[f32; 4]>,
     /// The triangles of each leaf, side by side; one that belongs to several leaves is stored in each.
@@ -51,7 +51,7 @@ pub struct BspTree {
 /// | 5: leaf | how many references | the first reference |
 /// | 6: leaf in runs that have facings | how many references | the first; the next node's payload is its first facing |
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct BspNode {
     tag: u32,
     payload: u32,
 }
@@ -67,7 +67,7 @@ struct Reference {
     primitive: u32,
 }
 
-impl Node {
+impl BspNode {
     #[inline(always)]
     fn kind(self) -> u32 {
         self.tag & 7
@@ -80,9 +80,9 @@ impl Node {
 
     /// # Errors
     /// When the numbers do not fit, beyond some hundred million nodes.
-    fn new(kind: u32, number: usize, payload: usize) -> Result<Node, BuildError> {
+    fn new(kind: u32, number: usize, payload: usize) -> Result<BspNode, BuildError> {
         match (u32::try_from(number), u32::try_from(payload)) {
-            (Ok(number), Ok(payload)) if number < 1 << 29 => Ok(Node { tag: number << 3 | kind, payload }),
+            (Ok(number), Ok(payload)) if number < 1 << 29 => Ok(BspNode { tag: number << 3 | kind, payload }),
             _ => Err(BuildError::TooManyNodes),
         }
     }
@@ -122,12 +122,12 @@ impl BspTree {
                 (if on.is_empty() { PLANE } else { FULL_PLANE }, self.planes.len() - 1)
             }
         };
-        self.nodes.push(Node::new(kind, 0, payload)?);
+        self.nodes.push(BspNode::new(kind, 0, payload)?);
         if !on.is_empty() {
             self.lay_out_leaf(mesh, on, facings)?;
         }
         self.lay_out(mesh, &children[0], facings)?;
-        self.nodes[here] = Node::new(kind, self.nodes.len(), payload)?;
+        self.nodes[here] = BspNode::new(kind, self.nodes.len(), payload)?;
         self.lay_out(mesh, &children[1], facings)
     }
 
@@ -139,9 +139,9 @@ impl BspTree {
     ) -> Result<(), BuildError> {
         let with_facings = facings && !triangles.is_empty();
         let kind = if with_facings { FACING_LEAF } else { LEAF };
-        self.nodes.push(Node::new(kind, triangles.len(), self.references.len())?);
+        self.nodes.push(BspNode::new(kind, triangles.len(), self.references.len())?);
         if with_facings {
-            self.nodes.push(Node::new(LEAF, 0, self.facings.len())?);
+            self.nodes.push(BspNode::new(LEAF, 0, self.facings.len())?);
             let (order, facings) = in_runs(mesh, triangles);
             self.facings.extend(facings);
             self.refer(mesh, &order);
@@ -160,7 +160,7 @@ impl BspTree {
 
 /// Something that a walk has put off.
 #[derive(Clone, Copy, Default)]
-struct Later {
+struct DeferredNode {
     node: u32,
     from: f32,
     until: f32,
@@ -185,7 +185,7 @@ impl BspTree {
         let Some((mut from, mut until)) = path.clip(low, high, ray.ray.t_min, ray.ray.t_max) else { return };
         let view = self.view(ray, query);
         let mut limit = f32::INFINITY;
-        let mut stack = [Later::default(); STACK];
+        let mut stack = [DeferredNode::default(); STACK];
         let mut waiting = 0;
         let mut index = 0;
         loop {
@@ -216,7 +216,7 @@ impl BspTree {
                     continue;
                 }
             };
-            let Passage { flip, near_until, far_from } = passage;
+            let PlaneCrossing { flip, near_until, far_from } = passage;
             let left = if node.kind() == FULL_PLANE { self.after_leaf(index + 1) } else { index + 1 };
             let (near, far) =
                 if flip == 0 { (left, node.number()) } else { (node.number() as usize, left as u32) };
@@ -226,10 +226,10 @@ impl BspTree {
                 index = near;
             } else {
                 let (between, beyond) = (earlier(until, near_until), later(from, far_from));
-                stack[waiting] = Later { node: far, from: beyond, until };
+                stack[waiting] = DeferredNode { node: far, from: beyond, until };
                 waiting += 1;
                 if node.kind() == FULL_PLANE {
-                    stack[waiting] = Later { node: index as u32 + 1, from: beyond, until: between };
+                    stack[waiting] = DeferredNode { node: index as u32 + 1, from: beyond, until: between };
                     waiting += 1;
                 }
                 (index, until) = (near, between);
@@ -247,7 +247,7 @@ impl BspTree {
     fn visit_leaf<C: Count>(
         &self,
         leaf: usize,
-        view: Option<&View>,
+        view: Option<&RayView>,
         count: &mut C,
         visit: &mut impl FnMut(&[Reference], &mut C) -> ControlFlow<(), f32>,
     ) -> ControlFlow<(), f32> {
@@ -268,7 +268,7 @@ impl BspTree {
         &self,
         mut references: &[Reference],
         facings: &[Facing],
-        view: &View,
+        view: &RayView,
         count: &mut C,
         visit: &mut impl FnMut(&[Reference], &mut C) -> ControlFlow<(), f32>,
     ) -> ControlFlow<(), f32> {
@@ -288,9 +288,9 @@ impl BspTree {
         ControlFlow::Continue(nearest)
     }
 
-    fn view(&self, ray: &PreparedRay, query: &Query) -> Option<View> {
+    fn view(&self, ray: &PreparedRay, query: &Query) -> Option<RayView> {
         let asked = query.culling == Culling::Back && query.cull_by_partition;
-        (asked && !self.facings.is_empty()).then(|| View::new(ray, &self.bounds))
+        (asked && !self.facings.is_empty()).then(|| RayView::new(ray, &self.bounds))
     }
 }
 

@@ -3,7 +3,7 @@
 //! No step depends on the number of threads: boxes are joined by minima and maxima and items are
 //! counted in whole numbers, so that the order in which pieces are done does not matter.
 
-use super::tree::{EMPTY, MAX_DEPTH, Node, Pair, Tree, planes_of, union};
+use super::tree::{BvhNode, EMPTY, MAX_DEPTH, Pair, Tree, planes_of, union};
 use bilux_math::Aabb;
 use rayon::prelude::*;
 
@@ -40,7 +40,7 @@ pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, V
         })
         .collect();
     if items.is_empty() {
-        return (Tree { root: Node::default(), pairs: Vec::new() }, Vec::new());
+        return (Tree { root: BvhNode::default(), pairs: Vec::new() }, Vec::new());
     }
     let planes = items.iter().fold(EMPTY, |all, item| union(&all, &item.planes));
     let mut room = vec![Pair::default(); items.len() - 1];
@@ -59,9 +59,9 @@ struct Task<'a> {
     depth: usize,
 }
 
-fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> Node {
+fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> BvhNode {
     let Task { items, first_item, room, first_pair, depth } = task;
-    let leaf = Node { planes, first: first_item, count: items.len() as u32 };
+    let leaf = BvhNode { planes, first: first_item, count: items.len() as u32 };
     if items.len() == 1 {
         return leaf;
     }
@@ -92,7 +92,7 @@ fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> Node {
     } else {
         [subtree(left, halves[0]), subtree(right, halves[1])]
     };
-    Node { planes, first: first_pair, count: 0 }
+    BvhNode { planes, first: first_pair, count: 0 }
 }
 
 /// True when both children of a node at this depth can still be halved down to single items in time.
@@ -256,7 +256,7 @@ fn halve(items: &mut [Item]) -> (usize, [[[f32; 3]; 2]; 2]) {
 
 /// Leaves out the room that was not needed. Parents come before their children, left before right, as they did: each pair
 /// moves forward or stays, onto one that has moved already.
-fn compact(mut root: Node, mut pairs: Vec<Pair>) -> Tree {
+fn compact(mut root: BvhNode, mut pairs: Vec<Pair>) -> Tree {
     let mut count = 0;
     // Places that hold the old index of a pair: None for the root's.
     let mut waiting: Vec<(Option<(usize, usize)>, u32)> =

@@ -14,7 +14,7 @@ pub(crate) const MAX_DEPTH: usize = 64;
 /// Boxes around boxes around items; leaves name the items by ranges of an order that the builder chose.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
-    pub(super) root: Node,
+    pub(super) root: BvhNode,
     /// Both children of a node stand together, in one cache line. Parents stand before their children.
     pub(super) pairs: Vec<Pair>,
 }
@@ -22,11 +22,11 @@ pub(crate) struct Tree {
 /// Two siblings.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-pub(crate) struct Pair(pub(super) [Node; 2]);
+pub(crate) struct Pair(pub(super) [BvhNode; 2]);
 
 /// A box, and what is in it. 32 bytes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Node {
+pub(crate) struct BvhNode {
     /// Least and greatest corner.
     pub(super) planes: [[f32; 3]; 2],
     /// The first item of a leaf, or the pair of children.
@@ -35,9 +35,9 @@ pub(crate) struct Node {
     pub(super) count: u32,
 }
 
-impl Default for Node {
-    fn default() -> Node {
-        Node { planes: EMPTY, first: 0, count: 0 }
+impl Default for BvhNode {
+    fn default() -> BvhNode {
+        BvhNode { planes: EMPTY, first: 0, count: 0 }
     }
 }
 
@@ -45,7 +45,7 @@ pub(super) const EMPTY: [[f32; 3]; 2] = [[f32::INFINITY; 3], [f32::NEG_INFINITY;
 
 /// A node still to be visited, and where the ray enters it.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct StackEntry {
     first: u32,
     count: u32,
     enter: f32,
@@ -93,9 +93,9 @@ impl Tree {
         if self.is_empty() || enter > leave || enter > limit || leave < ray.nearest {
             return;
         }
-        let mut stack = [Waiting { first: 0, count: 0, enter: 0.0 }; MAX_DEPTH];
+        let mut stack = [StackEntry { first: 0, count: 0, enter: 0.0 }; MAX_DEPTH];
         let mut height = 0;
-        let mut node = Waiting { first: self.root.first, count: self.root.count, enter };
+        let mut node = StackEntry { first: self.root.first, count: self.root.count, enter };
         loop {
             count.node();
             if node.count == 0 {
@@ -106,8 +106,8 @@ impl Tree {
                 let (late_a, late_b) = (enter_a > limit, enter_b > limit);
                 let (visit_a, visit_b) = (meets_a && !late_a, meets_b && !late_b);
                 count_early_outs(count, [meets_a, meets_b], [visit_a, visit_b]);
-                let a = Waiting { first: a.first, count: a.count, enter: enter_a };
-                let b = Waiting { first: b.first, count: b.count, enter: enter_b };
+                let a = StackEntry { first: a.first, count: a.count, enter: enter_a };
+                let b = StackEntry { first: b.first, count: b.count, enter: enter_b };
                 if visit_a && visit_b {
                     let (near, far) = if enter_b < enter_a { (b, a) } else { (a, b) };
                     stack[height] = far;
@@ -143,7 +143,7 @@ impl Tree {
 
     /// Fits all boxes to items that have moved; `bounds` takes a position in the order.
     pub(crate) fn refit(&mut self, bounds: impl Fn(usize) -> Aabb) {
-        let fitted = |node: &Node, pairs: &[Pair]| {
+        let fitted = |node: &BvhNode, pairs: &[Pair]| {
             if node.count == 0 {
                 let [a, b] = pairs[node.first as usize].0;
                 return union(&a.planes, &b.planes);
@@ -170,7 +170,7 @@ impl Tree {
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        size_of::<Node>() + size_of_val(self.pairs.as_slice())
+        size_of::<BvhNode>() + size_of_val(self.pairs.as_slice())
     }
 
     pub(crate) fn shape(&self) -> TreeShape {

@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 /// Where the units of a tree lie.
 #[derive(Clone, Debug)]
-pub(super) struct Units(Place);
+pub(super) struct Units(UnitStorage);
 
 #[derive(Clone, Debug)]
-enum Place {
+enum UnitStorage {
     Memory(Vec<Unit>),
     /// From byte [`HEADER`] on; the length was found to be a whole number of units.
     File(Arc<Mmap>),
@@ -23,19 +23,19 @@ enum Place {
 
 impl From<Vec<Unit>> for Units {
     fn from(units: Vec<Unit>) -> Units {
-        Units(Place::Memory(units))
+        Units(UnitStorage::Memory(units))
     }
 }
 
 impl Units {
     /// Changes units: those in memory, or a copy there of what is mapped.
     pub(super) fn change<T>(&mut self, work: impl FnOnce(&mut [Unit]) -> T) -> T {
-        let mut units = match std::mem::replace(&mut self.0, Place::Memory(Vec::new())) {
-            Place::Memory(units) => units,
-            mapped @ Place::File(_) => Units(mapped).to_vec(),
+        let mut units = match std::mem::replace(&mut self.0, UnitStorage::Memory(Vec::new())) {
+            UnitStorage::Memory(units) => units,
+            mapped @ UnitStorage::File(_) => Units(mapped).to_vec(),
         };
         let result = work(&mut units);
-        self.0 = Place::Memory(units);
+        self.0 = UnitStorage::Memory(units);
         result
     }
 }
@@ -46,8 +46,8 @@ impl Deref for Units {
     #[inline(always)]
     fn deref(&self) -> &[Unit] {
         match &self.0 {
-            Place::Memory(units) => units,
-            Place::File(map) => {
+            UnitStorage::Memory(units) => units,
+            UnitStorage::File(map) => {
                 let bytes = &map[HEADER..];
                 // SAFETY: a map begins at a page, so that byte 64 is aligned as units are; every pattern of bits is
                 // a unit, and only whole ones are counted.
@@ -78,6 +78,6 @@ impl Bvh8 {
         if map.len() as u64 != header.bytes() {
             return Err(StorageError::Length { expected: header.bytes(), found: map.len() as u64 });
         }
-        Bvh8::trust(&header, Units(Place::File(Arc::new(map))))
+        Bvh8::trust(&header, Units(UnitStorage::File(Arc::new(map))))
     }
 }

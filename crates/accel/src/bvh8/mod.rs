@@ -9,10 +9,10 @@ mod kernel;
 mod layout;
 mod mapped;
 mod near;
-mod outline;
 mod overlap;
 mod refit;
 mod storage;
+mod summary;
 #[cfg(test)]
 mod tests;
 
@@ -23,10 +23,10 @@ use crate::mesh::TriangleMesh;
 use crate::ray::{Hit, Query, Ray};
 use crate::registry::{AcceleratorEntry, BuildError, BuildOptions};
 use bilux_math::{Aabb, registry::Entry};
-use kernel::{Form, View, Wide};
+use kernel::{NodeFormat, TreeView, Wide};
 use layout::Ref;
 use mapped::Units;
-use outline::Outline;
+use summary::TreeSummary;
 
 pub use compact::{CompactBvh8, ENTRY as COMPACT};
 pub use near::NearestPoint;
@@ -48,7 +48,7 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 #[derive(Clone, Debug)]
 pub struct Bvh8 {
     units: Units,
-    outline: Outline,
+    outline: TreeSummary,
     level: CpuLevel,
 }
 
@@ -59,13 +59,13 @@ impl Bvh8 {
     /// When it would take more than 8 GiB.
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Bvh8, BuildError> {
         let built = build::build(mesh, options.quality)?;
-        let outline = Outline::new(built.root, built.planes);
+        let outline = TreeSummary::new(built.root, built.planes);
         Ok(Bvh8 { units: Units::from(built.units), outline, level: options.cpu_level.available() })
     }
 
     #[inline(always)]
-    fn view(&self) -> Option<View<'_>> {
-        View::of(&self.units, &self.outline)
+    fn view(&self) -> Option<TreeView<'_>> {
+        TreeView::of(&self.units, &self.outline)
     }
 }
 
@@ -110,9 +110,9 @@ impl Traverse for Bvh8 {
 }
 
 /// The shape of a tree, whatever its layout.
-fn shape<F: Form>(view: Option<View>) -> TreeShape {
+fn shape<F: NodeFormat>(view: Option<TreeView>) -> TreeShape {
     let mut shape = TreeShape::default();
-    let Some(View { units, outline }) = view else { return shape };
+    let Some(TreeView { units, outline }) = view else { return shape };
     let mut stack = vec![(outline.root, 1)];
     while let Some((reference, depth)) = stack.pop() {
         if reference.is_node() {

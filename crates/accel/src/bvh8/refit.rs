@@ -5,7 +5,7 @@ use super::layout::{
     BLOCK_UNITS, EMPTY, LANES, NO_TRIANGLE, NODE_UNITS, Planes, Ref, Unit, WIDTH, children, triangles,
     write_leaf, write_node,
 };
-use super::outline::Outline;
+use super::summary::TreeSummary;
 use crate::bvh::tree::union;
 use crate::mesh::TriangleMesh;
 
@@ -33,7 +33,7 @@ impl Bvh8 {
         if !self.units.is_empty() {
             let root = self.outline.root;
             let planes = self.units.change(|units| fit(units, root, mesh.triangles()));
-            self.outline = Outline::new(root, planes);
+            self.outline = TreeSummary::new(root, planes);
         }
         Ok(())
     }

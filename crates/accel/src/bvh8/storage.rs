@@ -10,7 +10,7 @@ use super::layout::{
     self, BLOCK_UNITS, LANES, MAX_BLOCKS, MAX_UNITS, NO_TRIANGLE, NODE_UNITS, Ref, Unit, WIDTH,
 };
 use super::mapped::Units;
-use super::outline::Outline;
+use super::summary::TreeSummary;
 use crate::cpu_level::CpuLevel;
 use bilux_math::hash::mix64;
 use std::io::{self, Read, Write};
@@ -118,7 +118,7 @@ impl Bvh8 {
         }
         check(&units, header.root)?;
         let level = CpuLevel::default().available();
-        Ok(Bvh8 { units, outline: Outline::new(header.root, header.corners), level })
+        Ok(Bvh8 { units, outline: TreeSummary::new(header.root, header.corners), level })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::clip::{Planes, clipped_bounds};
 use super::split::{Split, best_split};
-use super::tree::{MAX_DEPTH, MAX_NODES, Node, Tree};
+use super::tree::{KdNode, MAX_DEPTH, MAX_NODES, Tree};
 use crate::mesh::TriangleMesh;
 use crate::registry::BuildError;
 use rayon::prelude::*;
@@ -72,16 +72,16 @@ impl Builder<'_> {
     /// Adds the subtree of a cell at the end of a tree.
     fn grow(&self, task: Task, tree: &mut Tree) {
         let Some((split, [below, above])) = self.part(&task) else {
-            tree.nodes.push(Node::leaf(tree.references.len(), task.references.len()));
+            tree.nodes.push(KdNode::leaf(tree.references.len(), task.references.len()));
             tree.references.extend(task.references.iter().map(|reference| reference.index));
             return;
         };
         drop(task);
         let node = tree.nodes.len();
-        tree.nodes.push(Node::inner(split.axis, split.plane, 0));
+        tree.nodes.push(KdNode::inner(split.axis, split.plane, 0));
         if below.references.len() + above.references.len() < PARALLEL {
             self.grow(below, tree);
-            tree.nodes[node] = Node::inner(split.axis, split.plane, tree.nodes.len());
+            tree.nodes[node] = KdNode::inner(split.axis, split.plane, tree.nodes.len());
             self.grow(above, tree);
         } else {
             let alone = |task: Task| {
@@ -91,7 +91,7 @@ impl Builder<'_> {
             };
             let (below, above) = rayon::join(|| alone(below), || alone(above));
             append(tree, below);
-            tree.nodes[node] = Node::inner(split.axis, split.plane, tree.nodes.len());
+            tree.nodes[node] = KdNode::inner(split.axis, split.plane, tree.nodes.len());
             append(tree, above);
         }
     }

@@ -15,14 +15,14 @@ pub(super) const MAX_NODES: usize = (u32::MAX >> 2) as usize;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     /// The child below the plane stands right behind its parent.
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<KdNode>,
     /// Triangles of all leaves, leaf by leaf.
     pub(super) references: Vec<u32>,
 }
 
 /// 8 bytes, so that eight of them share a cache line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
+pub(super) struct KdNode {
     /// Where the plane is, or the first reference of a leaf.
     payload: u32,
     /// In the two lower bits the axis, or 3 for a leaf; above, the child above the plane, or how many references.
@@ -31,20 +31,20 @@ pub(super) struct Node {
 
 const LEAF: u32 = 3;
 
-impl Node {
-    pub(super) fn leaf(first: usize, count: usize) -> Node {
-        Node { payload: first as u32, link: (count as u32) << 2 | LEAF }
+impl KdNode {
+    pub(super) fn leaf(first: usize, count: usize) -> KdNode {
+        KdNode { payload: first as u32, link: (count as u32) << 2 | LEAF }
     }
 
-    pub(super) fn inner(axis: usize, plane: f32, above: usize) -> Node {
-        Node { payload: plane.to_bits(), link: (above as u32) << 2 | axis as u32 }
+    pub(super) fn inner(axis: usize, plane: f32, above: usize) -> KdNode {
+        KdNode { payload: plane.to_bits(), link: (above as u32) << 2 | axis as u32 }
     }
 
     /// The same node in a tree where nodes and references are preceded by others.
-    pub(super) fn behind(self, nodes: usize, references: usize) -> Node {
+    pub(super) fn behind(self, nodes: usize, references: usize) -> KdNode {
         match self.is_leaf() {
-            true => Node { payload: self.payload + references as u32, ..self },
-            false => Node { link: self.link + ((nodes as u32) << 2), ..self },
+            true => KdNode { payload: self.payload + references as u32, ..self },
+            false => KdNode { link: self.link + ((nodes as u32) << 2), ..self },
         }
     }
 
@@ -60,7 +60,7 @@ impl Node {
 
 /// A cell still to be visited, and the piece of the ray in it.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct StackEntry {
     node: u32,
     enter: f32,
     leave: f32,
@@ -86,9 +86,9 @@ impl Tree {
         if self.nodes.is_empty() || enter > leave || enter > limit || leave < ray.nearest {
             return;
         }
-        let mut stack = [Waiting { node: 0, enter: 0.0, leave: 0.0 }; MAX_DEPTH];
+        let mut stack = [StackEntry { node: 0, enter: 0.0, leave: 0.0 }; MAX_DEPTH];
         let mut height = 0;
-        let mut at = Waiting { node: 0, enter: enter.max(ray.nearest), leave };
+        let mut at = StackEntry { node: 0, enter: enter.max(ray.nearest), leave };
         loop {
             count.node();
             let node = self.nodes[at.node as usize];
@@ -111,15 +111,15 @@ impl Tree {
                             count.early_out();
                         } else {
                             stack[height] =
-                                Waiting { node: far, enter: at.enter.max(into_far), leave: at.leave };
+                                StackEntry { node: far, enter: at.enter.max(into_far), leave: at.leave };
                             height += 1;
                         }
                     }
-                    at = Waiting { node: near, leave: at.leave.min(out_of_near), ..at };
+                    at = StackEntry { node: near, leave: at.leave.min(out_of_near), ..at };
                     continue;
                 }
                 if !skip_far {
-                    at = Waiting { node: far, enter: at.enter.max(into_far), ..at };
+                    at = StackEntry { node: far, enter: at.enter.max(into_far), ..at };
                     continue;
                 }
             }

@@ -22,8 +22,8 @@ pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
 
 /// Pairs and pieces for each triangle after which the rest is left to depth: both grow with the square of the
 /// triangles in the worst case.
-const MOST_COMPARISONS: u64 = 8192;
-const MOST_PIECES: usize = 16;
+const MAX_COMPARISONS: u64 = 8192;
+const MAX_PIECES: usize = 16;
 
 fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> VisibilityResult {
     let screen = Screen::new(view, mesh);
@@ -242,8 +242,8 @@ impl<'a> Painting<'a> {
     }
 
     fn is_spent(&self) -> bool {
-        self.comparisons > MOST_COMPARISONS * self.triangles as u64
-            || self.pieces.len() > MOST_PIECES * self.triangles + 1024
+        self.comparisons > MAX_COMPARISONS * self.triangles as u64
+            || self.pieces.len() > MAX_PIECES * self.triangles + 1024
     }
 }
 

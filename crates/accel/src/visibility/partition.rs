@@ -16,7 +16,7 @@ use bilux_math::DVec3;
 #[derive(Debug)]
 pub(super) struct Tree {
     pub(super) root: Option<Child>,
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<PartitionNode>,
     pieces: Vec<Piece>,
     tests: Vec<Test>,
     /// Triangles that it was made for.
@@ -28,14 +28,14 @@ pub(super) struct Tree {
 /// How much work a triangle may take (and a small scene altogether) before planes get a thickness without
 /// end, so that depth orders the rest: pieces, tests on their outlines, and pieces dealt out. All grow
 /// with the square of the triangles where all cross each other, share a corner, or form a ball.
-const MOST_PIECES: usize = 16;
-const MOST_TESTS: usize = 128;
-const MOST_DEALT: usize = 1 << 14;
+const MAX_PIECES: usize = 16;
+const MAX_TESTS: usize = 128;
+const MAX_DEALT: usize = 1 << 14;
 const ALWAYS: usize = 1 << 19;
 
 /// A thick plane with what lies on it.
 #[derive(Debug)]
-pub(super) struct Node {
+pub(super) struct PartitionNode {
     pub(super) plane: Plane,
     /// Half the thickness: no hit of a polygon in the plane is farther from it.
     pub(super) half: f64,
@@ -51,7 +51,7 @@ pub(super) struct Node {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Child {
     /// A plane.
-    Node(u32),
+    PartitionNode(u32),
     /// Something of the tree's maker that needs no more planes.
     Leaf(u32),
 }
@@ -109,7 +109,7 @@ pub(super) struct Sides {
     pub(super) back: Vec<Piece>,
 }
 
-impl Node {
+impl PartitionNode {
     #[inline]
     pub(super) fn region(&self, distance: f64) -> Region {
         // Neither comparison holds for a distance that is no number: everything is on such a plane.
@@ -141,15 +141,15 @@ impl Tree {
     }
 
     fn is_spent(&self) -> bool {
-        self.pieces.len() + self.splits > MOST_PIECES * self.triangles + ALWAYS
-            || self.tests.len() > MOST_TESTS * self.triangles + ALWAYS
-            || self.dealt > MOST_DEALT * self.triangles + ALWAYS
+        self.pieces.len() + self.splits > MAX_PIECES * self.triangles + ALWAYS
+            || self.tests.len() > MAX_TESTS * self.triangles + ALWAYS
+            || self.dealt > MAX_DEALT * self.triangles + ALWAYS
     }
 
     /// A tree of the polygons' own planes; of a few candidates, the one that cuts fewest [Fuchs 1983].
     pub(super) fn of_own_planes(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Tree {
         let mut tree = Tree::new(mesh);
-        let mut waiting = vec![(Place::Root, whole_pieces(mesh))];
+        let mut waiting = vec![(SubtreeSlot::Root, whole_pieces(mesh))];
         while let Some((place, pieces)) = waiting.pop() {
             if pieces.is_empty() {
                 continue;
@@ -158,8 +158,8 @@ impl Tree {
             let (plane, thickness) = fewest_splits(&pieces, &candidates, mesh, slack);
             let node = tree.add(place, plane, thickness, slack);
             let sides = tree.deal(pieces, slack, counts);
-            waiting.push((Place::Front(node), sides.front));
-            waiting.push((Place::Back(node), sides.back));
+            waiting.push((SubtreeSlot::Front(node), sides.front));
+            waiting.push((SubtreeSlot::Back(node), sides.back));
         }
         tree.bound();
         counts.pieces += tree.pieces.len() as u64;
@@ -167,30 +167,30 @@ impl Tree {
     }
 
     /// Hangs a child where it belongs.
-    pub(super) fn attach(&mut self, place: Place, child: Child) {
+    pub(super) fn attach(&mut self, place: SubtreeSlot, child: Child) {
         match place {
-            Place::Root => self.root = Some(child),
-            Place::Front(node) => self.nodes[node as usize].front = Some(child),
-            Place::Back(node) => self.nodes[node as usize].back = Some(child),
+            SubtreeSlot::Root => self.root = Some(child),
+            SubtreeSlot::Front(node) => self.nodes[node as usize].front = Some(child),
+            SubtreeSlot::Back(node) => self.nodes[node as usize].back = Some(child),
         }
     }
 
     /// Adds a node with nothing on it. `thickness` is how far the polygons that the plane was made from
     /// stray from it.
-    pub(super) fn add(&mut self, place: Place, plane: Plane, thickness: f64, slack: &Slack) -> u32 {
+    pub(super) fn add(&mut self, place: SubtreeSlot, plane: Plane, thickness: f64, slack: &Slack) -> u32 {
         let index = self.nodes.len() as u32;
-        self.attach(place, Child::Node(index));
+        self.attach(place, Child::PartitionNode(index));
         let on = self.pieces.len() as u32..self.pieces.len() as u32;
         let thickness = if self.is_spent() { f64::INFINITY } else { thickness };
         let (half, bounds) = (thickness + 2.0 * slack.radius, [DVec3::INFINITY, DVec3::NEG_INFINITY]);
-        self.nodes.push(Node { plane, half, on, front: None, back: None, bounds });
+        self.nodes.push(PartitionNode { plane, half, on, front: None, back: None, bounds });
         index
     }
 
     /// Deals pieces out to the three regions of the last node.
     pub(super) fn deal(&mut self, pieces: Vec<Piece>, slack: &Slack, counts: &mut VisibilityCounts) -> Sides {
         let index = self.nodes.len() as u32 - 1;
-        let Node { plane, half, .. } = self.nodes[index as usize];
+        let PartitionNode { plane, half, .. } = self.nodes[index as usize];
         // A hit is at most a radius away from its polygon.
         let (inner, outer) = (half - slack.radius, half + slack.radius);
         let mut sides = Sides::default();
@@ -257,7 +257,7 @@ impl Tree {
             let own = points.fold(node.bounds, |[low, high], &p| [low.min(p), high.max(p)]);
             let below = [node.front, node.back].into_iter().flatten();
             let bounds = below.fold(own, |[low, high], child| match child {
-                Child::Node(below) => {
+                Child::PartitionNode(below) => {
                     let [least, most] = self.nodes[below as usize].bounds;
                     [low.min(least), high.max(most)]
                 }
@@ -269,7 +269,7 @@ impl Tree {
 
     /// The corners of the box around everything below a child; `None` for leaves.
     pub(super) fn hull(&self, child: Child) -> Option<[DVec3; 8]> {
-        let Child::Node(node) = child else { return None };
+        let Child::PartitionNode(node) = child else { return None };
         let bounds = self.nodes[node as usize].bounds;
         let pick = |i: usize, bit: usize| bounds[i >> bit & 1];
         Some(std::array::from_fn(|i| DVec3::new(pick(i, 0).x, pick(i, 1).y, pick(i, 2).z)))
@@ -315,7 +315,7 @@ impl Tree {
                 continue;
             }
             match stop {
-                Stop::Enter(Child::Node(index)) => {
+                Stop::Enter(Child::PartitionNode(index)) => {
                     let node = &self.nodes[index as usize];
                     let (front, on, back) =
                         (node.front.map(Stop::Enter), Some(Stop::On(index)), node.back.map(Stop::Enter));
@@ -340,7 +340,7 @@ impl Tree {
 
 /// Where a subtree hangs.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Place {
+pub(super) enum SubtreeSlot {
     /// Nowhere: it is the tree.
     Root,
     /// In front of a node.

@@ -6,7 +6,7 @@
 //! plane of a face in the cycle, which also cuts what crosses.
 
 use super::canvas::{Canvas, NOBODY};
-use super::partition::{Child, Piece, Place, Start, Stop, Tree, draw_piece, whole_pieces};
+use super::partition::{Child, Piece, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
 use super::polygon::{Plane, corners};
 use super::result::VisibilityCounts;
 use super::screen::{Screen, Slack};
@@ -31,7 +31,7 @@ pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
 /// Most polygons of a cluster: finding priorities takes each pair.
 const LARGEST: usize = 128;
 /// Most clusters of which every pair is tried for a direction to separate along.
-const MOST_PAIRED: usize = 16;
+const MAX_PAIRED: usize = 16;
 
 fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> VisibilityResult {
     let screen = Screen::new(view, mesh);
@@ -41,7 +41,7 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
     let build_seconds = begun.elapsed().as_secs_f64();
     scene.tree.walk(screen.eye, Start::Nearest, |stop| {
         match stop {
-            Stop::Enter(Child::Node(_)) => canvas.counts.sort_comparisons += 1,
+            Stop::Enter(Child::PartitionNode(_)) => canvas.counts.sort_comparisons += 1,
             Stop::Enter(Child::Leaf(_)) => {}
             Stop::On(node) => scene.draw_on(node, &screen, &mut canvas),
             Stop::Leaf(leaf) => scene.draw_cluster(leaf, &screen, &mut canvas),
@@ -83,7 +83,7 @@ struct Face {
 impl Clusters {
     fn new(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Clusters {
         let mut scene = Clusters { tree: Tree::new(mesh), clusters: Vec::new() };
-        let mut waiting = vec![(Place::Root, by_group(mesh))];
+        let mut waiting = vec![(SubtreeSlot::Root, by_group(mesh))];
         while let Some((place, mut sets)) = waiting.pop() {
             sets.retain(|set| !set.is_empty());
             if sets.is_empty() {
@@ -109,8 +109,8 @@ impl Clusters {
             let node = scene.tree.add(place, plane, thickness, slack);
             let sides = sets.into_iter().map(|set| scene.tree.deal(set, slack, counts));
             let (front, back) = sides.map(|sides| (sides.front, sides.back)).unzip();
-            waiting.push((Place::Front(node), front));
-            waiting.push((Place::Back(node), back));
+            waiting.push((SubtreeSlot::Front(node), front));
+            waiting.push((SubtreeSlot::Back(node), back));
         }
         scene.number_owners();
         let of_clusters: usize = scene.clusters.iter().map(|cluster| cluster.pieces.len()).sum();
@@ -261,7 +261,7 @@ fn by_group(mesh: &TriangleMesh) -> Vec<Vec<Piece>> {
 /// polygons to be one cluster, one that halves them. `None` when they should be one cluster.
 fn plane_between(sets: &[Vec<Piece>]) -> Option<Plane> {
     let axes = DVec3::AXES.into_iter();
-    let middles: Vec<DVec3> = sets.iter().take(MOST_PAIRED).map(|set| middle(set)).collect();
+    let middles: Vec<DVec3> = sets.iter().take(MAX_PAIRED).map(|set| middle(set)).collect();
     let pairs = middles
         .iter()
         .enumerate()

@@ -56,7 +56,7 @@ pub enum ViewError {
 }
 
 /// Most pixels that a view may have.
-const MOST_PIXELS: usize = 1 << 24;
+const MAX_PIXELS: usize = 1 << 24;
 
 impl View {
     /// From directions through the pixel centres, row by row from the top; they need not be of unit
@@ -88,7 +88,7 @@ impl View {
         let mut deepest = 0f64;
         for (pixel, direction) in usable(&directions) {
             let z = direction.dot(forward);
-            let is_ahead = z > direction.length() * LEAST_COSINE;
+            let is_ahead = z > direction.length() * MIN_COSINE;
             if !is_ahead {
                 return Err(ViewError::TooWide);
             }
@@ -196,7 +196,7 @@ impl View {
 
 /// Cosine of the angle from `forward` that no direction may reach: rays that run along the camera
 /// plane have no place on a screen.
-const LEAST_COSINE: f64 = 1.0 / 65536.0;
+const MIN_COSINE: f64 = 1.0 / 65536.0;
 
 /// Where the pixels of each column (or row) lie on the screen one unit in front of the eye. Made monotone,
 /// so that a search is conservative however the directions were rounded, or bent.
@@ -245,7 +245,7 @@ impl Lanes {
 
 fn check_size(width: usize, height: usize) -> Result<(), ViewError> {
     match width.checked_mul(height) {
-        Some(1..=MOST_PIXELS) => Ok(()),
+        Some(1..=MAX_PIXELS) => Ok(()),
         _ => Err(ViewError::Size(width, height)),
     }
 }

@@ -4,7 +4,7 @@
 mod blotches;
 mod files;
 
-use crate::{Report, Tell, table};
+use crate::{ProgressFn, Report, table};
 use bilux::Error;
 use bilux::math::Rgb;
 use bilux::pictures::{Picture, compare};
@@ -84,7 +84,7 @@ impl Row {
 ///
 /// # Errors
 /// When a picture cannot be made, or a file not written.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let scratch = std::env::temp_dir().join(format!("bilux-models-{}", std::process::id()));
     make_folder(&scratch)?;
     if let Some(folder) = &options.references {
@@ -133,7 +133,7 @@ fn summary(rows: &[Row]) -> String {
 struct Bench<'a> {
     options: &'a Options,
     scratch: &'a Path,
-    tell: Tell<'a>,
+    tell: ProgressFn<'a>,
 }
 
 impl Bench<'_> {

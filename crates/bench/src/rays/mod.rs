@@ -15,7 +15,7 @@ mod report;
 mod scenes;
 
 use crate::accels::find;
-use crate::{Report, Tell, median};
+use crate::{ProgressFn, Report, median};
 use bilux::Error;
 use bilux::accel::registry::AUTO;
 use bilux::accel::{Bvh, Query, Ray};
@@ -91,7 +91,7 @@ enum Mode {
 ///
 /// # Errors
 /// When a file cannot be read or written, a name is not known, or nothing of a scene can be seen.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let against = engines::load(&options.against)?;
     let mut accels = options.accels.clone();
     if accels.is_empty() {
@@ -123,7 +123,7 @@ fn measure(
     batches: &[Batch],
     built: &[Named],
     options: &Options,
-    tell: Tell,
+    tell: ProgressFn,
     rows: &mut Vec<Row>,
 ) -> Result<(), Error> {
     let reference = Bvh::new(&subject.mesh);

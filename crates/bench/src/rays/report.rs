@@ -82,7 +82,7 @@ fn of_one(scene: &str, rows: &[&Row], options: &Options) -> String {
     let header: Vec<&str> =
         ["engine", "mode"].into_iter().chain(classes).chain(["build s", "bytes/tri", "mismatches"]).collect();
     let title = format!(
-        "{scene}: {} triangles, Mrays/s on one thread, median of {} (× the best rival of the same mode)",
+        "{scene}: {} triangles, Mrays/s on one thread, median of {} (× the best competitor of the same mode)",
         rows[0].triangles, options.rounds
     );
     table(&title, &header, &cells)

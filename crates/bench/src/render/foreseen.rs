@@ -24,9 +24,9 @@ impl Measured {
         };
         let foreseen = auto.choice.as_ref().and_then(|choice| {
             let best = choice.best();
-            let rival = choice.rivals.iter().find(|rival| rival.ways == ways);
-            let rival = if ways == "auto" { Some(best) } else { rival };
-            rival.map(|rival| rival.time_to_error() / best.time_to_error())
+            let candidate = choice.candidates.iter().find(|candidate| candidate.techniques == ways);
+            let candidate = if ways == "auto" { Some(best) } else { candidate };
+            candidate.map(|candidate| candidate.time_to_error() / best.time_to_error())
         });
         let time = row.took / auto.took;
         Compared {

@@ -15,9 +15,9 @@ mod subject;
 mod table;
 
 pub use errors::{BLOCK, bias2, relmse, relmse_trimmed};
-pub use reference::{Making, Reference, make_references};
+pub use reference::{Reference, ReferenceOptions, make_references};
 
-use crate::{Report, Tell, median};
+use crate::{ProgressFn, Report, median};
 use bilux::formats::ReadOptions;
 use bilux::pictures::WriteOptions;
 use bilux::scene::error::nearest_name;
@@ -124,7 +124,7 @@ impl Row {
             "peak_mb": self.peak_mb, "cpu_seconds": self.took, "reference_mean": reference.mean(),
             "reference_relmse": reference.relmse, "foreseen": compared.foreseen, "measured": compared.measured,
             "measured_trimmed": compared.measured_trimmed,
-            "chosen": self.choice.as_ref().map(|choice| choice.best().ways),
+            "chosen": self.choice.as_ref().map(|choice| choice.best().techniques),
         })
     }
 }
@@ -143,7 +143,7 @@ struct Measured {
 ///
 /// # Errors
 /// When a scene or an integrator is not known, or the page cannot be written.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, Error> {
+pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let integrators = chosen_integrators(&options.integrators)?;
     if let Some(wrong) = options.seconds.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
         return Err(Error::Settings(format!("--seconds {wrong}: a budget is a number of seconds above 0")));
@@ -177,7 +177,7 @@ impl Options {
 /// A run on its way.
 struct Bench<'a> {
     options: &'a Options,
-    tell: Tell<'a>,
+    tell: ProgressFn<'a>,
     begun: Instant,
     /// CPU seconds of the pictures that are there, and of all.
     done: f64,

@@ -3,7 +3,7 @@
 use super::errors::{block_means, mean};
 use super::subject::{chosen_scenes, generated};
 use super::{SIZE, calibrate, settings, shoot};
-use crate::{Report, Tell};
+use crate::{ProgressFn, Report};
 use bilux::Error;
 use bilux::pictures::{Limits, Picture, WriteOptions, read_bytes, write};
 use bilux::scene::SceneBuilder;
@@ -47,7 +47,7 @@ impl Reference {
 
 /// How references are made.
 #[derive(Clone, Debug)]
-pub struct Making {
+pub struct ReferenceOptions {
     /// Folder for the files.
     pub folder: PathBuf,
     /// Of which scenes; all where there are none.
@@ -78,7 +78,7 @@ const AGREE: f64 = 1e-3;
 ///
 /// # Errors
 /// When a scene is not known, or a file cannot be written.
-pub fn make_references(making: &Making, tell: Tell) -> Result<Report, Error> {
+pub fn make_references(making: &ReferenceOptions, tell: ProgressFn) -> Result<Report, Error> {
     let (mut rows, mut lines) = (Vec::new(), Vec::new());
     for (name, _) in chosen_scenes(&making.scenes)? {
         let mut found = Vec::new();
@@ -117,8 +117,8 @@ pub fn make_references(making: &Making, tell: Tell) -> Result<Report, Error> {
 pub(super) fn make_reference(
     name: &str,
     scene: &SceneBuilder,
-    making: &Making,
-    tell: Tell,
+    making: &ReferenceOptions,
+    tell: ProgressFn,
 ) -> Result<(Reference, Option<f64>), Error> {
     let ask = |integrator| {
         tell(&format!("{name}: {integrator}, for the reference"));
@@ -139,7 +139,11 @@ struct Witness {
 }
 
 impl Witness {
-    fn ask(scene: &SceneBuilder, integrator: &'static str, making: &Making) -> Result<Witness, Error> {
+    fn ask(
+        scene: &SceneBuilder,
+        integrator: &'static str,
+        making: &ReferenceOptions,
+    ) -> Result<Witness, Error> {
         let budget = making.seconds / PARTS as f64;
         let speed = calibrate(scene, integrator, &[budget], making.threads)?;
         let samples = ((speed * budget).round() as u32).max(1);
@@ -228,7 +232,7 @@ fn welch(a: &[f64], b: &[f64]) -> f64 {
     StudentsT::new(0.0, 1.0, freedom).map_or(0.0, |students| 2.0 * students.sf(t))
 }
 
-fn write_reference(making: &Making, name: &str, reference: &Reference) -> Result<(), Error> {
+fn write_reference(making: &ReferenceOptions, name: &str, reference: &Reference) -> Result<(), Error> {
     let path = making.folder.join(format!("{name}.exr"));
     let mut picture = Picture::from_rgb(SIZE.0 as usize, SIZE.1 as usize, reference.pixels.clone())?;
     let texts = [("relmse", format!("{:.3e}", reference.relmse)), ("origin", reference.origin.clone())];

@@ -1,8 +1,8 @@
 //! What integrators are measured on: scenes that we ship, and files of the user's own.
 
 use super::reference::make_reference;
-use super::{Making, Options, Reference, SCENES, check};
-use crate::Tell;
+use super::{Options, Reference, ReferenceOptions, SCENES, check};
+use crate::ProgressFn;
 use bilux::Error;
 use bilux::scene::generators::GENERATORS;
 use bilux::scene::{SceneBuilder, Spec};
@@ -17,7 +17,7 @@ pub(super) struct Subject {
 }
 
 /// All that were asked for. References of files are made here.
-pub(super) fn subjects(options: &Options, tell: Tell) -> Result<Vec<Subject>, Error> {
+pub(super) fn subjects(options: &Options, tell: ProgressFn) -> Result<Vec<Subject>, Error> {
     let shipped = if options.scenes.is_empty() && !options.files.is_empty() {
         Vec::new()
     } else {
@@ -41,9 +41,9 @@ fn of_ours(name: &str, bytes: &[u8]) -> Result<Subject, Error> {
     })
 }
 
-fn of_the_user(file: &Path, options: &Options, tell: Tell) -> Result<Subject, Error> {
+fn of_the_user(file: &Path, options: &Options, tell: ProgressFn) -> Result<Subject, Error> {
     let scene = bilux::load(file, &options.read)?;
-    let making = Making {
+    let making = ReferenceOptions {
         folder: Default::default(),
         scenes: Vec::new(),
         seconds: options.reference_seconds,

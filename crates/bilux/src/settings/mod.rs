@@ -243,7 +243,7 @@ impl Settings {
             .ok_or_else(|| SceneError::invalid(no_size(&reader.text("size")), reader.span("size")))?;
         let (stop, background) = (stop(&reader), background(&reader)?);
         let spp = match reader.integer("spp") {
-            0 if stop.is_any() => MOST_SPP,
+            0 if stop.is_any() => MAX_SPP,
             0 => integrator.default_spp,
             n => u32::try_from(n).unwrap_or(u32::MAX),
         };
@@ -305,7 +305,7 @@ impl Settings {
 }
 
 /// Samples of a pixel at which a picture ends in any case, where a stop but no number of samples is given.
-const MOST_SPP: u32 = 1 << 16;
+const MAX_SPP: u32 = 1 << 16;
 
 fn stop(reader: &Reader) -> Stop {
     let above_zero = |key: &str| Some(reader.number(key)).filter(|&x| x > 0.0);

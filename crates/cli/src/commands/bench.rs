@@ -59,14 +59,14 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
 fn render(
     arguments: &Bench,
     common: &Common,
-    tell: bilux_bench::Tell,
+    tell: bilux_bench::ProgressFn,
 ) -> anyhow::Result<bilux_bench::Report> {
-    use bilux_bench::render::{Making, Options, make_references, run};
+    use bilux_bench::render::{Options, ReferenceOptions, make_references, run};
     let defaults = Options::default();
     if let Some(folder) = &arguments.make_references {
         let seconds = arguments.seconds.last().copied().unwrap_or(MINUTE);
         let scenes = arguments.gallery.clone();
-        let making = Making { folder: folder.clone(), scenes, seconds, threads: arguments.threads };
+        let making = ReferenceOptions { folder: folder.clone(), scenes, seconds, threads: arguments.threads };
         return Ok(make_references(&making, tell)?);
     }
     let options = Options {
@@ -84,7 +84,11 @@ fn render(
 }
 
 /// `bench load`: a process for each file, so that its memory is its own.
-fn load(arguments: &Bench, common: &Common, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+fn load(
+    arguments: &Bench,
+    common: &Common,
+    tell: bilux_bench::ProgressFn,
+) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::load::{Options, make, report, run};
     let repeats = arguments.repeats.unwrap_or(5);
     if let [file] = arguments.scenes.as_slice() {
@@ -118,7 +122,7 @@ fn load(arguments: &Bench, common: &Common, tell: bilux_bench::Tell) -> anyhow::
 }
 
 /// `bench models`, by this program itself.
-fn models(arguments: &Bench, tell: bilux_bench::Tell) -> anyhow::Result<bilux_bench::Report> {
+fn models(arguments: &Bench, tell: bilux_bench::ProgressFn) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::models::{Options, SECONDS, run};
     let options = Options {
         program: std::env::current_exe()?,
@@ -138,8 +142,8 @@ fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays:
     let (numbers, files): (Vec<&String>, Vec<&String>) =
         arguments.rays.iter().partition(|text| text.parse::<u64>().is_ok());
     let count = match numbers.last() {
-        Some(text) => text.parse().ok().filter(|n| (1..=MOST_RAYS).contains(n)).with_context(|| {
-            format!("--rays {text}: a class has from 1 to {MOST_RAYS} rays; a file of this name is written as ./{text}")
+        Some(text) => text.parse().ok().filter(|n| (1..=MAX_RAYS).contains(n)).with_context(|| {
+            format!("--rays {text}: a class has from 1 to {MAX_RAYS} rays; a file of this name is written as ./{text}")
         })?,
         None => defaults.count,
     };
@@ -158,4 +162,4 @@ fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays:
 }
 
 /// More would not fit into the memory of most machines.
-const MOST_RAYS: usize = 1 << 26;
+const MAX_RAYS: usize = 1 << 26;

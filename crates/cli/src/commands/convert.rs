@@ -1,7 +1,7 @@
 //! `bilux convert`: between scene formats, and between picture formats.
 
 use super::{
-    DONE, check_choices, check_folder, check_quality, read_options_with, tell_lost_alpha, tell_warnings,
+    DONE, check_choices, check_folder, check_quality, read_options_with, report_warnings, tell_lost_alpha,
 };
 use crate::arguments::{Common, Convert};
 use crate::sandbox::Confines;
@@ -37,10 +37,10 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             let scene =
                 bilux::load(input, &read_options_with(common, &arguments.posed.choices, arguments.posed.at))?;
             check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
-            tell_warnings(&scene.warnings, common)?;
+            report_warnings(&scene.warnings, common)?;
             let options = WriteOptions { ascii: arguments.ascii };
             let lost = bilux::formats::write(output, &scene, &options)?;
-            tell_warnings(&lost, common)?;
+            report_warnings(&lost, common)?;
         }
         (false, true) => {
             return Err(mismatch(input, output, "a scene", "a picture: use `bilux render` for that"));

@@ -1,6 +1,6 @@
 //! `bilux generate`: the scenes that we ship, made by formula.
 
-use super::{DONE, check_folder, read_options, tell_warnings};
+use super::{DONE, check_folder, read_options, report_warnings};
 use crate::arguments::{Common, Generate};
 use crate::sandbox::Confines;
 use crate::settings_from::{assignment_of, from_flag};
@@ -26,9 +26,9 @@ pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
         }
         None => bilux::generate(&spec(arguments).map_err(usage::wrong)?).map_err(usage::wrong)?,
     };
-    tell_warnings(&scene.warnings, common)?;
+    report_warnings(&scene.warnings, common)?;
     let lost = bilux::formats::write(&arguments.output, &scene, &WriteOptions::default())?;
-    tell_warnings(&lost, common)?;
+    report_warnings(&lost, common)?;
     Ok(DONE)
 }
 

@@ -1,6 +1,6 @@
 //! `bilux info`: what is in a scene.
 
-use super::{DONE, check_choices, read_options_with, tell_warnings};
+use super::{DONE, check_choices, read_options_with, report_warnings};
 use crate::arguments::{Common, Info};
 use crate::sandbox::Confines;
 use crate::{output, usage};
@@ -21,7 +21,7 @@ pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
         output::print(serde_json::to_string_pretty(&as_json(&scene))?)?;
     } else {
         output::print(as_text(&scene))?;
-        tell_warnings(&scene.warnings, common)?;
+        report_warnings(&scene.warnings, common)?;
     }
     Ok(DONE)
 }

@@ -70,7 +70,7 @@ fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> 
 }
 
 /// Says each warning once; under `--strict` the first is an error.
-fn tell_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> {
+fn report_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> {
     if let (true, Some(first)) = (common.strict, warnings.first()) {
         bail!("{first} (a warning, which --strict makes an error)");
     }
@@ -119,5 +119,5 @@ fn tell_lost_alpha(
         output.display(),
         format.entry.name
     );
-    tell_warnings(&[Warning { message, at: Span::default() }], common)
+    report_warnings(&[Warning { message, at: Span::default() }], common)
 }

@@ -1,7 +1,7 @@
 //! `bilux render`: pictures from scenes.
 
 use super::targets::{Target, frame_path, is_stdout, targets};
-use super::{DONE, aov, check_choices, log, read_options_with, stats, tell_warnings, time_limit};
+use super::{DONE, aov, check_choices, log, read_options_with, report_warnings, stats, time_limit};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
@@ -121,7 +121,7 @@ impl Input<'_> {
     /// Prints warnings, and keeps them for `--json`.
     fn warn(&self, warnings: &[bilux::scene::Warning]) -> anyhow::Result<()> {
         self.warnings.borrow_mut().extend(warnings.iter().map(ToString::to_string));
-        tell_warnings(warnings, self.common)
+        report_warnings(warnings, self.common)
     }
 
     /// The scene as it is at a time in seconds, and for frames as it is at all times.
@@ -279,7 +279,7 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
     interrupt.renders(false);
     let overrun = time_limit::overrun(job, &outcome, before, seconds, input.begun.get().elapsed());
-    tell_odd_samples(&outcome);
+    report_sample_failures(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     let rendered = log::Rendered {
         job,
@@ -369,7 +369,7 @@ fn write(
 }
 
 /// Samples that are no number are counted and located, never hidden.
-fn tell_odd_samples(outcome: &Outcome) {
+fn report_sample_failures(outcome: &Outcome) {
     let trouble = outcome.film.trouble();
     if let Some(first) = trouble.first_non_finite {
         output::warning(format_args!(

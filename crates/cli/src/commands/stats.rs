@@ -6,12 +6,12 @@ use serde_json::json;
 
 /// Which ways of finding light were chosen, and what was expected of each.
 fn choice(choice: &Choice) -> serde_json::Value {
-    let rivals = choice.rivals.iter().map(|rival| {
+    let candidates = choice.candidates.iter().map(|candidate| {
         json!({
-            "name": rival.name, "error": rival.error, "lost": rival.lost, "nanoseconds": rival.nanoseconds,
+            "name": candidate.name, "error": candidate.error, "lost": candidate.lost, "nanoseconds": candidate.nanoseconds,
         })
     });
-    json!({ "chosen": choice.best().name, "rivals": rivals.collect::<Vec<_>>() })
+    json!({ "chosen": choice.best().name, "candidates": candidates.collect::<Vec<_>>() })
 }
 
 /// What is known of a picture once it is done.

@@ -16,7 +16,7 @@ const NINTH: usize = 9;
 /// The same as [`PLAIN`], and kd and ks.
 const COLOURED: usize = 14;
 /// The most numbers that a line may hold: three coloured vertices.
-const MOST: usize = 3 * COLOURED;
+const MAX: usize = 3 * COLOURED;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut reader = Asc {
@@ -62,7 +62,7 @@ struct Group {
 
 /// Some of a line's words as numbers.
 struct Numbers {
-    values: [f32; MOST],
+    values: [f32; MAX],
     count: usize,
 }
 
@@ -229,7 +229,7 @@ impl Asc<'_, '_, '_> {
 
     /// All words up to the line's end, as numbers.
     fn line_of_numbers(&mut self) -> Result<Numbers, FormatError> {
-        let mut numbers = Numbers { values: [0.0; MOST], count: 0 };
+        let mut numbers = Numbers { values: [0.0; MAX], count: 0 };
         loop {
             self.cursor.skip_blanks();
             let at = self.cursor.offset();
@@ -243,7 +243,7 @@ impl Asc<'_, '_, '_> {
                 return Err(FormatError::malformed(message, self.places.at(at)));
             };
             let Some(slot) = numbers.values.get_mut(numbers.count) else {
-                let message = format!("there are more than {MOST} numbers on this line: a vertex has 8");
+                let message = format!("there are more than {MAX} numbers on this line: a vertex has 8");
                 return Err(FormatError::malformed(message, self.places.at(at)));
             };
             *slot = value;

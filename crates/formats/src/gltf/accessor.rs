@@ -1,13 +1,13 @@
 //! Typed elements in buffers: every component type, normalised or not, interleaved, sparse.
 
 use super::document::Document;
-use super::json::Node;
+use super::json::JsonNode;
 use crate::FormatError;
 use crate::budget::Budget;
 
 /// A list of elements, checked to lie within its buffer.
 pub(super) struct Accessor<'d> {
-    pub(super) node: Node<'d>,
+    pub(super) node: JsonNode<'d>,
     pub(super) count: usize,
     component: Component,
     shape: Shape,
@@ -62,7 +62,7 @@ impl<'d> Accessor<'d> {
     /// The accessor that `index` names.
     pub(super) fn named(
         document: &'d Document<'d>,
-        index: Node<'d>,
+        index: JsonNode<'d>,
         budget: &mut Budget,
     ) -> Result<Accessor<'d>, FormatError> {
         Accessor::open(document, index.as_count()?, document.named("accessors", index)?, budget)
@@ -71,7 +71,7 @@ impl<'d> Accessor<'d> {
     pub(super) fn open(
         document: &'d Document<'d>,
         number: usize,
-        node: Node<'d>,
+        node: JsonNode<'d>,
         budget: &mut Budget,
     ) -> Result<Accessor<'d>, FormatError> {
         let count = node.need("count")?.as_count()?;
@@ -187,7 +187,7 @@ impl<'d> Accessor<'d> {
     pub(super) fn is_aligned(&self, document: &'d Document<'d>) -> Result<bool, FormatError> {
         let Some(view) = self.node.get("bufferView") else { return Ok(true) };
         let view = document.named("bufferViews", view)?;
-        let offset = |node: Node<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
+        let offset = |node: JsonNode<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
         let (inside, outside) = (offset(self.node)?, offset(view)?);
         let size = self.component.size();
         let is_matrix = self.shape.columns > 1;
@@ -224,8 +224,8 @@ impl<'d> Accessor<'d> {
 /// Elements that lie within a view, or else an error at the node that says they do.
 fn strided<'d>(
     document: &'d Document<'d>,
-    node: Node<'d>,
-    view: Node<'d>,
+    node: JsonNode<'d>,
+    view: JsonNode<'d>,
     [offset, count, size]: [usize; 3],
 ) -> Result<Strided<'d>, FormatError> {
     let view = document.view(view)?;
@@ -249,7 +249,7 @@ fn strided<'d>(
 impl<'d> Sparse<'d> {
     fn read(
         document: &'d Document<'d>,
-        node: Node<'d>,
+        node: JsonNode<'d>,
         total: usize,
         size: usize,
         budget: &mut Budget,
@@ -263,7 +263,7 @@ impl<'d> Sparse<'d> {
         if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
             return Err(places.error("sparse indices must be of 8, 16 or 32 bits without a sign"));
         }
-        let offset = |node: Node<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
+        let offset = |node: JsonNode<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
         let from = strided(
             document,
             places,
@@ -283,7 +283,7 @@ impl<'d> Sparse<'d> {
 }
 
 impl Component {
-    fn read(node: Node) -> Result<Component, FormatError> {
+    fn read(node: JsonNode) -> Result<Component, FormatError> {
         Ok(match node.as_count()? {
             5120 => Component::I8,
             5121 => Component::U8,

@@ -1,7 +1,7 @@
 //! Animation: where nodes are, and how morph targets weigh, at a moment. [glTF 2.0, 3.11 and appendix C]
 
 use super::accessor::Accessor;
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::glam::DQuat;
@@ -73,14 +73,14 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The index of the animation that the options name.
-    fn chosen_animation(&self, list: &[Node<'d>]) -> Result<Option<usize>, FormatError> {
+    fn chosen_animation(&self, list: &[JsonNode<'d>]) -> Result<Option<usize>, FormatError> {
         let Some(wanted) = &self.reading.options.animation else { return Ok(None) };
         let names: Vec<String> = list.iter().map(|node| node.name().to_owned()).collect();
         named_or_numbered("animation", wanted, &names, &self.document.root.at_key("animations")).map(Some)
     }
 
     /// Adds what an animation says to the pose, if it plays; gives when it ends.
-    fn play(&mut self, animation: Node<'d>, plays: bool) -> Result<f32, FormatError> {
+    fn play(&mut self, animation: JsonNode<'d>, plays: bool) -> Result<f32, FormatError> {
         let samplers = animation.list("samplers")?;
         let mut end = 0f32;
         for channel in animation.list("channels")? {
@@ -117,7 +117,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// A sampler's value at the time that was asked for, and the time of its last key.
     fn sample(
         &mut self,
-        sampler: Node<'d>,
+        sampler: JsonNode<'d>,
         node: usize,
         moves: Moves,
     ) -> Result<(Vec<f64>, f32), FormatError> {
@@ -165,7 +165,7 @@ impl<'d> Gltf<'d, '_, '_> {
 }
 
 /// What a channel moves; none where that is nothing that moves here.
-fn target(channel: &Node) -> Option<(usize, Moves)> {
+fn target(channel: &JsonNode) -> Option<(usize, Moves)> {
     let target = channel.get("target")?;
     let moves = match target.get("path")?.as_text().ok()? {
         "translation" => Moves::Translation,

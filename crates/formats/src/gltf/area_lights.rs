@@ -1,7 +1,7 @@
 //! `EXT_lights_area`: flat panels and discs that give light on one side, in nits.
 
 use super::graph::Placed;
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::transcendental::sin_cos_f64;
@@ -15,7 +15,7 @@ const AROUND: u32 = 64;
 
 impl<'d> Gltf<'d, '_, '_> {
     /// A light at its node, shining along its -z.
-    pub(super) fn area_light(&mut self, user: Node<'d>, placed: &Placed<'d>) -> Result<(), FormatError> {
+    pub(super) fn area_light(&mut self, user: JsonNode<'d>, placed: &Placed<'d>) -> Result<(), FormatError> {
         let index = user.need("light")?;
         let list = self.document.root.extension("EXT_lights_area");
         let Some(light) = list.and_then(|list| list.item("lights", index.as_count().ok()?)) else {

@@ -1,6 +1,6 @@
 //! Cameras, which look along their node's -z.
 
-use super::json::Node;
+use super::json::JsonNode;
 use crate::FormatError;
 use crate::reading::Oddities;
 use bilux_math::{DMat4, DVec3};
@@ -9,8 +9,8 @@ use bilux_scene::cameras::CameraSpec;
 
 /// A camera at its node; none, with a warning, where its node leaves it no direction.
 pub(super) fn camera(
-    camera: Node,
-    node: Node,
+    camera: JsonNode,
+    node: JsonNode,
     world: &DMat4,
     oddities: &mut Oddities,
 ) -> Result<Option<CameraSpec>, FormatError> {

@@ -1,7 +1,7 @@
 //! The document as a whole: its JSON and the bytes of its buffers.
 
 use super::container::Container;
-use super::json::Node;
+use super::json::JsonNode;
 use super::{meshopt, uri};
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 /// JSON and buffers.
 pub(super) struct Document<'a> {
-    pub(super) root: Node<'a>,
+    pub(super) root: JsonNode<'a>,
     buffers: Vec<Cow<'a, [u8]>>,
     /// The bytes of views that are packed in the file, by their index.
     unpacked: HashMap<usize, Vec<u8>>,
@@ -31,7 +31,7 @@ pub(super) struct Drawn {
 
 /// A part of a buffer.
 #[derive(Clone, Copy)]
-pub(super) struct View<'d> {
+pub(super) struct BufferView<'d> {
     pub(super) bytes: &'d [u8],
     /// Bytes from one element to the next, where it says so.
     pub(super) stride: Option<usize>,
@@ -40,7 +40,7 @@ pub(super) struct View<'d> {
 impl<'a> Document<'a> {
     /// Loads every buffer.
     pub(super) fn load(
-        root: Node<'a>,
+        root: JsonNode<'a>,
         container: &Container<'a>,
         reading: &mut Reading,
         source: &Source<'a>,
@@ -118,7 +118,7 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     /// What is wrong with one that cannot be.
-    pub(super) fn check_view(&self, view: Node<'a>) -> Result<Option<&'static str>, FormatError> {
+    pub(super) fn check_view(&self, view: JsonNode<'a>) -> Result<Option<&'static str>, FormatError> {
         if view.extension(meshopt::NAME).is_some() {
             return Ok(None);
         }
@@ -132,7 +132,7 @@ impl<'a> Document<'a> {
     }
 
     /// The item of a list of the document that `index` names.
-    pub(super) fn named(&self, list: &'a str, index: Node<'a>) -> Result<Node<'a>, FormatError> {
+    pub(super) fn named(&self, list: &'a str, index: JsonNode<'a>) -> Result<JsonNode<'a>, FormatError> {
         let number = index.as_count()?;
         self.root.item(list, number).ok_or_else(|| {
             let count = self.root.list(list).map_or(0, |items| items.len());
@@ -142,23 +142,23 @@ impl<'a> Document<'a> {
         })
     }
 
-    fn buffer(&self, index: Node<'a>) -> Result<&[u8], FormatError> {
+    fn buffer(&self, index: JsonNode<'a>) -> Result<&[u8], FormatError> {
         self.named("buffers", index)?;
         Ok(&self.buffers[index.as_count()?])
     }
 
     /// The bytes of the buffer view that `index` names.
-    pub(super) fn view(&self, index: Node<'a>) -> Result<View<'_>, FormatError> {
+    pub(super) fn view(&self, index: JsonNode<'a>) -> Result<BufferView<'_>, FormatError> {
         let node = self.named("bufferViews", index)?;
         let buffer = self.buffer(node.need("buffer")?)?;
         match self.unpacked.get(&index.as_count()?) {
-            Some(bytes) => Ok(View { bytes, stride: node.count("byteStride")? }),
+            Some(bytes) => Ok(BufferView { bytes, stride: node.count("byteStride")? }),
             None => self.part(node, buffer),
         }
     }
 
     /// The part of a buffer that a view says.
-    fn part<'s>(&'s self, node: Node<'a>, buffer: &'s [u8]) -> Result<View<'s>, FormatError> {
+    fn part<'s>(&'s self, node: JsonNode<'a>, buffer: &'s [u8]) -> Result<BufferView<'s>, FormatError> {
         let offset = node.count("byteOffset")?.unwrap_or(0);
         let length = node.need("byteLength")?.as_count()?;
         let end = offset.checked_add(length);
@@ -171,6 +171,6 @@ impl<'a> Document<'a> {
         if let Some(stride) = stride.filter(|stride| !(4..=252).contains(stride)) {
             return Err(node.error(format!("byteStride is {stride}, but must be from 4 to 252")));
         }
-        Ok(View { bytes, stride })
+        Ok(BufferView { bytes, stride })
     }
 }

@@ -2,7 +2,7 @@
 //! data of their accessors.
 
 use super::document::{Document, Drawn};
-use super::json::Node;
+use super::json::JsonNode;
 use super::topology::Mode;
 use crate::FormatError;
 use crate::budget::Budget;
@@ -44,9 +44,9 @@ pub(super) fn unpack(document: &Document, budget: &mut Budget) -> Result<HashMap
 
 /// Accessors of a primitive and the attributes that fill them; none fills that of the indices.
 fn wanted<'d>(
-    primitive: Node<'d>,
-    extension: Node<'d>,
-) -> Result<Vec<(usize, Option<Node<'d>>)>, FormatError> {
+    primitive: JsonNode<'d>,
+    extension: JsonNode<'d>,
+) -> Result<Vec<(usize, Option<JsonNode<'d>>)>, FormatError> {
     let attributes = primitive.need("attributes")?;
     let mut wanted = Vec::new();
     for (name, attribute) in extension.need("attributes")?.entries() {
@@ -60,7 +60,7 @@ fn wanted<'d>(
     Ok(wanted)
 }
 
-fn decoded(document: &Document, extension: Node, budget: &mut Budget) -> Result<Mesh, FormatError> {
+fn decoded(document: &Document, extension: JsonNode, budget: &mut Budget) -> Result<Mesh, FormatError> {
     let bytes = document.view(extension.need("bufferView")?)?.bytes;
     let left = budget.left();
     let limits = DecodeLimits::default()
@@ -107,9 +107,9 @@ fn fault(kind: ErrorKind) -> &'static str {
 fn of_accessor(
     document: &Document,
     number: usize,
-    attribute: Option<Node>,
+    attribute: Option<JsonNode>,
     mesh: &Mesh,
-    extension: Node,
+    extension: JsonNode,
 ) -> Result<Drawn, FormatError> {
     let accessor = document.root.item("accessors", number);
     let accessor = accessor.ok_or_else(|| extension.error(format!("there is no accessor {number}")))?;

@@ -1,6 +1,6 @@
 //! Which extensions are understood.
 
-use super::json::Node;
+use super::json::JsonNode;
 use crate::FormatError;
 use crate::reading::Oddities;
 use bilux_scene::error::nearest_name;
@@ -39,7 +39,7 @@ const KNOWN: &[&str] = &[
 const NOTHING_TO_SEE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
 
 /// Refuses what a file cannot be drawn without, and warns of all else that is not understood.
-pub(super) fn check(root: Node, oddities: &mut Oddities) -> Result<(), FormatError> {
+pub(super) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), FormatError> {
     for name in root.list("extensionsRequired")? {
         let text = name.as_text()?;
         if !KNOWN.contains(&text) && !NOTHING_TO_SEE.contains(&text) {
@@ -58,7 +58,7 @@ pub(super) fn check(root: Node, oddities: &mut Oddities) -> Result<(), FormatErr
 }
 
 /// Looks for extensions wherever they are used. The JSON is no deeper than its parser allows.
-fn note_unknown(node: Node, oddities: &mut Oddities) {
+fn note_unknown(node: JsonNode, oddities: &mut Oddities) {
     for (key, value) in node.entries() {
         if key == "extras" {
             continue;

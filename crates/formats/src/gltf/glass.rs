@@ -1,6 +1,6 @@
 //! What clear materials are that say nothing of a thickness: walls in glTF, solid here where a mesh has an inside.
 
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use super::topology::is_closed;
 use crate::{FormatError, Glass};
@@ -10,7 +10,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Whether a mesh is of glass that says nothing of a thickness, and that is solid here.
     pub(super) fn is_solid_glass(
         &mut self,
-        index: Option<Node<'d>>,
+        index: Option<JsonNode<'d>>,
         mesh: &Mesh,
     ) -> Result<bool, FormatError> {
         let Some(index) = index else { return Ok(false) };

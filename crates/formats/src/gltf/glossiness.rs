@@ -3,10 +3,10 @@
 //! What reflects as strongly as nothing but metal does is metal. As much of it, and in the colour, as gives the same
 //! diffuse and specular reflectance together, as far as both can be had.
 
-use super::json::Node;
+use super::json::JsonNode;
 use super::material::Draft;
 use super::reader::Gltf;
-use super::textures::Taken;
+use super::textures::ChannelSelection;
 use crate::FormatError;
 use bilux_math::colour::srgb_encode;
 use bilux_math::{Rgb, Vec2};
@@ -21,8 +21,8 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Base colour, metalness, roughness and opacity of a material of this extension.
     pub(super) fn glossy(
         &mut self,
-        node: Node<'d>,
-        extension: Node<'d>,
+        node: JsonNode<'d>,
+        extension: JsonNode<'d>,
         draft: &mut Draft,
     ) -> Result<(), FormatError> {
         let at = extension.at();
@@ -40,12 +40,12 @@ impl<'d> Gltf<'d, '_, '_> {
             draft.set("specular_roughness", (1.0 - gloss).clamp(0.0, 1.0), at);
             return self.opacity(node, None, alpha, draft);
         }
-        let mut texture = |info: Option<Node<'d>>, taken: Taken| {
+        let mut texture = |info: Option<JsonNode<'d>>, taken: ChannelSelection| {
             info.map(|info| self.looked_up(info, taken, &mut draft.uv_sets)).transpose()
         };
-        let diffuse_map = texture(of_diffuse, Taken::colours(diffuse))?;
-        let specular_map = texture(of_specular, Taken::colours(specular))?;
-        let gloss_map = texture(of_specular, Taken::channel(Channel::A, f64::from(gloss)))?;
+        let diffuse_map = texture(of_diffuse, ChannelSelection::colours(diffuse))?;
+        let specular_map = texture(of_specular, ChannelSelection::colours(specular))?;
+        let gloss_map = texture(of_specular, ChannelSelection::channel(Channel::A, f64::from(gloss)))?;
         let [base, numbers] = self.baked(
             (diffuse, diffuse_map.as_ref()),
             (specular, specular_map.as_ref()),

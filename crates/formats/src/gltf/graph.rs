@@ -1,7 +1,7 @@
 //! The nodes of the scene, each with its place in the world.
 
 use super::SURROUNDINGS;
-use super::json::Node;
+use super::json::JsonNode;
 use super::place;
 use super::reader::Gltf;
 use crate::FormatError;
@@ -10,7 +10,7 @@ use bilux_math::DMat4;
 /// A node that is in the scene.
 #[derive(Clone, Copy)]
 pub(super) struct Placed<'d> {
-    pub(super) node: Node<'d>,
+    pub(super) node: JsonNode<'d>,
     /// Its number in the file.
     pub(super) index: usize,
     /// From its space to the world.
@@ -27,7 +27,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let count = root.list("nodes")?.len();
         self.reading.budget.take_bytes((count * size_of::<[Placed; 2]>()) as u64, &self.file)?;
         self.order = vec![None; count];
-        let mut waiting: Vec<(Node<'d>, DMat4)> =
+        let mut waiting: Vec<(JsonNode<'d>, DMat4)> =
             self.roots()?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
         let mut placed = Vec::new();
         while let Some((index, parent)) = waiting.pop() {
@@ -50,7 +50,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The indices of the scene's own nodes, as the file has them.
-    fn roots(&mut self) -> Result<Vec<Node<'d>>, FormatError> {
+    fn roots(&mut self) -> Result<Vec<JsonNode<'d>>, FormatError> {
         let root = self.document.root;
         let scenes = root.list("scenes")?;
         let scene = match root.get("scene") {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A value and its place. Cheap to copy.
 #[derive(Clone, Copy)]
-pub(super) struct Node<'a> {
+pub(super) struct JsonNode<'a> {
     value: &'a Value,
     file: &'a Arc<str>,
     path: [Step<'a>; LONGEST_PATH],
@@ -24,14 +24,14 @@ enum Step<'a> {
 /// Deeper places are told as that of what holds them.
 const LONGEST_PATH: usize = 10;
 
-impl<'a> Node<'a> {
+impl<'a> JsonNode<'a> {
     /// The whole document.
-    pub(super) fn root(value: &'a Value, file: &'a Arc<str>) -> Node<'a> {
-        Node { value, file, path: [Step::Index(0); LONGEST_PATH], length: 0 }
+    pub(super) fn root(value: &'a Value, file: &'a Arc<str>) -> JsonNode<'a> {
+        JsonNode { value, file, path: [Step::Index(0); LONGEST_PATH], length: 0 }
     }
 
-    fn step(&self, value: &'a Value, step: Step<'a>) -> Node<'a> {
-        let mut next = Node { value, ..*self };
+    fn step(&self, value: &'a Value, step: Step<'a>) -> JsonNode<'a> {
+        let mut next = JsonNode { value, ..*self };
         if let Some(slot) = next.path.get_mut(self.length) {
             *slot = step;
             next.length += 1;
@@ -94,22 +94,22 @@ impl<'a> Node<'a> {
     }
 
     /// The value of a key, if there is one.
-    pub(super) fn get(&self, key: &'a str) -> Option<Node<'a>> {
+    pub(super) fn get(&self, key: &'a str) -> Option<JsonNode<'a>> {
         self.value.get(key).map(|value| self.step(value, Step::Key(key)))
     }
 
     /// The value of a key that has to be there.
-    pub(super) fn need(&self, key: &'a str) -> Result<Node<'a>, FormatError> {
+    pub(super) fn need(&self, key: &'a str) -> Result<JsonNode<'a>, FormatError> {
         self.get(key).ok_or_else(|| self.error(format!("'{key}' is missing here")))
     }
 
     /// An extension, if it is used here.
-    pub(super) fn extension(&self, name: &'a str) -> Option<Node<'a>> {
+    pub(super) fn extension(&self, name: &'a str) -> Option<JsonNode<'a>> {
         self.get("extensions")?.get(name)
     }
 
     /// Keys with their values.
-    pub(super) fn entries(&self) -> impl Iterator<Item = (&'a str, Node<'a>)> + use<'a> {
+    pub(super) fn entries(&self) -> impl Iterator<Item = (&'a str, JsonNode<'a>)> + use<'a> {
         let here = *self;
         let entries = self.value.as_object().into_iter().flatten();
         entries.map(move |(key, value)| (key.as_str(), here.step(value, Step::Key(key))))
@@ -118,26 +118,26 @@ impl<'a> Node<'a> {
     /// The items of a list.
     pub(super) fn items(
         &self,
-    ) -> Result<impl ExactSizeIterator<Item = Node<'a>> + Clone + use<'a>, FormatError> {
+    ) -> Result<impl ExactSizeIterator<Item = JsonNode<'a>> + Clone + use<'a>, FormatError> {
         let here = *self;
         let items = self.value.as_array().ok_or_else(|| self.wrong("a list"))?;
         Ok(items.iter().enumerate().map(move |(i, value)| here.step(value, Step::Index(i))))
     }
 
     /// The items of a list; none where it is no list.
-    pub(super) fn children(&self) -> impl Iterator<Item = Node<'a>> + use<'a> {
+    pub(super) fn children(&self) -> impl Iterator<Item = JsonNode<'a>> + use<'a> {
         let here = *self;
         let items = self.value.as_array().into_iter().flatten().enumerate();
         items.map(move |(i, value)| here.step(value, Step::Index(i)))
     }
 
     /// The items of the list under a key; none where there is no such key.
-    pub(super) fn list(&self, key: &'a str) -> Result<Vec<Node<'a>>, FormatError> {
+    pub(super) fn list(&self, key: &'a str) -> Result<Vec<JsonNode<'a>>, FormatError> {
         self.get(key).map_or(Ok(Vec::new()), |list| Ok(list.items()?.collect()))
     }
 
     /// One item of the list under a key, such as a mesh of the document.
-    pub(super) fn item(&self, key: &'a str, index: usize) -> Option<Node<'a>> {
+    pub(super) fn item(&self, key: &'a str, index: usize) -> Option<JsonNode<'a>> {
         let list = self.get(key)?;
         let value = list.value.as_array()?.get(index)?;
         Some(list.step(value, Step::Index(index)))
@@ -178,7 +178,7 @@ impl<'a> Node<'a> {
     }
 
     pub(super) fn switch(&self, key: &'a str) -> Result<bool, FormatError> {
-        let read = |node: Node| node.value.as_bool().ok_or_else(|| node.wrong("true or false"));
+        let read = |node: JsonNode| node.value.as_bool().ok_or_else(|| node.wrong("true or false"));
         self.get(key).map_or(Ok(false), read)
     }
 

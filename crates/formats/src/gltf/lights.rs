@@ -1,7 +1,7 @@
 //! `KHR_lights_punctual`: candela and lux are taken one to one as W/sr and W/m².
 
 use super::graph::Placed;
-use super::json::Node;
+use super::json::JsonNode;
 use crate::FormatError;
 use crate::reading::Oddities;
 use bilux_math::{DVec3, Rgb};
@@ -9,8 +9,8 @@ use bilux_scene::Spec;
 
 /// A light at its node, with a radius where that is above 0; none, with a warning, where its node leaves it no direction.
 pub(super) fn light<'d>(
-    root: Node<'d>,
-    user: Node<'d>,
+    root: JsonNode<'d>,
+    user: JsonNode<'d>,
     placed: &Placed<'d>,
     radius: f32,
     oddities: &mut Oddities,

@@ -1,8 +1,8 @@
 //! Materials and their extensions, in the terms of our `principled`.
 
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
-use super::textures::Taken;
+use super::textures::ChannelSelection;
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::texture::Channel;
@@ -50,7 +50,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// The material that `index` names, or the default one.
     pub(super) fn material(
         &mut self,
-        index: Option<Node<'d>>,
+        index: Option<JsonNode<'d>>,
         is_solid: bool,
     ) -> Result<UsedMaterial, FormatError> {
         let key = (index.map(|index| index.as_count()).transpose()?, is_solid);
@@ -80,7 +80,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(used)
     }
 
-    fn draft(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn draft(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         draft.spec = Spec { span: node.at(), ..Spec::new(node.name(), "principled") };
         match node.extension("KHR_materials_pbrSpecularGlossiness") {
             Some(extension) => self.glossy(node, extension, draft)?,
@@ -88,7 +88,7 @@ impl<'d> Gltf<'d, '_, '_> {
         }
         self.emission(node, draft)?;
         if let Some(info) = node.get("normalTexture") {
-            let map = self.texture(info, Taken::VECTORS, &mut draft.uv_sets)?;
+            let map = self.texture(info, ChannelSelection::VECTORS, &mut draft.uv_sets)?;
             draft.set("normal", map, info.at());
             let scale = info.number("scale")?.unwrap_or(1.0);
             draft.set("normal_scale", scale as f32, info.at());
@@ -115,7 +115,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.sides(node, draft)
     }
 
-    fn base(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn base(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let pbr = node.get("pbrMetallicRoughness");
         let at = pbr.unwrap_or(node).at();
         let factor = pbr.map_or(Ok(None), |pbr| pbr.numbers::<4>("baseColorFactor"))?.unwrap_or([1.0; 4]);
@@ -134,8 +134,8 @@ impl<'d> Gltf<'d, '_, '_> {
     /// How much of a surface is there, by the alpha of the picture of its colour.
     pub(super) fn opacity(
         &mut self,
-        node: Node<'d>,
-        picture: Option<Node<'d>>,
+        node: JsonNode<'d>,
+        picture: Option<JsonNode<'d>>,
         alpha: f32,
         draft: &mut Draft,
     ) -> Result<(), FormatError> {
@@ -152,7 +152,8 @@ impl<'d> Gltf<'d, '_, '_> {
         };
         let opacity = match (picture, threshold) {
             (Some(info), _) => {
-                let taken = Taken { threshold, ..Taken::channel(Channel::A, f64::from(alpha)) };
+                let taken =
+                    ChannelSelection { threshold, ..ChannelSelection::channel(Channel::A, f64::from(alpha)) };
                 self.texture(info, taken, &mut draft.uv_sets)?
             }
             (None, Some(threshold)) => (if alpha < threshold { 0.0 } else { 1.0 }).into(),
@@ -163,7 +164,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// What light goes into is seen from within.
-    fn sides(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn sides(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let is_whole = draft.spec.parameters.find("transmission_weight").is_none();
         if is_whole && !node.switch("doubleSided")? {
             draft.set("visible_sides", "front", node.at());
@@ -174,7 +175,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn emission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn emission(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let factor = node.numbers::<3>("emissiveFactor")?.unwrap_or([0.0; 3]).map(|c| c.max(0.0) as f32);
         let strength = match node.extension("KHR_materials_emissive_strength") {
             Some(extension) => extension.number("emissiveStrength")?.unwrap_or(1.0).max(0.0),
@@ -187,7 +188,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn specular(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn specular(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_specular") else { return Ok(()) };
         if draft.number("base_metalness") == Some(1.0) {
             // It is of what is not metal.
@@ -214,7 +215,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// Theirs is rougher along a direction, and ours smoother across it, by the same ratio.
-    fn anisotropy(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn anisotropy(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_anisotropy") else { return Ok(()) };
         let strength = extension.number("anisotropyStrength")?.unwrap_or(0.0).clamp(0.0, 1.0);
         if strength == 0.0 {
@@ -240,7 +241,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn transmission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn transmission(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_transmission") else { return Ok(()) };
         let weight = extension.number("transmissionFactor")?.unwrap_or(0.0);
         if weight <= 0.0 {
@@ -279,7 +280,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn coat(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn coat(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_clearcoat") else { return Ok(()) };
         let weight = extension.number("clearcoatFactor")?.unwrap_or(0.0);
         if weight <= 0.0 {
@@ -294,7 +295,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "coat_roughness", rough, picture, Channel::G, &at)?;
         draft.set("coat_ior", 1.5, at);
         if let Some(normals) = extension.get("clearcoatNormalTexture") {
-            let map = self.texture(normals, Taken::VECTORS, &mut draft.uv_sets)?;
+            let map = self.texture(normals, ChannelSelection::VECTORS, &mut draft.uv_sets)?;
             draft.set("coat_normal", map, normals.at());
             let scale = normals.number("scale")?.unwrap_or(1.0);
             draft.set("coat_normal_scale", scale as f32, normals.at());
@@ -302,7 +303,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn fuzz(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn fuzz(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_sheen") else { return Ok(()) };
         let colour = extension.numbers::<3>("sheenColorFactor")?.unwrap_or([0.0; 3]).map(|c| c as f32);
         let weight = colour.into_iter().fold(0.0, f32::max);
@@ -317,7 +318,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.scalar(draft, "fuzz_roughness", rough, extension.get("sheenRoughnessTexture"), Channel::A, &at)
     }
 
-    fn diffuse_transmission(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    fn diffuse_transmission(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_diffuse_transmission") else { return Ok(()) };
         let weight = extension.number("diffuseTransmissionFactor")?.unwrap_or(0.0);
         if weight <= 0.0 {
@@ -333,7 +334,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// A picture that is to look the same in any light gives light itself.
-    fn unlit(&mut self, unlit: Node<'d>, draft: &mut Draft) {
+    fn unlit(&mut self, unlit: JsonNode<'d>, draft: &mut Draft) {
         let what = "what is unlit gives light in its own colour, which falls on its surroundings too";
         self.oddities.note(what, || unlit.at());
         let mut spec = Spec { span: draft.spec.span.clone(), ..Spec::new(&draft.spec.name, "principled") };
@@ -354,11 +355,11 @@ impl<'d> Gltf<'d, '_, '_> {
         draft: &mut Draft,
         key: &str,
         factor: Rgb,
-        picture: Option<Node<'d>>,
+        picture: Option<JsonNode<'d>>,
         at: &Span,
     ) -> Result<(), FormatError> {
         let value = match picture {
-            Some(info) => self.texture(info, Taken::colours(factor), &mut draft.uv_sets)?,
+            Some(info) => self.texture(info, ChannelSelection::colours(factor), &mut draft.uv_sets)?,
             None => factor.into(),
         };
         draft.set(key, value, picture.map_or_else(|| at.clone(), |info| info.at()));
@@ -370,13 +371,13 @@ impl<'d> Gltf<'d, '_, '_> {
         draft: &mut Draft,
         key: &str,
         factor: f64,
-        picture: Option<Node<'d>>,
+        picture: Option<JsonNode<'d>>,
         channel: Channel,
         at: &Span,
     ) -> Result<(), FormatError> {
         let value = match picture {
             Some(info) if factor != 0.0 => {
-                self.texture(info, Taken::channel(channel, factor), &mut draft.uv_sets)?
+                self.texture(info, ChannelSelection::channel(channel, factor), &mut draft.uv_sets)?
             }
             _ => Value::Number(factor),
         };

@@ -1,7 +1,6 @@
 //! glTF 2.0, as JSON with files beside it and as GLB. See `docs/formats/gltf.md`.
 
 mod accessor;
-mod ahead;
 mod animation;
 mod area_lights;
 mod cameras;
@@ -20,6 +19,7 @@ mod lights;
 mod material;
 mod meshopt;
 mod place;
+mod prefetch;
 mod primitive;
 mod reader;
 mod remapped;

@@ -1,13 +1,13 @@
 //! Where nodes are: matrices, or translation, rotation and scale.
 
 use super::animation::{Moves, Pose};
-use super::json::Node;
+use super::json::JsonNode;
 use crate::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
 use bilux_math::{DMat4, DVec3};
 
 /// From the space of a node with this index to its parent's, as it is posed.
-pub(super) fn local(node: Node, index: usize, pose: &Pose) -> Result<DMat4, FormatError> {
+pub(super) fn local(node: JsonNode, index: usize, pose: &Pose) -> Result<DMat4, FormatError> {
     if let Some(columns) = node.numbers::<16>("matrix")? {
         let matrix = DMat4::from_cols_array(&columns);
         let last = matrix.row(3).to_array();

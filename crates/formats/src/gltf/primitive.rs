@@ -1,7 +1,7 @@
 //! Primitives of meshes: attributes and indices become triangles.
 
 use super::accessor::Accessor;
-use super::json::Node;
+use super::json::JsonNode;
 use super::material::UsedMaterial;
 use super::reader::Gltf;
 use super::skin::Joints;
@@ -22,7 +22,7 @@ pub(super) struct Part {
 }
 
 /// What a node makes of the mesh that it has.
-pub(super) struct Worn<'a> {
+pub(super) struct NodeMesh<'a> {
     pub(super) name: &'a str,
     /// Of morph targets.
     pub(super) weights: &'a [f64],
@@ -34,7 +34,11 @@ const ATTRIBUTES: [&str; 4] = ["POSITION", "NORMAL", "TANGENT", "COLOR_0"];
 
 impl<'d> Gltf<'d, '_, '_> {
     /// A primitive of a mesh; none where there is nothing to draw.
-    pub(super) fn primitive(&mut self, node: Node<'d>, worn: &Worn) -> Result<Option<Part>, FormatError> {
+    pub(super) fn primitive(
+        &mut self,
+        node: JsonNode<'d>,
+        worn: &NodeMesh,
+    ) -> Result<Option<Part>, FormatError> {
         let mode = Mode::of(node)?;
         let attributes = node.need("attributes")?;
         let Some(position) = attributes.get("POSITION") else {
@@ -79,7 +83,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Normals, and tangents where the material tells directions apart.
     fn directions(
         &mut self,
-        attributes: Node<'d>,
+        attributes: JsonNode<'d>,
         material: UsedMaterial,
         mesh: &mut Mesh,
     ) -> Result<(), FormatError> {
@@ -104,7 +108,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// The sets of texture coordinates that the material asks for.
     fn coordinates(
         &mut self,
-        attributes: Node<'d>,
+        attributes: JsonNode<'d>,
         material: UsedMaterial,
         mesh: &mut Mesh,
     ) -> Result<(), FormatError> {
@@ -149,7 +153,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// An attribute's elements, as many as there are vertices.
     pub(super) fn attribute<const N: usize>(
         &mut self,
-        index: Node<'d>,
+        index: JsonNode<'d>,
         count: Option<usize>,
     ) -> Result<Vec<[f32; N]>, FormatError> {
         let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
@@ -157,7 +161,7 @@ impl<'d> Gltf<'d, '_, '_> {
         accessor.floats(&mut self.reading.budget)
     }
 
-    fn colours(&mut self, index: Node<'d>, count: usize) -> Result<Vec<Rgb>, FormatError> {
+    fn colours(&mut self, index: JsonNode<'d>, count: usize) -> Result<Vec<Rgb>, FormatError> {
         let accessor = Accessor::named(self.document, index, &mut self.reading.budget)?;
         same_count(index, &accessor, Some(count))?;
         let budget = &mut self.reading.budget;
@@ -173,7 +177,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// Adds what the morph targets move. [glTF 2.0, 3.7.2.2]
-    fn morph(&mut self, node: Node<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
+    fn morph(&mut self, node: JsonNode<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
         let targets = node.list("targets")?;
         if targets.len() != weights.len() && !weights.is_empty() {
             let what = "the number of weights is not that of the morph targets";
@@ -206,7 +210,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn note_unused(&mut self, attributes: Node<'d>, material: UsedMaterial) {
+    fn note_unused(&mut self, attributes: JsonNode<'d>, material: UsedMaterial) {
         let used_uv = |key: &str| {
             let set = key.strip_prefix("TEXCOORD_").and_then(|set| set.parse().ok());
             set.is_some_and(|set: usize| set == 0 || material.uv_sets.contains(&Some(set)))
@@ -223,7 +227,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The points or the lines of a primitive.
-    fn add_strokes(&mut self, node: Node<'d>, mode: Mode, mesh: &mut Mesh) -> Result<(), FormatError> {
+    fn add_strokes(&mut self, node: JsonNode<'d>, mode: Mode, mesh: &mut Mesh) -> Result<(), FormatError> {
         let corners = self.corners(node, mesh.positions.len())?;
         self.reading.budget.take_bytes(corners.len() as u64 * 8, &self.file)?;
         (mesh.points, mesh.lines) = mode.points_and_lines(corners);
@@ -237,7 +241,7 @@ fn vec3(list: Vec<[f32; 3]>) -> Vec<Vec3> {
     list.into_iter().map(Vec3::from).collect()
 }
 
-fn same_count(index: Node, accessor: &Accessor, count: Option<usize>) -> Result<(), FormatError> {
+fn same_count(index: JsonNode, accessor: &Accessor, count: Option<usize>) -> Result<(), FormatError> {
     match count {
         Some(count) if count != accessor.count => Err(index.error(format!(
             "this attribute has {} elements for {count} vertices: it needs as many",

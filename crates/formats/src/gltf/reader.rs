@@ -5,9 +5,9 @@ use super::container;
 use super::document::Document;
 use super::graph::Placed;
 use super::instances::Instances;
-use super::json::Node;
+use super::json::JsonNode;
 use super::material::UsedMaterial;
-use super::primitive::{Part, Worn};
+use super::primitive::{NodeMesh, Part};
 use super::{cameras, extensions, lights};
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
@@ -26,7 +26,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         oddities.note(warning, || crate::text::whole_file(source.name));
     }
     let json = parse(reading, container.json, source)?;
-    let root = Node::root(&json, source.name);
+    let root = JsonNode::root(&json, source.name);
     if !root.is_object() {
         return Err(root.error("this JSON is not glTF, which is an object in braces"));
     }
@@ -182,7 +182,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         Ok(())
     }
 
-    fn place_mesh(&mut self, placed: &Placed<'d>, index: Node<'d>) -> Result<(), FormatError> {
+    fn place_mesh(&mut self, placed: &Placed<'d>, index: JsonNode<'d>) -> Result<(), FormatError> {
         let node = placed.node;
         let parts = self.mesh(index, placed)?;
         let name =
@@ -210,12 +210,12 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
     }
 
     /// The parts of a mesh, made once for each choice of weights and skin.
-    fn mesh(&mut self, index: Node<'d>, user: &Placed<'d>) -> Result<Arc<Vec<Part>>, FormatError> {
+    fn mesh(&mut self, index: JsonNode<'d>, user: &Placed<'d>) -> Result<Arc<Vec<Part>>, FormatError> {
         let mesh = self.document.named("meshes", index)?;
         let holder = if user.node.get("weights").is_some() { user.node } else { mesh };
         let weights: Vec<f64> = match self.pose.weights(user.index) {
             Some(posed) => posed.to_vec(),
-            None => holder.list("weights")?.iter().map(Node::as_number).collect::<Result<_, _>>()?,
+            None => holder.list("weights")?.iter().map(JsonNode::as_number).collect::<Result<_, _>>()?,
         };
         let skin = user.node.get("skin");
         let bits = weights.iter().map(|w| w.to_bits()).collect();
@@ -224,7 +224,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
             return Ok(parts.clone());
         }
         let joints = skin.map(|skin| self.joints(skin)).transpose()?;
-        let worn = Worn { name: mesh.name(), weights: &weights, joints: joints.as_ref() };
+        let worn = NodeMesh { name: mesh.name(), weights: &weights, joints: joints.as_ref() };
         let mut parts = Vec::new();
         for primitive in mesh.need("primitives")?.items()? {
             parts.extend(self.primitive(primitive, &worn)?);
@@ -280,9 +280,9 @@ fn syntax_fault(report: &str) -> &'static str {
 }
 
 /// Major versions change the meaning of files, minor ones add to it.
-fn check_version(root: Node) -> Result<(), FormatError> {
+fn check_version(root: JsonNode) -> Result<(), FormatError> {
     let asset = root.need("asset")?;
-    let parse = |node: Node, key: &'static str| -> Result<Option<(u32, u32)>, FormatError> {
+    let parse = |node: JsonNode, key: &'static str| -> Result<Option<(u32, u32)>, FormatError> {
         let Some(text) = node.get(key) else { return Ok(None) };
         let parts = text.as_text()?.split_once('.');
         let version = parts.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));

@@ -1,9 +1,9 @@
 //! Textures whose texels mean something else here: directions that become angles, and thicknesses from a least one on.
 
-use super::json::Node;
+use super::json::JsonNode;
 use super::material::{Draft, UvSets};
 use super::reader::Gltf;
-use super::textures::Taken;
+use super::textures::ChannelSelection;
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_math::transcendental::atan2;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 impl<'d> Gltf<'d, '_, '_> {
     /// Theirs is in nm, between two thicknesses where a picture tells.
-    pub(super) fn film(&mut self, node: Node<'d>, draft: &mut Draft) -> Result<(), FormatError> {
+    pub(super) fn film(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_iridescence") else { return Ok(()) };
         let weight = extension.number("iridescenceFactor")?.unwrap_or(0.0);
         if weight <= 0.0 {
@@ -38,11 +38,11 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Directions along the surface, in red and green, as turns from 0 to 1, to which `turns` are added.
     pub(super) fn angles(
         &mut self,
-        info: Node<'d>,
+        info: JsonNode<'d>,
         turns: f64,
         uv_sets: &mut UvSets,
     ) -> Result<Value, FormatError> {
-        let taken = Taken::channel(Channel::R, 1.0);
+        let taken = ChannelSelection::channel(Channel::R, 1.0);
         let angle = |texel: Rgb| {
             let (x, y) = (texel.r * 2.0 - 1.0, texel.g * 2.0 - 1.0);
             (atan2(y, x) / TAU + turns as f32).rem_euclid(1.0)
@@ -57,7 +57,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Thicknesses in nm, from the first to the second as green grows, in our µm.
     fn thickness(
         &mut self,
-        info: Node<'d>,
+        info: JsonNode<'d>,
         [first, second]: [f64; 2],
         uv_sets: &mut UvSets,
     ) -> Result<Value, FormatError> {
@@ -66,7 +66,8 @@ impl<'d> Gltf<'d, '_, '_> {
         if greatest == 0.0 {
             return Ok(0.0f32.into());
         }
-        let texture = self.looked_up(info, Taken::channel(Channel::R, f64::from(greatest)), uv_sets)?;
+        let texture =
+            self.looked_up(info, ChannelSelection::channel(Channel::R, f64::from(greatest)), uv_sets)?;
         let part = |texel: Rgb| (first + (second - first) * texel.g) / greatest;
         let texture = self.remapped(texture, part)?;
         self.add_texture(texture)

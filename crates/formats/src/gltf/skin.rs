@@ -1,7 +1,7 @@
 //! Skins: vertices that follow several nodes. [glTF 2.0, 3.7.3]
 
 use super::accessor::Accessor;
-use super::json::Node;
+use super::json::JsonNode;
 use super::place;
 use super::reader::Gltf;
 use crate::FormatError;
@@ -13,7 +13,7 @@ pub(super) struct Joints(Vec<DMat4>);
 
 impl<'d> Gltf<'d, '_, '_> {
     /// The joints of a skin as they are now; the place of the node that wears it does not matter.
-    pub(super) fn joints(&mut self, index: Node<'d>) -> Result<Joints, FormatError> {
+    pub(super) fn joints(&mut self, index: JsonNode<'d>) -> Result<Joints, FormatError> {
         let skin = self.document.named("skins", index)?;
         let list = skin.need("joints")?.items()?;
         let count = list.len();
@@ -46,7 +46,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Moves a mesh from its rest to where its joints are, in the world.
     pub(super) fn bend(
         &mut self,
-        primitive: Node<'d>,
+        primitive: JsonNode<'d>,
         joints: &Joints,
         mesh: &mut Mesh,
     ) -> Result<(), FormatError> {

@@ -2,7 +2,7 @@
 //! may be another picture.
 
 use super::accessor::Accessor;
-use super::json::Node;
+use super::json::JsonNode;
 use super::meshopt;
 use super::reader::Gltf;
 use crate::FormatError;
@@ -36,7 +36,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn check_accessor(&mut self, number: usize, node: Node<'d>) -> Result<(), FormatError> {
+    fn check_accessor(&mut self, number: usize, node: JsonNode<'d>) -> Result<(), FormatError> {
         if node.get("byteOffset").is_some() && node.get("bufferView").is_none() {
             let what = "a byteOffset has no effect without a bufferView";
             self.oddities.note(what, || node.at_key("byteOffset"));

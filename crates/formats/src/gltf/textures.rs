@@ -1,6 +1,6 @@
 //! Textures: a picture, how it is looked up, and where it lies.
 
-use super::json::Node;
+use super::json::JsonNode;
 use super::material::UvSets;
 use super::reader::{Gltf, Named};
 use super::uri::{self, Resource};
@@ -15,27 +15,32 @@ use std::sync::Arc;
 
 /// What of a picture's texels counts, and what they are multiplied by.
 #[derive(Clone, Copy)]
-pub(super) struct Taken {
+pub(super) struct ChannelSelection {
     pub(super) is_data: bool,
     pub(super) channel: Option<Channel>,
     pub(super) factor: Rgb,
     pub(super) threshold: Option<f32>,
 }
 
-impl Taken {
+impl ChannelSelection {
     /// Colours, encoded for a display.
-    pub(super) fn colours(factor: Rgb) -> Taken {
-        Taken { is_data: false, channel: None, factor, threshold: None }
+    pub(super) fn colours(factor: Rgb) -> ChannelSelection {
+        ChannelSelection { is_data: false, channel: None, factor, threshold: None }
     }
 
     /// Numbers of one channel.
-    pub(super) fn channel(channel: Channel, factor: f64) -> Taken {
-        Taken { is_data: true, channel: Some(channel), factor: Rgb::grey(factor as f32), threshold: None }
+    pub(super) fn channel(channel: Channel, factor: f64) -> ChannelSelection {
+        ChannelSelection {
+            is_data: true,
+            channel: Some(channel),
+            factor: Rgb::grey(factor as f32),
+            threshold: None,
+        }
     }
 
     /// Numbers of all channels.
-    pub(super) const VECTORS: Taken =
-        Taken { is_data: true, channel: None, factor: Rgb::WHITE, threshold: None };
+    pub(super) const VECTORS: ChannelSelection =
+        ChannelSelection { is_data: true, channel: None, factor: Rgb::WHITE, threshold: None };
 }
 
 impl<'d> Gltf<'d, '_, '_> {
@@ -43,8 +48,8 @@ impl<'d> Gltf<'d, '_, '_> {
     /// material, told by the textures before.
     pub(super) fn texture(
         &mut self,
-        info: Node<'d>,
-        taken: Taken,
+        info: JsonNode<'d>,
+        taken: ChannelSelection,
         uv_sets: &mut UvSets,
     ) -> Result<Value, FormatError> {
         let texture = self.looked_up(info, taken, uv_sets)?;
@@ -61,8 +66,8 @@ impl<'d> Gltf<'d, '_, '_> {
     /// The texture that a material names.
     pub(super) fn looked_up(
         &mut self,
-        info: Node<'d>,
-        taken: Taken,
+        info: JsonNode<'d>,
+        taken: ChannelSelection,
         uv_sets: &mut UvSets,
     ) -> Result<Texture, FormatError> {
         let node = self.document.named("textures", info.need("index")?)?;
@@ -106,7 +111,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The picture of a texture and its name; none, with a warning, where it cannot be had.
-    fn picture(&mut self, texture: Node<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
+    fn picture(&mut self, texture: JsonNode<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
         let Some(index) = source(texture) else {
             let what = "a texture has no picture that can be read, and is replaced by a magenta checker";
             self.oddities.note(what, || texture.at());
@@ -136,7 +141,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(decoded)
     }
 
-    pub(super) fn decode(&mut self, image: Node<'d>, is_data: bool) -> Result<Named, FormatError> {
+    pub(super) fn decode(&mut self, image: JsonNode<'d>, is_data: bool) -> Result<Named, FormatError> {
         let at = image.at();
         let (name, bytes) = self.encoded(image)?;
         let kind = image.text("mimeType")?.unwrap_or_default();
@@ -149,7 +154,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The name and the bytes of a picture, wherever they lie.
-    pub(super) fn encoded(&mut self, image: Node<'d>) -> Result<(String, Cow<'d, [u8]>), FormatError> {
+    pub(super) fn encoded(&mut self, image: JsonNode<'d>) -> Result<(String, Cow<'d, [u8]>), FormatError> {
         if let Some(view) = image.get("bufferView") {
             let view = self.document.view(view)?;
             let name = if image.name().is_empty() { "a picture in the file" } else { image.name() };
@@ -175,13 +180,13 @@ impl<'d> Gltf<'d, '_, '_> {
 }
 
 /// The number of a texture's picture. That which all programs can read stands first: packed ones have lost more.
-pub(super) fn source(texture: Node) -> Option<Node> {
+pub(super) fn source(texture: JsonNode) -> Option<JsonNode> {
     let of = |name| texture.extension(name).and_then(|extension| extension.get("source"));
     let packed = if cfg!(feature = "ktx2") { of("KHR_texture_basisu") } else { None };
     texture.get("source").or(of("EXT_texture_webp")).or(packed)
 }
 
-fn wrap<'d>(sampler: Node<'d>, key: &'d str) -> Result<Wrap, FormatError> {
+fn wrap<'d>(sampler: JsonNode<'d>, key: &'d str) -> Result<Wrap, FormatError> {
     Ok(match sampler.count(key)? {
         None | Some(10497) => Wrap::Repeat,
         Some(33071) => Wrap::Clamp,

@@ -1,7 +1,7 @@
 //! How vertices make triangles, lines and points.
 
 use super::accessor::Accessor;
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use crate::FormatError;
 use bilux_scene::Mesh;
@@ -20,7 +20,7 @@ pub(super) enum Mode {
 }
 
 impl Mode {
-    pub(super) fn of(node: Node) -> Result<Mode, FormatError> {
+    pub(super) fn of(node: JsonNode) -> Result<Mode, FormatError> {
         Ok(match node.count("mode")?.unwrap_or(4) {
             0 => Mode::Points,
             1 => Mode::Lines,
@@ -52,7 +52,7 @@ impl Mode {
 
 impl<'d> Gltf<'d, '_, '_> {
     /// The corners of a primitive: its indices, or all vertices in their order.
-    pub(super) fn corners(&mut self, node: Node<'d>, vertices: usize) -> Result<Vec<u32>, FormatError> {
+    pub(super) fn corners(&mut self, node: JsonNode<'d>, vertices: usize) -> Result<Vec<u32>, FormatError> {
         let Ok(count) = u32::try_from(vertices) else {
             return Err(node.error("there are more than 4 billion vertices: cut the mesh into several"));
         };
@@ -71,7 +71,7 @@ impl<'d> Gltf<'d, '_, '_> {
 
     pub(super) fn triangles(
         &mut self,
-        node: Node<'d>,
+        node: JsonNode<'d>,
         mode: Mode,
         vertices: usize,
     ) -> Result<Vec<[u32; 3]>, FormatError> {

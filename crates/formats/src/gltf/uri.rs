@@ -1,7 +1,7 @@
 //! Where buffers and images lie: in the text itself, or in a file beside it.
 
 use crate::FormatError;
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use crate::reading::{Reading, Source};
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -20,7 +20,7 @@ pub(super) enum Resource {
 ///
 /// # Errors
 /// When it is broken, or names something on a network.
-pub(super) fn resolve(reading: &mut Reading, node: Node) -> Result<Resource, FormatError> {
+pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource, FormatError> {
     let uri = node.as_text()?;
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((kind, payload)) = data.split_once(',') else {
@@ -69,7 +69,7 @@ pub(super) fn is_odd(uri: &str) -> bool {
 }
 
 /// The bytes of a URI.
-pub(super) fn load(reading: &mut Reading, source: &Source, node: Node) -> Result<Vec<u8>, FormatError> {
+pub(super) fn load(reading: &mut Reading, source: &Source, node: JsonNode) -> Result<Vec<u8>, FormatError> {
     match resolve(reading, node)? {
         Resource::Data(bytes) => Ok(bytes),
         Resource::File(name) => {

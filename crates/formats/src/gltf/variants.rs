@@ -1,7 +1,7 @@
 //! `KHR_materials_variants`: other materials for the same meshes.
 
 use super::animation::named_or_numbered;
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use crate::FormatError;
 
@@ -21,7 +21,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// The material that a primitive has in the variant that is shown, if that says anything of it.
-    pub(super) fn variant_of(&self, primitive: Node<'d>) -> Result<Option<Node<'d>>, FormatError> {
+    pub(super) fn variant_of(&self, primitive: JsonNode<'d>) -> Result<Option<JsonNode<'d>>, FormatError> {
         let (Some(wanted), Some(extension)) = (self.variant, primitive.extension(NAME)) else {
             return Ok(None);
         };

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 /// A value in a file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Node {
+pub(super) enum TomlValue {
     Bool(bool),
     Integer(i64),
     Number(f64),
@@ -20,7 +20,7 @@ pub(super) enum Node {
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Item {
-    pub(super) node: Node,
+    pub(super) node: TomlValue,
     pub(super) at: Span,
 }
 
@@ -66,22 +66,22 @@ fn table(source: &DeTable, at: Span, places: &Places) -> Result<Table, FormatErr
 fn item(value: &DeValue, at: Span, places: &Places) -> Result<Item, FormatError> {
     let refuse = |message: &str| Err(FormatError::malformed(message, at.clone()));
     let node = match value {
-        DeValue::Boolean(b) => Node::Bool(*b),
-        DeValue::String(text) => Node::Text(text.to_string()),
+        DeValue::Boolean(b) => TomlValue::Bool(*b),
+        DeValue::String(text) => TomlValue::Text(text.to_string()),
         DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
-            Ok(i) => Node::Integer(i),
+            Ok(i) => TomlValue::Integer(i),
             Err(_) => return refuse("this number is too large"),
         },
         DeValue::Float(x) => match x.as_str().parse() {
-            Ok(x) => Node::Number(x),
+            Ok(x) => TomlValue::Number(x),
             Err(_) => return refuse("this is not a number"),
         },
         DeValue::Datetime(_) => return refuse("a scene has no dates: write text in quotes, or seconds"),
         DeValue::Array(array) => {
             let items = array.iter().map(|v| item(v.get_ref(), places.at(v.span().start), places));
-            Node::List(items.collect::<Result<_, _>>()?)
+            TomlValue::List(items.collect::<Result<_, _>>()?)
         }
-        DeValue::Table(inner) => Node::Table(table(inner, at.clone(), places)?),
+        DeValue::Table(inner) => TomlValue::Table(table(inner, at.clone(), places)?),
     };
     Ok(Item { node, at })
 }
@@ -112,7 +112,7 @@ impl Table {
     pub(super) fn switch(&self, key: &str) -> Result<bool, FormatError> {
         match self.find(key) {
             None => Ok(false),
-            Some(Item { node: Node::Bool(b), .. }) => Ok(*b),
+            Some(Item { node: TomlValue::Bool(b), .. }) => Ok(*b),
             Some(item) => Err(item.wrong(key, "true or false")),
         }
     }
@@ -120,16 +120,16 @@ impl Table {
     /// Tables under a key: one, or a list of them.
     pub(super) fn tables(&self, key: &str) -> Result<Vec<&Table>, FormatError> {
         let as_table = |item: &Item| match &item.node {
-            Node::Table(_) => Ok(()),
+            TomlValue::Table(_) => Ok(()),
             _ => Err(item.wrong(key, &format!("a table: begin it with [[{key}]]"))),
         };
         let items: &[Item] = match self.find(key) {
             None => &[],
-            Some(Item { node: Node::List(items), .. }) => items,
+            Some(Item { node: TomlValue::List(items), .. }) => items,
             Some(item) => std::slice::from_ref(item),
         };
         let table = |item| match item {
-            &Item { node: Node::Table(ref table), .. } => Some(table),
+            &Item { node: TomlValue::Table(ref table), .. } => Some(table),
             _ => None,
         };
         items.iter().try_for_each(as_table)?;
@@ -151,22 +151,22 @@ impl Item {
 
     pub(super) fn text(&self, key: &str) -> Result<&str, FormatError> {
         match &self.node {
-            Node::Text(text) => Ok(text),
+            TomlValue::Text(text) => Ok(text),
             _ => Err(self.wrong(key, "text in quotes")),
         }
     }
 
     pub(super) fn number(&self, key: &str) -> Result<f64, FormatError> {
         match self.node {
-            Node::Integer(i) => Ok(i as f64),
-            Node::Number(x) => Ok(x),
+            TomlValue::Integer(i) => Ok(i as f64),
+            TomlValue::Number(x) => Ok(x),
             _ => Err(self.wrong(key, "a number")),
         }
     }
 
     pub(super) fn list(&self, key: &str, wanted: &str) -> Result<&[Item], FormatError> {
         match &self.node {
-            Node::List(items) => Ok(items),
+            TomlValue::List(items) => Ok(items),
             _ => Err(self.wrong(key, wanted)),
         }
     }
@@ -182,15 +182,15 @@ impl Item {
     }
 }
 
-impl Node {
+impl TomlValue {
     fn describe(&self) -> String {
         match self {
-            Node::Bool(b) => b.to_string(),
-            Node::Integer(i) => i.to_string(),
-            Node::Number(x) => x.to_string(),
-            Node::Text(text) => format!("\"{text}\""),
-            Node::List(items) => format!("a list of {}", items.len()),
-            Node::Table(_) => "a table".to_owned(),
+            TomlValue::Bool(b) => b.to_string(),
+            TomlValue::Integer(i) => i.to_string(),
+            TomlValue::Number(x) => x.to_string(),
+            TomlValue::Text(text) => format!("\"{text}\""),
+            TomlValue::List(items) => format!("a list of {}", items.len()),
+            TomlValue::Table(_) => "a table".to_owned(),
         }
     }
 }

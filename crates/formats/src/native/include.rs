@@ -1,6 +1,6 @@
 //! A file together with those that it includes.
 
-use super::document::{BYTES_PER_BYTE, Item, Node, Table, parse};
+use super::document::{BYTES_PER_BYTE, Item, Table, TomlValue, parse};
 use crate::FormatError;
 use crate::formats::format_named;
 use crate::reading::{Reading, Source};
@@ -88,11 +88,12 @@ fn is_of_another_format(file: &str) -> bool {
 
 /// A scene of another format as the one model of a part, with its lights and cameras.
 fn as_model(file: &str, at: &Span) -> Table {
-    let entry = |key: &str, node: Node| (key.to_owned(), at.clone(), Item { node, at: at.clone() });
-    let list =
-        |nodes: Vec<Node>| Node::List(nodes.into_iter().map(|node| Item { node, at: at.clone() }).collect());
-    let text = |text: &str| Node::Text(text.to_owned());
+    let entry = |key: &str, node: TomlValue| (key.to_owned(), at.clone(), Item { node, at: at.clone() });
+    let list = |nodes: Vec<TomlValue>| {
+        TomlValue::List(nodes.into_iter().map(|node| Item { node, at: at.clone() }).collect())
+    };
+    let text = |text: &str| TomlValue::Text(text.to_owned());
     let with = list(vec![text("lights"), text("cameras")]);
     let model = Table { entries: vec![entry("file", text(file)), entry("with", with)], at: at.clone() };
-    Table { entries: vec![entry("model", list(vec![Node::Table(model)]))], at: at.clone() }
+    Table { entries: vec![entry("model", list(vec![TomlValue::Table(model)]))], at: at.clone() }
 }

@@ -1,10 +1,10 @@
 //! `[[model]]`: meshes from a file, a shape or a generator, placed in the scene.
 
-use super::document::{Item, Node, Table};
+use super::document::{Item, Table, TomlValue};
 use super::include::Part;
 use super::merge::moved;
 use super::place::{self, motion};
-use super::scene::{MOST_NAMES, Native};
+use super::scene::{MAX_NAMES, Native};
 use super::shapes::SHAPES;
 use super::specs::{missing, plain_value};
 use crate::FormatError;
@@ -84,7 +84,7 @@ impl Native<'_, '_> {
     ) -> Result<Vec<Option<usize>>, FormatError> {
         let mut renamed = vec![None; model.materials.len()];
         let Some(item) = table.find("materials") else { return Ok(renamed) };
-        let Node::Table(names) = &item.node else {
+        let TomlValue::Table(names) = &item.node else {
             return Err(item.wrong("materials", "a table, as in { paint = \"gold\" }"));
         };
         let mut indices: HashMap<&str, Vec<usize>> = HashMap::new();
@@ -94,7 +94,7 @@ impl Native<'_, '_> {
         for (theirs, at, ours) in &names.entries {
             let index = self.material_named(ours)?;
             let Some(same) = indices.get(theirs.as_str()) else {
-                let known = model.materials.iter().map(|spec| spec.name.as_str()).take(MOST_NAMES);
+                let known = model.materials.iter().map(|spec| spec.name.as_str()).take(MAX_NAMES);
                 return Err(SceneError::unknown("material of this model", theirs, known, at).into());
             };
             same.iter().for_each(|&slot| renamed[slot] = Some(index));

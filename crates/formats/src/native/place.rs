@@ -1,6 +1,6 @@
 //! Where a model stands: translation, rotation, scale, or a matrix; and keyframes of these.
 
-use super::document::{Item, Node, Table};
+use super::document::{Item, Table, TomlValue};
 use super::specs::missing;
 use crate::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
@@ -86,7 +86,7 @@ impl Pose {
         }
         if let Some(item) = table.find("scale") {
             pose.scale = match item.node {
-                Node::List(_) => vector(item, "scale")?,
+                TomlValue::List(_) => vector(item, "scale")?,
                 _ => DVec3::splat(item.number("scale")?),
             };
         }
@@ -121,7 +121,7 @@ impl Pose {
             _ => 0.0,
         };
         let steps = (degrees / 90.0).ceil().max(1.0);
-        if steps > MOST_STEPS {
+        if steps > MAX_STEPS {
             let message =
                 format!("this is a turn by {degrees} degrees between two keyframes: put more of them");
             return Err(SceneError::invalid(message, at).into());
@@ -141,11 +141,11 @@ impl Pose {
 }
 
 /// A hundred turns between two keyframes.
-const MOST_STEPS: f64 = 400.0;
+const MAX_STEPS: f64 = 400.0;
 
 impl Rotation {
     fn read(item: &Item) -> Result<Rotation, FormatError> {
-        let Node::Table(table) = &item.node else { return Ok(Rotation::Euler(vector(item, "rotate")?)) };
+        let TomlValue::Table(table) = &item.node else { return Ok(Rotation::Euler(vector(item, "rotate")?)) };
         table.check_keys("a rotation", ["axis", "degrees", "quaternion"].into_iter())?;
         if let Some(item) = table.find("quaternion") {
             let wanted = "four numbers [x, y, z, w], not all of them 0";

@@ -1,7 +1,7 @@
 //! `[[replace]]`: other materials for what models brought, by the names that these gave.
 
 use super::document::Table;
-use super::scene::{MOST_NAMES, Native};
+use super::scene::{MAX_NAMES, Native};
 use super::specs::missing;
 use crate::FormatError;
 use bilux_scene::SceneError;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 pub(super) const KEYS: [&str; 3] = ["material", "object", "with"];
 
 /// Each is held against every object.
-const MOST: usize = 1000;
+const MAX: usize = 1000;
 
 /// Longer patterns name nothing.
 const LONGEST: usize = 1000;
@@ -19,8 +19,8 @@ const LONGEST: usize = 1000;
 impl Native<'_, '_> {
     /// Replaces materials of the objects so far. Where several tables are about an object, the last one counts.
     pub(super) fn replace(&mut self, tables: &[&Table]) -> Result<(), FormatError> {
-        if let Some(table) = tables.get(MOST) {
-            let message = format!("there are more than {MOST} replacements: use patterns, as in \"Glass*\"");
+        if let Some(table) = tables.get(MAX) {
+            let message = format!("there are more than {MAX} replacements: use patterns, as in \"Glass*\"");
             return Err(SceneError::invalid(message, &table.at).into());
         }
         let before: Vec<usize> = self.scene.objects.iter().map(|object| object.material).collect();
@@ -74,7 +74,7 @@ impl Native<'_, '_> {
                 continue;
             };
             let at = table.find(key).map_or(&table.at, |item| &item.at);
-            let known = known.iter().copied().filter(|name| !name.is_empty()).take(MOST_NAMES);
+            let known = known.iter().copied().filter(|name| !name.is_empty()).take(MAX_NAMES);
             return SceneError::unknown(key, wanted, known, at).into();
         }
         SceneError::invalid("no object has this name and this material: take one of them out", &table.at)

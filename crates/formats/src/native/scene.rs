@@ -11,10 +11,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 /// So many names are told where one is unknown.
-pub(super) const MOST_NAMES: usize = 100;
+pub(super) const MAX_NAMES: usize = 100;
 
 /// More settings than any render has: each is held against all others.
-const MOST_SETTINGS: usize = 1000;
+const MAX_SETTINGS: usize = 1000;
 
 /// Keys of the top level.
 pub(super) const KEYS: [&str; 7] = ["include", "render", "camera", "light", "material", "model", "replace"];
@@ -74,8 +74,8 @@ impl Native<'_, '_> {
     fn settings(&mut self, root: &Table) -> Result<(), FormatError> {
         for table in root.tables("render")? {
             for (key, at, item) in &table.entries {
-                if self.scene.settings.0.len() >= MOST_SETTINGS {
-                    let message = format!("there are more than {MOST_SETTINGS} settings: take some out");
+                if self.scene.settings.0.len() >= MAX_SETTINGS {
+                    let message = format!("there are more than {MAX_SETTINGS} settings: take some out");
                     return Err(SceneError::invalid(message, at).into());
                 }
                 let value = specs::plain_value(key, item)?;
@@ -126,7 +126,7 @@ impl Native<'_, '_> {
     /// The index of a material by its name.
     pub(super) fn material_named(&self, item: &Item) -> Result<usize, FormatError> {
         let name = item.text("material")?;
-        let known = || self.materials.keys().map(String::as_str).take(MOST_NAMES);
+        let known = || self.materials.keys().map(String::as_str).take(MAX_NAMES);
         match self.materials.get(name) {
             Some(&(index, _)) => Ok(index),
             None => Err(SceneError::unknown("material", name, known(), &item.at).into()),

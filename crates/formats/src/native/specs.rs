@@ -1,6 +1,6 @@
 //! Materials, lights and cameras: a kind, and the parameters of its row.
 
-use super::document::{Item, Node, Table};
+use super::document::{Item, Table, TomlValue};
 use super::include::Part;
 use super::pictures::{PICTURE, placed};
 use super::scene::Native;
@@ -102,7 +102,7 @@ impl Native<'_, '_> {
         item: &Item,
         part: &Part,
     ) -> Result<Option<Value>, FormatError> {
-        let Node::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
+        let TomlValue::Table(table) = &item.node else { return plain_value(key, item).map(Some) };
         let Some(texture) = self.texture(key, kind, Texels::Colours, table, part)? else { return Ok(None) };
         self.scene.textures.push(texture);
         Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
@@ -182,7 +182,7 @@ impl Native<'_, '_> {
         let mut spec = Spec { span: table.at.clone(), ..Spec::new("", kind) };
         let mut parts = Vec::new();
         for (key, at, item) in table.entries.iter().filter(|(key, ..)| key != "kind") {
-            let value = if let Node::Table(inner) = &item.node {
+            let value = if let TomlValue::Table(inner) = &item.node {
                 let kind = row.entry.parameters.iter().find(|p| p.name == key).map(|p| p.kind);
                 let around = if holds == Texels::Colours { holds } else { Texels::Numbers(None) };
                 let Some(texture) = self.texture(key, kind, around, inner, part)? else { continue };
@@ -213,14 +213,14 @@ fn channel(table: &Table) -> Result<Option<Channel>, FormatError> {
 /// A value without tables.
 pub(super) fn plain_value(key: &str, item: &Item) -> Result<Value, FormatError> {
     Ok(match &item.node {
-        Node::Bool(b) => Value::Bool(*b),
-        Node::Integer(i) => Value::Integer(*i),
-        Node::Number(x) => Value::Number(*x),
-        Node::Text(text) => Value::Text(text.clone()),
-        Node::List(items) => {
+        TomlValue::Bool(b) => Value::Bool(*b),
+        TomlValue::Integer(i) => Value::Integer(*i),
+        TomlValue::Number(x) => Value::Number(*x),
+        TomlValue::Text(text) => Value::Text(text.clone()),
+        TomlValue::List(items) => {
             Value::List(items.iter().map(|item| plain_value(key, item)).collect::<Result<_, _>>()?)
         }
-        Node::Table(_) => return Err(item.wrong(key, "a value, or a list of values")),
+        TomlValue::Table(_) => return Err(item.wrong(key, "a value, or a list of values")),
     })
 }
 

@@ -5,10 +5,10 @@ use super::strokes::Stroke;
 use crate::FormatError;
 use crate::budget::Budget;
 use crate::float::{parse_f32, parse_f64};
+use crate::indexed_faces::{Corner, NONE};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::Oddities;
-use crate::soup::{Corner, NONE};
-use crate::text::{Cursor, Place, name_of, quoted};
+use crate::text::{Cursor, TextPosition, name_of, quoted};
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
@@ -24,13 +24,13 @@ pub(super) struct Block {
     pub(super) corners: Vec<Corner>,
     /// Where each face's corners end.
     pub(super) ends: Vec<u32>,
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<TextPosition>,
     /// Corners that count backwards from where they stand.
     pub(super) backward: Vec<Backward>,
     /// Points and lines.
     pub(super) strokes: Vec<Stroke>,
     /// What changes between faces, in order.
-    pub(super) turns: Vec<(usize, Turn)>,
+    pub(super) turns: Vec<(usize, StateChange)>,
     pub(super) oddities: Oddities,
     /// How many line ends there are.
     pub(super) lines: u32,
@@ -57,12 +57,12 @@ pub(super) struct Backward {
 
 /// What changes between two faces.
 #[derive(Debug)]
-pub(super) enum Turn {
+pub(super) enum StateChange {
     Name(String),
-    Material(String, Place),
+    Material(String, TextPosition),
     Smoothing(Smoothing),
     /// The rest of an `mtllib` line.
-    Libraries(String, Place),
+    Libraries(String, TextPosition),
 }
 
 /// A face of more corners than this asks for room while it is read.
@@ -139,15 +139,15 @@ impl<'a> Reader<'a> {
                 b"p" => self.strokes(start, true)?,
                 b"o" | b"g" => {
                     let name = name_of(self.cursor.rest_of_line());
-                    self.turn(Turn::Name(name));
+                    self.turn(StateChange::Name(name));
                 }
                 b"usemtl" => {
                     let name = name_of(self.cursor.rest_of_line());
-                    self.turn(Turn::Material(name, start));
+                    self.turn(StateChange::Material(name, start));
                 }
                 b"mtllib" => {
                     let line = name_of(self.cursor.rest_of_line());
-                    self.turn(Turn::Libraries(line, start));
+                    self.turn(StateChange::Libraries(line, start));
                 }
                 b"s" => self.smoothing_group(start)?,
                 b"" => {}
@@ -169,19 +169,19 @@ impl<'a> Reader<'a> {
         self.cursor.place(offset).in_file(self.file)
     }
 
-    pub(super) fn note(&mut self, what: &str, at: Place) {
+    pub(super) fn note(&mut self, what: &str, at: TextPosition) {
         let file = self.file;
         self.block.oddities.note(what, || at.in_file(file));
     }
 
-    fn turn(&mut self, turn: Turn) {
+    fn turn(&mut self, turn: StateChange) {
         let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
         let is_drawn_with = self.block.strokes.last().is_some_and(|stroke| stroke.turns == turns.len());
         // Of several of a kind that no face stands between the last one counts.
         if let Some((before, last)) = turns.last_mut()
             && *before == faces
             && !is_drawn_with
-            && !matches!(turn, Turn::Libraries(..))
+            && !matches!(turn, StateChange::Libraries(..))
             && std::mem::discriminant(last) == std::mem::discriminant(&turn)
         {
             *last = turn;
@@ -283,7 +283,7 @@ impl<'a> Reader<'a> {
         self.pass_line();
     }
 
-    fn face(&mut self, start: Place) -> Result<(), FormatError> {
+    fn face(&mut self, start: TextPosition) -> Result<(), FormatError> {
         let (first, backward) = (self.block.corners.len(), self.block.backward.len());
         loop {
             let word = self.cursor.word();
@@ -355,7 +355,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `s off` and `s 0` are flat, any other number is a group that is smooth.
-    fn smoothing_group(&mut self, start: Place) -> Result<(), FormatError> {
+    fn smoothing_group(&mut self, start: TextPosition) -> Result<(), FormatError> {
         let word = self.cursor.word();
         let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<u32>().ok());
         let smoothing = match (word, number) {
@@ -369,11 +369,11 @@ impl<'a> Reader<'a> {
                 return Ok(());
             }
         };
-        self.turn(Turn::Smoothing(smoothing));
+        self.turn(StateChange::Smoothing(smoothing));
         Ok(())
     }
 
-    fn other_statement(&mut self, word: &[u8], start: Place) -> Result<(), FormatError> {
+    fn other_statement(&mut self, word: &[u8], start: TextPosition) -> Result<(), FormatError> {
         let what = match word {
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {

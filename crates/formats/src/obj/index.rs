@@ -1,6 +1,6 @@
 //! Indices of an OBJ file: counted from 1, or backwards from -1.
 
-use crate::soup::NONE;
+use crate::indexed_faces::NONE;
 
 /// An index as OBJ counts, as one from 0, or how far back it lies.
 #[derive(Debug, PartialEq)]

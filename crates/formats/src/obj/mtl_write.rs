@@ -5,7 +5,7 @@ use super::write::one_line;
 use crate::FormatError;
 use crate::float::{push_f32, push_f32s};
 use crate::reading::default_material;
-use crate::values::{Holds, colour, coloured_metal, number, texture};
+use crate::values::{MaterialSupport, colour, coloured_metal, number, texture};
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::Rgb;
 use bilux_scene::materials::with_indices;
@@ -41,7 +41,7 @@ pub(super) fn write_library(
 }
 
 /// What MTL holds of materials.
-const HOLDS: Holds = Holds {
+const HOLDS: MaterialSupport = MaterialSupport {
     format: "OBJ",
     of_kinds: &[
         (

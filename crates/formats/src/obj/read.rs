@@ -1,14 +1,14 @@
 //! Reading an OBJ file, block by block.
 
-use super::block::{BACKWARD_LEFT_OUT, Block, Turn, bad_corner, read_block};
+use super::block::{BACKWARD_LEFT_OUT, Block, StateChange, bad_corner, read_block};
 use super::mtl::read_library;
 use super::strokes::{Stroke, Strokes};
 use crate::FormatError;
 use crate::blocks::Blocks;
+use crate::indexed_faces::{IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, Smoothing};
 use crate::reading::{Oddities, Reading, Source};
-use crate::soup::{NONE, Run, Soup, assemble};
-use crate::text::{Cursor, Place, Places, no_text, whole_file};
+use crate::text::{Cursor, Places, TextPosition, no_text, whole_file};
 use bilux_math::Rgb;
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use rayon::prelude::*;
@@ -38,7 +38,7 @@ fn read_in_blocks(
         reading,
         source,
         lines: 0,
-        soup: Soup { first_vertex: 1, leaves_out: true, ..Soup::default() },
+        soup: IndexedFaces { first_vertex: 1, leaves_out: true, ..IndexedFaces::default() },
         scene: SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() },
         materials: HashMap::new(),
         oddities: Oddities::default(),
@@ -57,7 +57,7 @@ struct Obj<'a, 'o, 'r> {
     source: &'a Source<'a>,
     /// Line ends before the block that is joined.
     lines: u32,
-    soup: Soup,
+    soup: IndexedFaces,
     scene: SceneBuilder,
     /// Index of each material, by its name.
     materials: HashMap<String, usize>,
@@ -115,7 +115,7 @@ impl Obj<'_, '_, '_> {
         let corners = soup.faces.corner_count() + block.corners.len();
         let most = [soup.positions.len(), soup.uvs.len(), soup.normals.len(), corners];
         self.add_faces(block, before)?;
-        let end = Place { line: 1, column: 1 }.after(self.lines).after(block.lines);
+        let end = TextPosition { line: 1, column: 1 }.after(self.lines).after(block.lines);
         self.lines = self.lines.saturating_add(block.lines);
         let before = end.line - 1 - block.lines;
         if let Some(fault) = block.fault.take().map(|fault| moved_down(fault, before)) {
@@ -194,13 +194,13 @@ impl Obj<'_, '_, '_> {
                 self.add_stroke(stroke, before)?;
             }
             match turn {
-                Turn::Name(name) => (self.name, self.in_run) = (name, false),
-                Turn::Material(name, place) => {
+                StateChange::Name(name) => (self.name, self.in_run) = (name, false),
+                StateChange::Material(name, place) => {
                     self.material = Some((name, place.after(self.lines).key()));
                     self.in_run = false;
                 }
-                Turn::Smoothing(smoothing) => self.smoothing = smoothing,
-                Turn::Libraries(line, place) => {
+                StateChange::Smoothing(smoothing) => self.smoothing = smoothing,
+                StateChange::Libraries(line, place) => {
                     self.libraries(line, &place.after(self.lines).in_file(self.source.name))?;
                 }
             }
@@ -293,7 +293,7 @@ impl Obj<'_, '_, '_> {
             reading.budget.take::<u32>(soup.positions.len(), source.name)?;
             strokes.add_all(soup.positions.len(), source.stem());
         }
-        let place = |key: u64| Place::of_key(key).in_file(source.name);
+        let place = |key: u64| TextPosition::of_key(key).in_file(source.name);
         strokes.into_objects(reading, source, &place, &soup, &mut materials, &mut scene, &mut oddities)?;
         if soup.faces.is_empty() {
             oddities.into_warnings(&mut scene);

@@ -3,9 +3,9 @@
 use super::block::Reader;
 use super::index::{Index, index};
 use crate::FormatError;
+use crate::indexed_faces::{IndexedFaces, NONE, Run, material_of};
 use crate::reading::{Oddities, Reading, Source};
-use crate::soup::{NONE, Run, Soup, material_of};
-use crate::text::{Place, quoted};
+use crate::text::{TextPosition, quoted};
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
@@ -19,7 +19,7 @@ pub(super) struct Stroke {
     /// Twice the same of a point.
     pub(super) ends: [End; 2],
     pub(super) is_point: bool,
-    pub(super) place: Place,
+    pub(super) place: TextPosition,
 }
 
 /// A vertex of a point or a line.
@@ -33,7 +33,7 @@ pub(super) enum End {
 
 impl Reader<'_> {
     /// `p v1 v2 …` or `l v1 v2/vt …`: points, or one line through all of them.
-    pub(super) fn strokes(&mut self, place: Place, are_points: bool) -> Result<(), FormatError> {
+    pub(super) fn strokes(&mut self, place: TextPosition, are_points: bool) -> Result<(), FormatError> {
         let (first, mut last, mut count) = (self.block.strokes.len(), None, 0);
         loop {
             let word = self.cursor.word();
@@ -131,7 +131,7 @@ impl Strokes {
         reading: &mut Reading,
         source: &Source,
         place: &dyn Fn(u64) -> Span,
-        soup: &Soup,
+        soup: &IndexedFaces,
         materials: &mut HashMap<String, usize>,
         scene: &mut SceneBuilder,
         oddities: &mut Oddities,

@@ -3,9 +3,9 @@
 use super::FLAT_COMMENT;
 use crate::FormatError;
 use crate::float::parse_f32;
+use crate::indexed_faces::{Corner, IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source};
-use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::{Cursor, Places, no_text, quoted};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -19,7 +19,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         source,
         places: &places,
         cursor: Cursor::new(source.bytes),
-        soup: Soup::default(),
+        soup: IndexedFaces::default(),
         smoothing: BY_ANGLE,
         oddities: Oddities::default(),
     };
@@ -63,7 +63,7 @@ struct Off<'a, 'o, 'r> {
     source: &'a Source<'a>,
     places: &'a Places<'a>,
     cursor: Cursor<'a>,
-    soup: Soup,
+    soup: IndexedFaces,
     /// How faces without normals look.
     smoothing: Smoothing,
     oddities: Oddities,

@@ -71,7 +71,7 @@ impl Pbrt<'_, '_> {
         for name in ["shutteropen", "shutterclose"] {
             list.has(name);
         }
-        list.tell_unused(&mut self.oddities);
+        list.report_unused(&mut self.oddities);
         self.scene.cameras.push(CameraSpec { spec, keyframes });
         Ok(())
     }

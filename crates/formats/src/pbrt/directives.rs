@@ -64,7 +64,7 @@ const DIRECTIVES: &[&str] = &[
 const DEEPEST: usize = 10_000;
 
 /// More attributes of a kind than any shape or light has parameters are refused: each is looked through for all.
-const MOST_ATTRIBUTES: usize = 1000;
+const MAX_ATTRIBUTES: usize = 1000;
 
 /// Reads a file to its end.
 pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError> {
@@ -226,8 +226,8 @@ impl Directive<'_, '_, '_, '_> {
             return Err(unknown("target of attributes", &target, TARGETS, &at));
         };
         let all = Arc::make_mut(&mut self.pbrt.state.attributes[index]);
-        if all.len() + list.len() > MOST_ATTRIBUTES {
-            return self.error(format!("there are more than {MOST_ATTRIBUTES} attributes of one kind"));
+        if all.len() + list.len() > MAX_ATTRIBUTES {
+            return self.error(format!("there are more than {MAX_ATTRIBUTES} attributes of one kind"));
         }
         // What comes later is minded first.
         all.splice(0..0, list);
@@ -354,7 +354,7 @@ impl Directive<'_, '_, '_, '_> {
             return self.error("'Shape' belongs behind WorldBegin: move it there");
         }
         let made = self.pbrt.shape(&entity)?;
-        entity.parameters.tell_unused(&mut self.pbrt.oddities);
+        entity.parameters.report_unused(&mut self.pbrt.oddities);
         match &mut self.pbrt.definition {
             Some((_, pieces)) => pieces.extend(made),
             None => self.pbrt.pieces.extend(made),

@@ -1,9 +1,9 @@
 //! `infinite`: light from all around. Theirs lies on a square by an equal-area mapping, ours by longitude and latitude.
 
-use super::inks::Ink;
 use super::lights::picture_name;
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
+use super::texture_or_value::TextureOrValue;
 use crate::FormatError;
 use bilux_math::transcendental::{acos_f64, atan2_f64, sin_cos_f64};
 use bilux_math::{DMat4, DVec3, Rgb};
@@ -49,7 +49,7 @@ pub(super) fn infinite(
         scale *= lux / ours;
     }
     let turned = pbrt.by_longitude(&name, &picture, mapping, matrix, list)?;
-    let value = pbrt.value(Ink::Picture(Arc::new(turned)));
+    let value = pbrt.value(TextureOrValue::Picture(Arc::new(turned)));
     let spec = Spec::new("", "environment").with("radiance", value);
     Ok(Some(spec.with("scale", Value::from(scale))))
 }
@@ -145,7 +145,7 @@ impl Pbrt<'_, '_> {
         list: &ParameterList,
     ) -> Result<Texture, FormatError> {
         /// Rows at most.
-        const MOST: usize = 4096;
+        const MAX: usize = 4096;
         if !picture.image.is_whole() {
             return Ok(picture.clone());
         }
@@ -153,7 +153,7 @@ impl Pbrt<'_, '_> {
         if !to_light.is_finite() {
             return Err(FormatError::malformed("this light is scaled to nothing", list.at.clone()));
         }
-        let height = picture.height().clamp(16, MOST);
+        let height = picture.height().clamp(16, MAX);
         let width = 2 * height;
         let bytes = (width * height * size_of::<Rgb>()) as u64;
         self.reading.budget.take_bytes(bytes, name)?;

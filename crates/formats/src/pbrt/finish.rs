@@ -1,9 +1,9 @@
 //! When all files are read: names are looked up, and everything is put into the scene.
 
-use super::inks::Ink;
-use super::lights::Glow;
-use super::reader::{Alpha, Dress, Form, Pbrt, Piece, Use};
+use super::lights::AreaEmission;
+use super::reader::{Alpha, Pbrt, Piece, ShapeGeometry, SurfaceAttributes, Use};
 use super::state::Matrices;
+use super::texture_or_value::TextureOrValue;
 use super::unknown;
 use crate::FormatError;
 use crate::sharing::share_trees;
@@ -15,10 +15,10 @@ use std::sync::Arc;
 
 /// What is made once for all pieces that share it.
 #[derive(Default)]
-pub(super) struct Dressed {
+pub(super) struct ResolvedAttributes {
     /// By what is on the surface, and the bits of a radiance that depends on the shape.
-    materials: HashMap<(Dress, [u32; 3]), Option<usize>>,
-    glows: HashMap<usize, Glow>,
+    materials: HashMap<(SurfaceAttributes, [u32; 3]), Option<usize>>,
+    glows: HashMap<usize, AreaEmission>,
     /// Meshes, by where they lie, and the same seen from their front by their corners.
     fronted: HashMap<*const Mesh, [Arc<Mesh>; 2]>,
 }
@@ -28,7 +28,7 @@ impl Pbrt<'_, '_> {
         self.settings()?;
         self.place_camera()?;
         self.place_lights()?;
-        let mut dressed = Dressed::default();
+        let mut dressed = ResolvedAttributes::default();
         for piece in std::mem::take(&mut self.pieces) {
             self.place(&piece, None, &mut dressed)?;
         }
@@ -49,7 +49,12 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    fn place(&mut self, piece: &Piece, used: Option<&Use>, dressed: &mut Dressed) -> Result<(), FormatError> {
+    fn place(
+        &mut self,
+        piece: &Piece,
+        used: Option<&Use>,
+        dressed: &mut ResolvedAttributes,
+    ) -> Result<(), FormatError> {
         let matrices = match used {
             Some(used) => [0, 1].map(|i| used.matrices[i] * piece.matrices[i]),
             None => piece.matrices,
@@ -63,15 +68,15 @@ impl Pbrt<'_, '_> {
             return Ok(());
         }
         let (mesh, matrices) = match &piece.form {
-            Form::Mesh(mesh) => (mesh.clone(), matrices),
-            Form::Sphere { radius, reversed } => {
+            ShapeGeometry::Mesh(mesh) => (mesh.clone(), matrices),
+            ShapeGeometry::Sphere { radius, reversed } => {
                 let grown = DMat4::from_scale(DVec3::splat(f64::from(*radius)));
                 (self.unit_sphere(*reversed), matrices.map(|m| m * grown))
             }
         };
         let radiance =
             glow.as_ref().map(|glow| glow.radiance_of(area(&mesh, &matrices[0]) / f64::from(piece.shapes)));
-        let Some(material) = self.dressed_material(piece, glow.as_ref(), radiance, dressed)? else {
+        let Some(material) = self.modified_material(piece, glow.as_ref(), radiance, dressed)? else {
             return Ok(());
         };
         let Some(motion) = self.motion(&matrices, at) else { return Ok(()) };
@@ -92,8 +97,8 @@ impl Pbrt<'_, '_> {
         &mut self,
         piece: &Piece,
         used: Option<&Use>,
-        dressed: &mut Dressed,
-    ) -> Result<Option<Glow>, FormatError> {
+        dressed: &mut ResolvedAttributes,
+    ) -> Result<Option<AreaEmission>, FormatError> {
         let Some(index) = piece.dress.area_light else { return Ok(None) };
         if used.is_some() {
             self.oddities.note("surfaces of objects give no light, as in pbrt", || piece.at.clone());
@@ -112,10 +117,10 @@ impl Pbrt<'_, '_> {
     fn place_lamp(
         &mut self,
         piece: &Piece,
-        glow: Option<&Glow>,
+        glow: Option<&AreaEmission>,
         matrices: &Matrices,
     ) -> Result<bool, FormatError> {
-        let (Form::Sphere { radius, reversed: false }, Some(glow)) = (&piece.form, glow) else {
+        let (ShapeGeometry::Sphere { radius, reversed: false }, Some(glow)) = (&piece.form, glow) else {
             return Ok(false);
         };
         let Some(scale) = even_scale(&matrices[0]).filter(|_| matrices[0] == matrices[1]) else {
@@ -123,7 +128,7 @@ impl Pbrt<'_, '_> {
         };
         let radius = f64::from(*radius) * scale;
         let area = 4.0 * std::f64::consts::PI * radius * radius;
-        let Ink::Colour(radiance) = glow.radiance_of(area) else { return Ok(false) };
+        let TextureOrValue::Colour(radiance) = glow.radiance_of(area) else { return Ok(false) };
         if glow.both_sides || piece.dress.alpha != Alpha::Whole || radiance.is_black() {
             return Ok(false);
         }
@@ -153,21 +158,21 @@ impl Pbrt<'_, '_> {
     }
 
     /// The index of what a piece is made of, with all that is on it; none for what is not there.
-    fn dressed_material(
+    fn modified_material(
         &mut self,
         piece: &Piece,
-        glow: Option<&Glow>,
-        radiance: Option<Ink>,
-        dressed: &mut Dressed,
+        glow: Option<&AreaEmission>,
+        radiance: Option<TextureOrValue>,
+        dressed: &mut ResolvedAttributes,
     ) -> Result<Option<usize>, FormatError> {
         let dress = &piece.dress;
         let bits = match &radiance {
-            Some(Ink::Colour(colour)) => colour.to_array().map(f32::to_bits),
-            Some(Ink::Picture(picture)) => picture.factor.to_array().map(f32::to_bits),
+            Some(TextureOrValue::Colour(colour)) => colour.to_array().map(f32::to_bits),
+            Some(TextureOrValue::Picture(picture)) => picture.factor.to_array().map(f32::to_bits),
             None => [0; 3],
         };
         // An object's light is none, so that it is another material there.
-        let key = (Dress { area_light: glow.and(dress.area_light), ..dress.clone() }, bits);
+        let key = (SurfaceAttributes { area_light: glow.and(dress.area_light), ..dress.clone() }, bits);
         if let Some(known) = dressed.materials.get(&key) {
             return Ok(*known);
         }
@@ -180,8 +185,8 @@ impl Pbrt<'_, '_> {
     fn dress(
         &mut self,
         piece: &Piece,
-        glow: Option<&Glow>,
-        radiance: Option<Ink>,
+        glow: Option<&AreaEmission>,
+        radiance: Option<TextureOrValue>,
     ) -> Result<Option<Spec>, FormatError> {
         let [inside, outside] = &piece.dress.media;
         let absorption = self.absorption_of(inside, &piece.at)?;
@@ -215,7 +220,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// A material that gives light.
-    fn glowing(&mut self, spec: Spec, glow: &Glow, radiance: Ink, piece: &Piece) -> Spec {
+    fn glowing(&mut self, spec: Spec, glow: &AreaEmission, radiance: TextureOrValue, piece: &Piece) -> Spec {
         let row = MATERIALS.iter().find(|row| row.entry.name == spec.kind);
         let can = row.is_some_and(|row| row.entry.parameters.iter().any(|p| p.name == "emission"));
         let mut spec = if can {
@@ -227,11 +232,11 @@ impl Pbrt<'_, '_> {
             Spec { span: spec.span, ..dark }
         };
         match radiance {
-            Ink::Colour(colour) => spec.parameters.set("emission", colour.clamp(0.0, 1e12)),
-            Ink::Picture(picture) => {
+            TextureOrValue::Colour(colour) => spec.parameters.set("emission", colour.clamp(0.0, 1e12)),
+            TextureOrValue::Picture(picture) => {
                 let scale = picture.factor;
                 let plain = bilux_scene::Texture { factor: Rgb::WHITE, ..(*picture).clone() };
-                let value = self.value(Ink::Picture(Arc::new(plain)));
+                let value = self.value(TextureOrValue::Picture(Arc::new(plain)));
                 spec.parameters.set("emission", value);
                 spec.parameters.set("emission_scale", scale.clamp(0.0, 1e12));
             }
@@ -259,7 +264,7 @@ impl Pbrt<'_, '_> {
             }
             Alpha::Texture(name, line, column) => {
                 let at = Span { file: piece.at.file.clone(), line: *line, column: *column };
-                let ink = self.texture(name, super::inks::Meaning::Number, &at)?;
+                let ink = self.texture(name, super::texture_or_value::Meaning::Number, &at)?;
                 self.number_value(ink, [0.0, 1.0])
             }
         };

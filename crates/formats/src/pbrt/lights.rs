@@ -4,10 +4,10 @@
 //! sensor, as it is by default, counts a luminance of 1 as 1. So `rgb L` is the radiance in Rec. 709 that the picture shows.
 
 use super::environment;
-use super::inks::{Ink, Meaning};
 use super::parameters::ParameterList;
 use super::reader::{Entity, Pbrt};
 use super::state::half_tangent;
+use super::texture_or_value::{Meaning, TextureOrValue};
 use super::unknown;
 use crate::FormatError;
 use bilux_math::transcendental::cos_f64;
@@ -37,8 +37,8 @@ const BRIGHTEST: f32 = 1e11;
 
 /// What makes a surface give light.
 #[derive(Clone, Debug)]
-pub(super) struct Glow {
-    pub(super) radiance: Ink,
+pub(super) struct AreaEmission {
+    pub(super) radiance: TextureOrValue,
     pub(super) both_sides: bool,
     /// In all, per shape.
     pub(super) power: Option<f32>,
@@ -54,7 +54,7 @@ impl Pbrt<'_, '_> {
                 return Err(unknown("light", &entity.kind, names, &entity.at));
             };
             let made = make(self, list, &matrix)?;
-            list.tell_unused(&mut self.oddities);
+            list.report_unused(&mut self.oddities);
             self.scene.lights.extend(made.map(|spec| Spec { span: entity.at.clone(), ..spec }));
         }
         Ok(())
@@ -83,7 +83,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// What makes a surface give light.
-    pub(super) fn glow(&mut self, entity: &Entity) -> Result<Glow, FormatError> {
+    pub(super) fn glow(&mut self, entity: &Entity) -> Result<AreaEmission, FormatError> {
         let list = &entity.parameters;
         if entity.kind != "diffuse" && entity.kind != "area" {
             return Err(unknown("area light", &entity.kind, ["diffuse"], &entity.at));
@@ -96,26 +96,26 @@ impl Pbrt<'_, '_> {
                 }
                 let at = list.place("filename");
                 let picture = self.light_file(name, &at)?;
-                Ink::Picture(Arc::new(picture)).scaled(self.light_scale(list)?)
+                TextureOrValue::Picture(Arc::new(picture)).scaled(self.light_scale(list)?)
             }
-            None => Ink::Colour(self.shine(list, "L")?),
+            None => TextureOrValue::Colour(self.shine(list, "L")?),
         };
         for name in ["samples", "nsamples"] {
             list.has(name);
         }
         let power = list.number("power")?.filter(|power| *power > 0.0);
         let both_sides = list.flag("twosided", false)?;
-        list.tell_unused(&mut self.oddities);
-        Ok(Glow { radiance, both_sides, power })
+        list.report_unused(&mut self.oddities);
+        Ok(AreaEmission { radiance, both_sides, power })
     }
 }
 
-impl Glow {
+impl AreaEmission {
     /// The radiance of a shape of this area.
-    pub(super) fn radiance_of(&self, area: f64) -> Ink {
+    pub(super) fn radiance_of(&self, area: f64) -> TextureOrValue {
         let Some(power) = self.power else { return self.radiance.clone() };
         let mean = match &self.radiance {
-            Ink::Colour(_) => 1.0,
+            TextureOrValue::Colour(_) => 1.0,
             picture => f64::from(picture.mean().luminance()),
         };
         let sides = if self.both_sides { 2.0 } else { 1.0 };
@@ -209,7 +209,7 @@ fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<
             let what = "a goniometric light shines in all directions alike, by the mean of its picture";
             pbrt.oddities.note(what, || list.at.clone());
             let picture = pbrt.light_file(&name, &list.place("filename"))?;
-            let mean = Ink::Picture(Arc::new(picture)).mean();
+            let mean = TextureOrValue::Picture(Arc::new(picture)).mean();
             (mean.r + mean.g + mean.b) / 3.0
         }
     };
@@ -222,7 +222,9 @@ fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<O
     let what = "a projection light shines into a cone, by the mean of its picture";
     pbrt.oddities.note(what, || list.at.clone());
     let mean = match picture_name(list)? {
-        Some((name, _)) => Ink::Picture(Arc::new(pbrt.light_file(&name, &list.place("filename"))?)).mean(),
+        Some((name, _)) => {
+            TextureOrValue::Picture(Arc::new(pbrt.light_file(&name, &list.place("filename"))?)).mean()
+        }
         None => {
             let what = "filename (of the picture that is thrown)".to_owned();
             return Err(SceneError::Missing { what, at: list.at.clone() }.into());

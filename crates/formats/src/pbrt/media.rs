@@ -1,8 +1,8 @@
 //! What light goes through: only what it absorbs is used.
 
-use super::inks::Meaning;
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
+use super::texture_or_value::Meaning;
 use super::unknown;
 use crate::FormatError;
 use bilux_math::Rgb;
@@ -76,7 +76,7 @@ impl Pbrt<'_, '_> {
             list.has("Lescale");
         }
         let scale = list.finite("scale", 1.0)?;
-        list.tell_unused(&mut self.oddities);
+        list.report_unused(&mut self.oddities);
         self.media.insert(name.into(), Medium { absorption: absorption * scale });
         Ok(())
     }

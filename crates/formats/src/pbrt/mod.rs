@@ -6,7 +6,6 @@ mod directives;
 mod environment;
 mod finish;
 mod gzip;
-mod inks;
 mod lexer;
 mod lights;
 mod materials;
@@ -18,6 +17,7 @@ mod reader;
 mod shapes;
 mod spectra;
 mod state;
+mod texture_or_value;
 mod textures;
 mod transforms;
 mod write;
@@ -70,10 +70,10 @@ fn unknown<'n>(
     known: impl IntoIterator<Item = &'n str>,
     at: &Span,
 ) -> FormatError {
-    const MOST: usize = 100;
-    let mut known: Vec<&str> = known.into_iter().filter(|known| known.len() <= MOST).collect();
+    const MAX: usize = 100;
+    let mut known: Vec<&str> = known.into_iter().filter(|known| known.len() <= MAX).collect();
     known.sort_unstable();
-    known.truncate(MOST);
+    known.truncate(MAX);
     SceneError::unknown(what, &shortened(name), known, at).into()
 }
 

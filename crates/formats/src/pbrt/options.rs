@@ -142,7 +142,7 @@ impl Pbrt<'_, '_> {
         {
             list.has(name);
         }
-        list.tell_unused(&mut self.oddities);
+        list.report_unused(&mut self.oddities);
         Ok(())
     }
 
@@ -180,7 +180,7 @@ impl Pbrt<'_, '_> {
             let what = format!("the pixel filter is '{ours}' of radius {radius}, and not this one");
             self.oddities.note(&what, || filter.at.clone());
         }
-        list.tell_unused(&mut self.oddities);
+        list.report_unused(&mut self.oddities);
         self.set_option("filter", (*ours).into(), &filter.at);
         Ok(())
     }

@@ -387,7 +387,7 @@ impl ParameterList {
     }
 
     /// Tells of parameters that nobody looked for.
-    pub(super) fn tell_unused(&self, oddities: &mut Oddities) {
+    pub(super) fn report_unused(&self, oddities: &mut Oddities) {
         for parameter in self.list.iter().filter(|p| !p.used.get()) {
             let known: Vec<String> = self.asked.borrow().iter().map(|name| (*name).to_owned()).collect();
             let meant = nearest_name(&shortened(&parameter.name), &known);

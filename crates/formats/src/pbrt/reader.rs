@@ -71,10 +71,10 @@ pub(super) struct Entity {
 /// A shape in the scene, before its material is known.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
-    pub(super) form: Form,
+    pub(super) form: ShapeGeometry,
     /// To the world, or to the object that it is a part of.
     pub(super) matrices: Matrices,
-    pub(super) dress: Dress,
+    pub(super) dress: SurfaceAttributes,
     /// How many shapes it is for pbrt, each of which has the power of its light.
     pub(super) shapes: u32,
     pub(super) at: Span,
@@ -82,7 +82,7 @@ pub(super) struct Piece {
 
 /// What a shape is made of.
 #[derive(Clone, Debug)]
-pub(super) enum Form {
+pub(super) enum ShapeGeometry {
     /// Triangles.
     Mesh(Arc<Mesh>),
     /// A whole sphere around the origin; it may be seen from the inside instead.
@@ -91,7 +91,7 @@ pub(super) enum Form {
 
 /// What is on a shape's surface and behind it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct Dress {
+pub(super) struct SurfaceAttributes {
     pub(super) material: MaterialKey,
     /// Index of what makes it give light.
     pub(super) area_light: Option<usize>,
@@ -165,7 +165,7 @@ pub(super) struct Pbrt<'o, 'r> {
 }
 
 /// What opening a file counts for, beside its bytes.
-const LEAST_FILE: u64 = 1 << 14;
+const MIN_FILE: u64 = 1 << 14;
 
 /// Longer chains of files are refused: each takes a part of the stack.
 const LONGEST_CHAIN: usize = 32;
@@ -207,7 +207,7 @@ impl Pbrt<'_, '_> {
         }
         let raw = self.reading.load(&path)?;
         let bytes = super::gzip::plain(raw, self.reading, &path, at)?;
-        self.included = self.included.saturating_add(bytes.len() as u64 + LEAST_FILE);
+        self.included = self.included.saturating_add(bytes.len() as u64 + MIN_FILE);
         if self.included > self.reading.options.max_memory {
             let message = "so much is included, over and over, that reading it would not end: take some out";
             return Err(FormatError::malformed(message, at.clone()));

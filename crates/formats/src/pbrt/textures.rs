@@ -1,8 +1,8 @@
 //! Named textures. Pictures stay pictures; what is made of others is worked out, and baked where it has to be.
 
-use super::inks::{Ink, Meaning};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
+use super::texture_or_value::{Meaning, TextureOrValue};
 use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
@@ -27,7 +27,7 @@ enum Slot {
     Defined(Rc<Entity>),
     /// Being worked out.
     Open,
-    Ready(Ink),
+    Ready(TextureOrValue),
 }
 
 impl NamedTextures {
@@ -40,7 +40,7 @@ impl NamedTextures {
 const DEEPEST: usize = 32;
 
 /// What a texture becomes.
-type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<Ink, FormatError>;
+type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<TextureOrValue, FormatError>;
 
 /// Every texture that is shown.
 const TEXTURES: &[(&str, Make)] = &[
@@ -71,29 +71,34 @@ impl Pbrt<'_, '_> {
         list: &ParameterList,
         name: &'static str,
         meaning: Meaning,
-    ) -> Result<Option<Ink>, FormatError> {
+    ) -> Result<Option<TextureOrValue>, FormatError> {
         let Some(parameter) = list.find(name) else { return Ok(None) };
         match (parameter.kind, parameter.text()) {
             (Kind::Texture, Some(texture)) => self.texture(texture, meaning, &parameter.at).map(Some),
-            _ => Ok(Some(Ink::Colour(self.colour_of(parameter, meaning)?))),
+            _ => Ok(Some(TextureOrValue::Colour(self.colour_of(parameter, meaning)?))),
         }
     }
 
     /// The number or texture under a name of a list, as a grey.
-    pub(super) fn number_ink(
+    pub(super) fn float_texture(
         &mut self,
         list: &ParameterList,
         name: &'static str,
-    ) -> Result<Option<Ink>, FormatError> {
+    ) -> Result<Option<TextureOrValue>, FormatError> {
         match list.texture(name).map(|(texture, at)| (texture.to_owned(), at.clone())) {
             Some((texture, at)) => self.texture(&texture, Meaning::Number, &at).map(Some),
-            None if list.has(name) => Ok(Some(Ink::Colour(Rgb::grey(list.finite(name, 0.0)?)))),
+            None if list.has(name) => Ok(Some(TextureOrValue::Colour(Rgb::grey(list.finite(name, 0.0)?)))),
             None => Ok(None),
         }
     }
 
     /// A texture by its name; numbers and colours have names of their own.
-    pub(super) fn texture(&mut self, name: &str, meaning: Meaning, at: &Span) -> Result<Ink, FormatError> {
+    pub(super) fn texture(
+        &mut self,
+        name: &str,
+        meaning: Meaning,
+        at: &Span,
+    ) -> Result<TextureOrValue, FormatError> {
         let wanted = usize::from(meaning == Meaning::Number);
         // A colour that is wanted as a number, or the other way round, is better than none.
         let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.named[*i].contains_key(name));
@@ -122,11 +127,11 @@ impl Pbrt<'_, '_> {
         Ok(ink)
     }
 
-    fn made(&mut self, entity: &Entity, meaning: Meaning) -> Result<Ink, FormatError> {
+    fn made(&mut self, entity: &Entity, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
         let list = &entity.parameters;
         if let Some((_, make)) = TEXTURES.iter().find(|(name, _)| *name == entity.kind) {
             let ink = make(self, list, meaning)?;
-            list.tell_unused(&mut self.oddities);
+            list.report_unused(&mut self.oddities);
             return Ok(ink);
         }
         let Some((_, plain)) = PLAIN.iter().find(|(name, _)| *name == entity.kind) else {
@@ -135,7 +140,7 @@ impl Pbrt<'_, '_> {
         };
         let what = format!("the texture '{}' is not shown: one colour stands in its place", entity.kind);
         self.oddities.note(&what, || entity.at.clone());
-        Ok(Ink::Colour(Rgb::from_array(*plain)))
+        Ok(TextureOrValue::Colour(Rgb::from_array(*plain)))
     }
 
     /// A part of a texture, or what it is where it is not given.
@@ -145,12 +150,12 @@ impl Pbrt<'_, '_> {
         name: &'static str,
         meaning: Meaning,
         default: f32,
-    ) -> Result<Ink, FormatError> {
+    ) -> Result<TextureOrValue, FormatError> {
         let found = match meaning {
-            Meaning::Number => self.number_ink(list, name)?,
+            Meaning::Number => self.float_texture(list, name)?,
             _ => self.ink(list, name, meaning)?,
         };
-        Ok(found.unwrap_or(Ink::Colour(Rgb::grey(default))))
+        Ok(found.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
     /// Factors and shifts of texture coordinates.
@@ -205,29 +210,33 @@ impl Pbrt<'_, '_> {
     }
 }
 
-fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
     pbrt.part(list, "value", meaning, 1.0)
 }
 
 /// The product of two; in version 4 a texture and a number, in version 3 any two.
-fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
     let (a, b) = if list.has("tex1") || list.has("tex2") {
         (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 1.0)?)
     } else {
         (pbrt.part(list, "tex", meaning, 1.0)?, pbrt.part(list, "scale", Meaning::Number, 1.0)?)
     };
     match (a, b) {
-        (Ink::Colour(colour), other) | (other, Ink::Colour(colour)) => Ok(other.scaled(colour)),
+        (TextureOrValue::Colour(colour), other) | (other, TextureOrValue::Colour(colour)) => {
+            Ok(other.scaled(colour))
+        }
         (a, b) => pbrt.by_formula("scale", [("a", &a), ("b", &b)], &[], |uv| a.at(uv) * b.at(uv)),
     }
 }
 
-fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
     let amount = pbrt.part(list, "amount", Meaning::Number, 0.5)?;
     let blend = |a: Rgb, b: Rgb, t: Rgb| a + (b + a * -1.0) * t;
     match (a, b, amount) {
-        (Ink::Colour(a), Ink::Colour(b), Ink::Colour(t)) => Ok(Ink::Colour(blend(a, b, t))),
+        (TextureOrValue::Colour(a), TextureOrValue::Colour(b), TextureOrValue::Colour(t)) => {
+            Ok(TextureOrValue::Colour(blend(a, b, t)))
+        }
         (a, b, amount) => pbrt.by_formula("mix", [("a", &a), ("b", &b), ("amount", &amount)], &[], |uv| {
             blend(a.at(uv), b.at(uv), Rgb::grey(amount.at(uv).luminance()))
         }),
@@ -235,21 +244,29 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, F
 }
 
 /// Between two by how a surface is turned: their mean.
-fn direction_mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+fn direction_mix(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+    meaning: Meaning,
+) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
     list.has("dir");
     let what = "the texture 'directionmix' is not shown: the mean of its parts stands in its place";
     pbrt.oddities.note(what, || list.at.clone());
-    Ok(Ink::Colour((a.mean() + b.mean()) * 0.5))
+    Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5))
 }
 
-fn checkerboard(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+fn checkerboard(
+    pbrt: &mut Pbrt,
+    list: &ParameterList,
+    meaning: Meaning,
+) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 0.0)?);
     if list.integer("dimension")?.unwrap_or(2) == 3 {
         let what =
             "a checkerboard of three dimensions is not shown: the mean of its parts stands in its place";
         pbrt.oddities.note(what, || list.at.clone());
-        return Ok(Ink::Colour((a.mean() + b.mean()) * 0.5));
+        return Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5));
     }
     list.has("aamode");
     let [su, sv, du, dv] = pbrt.lies(list)?;
@@ -260,7 +277,7 @@ fn checkerboard(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Resu
     })
 }
 
-fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink, FormatError> {
+fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
     let mut corner = |name, default| Ok::<_, FormatError>(pbrt.part(list, name, meaning, default)?.mean());
     let (v00, v01, v10, v11) =
         (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);
@@ -269,10 +286,10 @@ fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Ink
     // The middles of the four texels are the corners.
     let offset = [0.25 + 0.5 * du, 0.75 - 0.5 * (sv + dv)];
     let transform = Some(UvTransform::new(offset, 0.0, [0.5 * su, 0.5 * sv]));
-    Ok(Ink::Picture(Arc::new(Texture { transform, wrap: [Wrap::Clamp; 2], ..ramp })))
+    Ok(TextureOrValue::Picture(Arc::new(Texture { transform, wrap: [Wrap::Clamp; 2], ..ramp })))
 }
 
-fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<Ink, FormatError> {
+fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<TextureOrValue, FormatError> {
     let Some(name) = list.text("filename")? else {
         let what = "filename (of the picture)".to_owned();
         return Err(SceneError::Missing { what, at: list.at.clone() }.into());
@@ -299,7 +316,7 @@ fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<Ink, F
         // Rows go downwards, and t upwards.
         texture.transform = Some(UvTransform::new([du, 1.0 - sv - dv], 0.0, [su, sv]));
     }
-    let mut ink = Ink::Picture(Arc::new(texture));
+    let mut ink = TextureOrValue::Picture(Arc::new(texture));
     if let Some(gamma) = gamma {
         ink = pbrt.mapped(ink, |c| c.map(|c| powf(c.max(0.0), gamma)))?;
     }

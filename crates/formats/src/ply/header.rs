@@ -104,7 +104,7 @@ pub(super) struct Header {
 }
 
 /// More than any real file has; each costs memory that its few bytes do not.
-const MOST_PROPERTIES: usize = 10_000;
+const MAX_PROPERTIES: usize = 10_000;
 
 pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, FormatError> {
     let mut cursor = Cursor::new(source.bytes);
@@ -131,8 +131,8 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
             b"element" => elements.push(read_element(&mut cursor, places, start)?),
             b"property" => {
                 properties += 1;
-                if properties > MOST_PROPERTIES {
-                    return fail(format!("there are more than {MOST_PROPERTIES} properties"), start);
+                if properties > MAX_PROPERTIES {
+                    return fail(format!("there are more than {MAX_PROPERTIES} properties"), start);
                 }
                 let Some(element) = elements.last_mut() else {
                     return fail(

@@ -6,9 +6,9 @@ use super::header::{Element, Property, Scalar, read_header};
 use super::slots::{MEANINGS, Slots};
 use super::strokes;
 use crate::FormatError;
+use crate::indexed_faces::{Corner, IndexedFaces, NONE, Run, assemble};
 use crate::normals::{BY_ANGLE, FLAT, Smoothing};
 use crate::reading::{Oddities, Reading, Source, Texels, plain_material};
-use crate::soup::{Corner, NONE, Run, Soup, assemble};
 use crate::text::Places;
 use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb, Vec2, Vec3};
@@ -23,7 +23,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         source,
         places: &places,
         body: Body::new(source, &places, header.encoding, header.body),
-        soup: Soup::default(),
+        soup: IndexedFaces::default(),
         vertices: Slots::default(),
         triangles: None,
         edges: Vec::new(),
@@ -55,7 +55,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) source: &'a Source<'a>,
     pub(super) places: &'a Places<'a>,
     pub(super) body: Body<'a>,
-    pub(super) soup: Soup,
+    pub(super) soup: IndexedFaces,
     /// Of all faces, where nothing has to be welded.
     triangles: Option<Vec<[u32; 3]>>,
     /// Pairs of vertices.

@@ -3,8 +3,8 @@
 use super::header::Element;
 use super::read::Ply;
 use crate::FormatError;
+use crate::indexed_faces::NONE;
 use crate::reading::plain_material;
-use crate::soup::NONE;
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;
 

@@ -3,7 +3,7 @@
 use crate::text::Cursor;
 
 /// The most numbers that are looked at on a line.
-pub(super) const MOST: usize = 16;
+pub(super) const MAX: usize = 16;
 
 /// Where in a line the parts of a point stand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Columns {
     /// By the names of a first line; `None` where they do not tell where x, y and z are.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let column = |meaning: usize| {
-            names.iter().take(MOST).position(|name| {
+            names.iter().take(MAX).position(|name| {
                 let name = name.trim_matches(['"', '/', '#']).to_lowercase();
                 NAMES[meaning].contains(&name.as_str())
             })
@@ -39,11 +39,11 @@ impl Columns {
 
     /// By how many there are, and by the numbers of the first points, as programs write them: `x y z`, then an intensity, a
     /// colour, a normal, an intensity and a colour, or a colour and a normal in either order.
-    pub(super) fn guessed(count: usize, rows: &[[f64; MOST]]) -> Columns {
+    pub(super) fn guessed(count: usize, rows: &[[f64; MAX]]) -> Columns {
         let plain = Columns { position: [0, 1, 2], colour: None, intensity: None };
         let colour_at = |at: usize| Columns { colour: Some([at, at + 1, at + 2]), ..plain };
         let normals_at = |at: usize| {
-            let is_unit = |row: &[f64; MOST]| {
+            let is_unit = |row: &[f64; MAX]| {
                 let n = &row[at..at + 3];
                 (n.iter().map(|c| c * c).sum::<f64>() - 1.0).abs() < 0.02
             };
@@ -94,5 +94,5 @@ pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
 /// The words of a line.
 pub(super) fn words_of(line: &[u8]) -> Vec<&[u8]> {
     let is_between = |b: &u8| b.is_ascii_whitespace() || is_separator(*b) || *b == 0;
-    line.split(is_between).filter(|word| !word.is_empty()).take(MOST).collect()
+    line.split(is_between).filter(|word| !word.is_empty()).take(MAX).collect()
 }

@@ -1,6 +1,6 @@
 //! Reading XYZ.
 
-use super::columns::{Columns, MOST, words_of};
+use super::columns::{Columns, MAX, words_of};
 use crate::FormatError;
 use crate::cloud::Cloud;
 use crate::float::parse_f64;
@@ -40,7 +40,7 @@ struct Xyz<'a, 'o, 'r> {
 
 /// A line of numbers.
 struct Row {
-    numbers: [f64; MOST],
+    numbers: [f64; MAX],
     count: usize,
     start: usize,
 }
@@ -102,7 +102,7 @@ impl Xyz<'_, '_, '_> {
         if words.is_empty() {
             return Ok(Line::Nothing);
         }
-        let mut row = Row { numbers: [0.0; MOST], count: words.len(), start };
+        let mut row = Row { numbers: [0.0; MAX], count: words.len(), start };
         for (number, word) in row.numbers.iter_mut().zip(&words) {
             match parse_f64(word) {
                 Some(value) => *number = value,
@@ -143,7 +143,7 @@ impl Xyz<'_, '_, '_> {
     }
 
     /// The numbers of the first points, from one on.
-    fn rows_from(&mut self, start: usize) -> Result<Vec<[f64; MOST]>, FormatError> {
+    fn rows_from(&mut self, start: usize) -> Result<Vec<[f64; MAX]>, FormatError> {
         let back = self.cursor.clone();
         self.cursor.go_to(start);
         let mut rows = Vec::new();

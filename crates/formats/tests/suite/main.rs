@@ -29,6 +29,7 @@ mod ply_types;
 mod round_trips;
 mod shared_files;
 mod stl;
+mod wrong_files;
 
 use bilux_formats::{FormatError, ReadOptions, read_bytes};
 use bilux_scene::SceneBuilder;

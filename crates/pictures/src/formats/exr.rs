@@ -37,7 +37,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 pub(super) const FORMAT: &str = "EXR";
 
 /// No renderer makes so many, and every one of them costs time whatever its size.
-const MOST_CHANNELS: usize = 4096;
+const MAX_CHANNELS: usize = 4096;
 
 /// The picture is what the display window shows: beyond a part's data window it is zero. Where there are
 /// several parts, their names go in front of their channels', but for the first one with plain colours.
@@ -109,7 +109,7 @@ impl Frame {
             .first()
             .map_or(IntegerBounds::zero(), |header| header.shared_attributes.display_window);
         let (width, height) = (window.size.width() as u64, window.size.height() as u64);
-        if channels > MOST_CHANNELS {
+        if channels > MAX_CHANNELS {
             return Err(unsupported(format!("a picture of {channels} channels"), "save fewer of them"));
         }
         let pixels = limits.check(FORMAT, width, height, 4 * channels as u64)?;

@@ -33,10 +33,10 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 const FORMAT: &str = "TIFF";
 
 /// No way of packing makes so many bytes of one: what a file is too short for takes no memory.
-const MOST_OF_A_BYTE: u64 = 4096;
+const MAX_OF_A_BYTE: u64 = 4096;
 
 /// More channels than any picture has, those that are left out among them.
-const MOST_CHANNELS: u16 = 64;
+const MAX_CHANNELS: u16 = 64;
 
 /// What is multiplied into the colours.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -93,7 +93,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         return Err(PictureError::truncated(FORMAT, "a text"));
     }
     // What unpacked bytes may become at most is also what a stated length may ask for.
-    let most = u64::try_from(bytes.len()).unwrap_or(u64::MAX).saturating_mul(MOST_OF_A_BYTE);
+    let most = u64::try_from(bytes.len()).unwrap_or(u64::MAX).saturating_mul(MAX_OF_A_BYTE);
     let memory = usize::try_from(limits.max_bytes.min(most)).unwrap_or(usize::MAX);
     let mut own = tiff::decoder::Limits::default();
     own.decoding_buffer_size = memory;
@@ -121,7 +121,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         ColorType::RGBA(_) => (4, 3, opacity),
         other => return Err(unsupported(colours(other).to_owned())),
     };
-    if channels > MOST_CHANNELS || usize::from(channels) < colours + usize::from(opacity != Opacity::None) {
+    if channels > MAX_CHANNELS || usize::from(channels) < colours + usize::from(opacity != Opacity::None) {
         return Err(PictureError::invalid(
             FORMAT,
             format!("it has {channels} channels, which no picture has"),

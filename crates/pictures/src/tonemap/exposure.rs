@@ -9,7 +9,7 @@ const MIDDLE_GREY: f32 = 0.18;
 const SHARE_OF_DARK: f64 = 0.05;
 const SHARE_OF_BRIGHT: f64 = 0.05;
 /// And what is so much brighter than the middle need not come down to white.
-const MOST_STOPS: f32 = 20.0;
+const MAX_STOPS: f32 = 20.0;
 
 /// The stops by which a linear picture becomes as bright as a photograph: the mean of the logarithms of its luminances, without
 /// the darkest and the brightest, becomes that of middle grey. [Reinhard 2002, eq. 1 and 2] 0 for a black one.
@@ -27,7 +27,7 @@ pub fn auto_exposure(picture: &Picture) -> f32 {
     }
     let mean = kept.iter().map(|&l| f64::from(log2(l))).sum::<f64>() / kept.len() as f64;
     // In steps that nobody sees, so that noise does not move it.
-    let stops = (log2(MIDDLE_GREY) - mean as f32).clamp(-MOST_STOPS, MOST_STOPS);
+    let stops = (log2(MIDDLE_GREY) - mean as f32).clamp(-MAX_STOPS, MAX_STOPS);
     (stops * 16.0).round() / 16.0
 }
 

@@ -10,7 +10,7 @@ use super::{Bsdf, BsdfSample, TransportMode};
 use bilux_math::{Frame, Vec3};
 
 /// Of directions from a light, at most this part is drawn about the triangle's normal.
-const MOST_FLAT: f32 = 0.25;
+const MAX_FLAT: f32 = 0.25;
 
 impl Bsdf {
     /// Something about the normal that is seen along `view`.
@@ -56,6 +56,6 @@ impl Bsdf {
     /// are from which the normal is bent.
     fn flat(&self) -> (Frame, f32) {
         let sin = self.frame.n.cross(self.n_geom).length().min(1.0);
-        (Frame::from_normal(self.n_geom).along(self.frame.s), MOST_FLAT * sin)
+        (Frame::from_normal(self.n_geom).along(self.frame.s), MAX_FLAT * sin)
     }
 }

@@ -1,6 +1,6 @@
 //! A smooth boundary between two media that do not absorb: Fresnel's equations and Snell's law.
 
-use super::{BsdfEntry, BsdfSample, Film, Lobe, TransportMode};
+use super::{BsdfEntry, BsdfSample, Lobe, ThinFilm, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -38,7 +38,7 @@ pub struct Dielectric {
     /// A pane without thickness: both of its faces at once, straight through. [pbrt 2023, 9.5.1]
     pub thin: bool,
     /// On its outside; a pane has it on both sides.
-    pub film: Option<Film>,
+    pub film: Option<ThinFilm>,
 }
 
 impl Dielectric {

@@ -107,7 +107,7 @@ const ROUGHNESSES: usize = 16;
 /// Square roots of cosines, in even steps from 0 to 1.
 const COSINES: usize = 20;
 /// Fibres that stand more evenly than this would be all seen at once along the surface.
-const LEAST_ALPHA: f32 = 0.05;
+const MIN_ALPHA: f32 = 0.05;
 
 /// What fibres scatter at each cosine, in the steps above.
 static TABLE: LazyLock<[[f32; COSINES]; ROUGHNESSES]> = LazyLock::new(|| {
@@ -121,7 +121,7 @@ static TABLE: LazyLock<[[f32; COSINES]; ROUGHNESSES]> = LazyLock::new(|| {
 });
 
 fn inverse_alpha(roughness: f32) -> f32 {
-    1.0 / (roughness * roughness).max(LEAST_ALPHA)
+    1.0 / (roughness * roughness).max(MIN_ALPHA)
 }
 
 /// By the midpoints of a grid over half of the hemisphere; squares of steps, so that there are many near the horizon.

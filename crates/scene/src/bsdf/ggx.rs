@@ -18,7 +18,7 @@ pub struct Ggx {
 }
 
 /// Below this alpha a surface is smooth, and no direction's alpha is less: f32 holds no sharper peaks.
-const LEAST_ALPHA: f32 = 1e-3;
+const MIN_ALPHA: f32 = 1e-3;
 
 impl Ggx {
     /// No roughness at all.
@@ -33,10 +33,10 @@ impl Ggx {
     /// another across it.
     pub fn anisotropic(alpha_along: f32, alpha_across: f32, rotation: f32) -> Ggx {
         // Of two numbers `max` takes the one that is a number, if any is.
-        if !matches!(alpha_along.max(alpha_across), LEAST_ALPHA..) {
+        if !matches!(alpha_along.max(alpha_across), MIN_ALPHA..) {
             return Ggx::SMOOTH;
         }
-        let (along, across) = (alpha_along.max(LEAST_ALPHA), alpha_across.max(LEAST_ALPHA));
+        let (along, across) = (alpha_along.max(MIN_ALPHA), alpha_across.max(MIN_ALPHA));
         let (sin, cos) = if along == across { (0.0, 1.0) } else { sin_cos(rotation) };
         let xx = along * cos * cos + across * sin * sin;
         let yy = along * sin * sin + across * cos * cos;

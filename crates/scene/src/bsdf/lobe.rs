@@ -1,8 +1,8 @@
 //! A lobe, one of [`BSDFS`].
 
 use super::{
-    BsdfSample, Clear, Conductor, Dielectric, Fuzz, Gloss, Lambert, Matt, Mirror, PhongLobe, RoughDielectric,
-    TransportMode,
+    BsdfSample, CoatedDielectric, CoatedDiffuse, Conductor, Dielectric, Fuzz, Lambert, MicrofacetReflection,
+    Mirror, PhongLobe, RoughDielectric, TransportMode,
 };
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -23,11 +23,11 @@ pub enum Lobe {
     /// Rough glass.
     RoughDielectric(RoughDielectric),
     /// Facets of glass, metal or both, with what they reflect onto each other.
-    Gloss(Gloss),
+    MicrofacetReflection(MicrofacetReflection),
     /// Diffuse below a boundary.
-    Matt(Matt),
+    CoatedDiffuse(CoatedDiffuse),
     /// Glass below what covers it.
-    Clear(Clear),
+    CoatedDielectric(CoatedDielectric),
     /// Fine upright fibres.
     Fuzz(Fuzz),
 }
@@ -41,9 +41,9 @@ macro_rules! each_lobe {
             Lobe::Phong($l) => $body,
             Lobe::Conductor($l) => $body,
             Lobe::RoughDielectric($l) => $body,
-            Lobe::Gloss($l) => $body,
-            Lobe::Matt($l) => $body,
-            Lobe::Clear($l) => $body,
+            Lobe::MicrofacetReflection($l) => $body,
+            Lobe::CoatedDiffuse($l) => $body,
+            Lobe::CoatedDielectric($l) => $body,
             Lobe::Fuzz($l) => $body,
         }
     };
@@ -77,7 +77,7 @@ impl Lobe {
     pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
         match self {
             Lobe::Dielectric(lobe) => lobe.transmitted(wo),
-            Lobe::Clear(lobe) => lobe.transmitted(wo),
+            Lobe::CoatedDielectric(lobe) => lobe.transmitted(wo),
             _ => None,
         }
     }
@@ -88,7 +88,7 @@ impl Lobe {
         let (eta, dispersion, thin) = match self {
             Lobe::Dielectric(glass) => (glass.eta, glass.dispersion, glass.thin),
             Lobe::RoughDielectric(glass) => (glass.eta, glass.dispersion, glass.thin),
-            Lobe::Clear(lobe) => (lobe.glass().eta, lobe.glass().dispersion, lobe.glass().thin),
+            Lobe::CoatedDielectric(lobe) => (lobe.glass().eta, lobe.glass().dispersion, lobe.glass().thin),
             _ => return None,
         };
         (!thin).then_some((eta, dispersion))
@@ -99,7 +99,7 @@ impl Lobe {
         match self {
             Lobe::Dielectric(glass) => Lobe::Dielectric(Dielectric { eta, ..glass }),
             Lobe::RoughDielectric(glass) => glass.of_index(eta),
-            Lobe::Clear(clear) => Lobe::Clear(clear.of_index(eta)),
+            Lobe::CoatedDielectric(clear) => Lobe::CoatedDielectric(clear.of_index(eta)),
             other => other,
         }
     }
@@ -110,11 +110,13 @@ impl Lobe {
         match self {
             Lobe::Mirror(_) | Lobe::Dielectric(_) => true,
             Lobe::Conductor(lobe) => lobe.ggx.is_smooth(),
-            Lobe::Gloss(lobe) => lobe.is_delta(),
-            Lobe::Clear(lobe) => lobe.is_delta(),
-            Lobe::Lambert(_) | Lobe::Phong(_) | Lobe::RoughDielectric(_) | Lobe::Matt(_) | Lobe::Fuzz(_) => {
-                false
-            }
+            Lobe::MicrofacetReflection(lobe) => lobe.is_delta(),
+            Lobe::CoatedDielectric(lobe) => lobe.is_delta(),
+            Lobe::Lambert(_)
+            | Lobe::Phong(_)
+            | Lobe::RoughDielectric(_)
+            | Lobe::CoatedDiffuse(_)
+            | Lobe::Fuzz(_) => false,
         }
     }
 
@@ -128,8 +130,8 @@ impl Lobe {
     #[inline]
     pub fn rise(&self) -> f32 {
         match self {
-            Lobe::Gloss(lobe) => lobe.rise(),
-            Lobe::Matt(lobe) => lobe.rise(),
+            Lobe::MicrofacetReflection(lobe) => lobe.rise(),
+            Lobe::CoatedDiffuse(lobe) => lobe.rise(),
             Lobe::Fuzz(lobe) => lobe.rise(),
             _ => 0.0,
         }
@@ -157,8 +159,8 @@ pub const BSDFS: &[BsdfEntry] = &[
     super::dielectric::ENTRY,
     super::rough_dielectric::ENTRY,
     super::phong_lobe::ENTRY,
-    super::gloss::ENTRY,
-    super::matt::ENTRY,
-    super::clear::ENTRY,
+    super::microfacet_reflection::ENTRY,
+    super::coated_diffuse::ENTRY,
+    super::coated_dielectric::ENTRY,
     super::fuzz::ENTRY,
 ];

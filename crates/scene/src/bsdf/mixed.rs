@@ -1,16 +1,16 @@
 //! Mixtures of sums of lobes.
 
-use super::{Bsdf, MOST_LOBES};
+use super::{Bsdf, MAX_LOBES};
 
 impl Bsdf {
     /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal, which a coat takes on
-    /// that has its own. Lobes beyond [`MOST_LOBES`] are left out.
+    /// that has its own. Lobes beyond [`MAX_LOBES`] are left out.
     pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
         let Bsdf { frame, n_geom, bends, splits, .. } = *self;
         let mut sum = Bsdf { bends, splits, ..Bsdf::empty(frame, n_geom) };
         let parts = self.weighted().map(|(w, lobe)| (w * (1.0 - share), lobe));
         let parts = parts.chain(other.weighted().map(|(w, lobe)| (w * share, lobe)));
-        for (i, (weight, lobe)) in parts.enumerate().take(MOST_LOBES) {
+        for (i, (weight, lobe)) in parts.enumerate().take(MAX_LOBES) {
             sum.set(i, *lobe, weight);
         }
         sum

@@ -9,50 +9,50 @@
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
 mod albedo;
-mod apart;
 mod bent;
-mod clear;
+mod coated_dielectric;
+mod coated_diffuse;
+mod coating;
 mod conductor;
-mod cover;
 mod delta;
 mod dielectric;
-mod facing;
-mod film;
+mod for_wo;
 mod fuzz;
 mod ggx;
-mod gloss;
-mod grain;
 mod lambert;
 mod lobe;
-mod matt;
+mod lobe_frame;
+mod microfacet_reflection;
 mod mirror;
 mod mixed;
 mod phong_lobe;
 mod rough_dielectric;
+mod rough_diffuse;
 mod sample;
+mod thin_film;
 
 pub use albedo::Albedo;
-pub use clear::Clear;
+pub use coated_dielectric::CoatedDielectric;
+pub use coated_diffuse::CoatedDiffuse;
+pub use coating::Coating;
 pub use conductor::{Conductor, Fresnel, fresnel_conductor};
-pub use cover::Cover;
 pub use dielectric::{Dielectric, fresnel_dielectric, refract, schlick};
-pub use facing::Facing;
-pub use film::Film;
+pub use for_wo::BsdfForWo;
 pub use fuzz::{Fuzz, FuzzAlbedo};
 pub use ggx::Ggx;
-pub use gloss::Gloss;
-pub use grain::Grain;
 pub use lambert::Lambert;
 pub use lobe::{BSDFS, BsdfEntry, Lobe};
-pub use matt::Matt;
+pub use microfacet_reflection::MicrofacetReflection;
 pub use mirror::Mirror;
 pub use phong_lobe::PhongLobe;
 pub use rough_dielectric::RoughDielectric;
+pub use rough_diffuse::RoughDiffuse;
 pub use sample::BsdfSample;
+pub use thin_film::ThinFilm;
 
 use crate::wavelength::Wavelength;
-use apart::Apart;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
+use lobe_frame::LobeFrame;
 
 /// What is carried along a path: radiance from the lights, or importance from the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +75,7 @@ impl TransportMode {
 }
 
 /// Where a shading normal raises importance by more than this, its direction is the surface's own but for rounding.
-const MOST_TURNED: f32 = (1u64 << 60) as f32;
+const MAX_TURNED: f32 = (1u64 << 60) as f32;
 
 /// A sum of lobes at a point of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -83,23 +83,23 @@ pub struct Bsdf {
     frame: Frame,
     n_geom: Vec3,
     /// Those that there are, without gaps, come first.
-    lobes: [Option<Lobe>; MOST_LOBES],
+    lobes: [Option<Lobe>; MAX_LOBES],
     /// What each lobe's light is multiplied by.
-    weights: [f32; MOST_LOBES],
+    weights: [f32; MAX_LOBES],
     /// By how much each lobe is chosen: weight times strength.
-    strengths: [f32; MOST_LOBES],
+    strengths: [f32; MAX_LOBES],
     total_strength: f32,
     /// What the strengths gain where they are seen along the surface.
-    rises: [f32; MOST_LOBES],
+    rises: [f32; MAX_LOBES],
     total_rise: f32,
     bends: bool,
     splits: bool,
     /// A lobe about a normal of its own.
-    apart: Option<Apart>,
+    apart: Option<LobeFrame>,
 }
 
 /// So many lobes are summed at most.
-pub const MOST_LOBES: usize = 5;
+pub const MAX_LOBES: usize = 5;
 
 impl Bsdf {
     /// A lobe around a shading normal.
@@ -110,10 +110,10 @@ impl Bsdf {
             frame: Frame::from_normal(n_shade),
             n_geom,
             lobes: [Some(lobe), None, None, None, None],
-            weights: [1.0; MOST_LOBES],
+            weights: [1.0; MAX_LOBES],
             strengths: [strength, 0.0, 0.0, 0.0, 0.0],
             total_strength: strength,
-            rises: [0.0; MOST_LOBES],
+            rises: [0.0; MAX_LOBES],
             total_rise: 0.0,
             bends: false,
             splits: false,
@@ -121,10 +121,10 @@ impl Bsdf {
         }
     }
 
-    /// A sum of at most [`MOST_LOBES`] lobes around a shading normal.
+    /// A sum of at most [`MAX_LOBES`] lobes around a shading normal.
     pub fn new<const N: usize>(n_shade: Vec3, n_geom: Vec3, lobes: [Option<Lobe>; N]) -> Bsdf {
         let mut sum = Bsdf::empty(Frame::from_normal(n_shade), n_geom);
-        for (i, lobe) in lobes.into_iter().flatten().take(MOST_LOBES).enumerate() {
+        for (i, lobe) in lobes.into_iter().flatten().take(MAX_LOBES).enumerate() {
             sum.set(i, lobe, 1.0);
         }
         sum
@@ -136,11 +136,11 @@ impl Bsdf {
         Bsdf {
             frame,
             n_geom,
-            lobes: [None; MOST_LOBES],
-            weights: [1.0; MOST_LOBES],
-            strengths: [0.0; MOST_LOBES],
+            lobes: [None; MAX_LOBES],
+            weights: [1.0; MAX_LOBES],
+            strengths: [0.0; MAX_LOBES],
             total_strength: 0.0,
-            rises: [0.0; MOST_LOBES],
+            rises: [0.0; MAX_LOBES],
             total_rise: 0.0,
             bends: false,
             splits: false,
@@ -165,7 +165,7 @@ impl Bsdf {
     /// How much of the rises counts for light that is known to come along `wo`: what Schlick's law adds.
     #[inline]
     fn risen(&self, wo: Vec3) -> f32 {
-        if self.rises == [0.0; MOST_LOBES] {
+        if self.rises == [0.0; MAX_LOBES] {
             return 0.0;
         }
         let m = (1.0 - wo.dot(self.frame.n).abs()).clamp(0.0, 1.0);
@@ -340,7 +340,7 @@ impl Bsdf {
         }
         let turned = wo.dot(n).abs() * wi.dot(self.n_geom).abs();
         let ratio = turned / (wo.dot(self.n_geom).abs() * wi.dot(n).abs());
-        if ratio < MOST_TURNED { scattered * ratio } else { Rgb::BLACK }
+        if ratio < MAX_TURNED { scattered * ratio } else { Rgb::BLACK }
     }
 
     /// True when what is reflected stays on its side of the triangle, and what is transmitted does not.
@@ -356,7 +356,7 @@ impl Bsdf {
         let total = self.total_strength + self.total_rise * risen;
         let mut rest = u * total;
         let mut last = None;
-        for i in 0..MOST_LOBES {
+        for i in 0..MAX_LOBES {
             let strength = self.strengths[i] + self.rises[i] * risen;
             if strength <= 0.0 {
                 continue;

@@ -2,7 +2,9 @@
 
 use super::conductor::facet_between;
 use super::dielectric::shares;
-use super::{BsdfEntry, BsdfSample, Dielectric, Film, Ggx, Lobe, TransportMode, fresnel_dielectric, refract};
+use super::{
+    BsdfEntry, BsdfSample, Dielectric, Ggx, Lobe, ThinFilm, TransportMode, fresnel_dielectric, refract,
+};
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
@@ -52,7 +54,7 @@ pub struct RoughDielectric {
     /// How its facets are turned; not smooth.
     pub ggx: Ggx,
     /// On its outside; a pane has it on both sides.
-    pub film: Option<Film>,
+    pub film: Option<ThinFilm>,
 }
 
 impl RoughDielectric {

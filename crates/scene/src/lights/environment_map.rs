@@ -46,7 +46,7 @@ struct Chances {
 }
 
 /// So many cells at most on each side, of pictures however large.
-const MOST: (usize, usize) = (2048, 1024);
+const MAX: (usize, usize) = (2048, 1024);
 /// So many rows are looked at to add up what a small picture gives.
 const FINE: usize = 512;
 /// Even where the picture is black a direction has this share of an even sky's density.
@@ -57,7 +57,7 @@ impl EnvironmentMap {
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
         // Densities are of texels.
         let texture = texture.pictured(false).map_or(texture, |(picture, _)| Arc::new(picture));
-        let (columns, rows) = (texture.width().min(MOST.0), texture.height().min(MOST.1));
+        let (columns, rows) = (texture.width().min(MAX.0), texture.height().min(MAX.1));
         let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
         let mut map = EnvironmentMap {
             texture,

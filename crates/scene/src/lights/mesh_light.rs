@@ -22,7 +22,7 @@ pub struct MeshLight {
     middle: Vec3,
     motion: Motion,
     /// The triangles where they are; none when they move.
-    resting: Vec<Facet>,
+    resting: Vec<LightTriangle>,
     /// The mean over its area.
     radiance: Rgb,
     picture: Option<Picture>,
@@ -64,11 +64,11 @@ impl Picture {
 
 /// Triangles get at least this part of the mean brightness as theirs, since the mean of some points may miss what is
 /// bright in them.
-const LEAST_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.1;
 
 /// A triangle where it is at a moment.
 #[derive(Clone, Copy)]
-struct Facet {
+struct LightTriangle {
     corners: [Vec3; 3],
     /// Unit, towards the front; zero where it has no area.
     normal: Vec3,
@@ -147,14 +147,14 @@ impl MeshLight {
         self.triangles[triangle].map(|p| to_world.point(p))
     }
 
-    fn facet(&self, triangle: usize, time: f32) -> Facet {
+    fn facet(&self, triangle: usize, time: f32) -> LightTriangle {
         if let Some(resting) = self.resting.get(triangle) {
             return *resting;
         }
         let corners @ [a, b, c] = self.corners(triangle, time);
         let normal = (b - a).cross(c - a);
         let pdf_area = self.share(triangle) / (0.5 * normal.length());
-        Facet { corners, normal: normal.normalize_or_zero() * self.turn, pdf_area }
+        LightTriangle { corners, normal: normal.normalize_or_zero() * self.turn, pdf_area }
     }
 
     /// The triangle that a number picks by area.
@@ -178,7 +178,7 @@ impl MeshLight {
     }
 
     /// A point, its triangle and what it gives out.
-    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, Facet, Rgb) {
+    fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, LightTriangle, Rgb) {
         let (triangle, weights) = self.sample_weights(u);
         let facet = self.facet(triangle, time);
         (blend(&facet.corners, weights), facet, self.radiance(triangle, weights))
@@ -200,7 +200,7 @@ impl MeshLight {
         direction: Vec3,
         pdf_emission: f32,
     ) -> Option<EmissionSample> {
-        let Facet { normal, pdf_area, .. } = self.facet(triangle, time);
+        let LightTriangle { normal, pdf_area, .. } = self.facet(triangle, time);
         let (p, p_error) = self.point_with_error(triangle, weights, time);
         (pdf_emission.is_finite() && pdf_emission > 0.0).then(|| EmissionSample {
             p,
@@ -228,7 +228,7 @@ fn weights_by_brightness(picture: &Picture, areas: &[f64]) -> (Rgb, Vec<f64>) {
     let total: f64 = areas.iter().sum();
     let means: Vec<Rgb> = (0..areas.len()).map(|i| picture.mean(i)).collect();
     let mean: Rgb = means.iter().zip(areas).map(|(mean, area)| *mean * (area / total) as f32).sum();
-    let least = LEAST_SHARE * f64::from(mean.luminance());
+    let least = MIN_SHARE * f64::from(mean.luminance());
     let weight = |(mean, area): (&Rgb, &f64)| area * (f64::from(mean.luminance()) + least);
     let weights = if least > 0.0 { means.iter().zip(areas).map(weight).collect() } else { areas.to_vec() };
     (mean, weights)
@@ -257,7 +257,7 @@ fn finite_or_zero(x: f64) -> f64 {
 
 impl Light for MeshLight {
     fn sample_li(&self, from: Vec3, time: f32, u: Vec2) -> Option<LightSample> {
-        let (point, Facet { corners, normal, pdf_area }, li) = self.sample_point(time, u);
+        let (point, LightTriangle { corners, normal, pdf_area }, li) = self.sample_point(time, u);
         let to_light = point - from;
         let distance2 = to_light.length_squared();
         let wi = to_light.try_normalize()?;
@@ -299,7 +299,7 @@ impl Light for MeshLight {
         u_direction: Vec2,
     ) -> Option<EmissionSample> {
         let (triangle, weights) = self.sample_weights(u_point);
-        let Facet { normal, pdf_area, .. } = self.facet(triangle, time);
+        let LightTriangle { normal, pdf_area, .. } = self.facet(triangle, time);
         let (n_light, u) = match self.sides {
             Sides::Front => (normal, u_direction),
             // Each takes half of the numbers.
@@ -313,7 +313,7 @@ impl Light for MeshLight {
 
     fn sample_le_aimed(&self, _: &Aabb, time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let (triangle, weights) = self.sample_weights(u);
-        let (Facet { normal, pdf_area, .. }, direction) =
+        let (LightTriangle { normal, pdf_area, .. }, direction) =
             (self.facet(triangle, time), warp::square_to_sphere(aim).normalize());
         let leaves = self.sides == Sides::Both || normal.dot(direction) > 0.0;
         leaves.then(|| self.ray((triangle, weights), time, direction, pdf_area)).flatten()
@@ -346,7 +346,7 @@ impl Light for MeshLight {
 
     fn classic(&self, from: Vec3, time: f32, u: Vec2, extent: f32) -> Option<ClassicLight> {
         let middle = self.middle(time);
-        let (point, Facet { corners, normal, .. }, _) = self.sample_point(time, u);
+        let (point, LightTriangle { corners, normal, .. }, _) = self.sample_point(time, u);
         let position = middle + (point - middle) * extent;
         let wi = (position - from).try_normalize()?;
         let cos = normal.dot(wi);

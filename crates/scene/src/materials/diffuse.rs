@@ -4,7 +4,7 @@ use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,
     VISIBLE_SIDES, colour_map, number_map, reflectance,
 };
-use crate::bsdf::{Albedo, Bsdf, Cover, Lambert, Lobe, Matt};
+use crate::bsdf::{Albedo, Bsdf, CoatedDiffuse, Coating, Lambert, Lobe};
 use crate::classic::ClassicMaterial;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, NumberMap};
@@ -61,7 +61,9 @@ impl Material for Diffuse {
         let albedo = self.albedo(surface);
         let roughness = self.roughness.at(surface.uvs());
         let lobe = if roughness > 0.0 {
-            Lobe::Matt(Matt::new(albedo, Albedo::NONE, Cover::NONE).rough(roughness, albedo))
+            Lobe::CoatedDiffuse(
+                CoatedDiffuse::new(albedo, Albedo::NONE, Coating::NONE).rough(roughness, albedo),
+            )
         } else {
             Lobe::Lambert(Lambert { albedo })
         };

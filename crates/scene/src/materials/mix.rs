@@ -1,7 +1,7 @@
 //! `mix`: two materials in one place, each for a share of the light.
 
-use super::{Ingredients, Material, MaterialEntry, NORMAL, NORMAL_SCALE, Nested, OPACITY, number_map};
-use crate::bsdf::{Bsdf, MOST_LOBES};
+use super::{Material, MaterialEntry, MaterialInputs, NORMAL, NORMAL_SCALE, Nested, OPACITY, number_map};
+use crate::bsdf::{Bsdf, MAX_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::lights::Sides;
@@ -35,9 +35,9 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     build: |reader, ingredients| {
         let (a, b) = (read_part(reader, ingredients, "a")?, read_part(reader, ingredients, "b")?);
         let lobes = a.most_lobes() + b.most_lobes();
-        if lobes > MOST_LOBES {
+        if lobes > MAX_LOBES {
             let message = format!(
-                "these materials scatter light in {lobes} ways together, and a mix has at most {MOST_LOBES}: \
+                "these materials scatter light in {lobes} ways together, and a mix has at most {MAX_LOBES}: \
                  a phong material has 3, others have 1"
             );
             return Err(SceneError::invalid(message, reader.span("a")));
@@ -50,7 +50,11 @@ const fn part(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Material, default: "" }
 }
 
-fn read_part(reader: &Reader, ingredients: &Ingredients, key: &str) -> Result<Arc<dyn Material>, SceneError> {
+fn read_part(
+    reader: &Reader,
+    ingredients: &MaterialInputs,
+    key: &str,
+) -> Result<Arc<dyn Material>, SceneError> {
     let index = reader.material(key);
     let material = ingredients.material(index, reader.span(key))?;
     if ingredients.materials[index].parameters.find("normal").is_some() {

@@ -18,12 +18,12 @@
 mod conductor;
 mod dielectric;
 mod diffuse;
-mod dressed;
+mod emission;
 mod glasses;
-mod glow;
 mod metals;
 mod mirror;
 mod mix;
+mod modifiers;
 mod normal_map;
 mod opacity;
 mod phong;
@@ -31,7 +31,7 @@ mod principled;
 mod roughness;
 mod visible;
 
-use crate::bsdf::{Bsdf, MOST_LOBES};
+use crate::bsdf::{Bsdf, MAX_LOBES};
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
 use crate::lights::Sides;
@@ -43,8 +43,8 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
 pub use conductor::straight_on;
 pub use dielectric::with_indices;
+use emission::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 pub use glasses::glass_indices;
-use glow::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 use normal_map::{COAT_NORMAL, COAT_NORMAL_SCALE, NORMAL, NORMAL_SCALE};
 use opacity::OPACITY;
 use std::sync::Arc;
@@ -131,11 +131,11 @@ pub struct MaterialEntry {
 }
 
 /// How a material is made from its parameters and what else is in the scene.
-pub type BuildMaterial = fn(&Reader, &Ingredients) -> Result<Arc<dyn Material>, SceneError>;
+pub type BuildMaterial = fn(&Reader, &MaterialInputs) -> Result<Arc<dyn Material>, SceneError>;
 
 /// What materials are made of.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Ingredients<'a> {
+pub struct MaterialInputs<'a> {
     /// The scene's textures.
     pub textures: &'a [Arc<Texture>],
     /// The scene's materials, for those that are made of others.
@@ -145,12 +145,12 @@ pub struct Ingredients<'a> {
 }
 
 /// Each way of scattering needs a material, so that no mix that is allowed is deeper.
-const DEEPEST: usize = MOST_LOBES - 1;
+const DEEPEST: usize = MAX_LOBES - 1;
 
-impl<'a> Ingredients<'a> {
+impl<'a> MaterialInputs<'a> {
     /// Those of a whole scene.
-    pub fn new(textures: &'a [Arc<Texture>], materials: &'a [Spec]) -> Ingredients<'a> {
-        Ingredients { textures, materials, depth: 0 }
+    pub fn new(textures: &'a [Arc<Texture>], materials: &'a [Spec]) -> MaterialInputs<'a> {
+        MaterialInputs { textures, materials, depth: 0 }
     }
 
     /// Another material of the scene, as a part of the one that is being made.
@@ -162,7 +162,7 @@ impl<'a> Ingredients<'a> {
             let message = format!("materials are mixed more than {DEEPEST} deep, or one with itself");
             return Err(SceneError::invalid(message, at));
         }
-        build(spec, &Ingredients { depth: self.depth + 1, ..*self })
+        build(spec, &MaterialInputs { depth: self.depth + 1, ..*self })
     }
 }
 
@@ -186,23 +186,23 @@ pub const MATERIALS: &[MaterialEntry] = &[
 ///
 /// # Errors
 /// When no row has its kind, or a parameter is wrong.
-pub fn build(spec: &Spec, ingredients: &Ingredients) -> Result<Arc<dyn Material>, SceneError> {
+pub fn build(spec: &Spec, ingredients: &MaterialInputs) -> Result<Arc<dyn Material>, SceneError> {
     let names = MATERIALS.iter().map(|row| row.entry.name);
     let row = MATERIALS
         .iter()
         .find(|row| row.entry.name == spec.kind)
         .ok_or_else(|| SceneError::unknown("material", &spec.kind, names, &spec.span))?;
     let reader = Reader::new(spec, &row.entry)?;
-    dressed::dress((row.build)(&reader, ingredients)?, row, &reader, ingredients)
+    modifiers::dress((row.build)(&reader, ingredients)?, row, &reader, ingredients)
 }
 
 /// The colour or texture under a key.
-fn colour_map(reader: &Reader, key: &str, ingredients: &Ingredients) -> Result<ColourMap, SceneError> {
+fn colour_map(reader: &Reader, key: &str, ingredients: &MaterialInputs) -> Result<ColourMap, SceneError> {
     Ok(ColourMap { colour: reader.colour(key), texture: texture(reader, key, ingredients)? })
 }
 
 /// The number or texture under a key.
-fn number_map(reader: &Reader, key: &str, ingredients: &Ingredients) -> Result<NumberMap, SceneError> {
+fn number_map(reader: &Reader, key: &str, ingredients: &MaterialInputs) -> Result<NumberMap, SceneError> {
     let range = reader.range(key).map(|x| x as f32);
     Ok(NumberMap { number: reader.number(key), range, texture: texture(reader, key, ingredients)? })
 }
@@ -210,7 +210,7 @@ fn number_map(reader: &Reader, key: &str, ingredients: &Ingredients) -> Result<N
 fn texture(
     reader: &Reader,
     key: &str,
-    ingredients: &Ingredients,
+    ingredients: &MaterialInputs,
 ) -> Result<Option<Arc<Texture>>, SceneError> {
     let Some(index) = reader.texture(key) else { return Ok(None) };
     let missing = || SceneError::invalid(format!("no texture {index}"), reader.span(key));

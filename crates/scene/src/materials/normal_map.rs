@@ -1,7 +1,7 @@
 //! Normals from a picture, for any material: red along the tangent, green across it, blue away from the surface, each
 //! from -1 to 1 (tangent space, as OpenGL and glTF have it: green is up).
 
-use super::{Ingredients, texture};
+use super::{MaterialInputs, texture};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::surface::Surface;
@@ -41,14 +41,14 @@ pub(super) struct NormalMap {
 }
 
 /// The normals that a material is given, if any.
-pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<NormalMap>, SceneError> {
+pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Option<NormalMap>, SceneError> {
     read_named(reader, [NORMAL.name, NORMAL_SCALE.name], ingredients)
 }
 
 /// The same of its coat.
 pub(super) fn read_of_coat(
     reader: &Reader,
-    ingredients: &Ingredients,
+    ingredients: &MaterialInputs,
 ) -> Result<Option<NormalMap>, SceneError> {
     read_named(reader, [COAT_NORMAL.name, COAT_NORMAL_SCALE.name], ingredients)
 }
@@ -56,7 +56,7 @@ pub(super) fn read_of_coat(
 fn read_named(
     reader: &Reader,
     [map, scale]: [&str; 2],
-    ingredients: &Ingredients,
+    ingredients: &MaterialInputs,
 ) -> Result<Option<NormalMap>, SceneError> {
     let scale = reader.number(scale);
     let map = texture(reader, map, ingredients)?;

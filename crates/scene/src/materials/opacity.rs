@@ -4,7 +4,7 @@
 //! drawn on squares, lace, gauze. Every ray decides for itself, so that what light passes through holes does is the
 //! same from both ends. See [`crate::Tracer`].
 
-use super::{Ingredients, number_map};
+use super::{MaterialInputs, number_map};
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::texture::NumberMap;
@@ -20,7 +20,7 @@ pub(super) const OPACITY: Parameter = Parameter {
 };
 
 /// What it is where there may be holes.
-pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<NumberMap>, SceneError> {
+pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Option<NumberMap>, SceneError> {
     let map = number_map(reader, OPACITY.name, ingredients)?;
     Ok((map.texture.is_some() || map.number < 1.0).then_some(map))
 }

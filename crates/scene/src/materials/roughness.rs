@@ -1,6 +1,6 @@
 //! How rough a surface is, as users say it.
 
-use super::{Ingredients, number_map};
+use super::{MaterialInputs, number_map};
 use crate::bsdf::Ggx;
 use crate::error::SceneError;
 use crate::parameters::Reader;
@@ -20,7 +20,7 @@ pub(super) struct Roughness {
 }
 
 impl Roughness {
-    pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Roughness, SceneError> {
+    pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Roughness, SceneError> {
         let (roughness, anisotropy) =
             (number_map(reader, "roughness", ingredients)?, number_map(reader, "anisotropy", ingredients)?);
         let rotation = reader.number("rotation").to_radians();

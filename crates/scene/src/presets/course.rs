@@ -37,7 +37,7 @@ pub(super) const SECOND: PresetEntry = PresetEntry {
 };
 
 /// A camera of the course, angles in degrees.
-pub(super) struct View {
+pub(super) struct CourseView {
     /// The middle of the image plane, not the eye.
     position: Vec3,
     look_at: Vec3,
@@ -45,17 +45,17 @@ pub(super) struct View {
     fov: f32,
 }
 
-pub(super) const FIRST_VIEW: View =
-    View { position: Vec3::new(-10.0, 5.0, -10.0), look_at: Vec3::ZERO, up: Vec3::Y, fov: 35.0 };
+pub(super) const FIRST_VIEW: CourseView =
+    CourseView { position: Vec3::new(-10.0, 5.0, -10.0), look_at: Vec3::ZERO, up: Vec3::Y, fov: 35.0 };
 
-const SECOND_VIEW: View = View {
+const SECOND_VIEW: CourseView = CourseView {
     position: Vec3::new(13.2, -8.7, -14.8),
     look_at: Vec3::new(0.8, 0.7, 4.5),
     up: Vec3::new(-0.2, 1.0, 0.0),
     fov: 53.7,
 };
 
-impl View {
+impl CourseView {
     /// The camera's x, y and z axes in the world, as columns. Left-handed means that x = y × z points to the
     /// right of the picture while z goes into it.
     pub(super) fn axes(&self) -> DMat3 {
@@ -105,7 +105,7 @@ const LIGHTS: [(Vec3, Rgb); 3] = [
 
 const BACKGROUND: [u8; 3] = [128, 112, 96];
 
-fn apply(scene: &mut SceneBuilder, view: &View) -> Result<(), SceneError> {
+fn apply(scene: &mut SceneBuilder, view: &CourseView) -> Result<(), SceneError> {
     move_all(scene, &model())?;
     let plastic = Spec::new("course", "phong")
         .with("ka", 0.1f32)
@@ -179,7 +179,7 @@ mod tests {
     ];
 
     /// The camera of that picture.
-    const EXAMPLE: View = View {
+    const EXAMPLE: CourseView = CourseView {
         position: Vec3::new(-3.0, -25.0, -4.0),
         look_at: Vec3::new(7.8, 0.7, 6.5),
         up: Vec3::new(-0.2, 1.0, 0.0),

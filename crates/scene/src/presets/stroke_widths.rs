@@ -8,9 +8,9 @@ use bilux_math::Vec3;
 /// Vertices that are looked at.
 const PLACES: usize = 512;
 /// The least diameter, in pixels.
-const LEAST: f32 = 1.5;
+const MIN: f32 = 1.5;
 /// The greatest diameter of points, and the diameter of lines, in parts of the picture's shorter side.
-const LARGE: f32 = 1.0 / 80.0;
+const LARGE: f32 = 1.0 / 50.0;
 const LINE: f32 = 1.0 / 256.0;
 /// Points cover the ground between them where they lie as on a surface: their diameter, beside their mean distance.
 const COVERING: f32 = 1.3;
@@ -56,9 +56,9 @@ pub fn set_stroke_widths(scene: &mut SceneBuilder, camera: &str, size: [u32; 2],
         (e.x * e.y + e.y * e.z + e.z * e.x) * 0.7
     };
     let apart = (area / points.max(1) as f32).sqrt();
-    let covering = if apart.is_finite() { apart * COVERING } else { LEAST };
+    let covering = if apart.is_finite() { apart * COVERING } else { MIN };
     scene.stroke_widths = StrokeWidths {
-        points: covering.clamp(LEAST, (side * LARGE).max(LEAST)) * pixel,
-        lines: (side * LINE).max(LEAST) * pixel,
+        points: covering.clamp(MIN, (side * LARGE).max(MIN)) * pixel,
+        lines: (side * LINE).max(MIN) * pixel,
     };
 }

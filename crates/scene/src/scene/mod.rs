@@ -6,7 +6,7 @@ mod tracer;
 use crate::builder::AccelChoice;
 use crate::cameras::Camera;
 use crate::corners::corner_uvs;
-use crate::footprint::View;
+use crate::footprint::FootprintView;
 use crate::geometry::Geometry;
 use crate::lights::{Light, MeshLight, Picture, Sides, SphereLight};
 use crate::materials::Material;
@@ -141,7 +141,7 @@ pub struct Scene {
     query: Query<'static>,
     shutter: [f32; 2],
     /// For whom textures are filtered.
-    view: Option<View>,
+    view: Option<FootprintView>,
     /// The gaps of sheets, where there are any.
     sheets: Option<Sheets>,
 }
@@ -171,10 +171,10 @@ impl Scene {
     /// The same scene with its textures filtered for pictures by a camera, of so many rows of pixels: what is finer than half
     /// a pixel is not told apart, so that fewer samples show the mean. Emission and opacity stay as they are.
     pub fn filtered(self, camera: Arc<dyn Camera>, rows: u32) -> Scene {
-        self.seen_by(View { camera, rows: rows as f32 })
+        self.seen_by(FootprintView { camera, rows: rows as f32 })
     }
 
-    fn seen_by(self, view: View) -> Scene {
+    fn seen_by(self, view: FootprintView) -> Scene {
         let SceneParts { geometry, textures, .. } = &*self.parts;
         if textures.iter().all(Vec::is_empty) {
             return self;

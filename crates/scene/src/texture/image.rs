@@ -1,7 +1,7 @@
 //! The texels of pictures, held as compactly as they came.
 
 use super::Channel;
-use super::formula::{Formula, centre};
+use super::procedural::{Formula, centre};
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use std::sync::LazyLock;

@@ -1,13 +1,13 @@
 //! Pictures on surfaces, in texels and by formula.
 
-mod formula;
 mod image;
 pub(crate) mod levels;
+mod procedural;
 mod sampling;
 
-pub use formula::{BuildPattern, Formula, Parts, Pattern, TEXTURES, TextureEntry};
 pub use image::{Image, Texels};
 pub use levels::Levels;
+pub use procedural::{BuildPattern, Formula, Parts, Pattern, TEXTURES, TextureEntry};
 pub use sampling::{Filter, UvTransform, Wrap};
 
 use bilux_math::{Rgb, Vec2};

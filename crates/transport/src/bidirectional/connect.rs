@@ -1,7 +1,7 @@
 //! How subpaths are joined: with the camera, with a point on a light, or with each other.
 
 use super::walk::{Vertex, count};
-use super::{Found, Lanes, Photons, Step, Tally, Way, Ways, favour};
+use super::{Contribution, Lanes, Photons, Step, Tally, Technique, TechniqueCounts, favour};
 use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
@@ -11,8 +11,8 @@ use bilux_scene::{Ray, TransportMode};
 pub(crate) fn to_camera<const N: usize>(
     task: &mut Task,
     y: &Vertex<N>,
-    ways: &Ways<N>,
-) -> Option<(Vec2, Found<N>)> {
+    techniques: &TechniqueCounts<N>,
+) -> Option<(Vec2, Contribution<N>)> {
     let u_lens = task.sampler.next_2d();
     let lens = if task.camera.has_lens() { warp::sample_disc(u_lens) } else { Vec2::ZERO };
     let seen = task.camera.connect(y.surface.p, lens, y.surface.time)?;
@@ -26,21 +26,24 @@ pub(crate) fn to_camera<const N: usize>(
     let pdf_area = seen.density * y.surface.n_geom.dot(seen.wi).abs();
     let others = y.partial.others(pdf_area, y.bsdf.pdf_solid_angle(seen.wi, y.wo, TransportMode::Radiance));
     let light = task.seen(y.beta * scattered * passed * seen.density, y.is_split());
-    Some((seen.film, Found { own: ways.splats, others, origin: y.origin, ..Found::only(light) }))
+    Some((
+        seen.film,
+        Contribution { own: techniques.splats, others, origin: y.origin, ..Contribution::only(light) },
+    ))
 }
 
 /// All vertices of a light path seen from the camera.
 pub(crate) fn show_to_camera<const N: usize>(
     task: &mut Task,
     light_path: &[Vertex<N>],
-    ways: &Ways<N>,
+    techniques: &TechniqueCounts<N>,
     tally: &mut impl Tally<N>,
 ) {
-    for y in light_path.iter().filter(|y| y.depth > 0 || ways.direct) {
+    for y in light_path.iter().filter(|y| y.depth > 0 || techniques.direct) {
         task.enter_light_vertex(y.depth);
         tally.spend(Step::Seen, 1);
-        if let Some((film, found)) = to_camera(task, y, ways) {
-            tally.there(film, Way::Joined { s: y.count(), t: 1 }, &found);
+        if let Some((film, found)) = to_camera(task, y, techniques) {
+            tally.there(film, Technique::Joined { s: y.count(), t: 1 }, &found);
         }
     }
 }
@@ -51,8 +54,8 @@ pub(crate) fn to_light<const N: usize>(
     z: &Vertex<N>,
     index: usize,
     u: Vec2,
-    ways: &Ways<N>,
-) -> Option<Found<N>> {
+    techniques: &TechniqueCounts<N>,
+) -> Option<Contribution<N>> {
     let probability = task.lights.probability(index);
     let scene = task.scene();
     let light = &scene.lights()[index].light;
@@ -77,10 +80,14 @@ pub(crate) fn to_light<const N: usize>(
     let cos = z.surface.n_geom.dot(sample.wi).abs();
     let arriving = pdf_emission * cos / (pdf_direct * probability * cos_light);
     let back = z.bsdf.pdf_solid_angle(sample.wi, z.wo, TransportMode::Importance);
-    let from_light = z.partial.others_of_direct(arriving, back, ways.direct);
+    let from_light = z.partial.others_of_direct(arriving, back, techniques.direct);
     let light = z.beta * scattered * sample.li * passed / (sample.pdf_solid_angle * probability);
     let light = task.seen(light, z.is_split());
-    Some(Found { others: Lanes::ONE * met + from_light, favour: favour(met), ..Found::only(light) })
+    Some(Contribution {
+        others: Lanes::ONE * met + from_light,
+        favour: favour(met),
+        ..Contribution::only(light)
+    })
 }
 
 /// A camera vertex and a light vertex (s, t > 1), and the light between them.
@@ -88,8 +95,8 @@ pub(crate) fn to_vertex<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
     y: &Vertex<N>,
-    ways: &Ways<N>,
-) -> Option<Found<N>> {
+    techniques: &TechniqueCounts<N>,
+) -> Option<Contribution<N>> {
     let between = y.surface.p - z.surface.p;
     let distance2 = between.length_squared();
     let direction = between.try_normalize()?;
@@ -112,7 +119,7 @@ pub(crate) fn to_vertex<const N: usize>(
         z.partial.others(pdf_y * cos(z) / distance2, z.bsdf.pdf_solid_angle(direction, z.wo, back_z));
     let light = task.seen(z.beta * f_z * f_y * y.beta * passed / distance2, z.is_split() || y.is_split());
     let others = from_camera + from_light;
-    Some(Found { own: ways.joins, others, origin: y.origin, ..Found::only(light) })
+    Some(Contribution { own: techniques.joins, others, origin: y.origin, ..Contribution::only(light) })
 }
 
 /// A camera vertex and all photons around it, with the light that each brings.
@@ -120,7 +127,7 @@ pub(crate) fn merged<const N: usize>(
     task: &Task,
     photons: &Photons<N>,
     z: &Vertex<N>,
-    mut visit: impl FnMut(Way, &Found<N>),
+    mut visit: impl FnMut(Technique, &Contribution<N>),
 ) {
     let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
     photons.around(z.surface.p, |spot, y| {
@@ -134,9 +141,9 @@ pub(crate) fn merged<const N: usize>(
         let cos = y.n_geom.dot(y.wo).abs();
         let others = y.joined + y.d_vc * pdf + z.partial.before(back);
         let light = task.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || spot.is_split());
-        let way = Way::Merged { s: count(spot.depth()), t: z.count() };
-        let own = photons.ways().eta;
-        visit(way, &Found { own, others, origin: spot.origin, ..Found::only(light) });
+        let technique = Technique::Merged { s: count(spot.depth()), t: z.count() };
+        let own = photons.techniques().eta;
+        visit(technique, &Contribution { own, others, origin: spot.origin, ..Contribution::only(light) });
     });
 }
 

@@ -11,16 +11,16 @@
 
 mod connect;
 mod photons;
+mod techniques;
 mod walk;
-mod ways;
 #[cfg(test)]
 mod weights;
 
 pub(crate) use connect::{merged, show_to_camera, to_camera, to_light, to_vertex};
-pub(crate) use photons::Onlooker;
+pub(crate) use photons::LightPathVisitor;
 pub use photons::{Merging, Photons};
+pub(crate) use techniques::{Contribution, Lanes, Step, Tally, Technique, TechniqueCounts, favour};
 pub(crate) use walk::{Vertex, Walk, count};
-pub(crate) use ways::{Found, Lanes, Step, Tally, Way, Ways, favour};
 
 use crate::emission::Start;
 use crate::task::Task;
@@ -62,9 +62,9 @@ impl<const N: usize> Partial<N> {
     }
 
     /// Of a camera path that has met its first surface, given the density of doing so over area.
-    pub(crate) fn of_camera(pdf_area: f32, ways: &Ways<N>) -> Partial<N> {
+    pub(crate) fn of_camera(pdf_area: f32, techniques: &TechniqueCounts<N>) -> Partial<N> {
         let d_vcm = 1.0 / pdf_area;
-        Partial { d_vcm, shown: ways.splats * d_vcm, merged: ways.eta, ..Partial::START }
+        Partial { d_vcm, shown: techniques.splats * d_vcm, merged: techniques.eta, ..Partial::START }
     }
 
     /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`, where `joins` ways join
@@ -136,10 +136,10 @@ pub(crate) fn light_vertices<const N: usize>(
     task: &mut Task,
     time: f32,
     roulette_depth: u32,
-    ways: &Ways<N>,
+    techniques: &TechniqueCounts<N>,
 ) -> Vec<Vertex<N>> {
     let mut vertices = Vec::new();
-    let Some(mut walk) = begin_at_light(task, time, ways) else { return vertices };
+    let Some(mut walk) = begin_at_light(task, time, techniques) else { return vertices };
     while let Some(vertex) = walk.meet(task) {
         // The last event of the longest path is at the camera's side.
         let ends = vertex.depth + 1 >= task.max_depth;
@@ -156,7 +156,11 @@ pub(crate) fn light_vertices<const N: usize>(
     vertices
 }
 
-fn begin_at_light<'w, const N: usize>(task: &mut Task, time: f32, ways: &'w Ways<N>) -> Option<Walk<'w, N>> {
+fn begin_at_light<'w, const N: usize>(
+    task: &mut Task,
+    time: f32,
+    techniques: &'w TechniqueCounts<N>,
+) -> Option<Walk<'w, N>> {
     task.sampler.enter(LIGHT_STREAM);
     let (u_light, u_point, u_direction) =
         (task.sampler.next_1d(), task.sampler.next_2d(), task.sampler.next_2d());
@@ -174,35 +178,35 @@ fn begin_at_light<'w, const N: usize>(task: &mut Task, time: f32, ways: &'w Ways
     // The start of a ray from infinity is known by area already.
     let by_area = light.is_infinite();
     let spawned = ray.spawn(time);
-    let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, ways);
+    let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, techniques);
     Some(walk.leaving(start))
 }
 
 /// Light that a camera path meets by chance (s = 0): its radiance, and the densities with which the same path would have
 /// been found by picking the point on the light, and by a path from it.
-pub(crate) struct Met {
+pub(crate) struct EmitterHit {
     pub(crate) radiance: Rgb,
     /// Over area; from infinity, over solid angle.
     pdf_direct: f32,
     pdf_emission: f32,
 }
 
-impl Met {
+impl EmitterHit {
     /// What no other way finds.
-    fn only(radiance: Rgb) -> Met {
-        Met { radiance, pdf_direct: 0.0, pdf_emission: 0.0 }
+    fn only(radiance: Rgb) -> EmitterHit {
+        EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0 }
     }
 
     /// The same for a camera path that carries `beta`.
-    pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Found<N> {
+    pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Contribution<N> {
         let picked = partial.d_vcm * self.pdf_direct;
         let others = Lanes::ONE * picked + partial.d_vc * self.pdf_emission;
-        Found { favour: favour(picked), others, ..Found::only(beta * self.radiance) }
+        Contribution { favour: favour(picked), others, ..Contribution::only(beta * self.radiance) }
     }
 }
 
 /// Light from infinity that a camera path meets where it leaves the scene.
-pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(Met)) {
+pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(EmitterHit)) {
     let scene = task.scene();
     let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
     for (index, light) in scene.lights().iter().enumerate() {
@@ -212,29 +216,29 @@ pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut vis
             continue;
         }
         if walk.depth == 0 || light.is_backdrop() {
-            visit(Met::only(radiance));
+            visit(EmitterHit::only(radiance));
             continue;
         }
         let pdf = light.li_pdf_solid_angle(origin, direction, None);
         let pdf_emission = task.emission.pdf(scene, index, origin, pdf, -direction, 1.0);
-        visit(Met { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
+        visit(EmitterHit { radiance, pdf_direct: pdf * task.lights.probability(index), pdf_emission });
     }
 }
 
 /// What a surface gives out towards `wo`; `None` where nothing.
-pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Met> {
+pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<EmitterHit> {
     let scene = task.scene();
     let radiance = scene.emission(surface, wo);
     if radiance.is_black() {
         return None;
     }
     let Some(index) = scene.light_index_of(surface.object) else {
-        return Some(Met::only(radiance));
+        return Some(EmitterHit::only(radiance));
     };
     let light = &scene.lights()[index].light;
     // As the vertex before would have picked it.
     let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = task.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);
-    Some(Met { radiance, pdf_direct: pdf_area * task.lights.probability(index), pdf_emission })
+    Some(EmitterHit { radiance, pdf_direct: pdf_area * task.lights.probability(index), pdf_emission })
 }

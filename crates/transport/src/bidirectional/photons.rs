@@ -1,8 +1,8 @@
 //! What the light paths of one iteration leave in the scene, to be found by place: the vertices that camera paths merge
 //! with. [Jensen 1996; Georgiev 2012]
 
-use super::{Lanes, Tally, Vertex, Ways, light_vertices, show_to_camera};
-use crate::eye::Eye;
+use super::{Lanes, Tally, TechniqueCounts, Vertex, light_vertices, show_to_camera};
+use crate::camera_rays::CameraRays;
 use crate::window::Window;
 use bilux_math::hash::mix64;
 use bilux_math::{Rgb, Vec3};
@@ -21,7 +21,7 @@ pub struct Merging {
     /// Of the light paths that there would be, one for each pixel, those that are followed: 0..=1.
     pub part: f32,
     /// Which ways of finding a path there are beside merging.
-    pub(crate) ways: Ways,
+    pub(crate) techniques: TechniqueCounts,
 }
 
 impl Merging {
@@ -32,15 +32,16 @@ impl Merging {
     }
 
     /// All ways of an iteration whose photons give this η, and that has so many light paths for each pixel.
-    pub(crate) fn ways(&self, eta: f32, light_paths: f32) -> Ways {
-        let splats = if self.shows_photons() { self.ways.splats * light_paths } else { self.ways.splats };
-        Ways { eta: Lanes([eta]), splats, ..self.ways }
+    pub(crate) fn techniques(&self, eta: f32, light_paths: f32) -> TechniqueCounts {
+        let splats =
+            if self.shows_photons() { self.techniques.splats * light_paths } else { self.techniques.splats };
+        TechniqueCounts { eta: Lanes([eta]), splats, ..self.techniques }
     }
 
     /// True where light paths are seen from the camera but not joined with its paths: those of the photons then do for
     /// both.
     pub(crate) fn shows_photons(&self) -> bool {
-        self.radius > 0.0 && self.ways.splats != Lanes::ZERO && self.ways.joins == Lanes::ZERO
+        self.radius > 0.0 && self.techniques.splats != Lanes::ZERO && self.techniques.joins == Lanes::ZERO
     }
 
     /// The radius of an iteration, in metres: it depends on nothing but the iteration's number. [Knaus 2011, eq. 20]
@@ -95,7 +96,7 @@ pub(crate) struct Photon<const N: usize = 1> {
 pub struct Photons<const N: usize = 1> {
     radius: f32,
     /// With the expected light paths on each square metre that they are merged over: η of [Georgiev 2012].
-    ways: Ways<N>,
+    techniques: TechniqueCounts<N>,
     spots: Vec<Spot>,
     photons: Vec<Photon<N>>,
     /// `starts[h]..starts[h + 1]` are the photons of all cells whose hash is `h`.
@@ -103,7 +104,7 @@ pub struct Photons<const N: usize = 1> {
 }
 
 /// Who takes what the camera sees of light paths while they are followed, tile by tile on all threads.
-pub(crate) trait Onlooker<const N: usize>: Sync {
+pub(crate) trait LightPathVisitor<const N: usize>: Sync {
     type Tally: Tally<N>;
     /// For one tile.
     fn tally(&self) -> Self::Tally;
@@ -116,14 +117,14 @@ pub(crate) trait Onlooker<const N: usize>: Sync {
 impl<const N: usize> Photons<N> {
     /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many. Also how
     /// many rays that took. `ways` are all ways there are, given η and the number of light paths for each pixel. What the
-    /// camera sees of them goes to the `onlooker`.
-    pub(crate) fn trace<O: Onlooker<N>>(
-        eye: &Eye,
+    /// camera sees of them goes to the `visitor`.
+    pub(crate) fn trace<O: LightPathVisitor<N>>(
+        eye: &CameraRays,
         merging: &Merging,
         tiles: &[Window],
         iteration: u32,
-        ways: impl FnOnce(f32, f32) -> Ways<N>,
-        onlooker: Option<&O>,
+        techniques: impl FnOnce(f32, f32) -> TechniqueCounts<N>,
+        visitor: Option<&O>,
     ) -> (Photons<N>, Counters) {
         let scene = eye.scene;
         let pixels: usize = tiles.iter().map(Window::pixels).sum();
@@ -138,23 +139,25 @@ impl<const N: usize> Photons<N> {
             .map(|tile| (0..tile.pixels()).filter(|&i| is_followed(tile.position(i))).count())
             .sum::<usize>();
         let radius = merging.radius(scene, iteration);
-        let ways = ways(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
+        let techniques =
+            techniques(merging.area(scene, iteration) * followed as f32, followed as f32 / pixels as f32);
         let of_tile = |(index, tile): (usize, &Window)| {
             let mut tracer = Tracer::new(scene, eye.settings.count_work);
             let mut photons = Vec::new();
-            let mut tally = onlooker.map(O::tally);
+            let mut tally = visitor.map(O::tally);
             for (x, y) in (0..tile.pixels()).map(|i| tile.position(i)).filter(|&place| is_followed(place)) {
                 let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-                let vertices = light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), &ways);
+                let vertices =
+                    light_vertices(&mut task, ray.time, eye.integrator.roulette_depth(), &techniques);
                 if let Some(tally) = &mut tally {
                     O::begin(tally, x, y, iteration);
-                    show_to_camera(&mut task, &vertices, &ways, tally);
+                    show_to_camera(&mut task, &vertices, &techniques, tally);
                 }
-                let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || ways.direct;
+                let is_kept = |vertex: &&Vertex<N>| vertex.depth > 0 || techniques.direct;
                 photons.extend(vertices.iter().filter(is_kept).map(Vertex::photon));
             }
-            if let (Some(onlooker), Some(tally)) = (onlooker, tally) {
-                onlooker.take(index, tally);
+            if let (Some(visitor), Some(tally)) = (visitor, tally) {
+                visitor.take(index, tally);
             }
             (photons, tracer.counters)
         };
@@ -162,12 +165,16 @@ impl<const N: usize> Photons<N> {
             tiles.par_iter().enumerate().map(of_tile).unzip();
         let mut counted = Counters::default();
         counters.into_iter().for_each(|counters| counted += counters);
-        (Photons::new(parts.concat(), radius, ways), counted)
+        (Photons::new(parts.concat(), radius, techniques), counted)
     }
 
     /// In the order of their cells, and within a cell in the order in which they are given.
-    pub(super) fn new(given: Vec<(Spot, Photon<N>)>, radius: f32, ways: Ways<N>) -> Photons<N> {
-        let mask = given.len().next_power_of_two().max(FEWEST_BUCKETS) as u32 - 1;
+    pub(super) fn new(
+        given: Vec<(Spot, Photon<N>)>,
+        radius: f32,
+        techniques: TechniqueCounts<N>,
+    ) -> Photons<N> {
+        let mask = given.len().next_power_of_two().max(MIN_BUCKETS) as u32 - 1;
         let buckets: Vec<u32> =
             given.par_iter().map(|(spot, _)| bucket(cell(spot.p, radius), mask)).collect();
         // Photons before each bucket; after the next loop but one, those up to its end.
@@ -187,12 +194,12 @@ impl<const N: usize> Photons<N> {
         starts.rotate_right(1);
         starts[0] = 0;
         let (spots, photons) = order.par_iter().map(|&i| given[i as usize]).unzip();
-        Photons { radius, ways, spots, photons, starts }
+        Photons { radius, techniques, spots, photons, starts }
     }
 
     /// All ways of finding a path that there are in this iteration.
-    pub(crate) fn ways(&self) -> &Ways<N> {
-        &self.ways
+    pub(crate) fn techniques(&self) -> &TechniqueCounts<N> {
+        &self.techniques
     }
 
     /// Calls `visit` with every photon that is no further than the radius from a point.
@@ -233,7 +240,7 @@ fn share_buckets(buckets: &[u32; 8], mask: u32) -> bool {
 }
 
 /// A cell and its neighbours on the x axis have buckets of their own.
-const FEWEST_BUCKETS: usize = 4;
+const MIN_BUCKETS: usize = 4;
 
 fn cell(p: Vec3, radius: f32) -> [i64; 3] {
     let floor = (p / (2.0 * radius)).floor();
@@ -264,7 +271,7 @@ mod tests {
             let (wo, n_geom) = (Vec3::Z, Vec3::Z);
             (spot, Photon { wo, n_geom, beta: Rgb::WHITE, joined: Lanes::ZERO, d_vc: Lanes::ZERO })
         };
-        Photons::new((0..count).map(photon).collect(), radius, Ways::CAMERA)
+        Photons::new((0..count).map(photon).collect(), radius, TechniqueCounts::CAMERA)
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A subpath while it grows, from whichever end.
 
 use super::photons::{Photon, Spot};
-use super::{Lanes, Partial, Ways};
+use super::{Lanes, Partial, TechniqueCounts};
 use crate::emission::Start;
 use crate::media::Media;
 use crate::task::Task;
@@ -82,7 +82,7 @@ pub(crate) struct Walk<'w, const N: usize = 1> {
     media: Option<Media>,
     origin: u16,
     /// How its vertices may be found otherwise.
-    ways: &'w Ways<N>,
+    techniques: &'w TechniqueCounts<N>,
 }
 
 impl<'w, const N: usize> Walk<'w, N> {
@@ -93,7 +93,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         beta: Rgb,
         partial: Partial<N>,
         by_area: bool,
-        ways: &'w Ways<N>,
+        techniques: &'w TechniqueCounts<N>,
     ) -> Walk<'w, N> {
         let full = beta.max_channel();
         Walk {
@@ -110,7 +110,7 @@ impl<'w, const N: usize> Walk<'w, N> {
             media: None,
             mode,
             origin: 0,
-            ways,
+            techniques,
         }
     }
 
@@ -142,8 +142,8 @@ impl<'w, const N: usize> Walk<'w, N> {
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
         // The first surface of a light path is joined with the light by picking a point there.
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
-        let joins = if is_at_light { Lanes::ONE } else { self.ways.joins };
-        let merged = if is_at_light && !self.ways.direct { Lanes::ZERO } else { self.ways.eta };
+        let joins = if is_at_light { Lanes::ONE } else { self.techniques.joins };
+        let merged = if is_at_light && !self.techniques.direct { Lanes::ZERO } else { self.techniques.eta };
         let distance2 = distance2 * self.picked_more(task.scene(), surface.p);
         self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins, merged);
         self.by_area = false;
@@ -160,7 +160,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         let cos = vertex.surface.n_geom.dot(sample.wi).abs();
         let back = || vertex.bsdf.pdf_solid_angle(sample.wi, vertex.wo, self.mode.reversed());
         let pdfs = (!sample.is_delta).then(|| (sample.pdf_solid_angle, back()));
-        let counts = self.ways.direct || self.mode == TransportMode::Importance;
+        let counts = self.techniques.direct || self.mode == TransportMode::Importance;
         self.partial.leave(cos, pdfs, counts);
         self.follow(vertex, &sample, task);
         self.survives(u_survival, roulette_depth)

@@ -30,7 +30,7 @@ pub(crate) const SHADOW_RULE: Parameter = Parameter {
 
 pub(crate) const SHADOWS: Parameter = Parameter {
     name: "shadows",
-    summary: "what glass does to light on its way to a surface: block it, or colour it without bending it",
+    summary: "what glass does to light on its technique to a surface: block it, or colour it without bending it",
     unit: "",
     kind: ParameterKind::Choice(&["opaque", "tinted"]),
     default: "opaque",

@@ -36,7 +36,7 @@ pub(crate) enum FresnelLaw {
 
 /// A ray in the tree.
 #[derive(Clone, Copy)]
-struct Node {
+struct RayNode {
     /// Names its stream of random numbers.
     id: u64,
     /// Scattering events before it.
@@ -47,14 +47,14 @@ struct Node {
     sigma_a: Rgb,
 }
 
-impl Node {
-    fn child(&self, branch: u64, weight: f32, sigma_a: Rgb) -> Node {
-        Node { id: hash_words([self.id, branch]), depth: self.depth + 1, weight, sigma_a }
+impl RayNode {
+    fn child(&self, branch: u64, weight: f32, sigma_a: Rgb) -> RayNode {
+        RayNode { id: hash_words([self.id, branch]), depth: self.depth + 1, weight, sigma_a }
     }
 }
 
 /// A point with what both branches need: which side the ray came from.
-struct Place<'a> {
+struct ShadingPoint<'a> {
     surface: &'a Surface,
     material: &'a ClassicMaterial,
     /// Back along the ray.
@@ -69,10 +69,10 @@ struct Place<'a> {
 impl RayTree {
     /// The intensity that comes along a camera ray.
     pub(crate) fn intensity(&self, task: &mut Task, ray: &Ray) -> Rgb {
-        self.trace(task, ray, Node { id: 1, depth: 0, weight: 1.0, sigma_a: Rgb::BLACK })
+        self.trace(task, ray, RayNode { id: 1, depth: 0, weight: 1.0, sigma_a: Rgb::BLACK })
     }
 
-    fn trace(&self, task: &mut Task, ray: &Ray, node: Node) -> Rgb {
+    fn trace(&self, task: &mut Task, ray: &Ray, node: RayNode) -> Rgb {
         let direction = Vec3::from(ray.direction);
         let Some(surface) = task.tracer.closest(ray) else {
             task.note(node.depth, || format!("leaves the scene towards {direction}"));
@@ -101,10 +101,10 @@ impl RayTree {
         surface: &Surface,
         material: &ClassicMaterial,
         eye: Vec3,
-        node: Node,
+        node: RayNode,
     ) -> Rgb {
         task.sampler.enter(node.id);
-        let place = Place::new(surface, material, eye);
+        let place = ShadingPoint::new(surface, material, eye);
         let least = self.cutoff / (16.0 * node.weight);
         let Local { ambient, diffuse, highlight } =
             self.local.illuminate(task, surface, material, eye, least);
@@ -126,7 +126,7 @@ impl RayTree {
     }
 
     /// How much of the light is reflected: all of it where Fresnel's law is not asked.
-    fn reflected_share(&self, place: &Place) -> f32 {
+    fn reflected_share(&self, place: &ShadingPoint) -> f32 {
         let material = place.material;
         if !material.fresnel {
             return 1.0;
@@ -141,7 +141,7 @@ impl RayTree {
     }
 
     /// Light from the reflected direction, times `share`.
-    fn reflected(&self, task: &mut Task, place: &Place, share: f32, node: Node) -> Rgb {
+    fn reflected(&self, task: &mut Task, place: &ShadingPoint, share: f32, node: RayNode) -> Rgb {
         let weight = node.weight * share * place.material.ks.max_channel();
         if share <= 0.0 || weight < self.cutoff {
             return Rgb::BLACK;
@@ -155,7 +155,7 @@ impl RayTree {
     }
 
     /// Light from the refracted direction, times `share`; none under total internal reflection.
-    fn refracted(&self, task: &mut Task, place: &Place, share: f32, node: Node) -> Rgb {
+    fn refracted(&self, task: &mut Task, place: &ShadingPoint, share: f32, node: RayNode) -> Rgb {
         let weight = node.weight * share * place.material.kt.max_channel();
         if share <= 0.0 || weight < self.cutoff {
             return Rgb::BLACK;
@@ -180,14 +180,14 @@ fn task_name(surface: &Surface) -> String {
     format!("object {} triangle {}", surface.object, surface.primitive.index)
 }
 
-impl<'a> Place<'a> {
-    fn new(surface: &'a Surface, material: &'a ClassicMaterial, eye: Vec3) -> Place<'a> {
+impl<'a> ShadingPoint<'a> {
+    fn new(surface: &'a Surface, material: &'a ClassicMaterial, eye: Vec3) -> ShadingPoint<'a> {
         let outside = surface.n_geom.dot(eye) >= 0.0;
         let facing = |n: Vec3| if outside { n } else { -n };
         let (n_flat, n) = (facing(surface.n_geom), facing(surface.n_shade));
         // Seen edge-on, the interpolated normal may face away; then the triangle's own has to do.
         let n = if n.dot(eye) > 0.0 { n } else { n_flat };
-        Place { surface, material, eye, n, n_flat, outside }
+        ShadingPoint { surface, material, eye, n, n_flat, outside }
     }
 
     /// Index of the far side over that of the near side. A pane is met from outside on both sides.

@@ -17,7 +17,7 @@ pub(crate) enum Shadows {
 }
 
 /// Panes that light goes through at most before it counts as blocked.
-const MOST_PANES: usize = 64;
+const MAX_PANES: usize = 64;
 
 impl Shadows {
     /// The share of a light that arrives at a point.
@@ -39,7 +39,7 @@ fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
     let scene = task.scene();
     let direction = Vec3::from(ray.direction);
     let (mut left, mut before) = (Rgb::WHITE, 0.0);
-    for _ in 0..MOST_PANES {
+    for _ in 0..MAX_PANES {
         let Some(surface) = task.tracer.closest(&ray) else { return left };
         if scene.light_of(surface.object).is_none() {
             let material = scene.material(&surface).classic(&surface);

@@ -4,8 +4,8 @@
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
-    Found, Lanes, Partial, Photons, Step, Tally, Vertex, Walk, Way, Ways, count, emitted, from_infinity,
-    light_vertices, merged, show_to_camera, to_light, to_vertex,
+    Contribution, Lanes, Partial, Photons, Step, Tally, Technique, TechniqueCounts, Vertex, Walk, count,
+    emitted, from_infinity, light_vertices, merged, show_to_camera, to_light, to_vertex,
 };
 use crate::splats::Splats;
 use crate::strategies::Layers;
@@ -17,7 +17,7 @@ use bilux_scene::{Ray, TransportMode};
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "bdpt",
-        summary: "bidirectional path tracing: paths from the camera and from the lights, joined in every way",
+        summary: "bidirectional path tracing: paths from the camera and from the lights, joined in every technique",
         source: "Veach 1997",
         parameters: &[super::ROULETTE_DEPTH],
     },
@@ -33,7 +33,7 @@ struct Bdpt {
 
 impl PixelIntegrator for Bdpt {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        of_camera_path(ray, task, &Ways::BOTH_ENDS, self.roulette_depth)
+        of_camera_path(ray, task, &TechniqueCounts::BOTH_ENDS, self.roulette_depth)
     }
 
     fn splats(&self) -> bool {
@@ -46,7 +46,8 @@ impl PixelIntegrator for Bdpt {
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let mut sum = Sum { here: Rgb::BLACK, splats };
-        BothEnds::new(&Ways::BOTH_ENDS, self.roulette_depth).sample(ray, is_wanted, task, &mut sum);
+        BothEnds::new(&TechniqueCounts::BOTH_ENDS, self.roulette_depth)
+            .sample(ray, is_wanted, task, &mut sum);
         sum.here
     }
 
@@ -55,13 +56,13 @@ impl PixelIntegrator for Bdpt {
     }
 
     fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
-        BothEnds::new(&Ways::BOTH_ENDS, self.roulette_depth).sample(ray, is_wanted, task, layers);
+        BothEnds::new(&TechniqueCounts::BOTH_ENDS, self.roulette_depth).sample(ray, is_wanted, task, layers);
     }
 }
 
 /// One path from each end, and all that is found with them.
 pub(super) struct BothEnds<'a, const N: usize = 1> {
-    ways: &'a Ways<N>,
+    techniques: &'a TechniqueCounts<N>,
     photons: Option<&'a Photons<N>>,
     /// Its own light path is seen from the camera; false where others, those of the photons, are in its place.
     shows: bool,
@@ -70,28 +71,28 @@ pub(super) struct BothEnds<'a, const N: usize = 1> {
 
 impl<'a, const N: usize> BothEnds<'a, N> {
     /// Without merging.
-    pub(super) fn new(ways: &'a Ways<N>, roulette_depth: u32) -> BothEnds<'a, N> {
-        BothEnds { ways, photons: None, shows: ways.splats != Lanes::ZERO, roulette_depth }
+    pub(super) fn new(techniques: &'a TechniqueCounts<N>, roulette_depth: u32) -> BothEnds<'a, N> {
+        BothEnds { techniques, photons: None, shows: techniques.splats != Lanes::ZERO, roulette_depth }
     }
 
     /// With photons that camera paths are merged with.
     pub(super) fn merging(photons: &'a Photons<N>, shows: bool, roulette_depth: u32) -> BothEnds<'a, N> {
-        BothEnds { ways: photons.ways(), photons: Some(photons), shows, roulette_depth }
+        BothEnds { techniques: photons.techniques(), photons: Some(photons), shows, roulette_depth }
     }
 
     /// Follows both paths; that from the camera where it `is_wanted`.
     pub(super) fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, tally: &mut impl Tally<N>) {
-        let (shows, joins) = (self.shows, self.ways.joins != Lanes::ZERO);
+        let (shows, joins) = (self.shows, self.techniques.joins != Lanes::ZERO);
         let light_path = if !shows && !joins {
             Vec::new()
         } else {
             let rays = task.tracer.counters.rays;
-            let vertices = light_vertices(task, ray.time, self.roulette_depth, self.ways);
+            let vertices = light_vertices(task, ray.time, self.roulette_depth, self.techniques);
             tally.spend(Step::Light, (task.tracer.counters.rays - rays) as usize);
             vertices
         };
         if shows {
-            show_to_camera(task, &light_path, self.ways, tally);
+            show_to_camera(task, &light_path, self.techniques, tally);
         }
         if is_wanted {
             let joined = if joins { &light_path[..] } else { &[] };
@@ -100,24 +101,30 @@ impl<'a, const N: usize> BothEnds<'a, N> {
     }
 
     fn camera_path(&self, ray: &Ray, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
-        let mut walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.ways);
+        let mut walk =
+            Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, self.techniques);
         loop {
             tally.spend(Step::Camera, 1);
             let Some(mut z) = walk.meet(task) else {
-                let way = Way::Joined { s: 0, t: count(walk.depth) };
-                from_infinity(task, &walk, |met| tally.here(way, &met.by(walk.seen(task), &walk.partial)));
+                let technique = Technique::Joined { s: 0, t: count(walk.depth) };
+                from_infinity(task, &walk, |met| {
+                    tally.here(technique, &met.by(walk.seen(task), &walk.partial))
+                });
                 return;
             };
             if z.depth == 0 {
                 let density = task.camera.density(&walk.ray, z.surface.t);
-                z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), self.ways);
+                z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), self.techniques);
                 walk.partial = z.partial;
             }
             // s = 0: the path has met a light by itself.
             if let Some(met) = emitted(task, &z.surface, z.wo) {
-                let seen = || Found::only(walk.seen(task) * met.radiance);
-                let way = Way::Joined { s: 0, t: z.count() };
-                tally.here(way, &if z.depth == 0 { seen() } else { met.by(walk.seen(task), &z.partial) });
+                let seen = || Contribution::only(walk.seen(task) * met.radiance);
+                let technique = Technique::Joined { s: 0, t: z.count() };
+                tally.here(
+                    technique,
+                    &if z.depth == 0 { seen() } else { met.by(walk.seen(task), &z.partial) },
+                );
             }
             if z.depth >= task.max_depth {
                 return;
@@ -128,7 +135,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
                 self.joins(&z, light_path, task, tally);
                 if let Some(photons) = self.photons {
                     tally.spend(Step::Lookup, 1);
-                    merged(task, photons, &z, |way, found| tally.here(way, found));
+                    merged(task, photons, &z, |technique, found| tally.here(technique, found));
                 }
             }
             if !walk.scatter(&z, self.roulette_depth, task) {
@@ -147,8 +154,8 @@ impl<'a, const N: usize> BothEnds<'a, N> {
                 continue;
             }
             tally.spend(Step::Picked, 1);
-            if let Some(found) = to_light(task, z, index, u, self.ways) {
-                tally.here(Way::Joined { s: 1, t: z.count() }, &found);
+            if let Some(found) = to_light(task, z, index, u, self.techniques) {
+                tally.here(Technique::Joined { s: 1, t: z.count() }, &found);
             }
         }
     }
@@ -158,25 +165,30 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         let max_depth = task.max_depth;
         for y in light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth) {
             tally.spend(Step::Joined, 1);
-            if let Some(found) = to_vertex(task, z, y, self.ways) {
-                tally.here(Way::Joined { s: y.count(), t: z.count() }, &found);
+            if let Some(found) = to_vertex(task, z, y, self.techniques) {
+                tally.here(Technique::Joined { s: y.count(), t: z.count() }, &found);
             }
         }
     }
 }
 
 /// What a camera path finds without a light path, weighted as if there were some.
-pub(super) fn of_camera_path(ray: &Ray, task: &mut Task, ways: &Ways, roulette_depth: u32) -> Rgb {
+pub(super) fn of_camera_path(
+    ray: &Ray,
+    task: &mut Task,
+    techniques: &TechniqueCounts,
+    roulette_depth: u32,
+) -> Rgb {
     /// Adds up what is in the pixel itself.
-    struct Here(Rgb);
-    impl Tally<1> for Here {
-        fn here(&mut self, _way: Way, found: &Found) {
+    struct PixelSum(Rgb);
+    impl Tally<1> for PixelSum {
+        fn here(&mut self, _way: Technique, found: &Contribution) {
             self.0 += found.weighted();
         }
-        fn there(&mut self, _film: Vec2, _way: Way, _found: &Found) {}
+        fn there(&mut self, _film: Vec2, _way: Technique, _found: &Contribution) {}
     }
-    let mut sum = Here(Rgb::BLACK);
-    BothEnds::new(ways, roulette_depth).camera_path(ray, &[], task, &mut sum);
+    let mut sum = PixelSum(Rgb::BLACK);
+    BothEnds::new(techniques, roulette_depth).camera_path(ray, &[], task, &mut sum);
     sum.0
 }
 
@@ -187,10 +199,10 @@ pub(super) struct Sum<'a, 's> {
 }
 
 impl Tally<1> for Sum<'_, '_> {
-    fn here(&mut self, _way: Way, found: &Found) {
+    fn here(&mut self, _way: Technique, found: &Contribution) {
         self.here += found.weighted();
     }
-    fn there(&mut self, film: Vec2, _way: Way, found: &Found) {
+    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution) {
         self.splats.add(film, found.weighted());
     }
 }

@@ -3,7 +3,7 @@
 //! by other means: it is here to show what light paths are good for, and as one of `bdpt`'s ways.
 
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{Ways, light_vertices, to_camera};
+use crate::bidirectional::{TechniqueCounts, light_vertices, to_camera};
 use crate::media::Media;
 use crate::splats::Splats;
 use crate::task::Task;
@@ -44,9 +44,9 @@ impl PixelIntegrator for Light {
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let emitted = if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK };
-        for vertex in light_vertices(task, ray.time, self.roulette_depth, &Ways::BOTH_ENDS) {
+        for vertex in light_vertices(task, ray.time, self.roulette_depth, &TechniqueCounts::BOTH_ENDS) {
             task.enter_light_vertex(vertex.depth);
-            if let Some((film, found)) = to_camera(task, &vertex, &Ways::BOTH_ENDS) {
+            if let Some((film, found)) = to_camera(task, &vertex, &TechniqueCounts::BOTH_ENDS) {
                 // There is no other way.
                 splats.add(film, found.light);
             }

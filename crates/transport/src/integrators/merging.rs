@@ -1,6 +1,6 @@
 //! What those that merge paths can be told.
 
-use crate::bidirectional::{Merging, Ways};
+use crate::bidirectional::{Merging, TechniqueCounts};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::Reader;
 
@@ -45,12 +45,12 @@ const fn switch(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }
 }
 
-pub(super) fn read(reader: &Reader, ways: Ways) -> Merging {
+pub(super) fn read(reader: &Reader, techniques: TechniqueCounts) -> Merging {
     Merging {
         radius: reader.number("radius"),
         alpha: reader.number("alpha"),
         max_light_paths: reader.integer("light_paths") as u32,
         part: 1.0,
-        ways,
+        techniques,
     }
 }

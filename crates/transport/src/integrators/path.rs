@@ -16,7 +16,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         parameters: &[
             Parameter {
                 name: "sampling",
-                summary: "how lights are found: both ways, weighted (mis), by picking points on lights, or by \
+                summary: "how lights are found: both techniques, weighted (mis), by picking points on lights, or by \
                           scattering alone",
                 unit: "",
                 kind: ParameterKind::Choice(&["mis", "lights", "scattering"]),

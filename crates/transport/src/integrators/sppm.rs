@@ -3,7 +3,9 @@
 //! [Hachisuka 2009; Knaus 2011]
 
 use super::{IntegratorEntry, PixelIntegrator, merging};
-use crate::bidirectional::{Found, Lanes, Merging, Partial, Walk, Ways, emitted, from_infinity, merged};
+use crate::bidirectional::{
+    Contribution, Lanes, Merging, Partial, TechniqueCounts, Walk, emitted, from_infinity, merged,
+};
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
@@ -22,7 +24,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     build: |reader| {
         Ok(Box::new(Sppm {
             roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: merging::read(reader, Ways::CAMERA),
+            merging: merging::read(reader, TechniqueCounts::CAMERA),
         }))
     },
 };
@@ -34,8 +36,14 @@ struct Sppm {
 
 impl PixelIntegrator for Sppm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        let mut walk =
-            Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, &Ways::CAMERA);
+        let mut walk = Walk::new(
+            TransportMode::Radiance,
+            *ray,
+            Rgb::WHITE,
+            Partial::START,
+            false,
+            &TechniqueCounts::CAMERA,
+        );
         let mut sum = Rgb::BLACK;
         loop {
             let Some(z) = walk.meet(task) else {
@@ -54,7 +62,7 @@ impl PixelIntegrator for Sppm {
             {
                 // There is no other way.
                 merged(task, photons, &z, |_, found| {
-                    sum += Found { others: Lanes::ZERO, ..*found }.weighted()
+                    sum += Contribution { others: Lanes::ZERO, ..*found }.weighted()
                 });
             }
             task.sampler.enter(u64::from(z.depth) + 1);

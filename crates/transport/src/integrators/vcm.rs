@@ -4,7 +4,7 @@
 
 use super::bdpt::{BothEnds, Sum, of_camera_path};
 use super::{IntegratorEntry, PixelIntegrator};
-use crate::bidirectional::{Lanes, Merging, Ways};
+use crate::bidirectional::{Lanes, Merging, TechniqueCounts};
 use crate::emission::Guide;
 use crate::splats::Splats;
 use crate::strategies::Layers;
@@ -33,13 +33,13 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     classic: false,
     default_spp: 64,
     build: |reader| {
-        let ways = Ways {
+        let techniques = TechniqueCounts {
             direct: reader.bool("direct"),
-            ..Ways::beside_merging(reader.bool("splats"), reader.bool("joins"))
+            ..TechniqueCounts::beside_merging(reader.bool("splats"), reader.bool("joins"))
         };
         Ok(Box::new(Vcm {
             roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: super::merging::read(reader, ways),
+            merging: super::merging::read(reader, techniques),
             guide: None,
         }))
     },
@@ -55,12 +55,12 @@ pub(super) struct Vcm {
 
 impl PixelIntegrator for Vcm {
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
-        of_camera_path(ray, task, &self.merging.ways(0.0, 1.0), self.roulette_depth)
+        of_camera_path(ray, task, &self.merging.techniques(0.0, 1.0), self.roulette_depth)
     }
 
     fn splats(&self) -> bool {
         // Where photons are shown to the camera, that is done before its paths are followed.
-        self.merging.ways.begins_at_lights() && !self.merging.shows_photons()
+        self.merging.techniques.begins_at_lights() && !self.merging.shows_photons()
     }
 
     fn merging(&self) -> Option<&Merging> {
@@ -77,10 +77,10 @@ impl PixelIntegrator for Vcm {
 
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, splats: &mut Splats) -> Rgb {
         let mut sum = Sum { here: Rgb::BLACK, splats };
-        let unmerged = self.merging.ways(0.0, 1.0);
+        let unmerged = self.merging.techniques(0.0, 1.0);
         let both_ends = match task.photons {
             Some(photons) => {
-                let shows = !self.merging.shows_photons() && self.merging.ways.splats != Lanes::ZERO;
+                let shows = !self.merging.shows_photons() && self.merging.techniques.splats != Lanes::ZERO;
                 BothEnds::merging(photons, shows, self.roulette_depth)
             }
             None => BothEnds::new(&unmerged, self.roulette_depth),
@@ -94,10 +94,10 @@ impl PixelIntegrator for Vcm {
     }
 
     fn sample_strategies(&self, ray: &Ray, is_wanted: bool, task: &mut Task, layers: &mut Layers) {
-        let unmerged = self.merging.ways(0.0, 1.0);
+        let unmerged = self.merging.techniques(0.0, 1.0);
         let both_ends = match task.photons {
             Some(photons) => {
-                let shows = photons.ways().splats != Lanes::ZERO;
+                let shows = photons.techniques().splats != Lanes::ZERO;
                 BothEnds::merging(photons, shows, self.roulette_depth)
             }
             None => BothEnds::new(&unmerged, self.roulette_depth),

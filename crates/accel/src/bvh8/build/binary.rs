@@ -19,15 +19,15 @@ pub(super) const PARALLEL: usize = 4096;
 /// the number of the pair of children (0 for a leaf), and [`Costs`]. A plain array of numbers, so that room
 /// for many takes no memory until it is used.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node(pub(super) [f32; 16]);
+pub(super) struct BinaryNode(pub(super) [f32; 16]);
 
-impl Node {
-    pub(super) fn new(bounds: &Bounds, items: Range<u32>, pair: Option<u32>, costs: Costs) -> Node {
+impl BinaryNode {
+    pub(super) fn new(bounds: &Bounds, items: Range<u32>, pair: Option<u32>, costs: Costs) -> BinaryNode {
         let [[a, b, c], [d, e, f]] = bounds.planes();
         let [first, count, pair] =
             [items.start, items.len() as u32, pair.map_or(0, |pair| pair + 1)].map(f32::from_bits);
         let [p, q, r, s, t, u, v] = costs;
-        Node([a, b, c, d, e, f, first, count, pair, p, q, r, s, t, u, v])
+        BinaryNode([a, b, c, d, e, f, first, count, pair, p, q, r, s, t, u, v])
     }
 
     /// Least and greatest corner.
@@ -68,7 +68,7 @@ impl Node {
 
 /// Boxes in boxes, two by two.
 pub(super) struct Binary {
-    pub(super) root: Node,
+    pub(super) root: BinaryNode,
     /// Siblings side by side: the pair of number `i` at `2i` and `2i + 1`. Not all are in use.
     pub(super) nodes: Vec<[f32; 16]>,
     /// Whether some triangle stands in it more than once.
@@ -94,12 +94,12 @@ impl Binary {
     }
 
     /// A node other than the root, by its number.
-    pub(super) fn node(&self, number: u32) -> Node {
-        Node(self.nodes[number as usize])
+    pub(super) fn node(&self, number: u32) -> BinaryNode {
+        BinaryNode(self.nodes[number as usize])
     }
 
     /// The children of a node that is not a leaf.
-    pub(super) fn children(&self, node: &Node) -> [Node; 2] {
+    pub(super) fn children(&self, node: &BinaryNode) -> [BinaryNode; 2] {
         [self.node(node.first_child()), self.node(node.first_child() + 1)]
     }
 }
@@ -177,10 +177,10 @@ fn subtree(
     bounds: &Bounds,
     centres: &Bounds,
     cutter: Option<&Cutter<'_>>,
-) -> (Node, usize) {
+) -> (BinaryNode, usize) {
     let first = task.first_item;
     if task.count <= LANES {
-        return (Node::new(bounds, first..first + task.count as u32, None, costs_of_leaf(bounds)), 0);
+        return (BinaryNode::new(bounds, first..first + task.count as u32, None, costs_of_leaf(bounds)), 0);
     }
     let Halves { middle, bounds: halves, centres } = task.halve(bounds, centres, cutter);
     let (count, first_pair) = (task.count, room.first_pair);
@@ -204,7 +204,7 @@ fn subtree(
     // Cuts below may have made more.
     let count = a.count() + b.count();
     let costs = costs_of_inner(bounds, count, &a.costs(), &b.costs());
-    (Node::new(bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
+    (BinaryNode::new(bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
 }
 
 /// True when both children of a node at this depth can still be halved down to single items in time.

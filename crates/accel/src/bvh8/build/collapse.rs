@@ -3,7 +3,7 @@
 //! A visit to a node costs [`NODE_COST`], one to a leaf a test for each of its blocks, each weighed by the area of
 //! the box. From below, every subtree learns the least cost of showing it as at most so many wide subtrees.
 
-use super::binary::{Binary, Node};
+use super::binary::{Binary, BinaryNode};
 use super::item::Bounds;
 use super::split::blocks;
 use crate::bvh8::layout::{LANES, MAX_BLOCKS, WIDTH};
@@ -64,7 +64,7 @@ fn share(places: usize, left: &Costs, right: &Costs) -> (usize, f32) {
 }
 
 /// The children of a wide node, by their numbers, or none if a leaf is cheaper.
-pub(super) fn children_of(binary: &Binary, node: &Node, children: &mut Vec<u32>) {
+pub(super) fn children_of(binary: &Binary, node: &BinaryNode, children: &mut Vec<u32>) {
     children.clear();
     if node.is_leaf() {
         return;

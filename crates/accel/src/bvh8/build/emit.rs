@@ -1,6 +1,6 @@
 //! Writes the wide tree, each subtree to its own stretch of memory, so that threads do not meet.
 
-use super::binary::{Binary, Node};
+use super::binary::{Binary, BinaryNode};
 use super::collapse::children_of;
 use super::item::Item;
 use crate::bvh8::layout::{
@@ -17,7 +17,7 @@ const PARALLEL: usize = 1 << 14;
 /// the order of writing how many children it has (none for a leaf), and all children.
 struct Plan {
     units: usize,
-    parts: Vec<(Node, Plan)>,
+    parts: Vec<(BinaryNode, Plan)>,
     counts: Vec<u8>,
     children: Vec<u32>,
 }
@@ -51,7 +51,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn plan(&self, node: &Node) -> Plan {
+    fn plan(&self, node: &BinaryNode) -> Plan {
         let mut plan = Plan { units: 0, parts: Vec::new(), counts: Vec::new(), children: Vec::new() };
         let mut children = Vec::new();
         if node.count() < PARALLEL {
@@ -68,7 +68,7 @@ impl Writer<'_> {
         plan
     }
 
-    fn measure(&self, node: &Node, plan: &mut Plan, scratch: &mut Vec<u32>) -> usize {
+    fn measure(&self, node: &BinaryNode, plan: &mut Plan, scratch: &mut Vec<u32>) -> usize {
         children_of(self.binary, node, scratch);
         plan.counts.push(scratch.len() as u8);
         if scratch.is_empty() {
@@ -84,7 +84,7 @@ impl Writer<'_> {
 
     /// How many triangles a leaf made of a binary subtree has, and which, in ascending order; each once, whatever pieces
     /// there are.
-    fn triangles_below(&self, node: &Node, primitives: &mut Vec<u32>) -> usize {
+    fn triangles_below(&self, node: &BinaryNode, primitives: &mut Vec<u32>) -> usize {
         primitives.clear();
         self.collect(node, primitives);
         primitives.sort_unstable();
@@ -94,7 +94,7 @@ impl Writer<'_> {
         primitives.len()
     }
 
-    fn collect(&self, node: &Node, primitives: &mut Vec<u32>) {
+    fn collect(&self, node: &BinaryNode, primitives: &mut Vec<u32>) {
         if self.binary.in_order || node.is_leaf() {
             primitives.extend(self.items[node.items()].iter().map(Item::index));
         } else {
@@ -103,7 +103,7 @@ impl Writer<'_> {
     }
 
     /// Writes a wide subtree into the whole of `units`, the first of which has the number `at`.
-    fn write(&self, node: &Node, plan: &Plan, units: &mut [Unit], at: usize) -> (Planes, Ref) {
+    fn write(&self, node: &BinaryNode, plan: &Plan, units: &mut [Unit], at: usize) -> (Planes, Ref) {
         if plan.parts.is_empty() {
             let mut writing =
                 Writing { counts: plan.counts.iter(), children: &plan.children, scratch: Vec::new() };
@@ -128,7 +128,7 @@ impl Writer<'_> {
     /// Writes a wide subtree to the front of `units` and says how many it took.
     fn write_small(
         &self,
-        node: &Node,
+        node: &BinaryNode,
         writing: &mut Writing<'_>,
         units: &mut [Unit],
         at: usize,

@@ -1,6 +1,6 @@
 //! Soon ready: items in the order of a curve through space, cut where its highest bits change [Lauterbach 2009].
 
-use super::binary::{Binary, Node, PARALLEL, Room, depth_allows};
+use super::binary::{Binary, BinaryNode, PARALLEL, Room, depth_allows};
 use super::collapse::{costs_of_inner, costs_of_leaf};
 use super::item::{Bounds, Item};
 use super::split::around;
@@ -15,7 +15,7 @@ const BITS: u32 = 20;
 const FEW: usize = 4 * LANES;
 
 /// Where a centre lies on the curve, and its item.
-type Place = (u64, u32);
+type UnitStorage = (u64, u32);
 
 /// Sorts items into a tree whose leaves hold one block at most, each a range of the new order.
 pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
@@ -29,7 +29,7 @@ pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
         let spread = |x: f32| spread((x as u32).min((1 << BITS) - 1));
         (spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z), k as u32)
     };
-    let mut places: Vec<Place> = items.par_iter().enumerate().with_min_len(4096).map(place).collect();
+    let mut places: Vec<UnitStorage> = items.par_iter().enumerate().with_min_len(4096).map(place).collect();
     places.par_sort_unstable();
     *items = places.par_iter().with_min_len(4096).map(|&(_, k)| items[k as usize]).collect();
     let mut nodes = vec![[0.0; 16]; 2 * items.len().saturating_sub(1)];
@@ -56,15 +56,19 @@ fn spread(x: u32) -> u64 {
 /// Gives the box, the node, and how many pairs of the room were used, from its front on.
 fn subtree(
     items: &[Item],
-    places: &[Place],
+    places: &[UnitStorage],
     first: u32,
     room: Room<'_>,
     depth: usize,
-) -> (Bounds, Node, usize) {
+) -> (Bounds, BinaryNode, usize) {
     let count = items.len();
     if count <= LANES {
         let bounds = Bounds::of(items);
-        return (bounds, Node::new(&bounds, first..first + count as u32, None, costs_of_leaf(&bounds)), 0);
+        return (
+            bounds,
+            BinaryNode::new(&bounds, first..first + count as u32, None, costs_of_leaf(&bounds)),
+            0,
+        );
     }
     let middle = middle_of(places, depth);
     let (left, right) = (items.split_at(middle), places.split_at(middle));
@@ -89,11 +93,11 @@ fn subtree(
     (pair.nodes[0], pair.nodes[1]) = (a.1.0, b.1.0);
     let bounds = a.0.union(b.0);
     let costs = costs_of_inner(&bounds, count, &a.1.costs(), &b.1.costs());
-    (bounds, Node::new(&bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
+    (bounds, BinaryNode::new(&bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
 }
 
 /// Where the highest bit changes that is not the same in all; by number where none does, or the tree grew too deep.
-fn middle_of(places: &[Place], depth: usize) -> usize {
+fn middle_of(places: &[UnitStorage], depth: usize) -> usize {
     let count = places.len();
     let (low, high) = (places[0].0, places[count - 1].0);
     if low == high {

@@ -4,7 +4,7 @@
 //! Searches of a round run side by side in a tree that stands still; what they found is then done one after the
 //! other, the greatest gain first, so that the outcome does not depend on the number of threads.
 
-use super::binary::{Binary, MAX_DEPTH, Node};
+use super::binary::{Binary, BinaryNode, MAX_DEPTH};
 use super::collapse::{Costs, costs_of_inner, costs_of_leaf};
 use super::item::Bounds;
 use bilux_math::glam::Vec4;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const ROUNDS: usize = 3;
 const TRIED: usize = 5;
 /// A search looks at no more nodes than this.
-const MOST_STEPS: usize = 256;
+const MAX_STEPS: usize = 256;
 /// No children below.
 const LEAF: u32 = 0;
 
@@ -123,7 +123,7 @@ impl Tree {
             stack.push((gained, sibling));
             while let Some((gained, place)) = stack.pop() {
                 steps += 1;
-                if steps > MOST_STEPS {
+                if steps > MAX_STEPS {
                     break;
                 }
                 if gained - own_area <= best.gain {
@@ -139,7 +139,7 @@ impl Tree {
                     stack.extend([(gained, below), (gained, below + 1)]);
                 }
             }
-            if pivot == 0 || steps > MOST_STEPS {
+            if pivot == 0 || steps > MAX_STEPS {
                 break;
             }
             // The pivot without the subtree is smaller; so may be what is above it.
@@ -239,8 +239,8 @@ impl Tree {
             }
             known[at] = (count, costs);
             let pair = (below != 0).then_some(below as u32 / 2);
-            nodes[at] = Node::new(&bounds, first..first + count, pair, costs).0;
+            nodes[at] = BinaryNode::new(&bounds, first..first + count, pair, costs).0;
         }
-        Binary { root: Node(nodes[0]), nodes, has_pieces: before.has_pieces, in_order: false }
+        Binary { root: BinaryNode(nodes[0]), nodes, has_pieces: before.has_pieces, in_order: false }
     }
 }

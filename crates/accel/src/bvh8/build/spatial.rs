@@ -17,9 +17,9 @@ const PARALLEL_PASS: usize = 1 << 15;
 const CHUNK: usize = 1 << 13;
 /// Cuts are looked for where the halves share more than this part of the whole tree's area: with less, builds take
 /// twice as long and rays gain a twentieth.
-const LEAST_OVERLAP: f32 = 1e-3;
+const MIN_OVERLAP: f32 = 1e-3;
 /// What a cut may cost, of what the halves do: each makes triangles more.
-const MOST_COST: f32 = 0.95;
+const MAX_COST: f32 = 0.95;
 
 /// What is cut.
 pub(super) struct Cutter<'a> {
@@ -92,7 +92,7 @@ type Bins = [[Bin; BINS]; 3];
 
 impl<'a> Cutter<'a> {
     pub(super) fn new(triangles: &'a [[[f32; 3]; 3]], bounds: &Bounds) -> Cutter<'a> {
-        Cutter { triangles, least_overlap: LEAST_OVERLAP * bounds.half_area() }
+        Cutter { triangles, least_overlap: MIN_OVERLAP * bounds.half_area() }
     }
 
     /// The cheapest cut, if it beats halves of a cost and adds no more than `room` items.
@@ -106,7 +106,7 @@ impl<'a> Cutter<'a> {
         if halves[0].shared_half_area(&halves[1]) <= self.least_overlap {
             return None;
         }
-        let least = cost * MOST_COST;
+        let least = cost * MAX_COST;
         let grid = Grid::new(bounds, items.len());
         let bins = if items.len() >= PARALLEL_PASS {
             let parts = items.par_chunks(CHUNK).map(|items| Box::new(self.fill(items, &grid)));

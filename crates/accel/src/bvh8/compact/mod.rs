@@ -9,9 +9,9 @@ mod pack;
 mod tests;
 
 use super::Bvh8;
-use super::kernel::{self, Compact, View};
+use super::kernel::{self, Compact, TreeView};
 use super::layout::Unit;
-use super::outline::Outline;
+use super::summary::TreeSummary;
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;
 use crate::cpu_level::CpuLevel;
@@ -36,7 +36,7 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 #[derive(Clone, Debug)]
 pub struct CompactBvh8 {
     units: Vec<Unit>,
-    outline: Outline,
+    outline: TreeSummary,
     level: CpuLevel,
 }
 
@@ -55,12 +55,12 @@ impl CompactBvh8 {
     /// When it would take more than 8 GiB.
     pub fn pack(wide: &Bvh8) -> Result<CompactBvh8, BuildError> {
         let (units, root) = pack::pack(&wide.units, wide.outline.root)?;
-        Ok(CompactBvh8 { units, outline: Outline { root, ..wide.outline }, level: wide.level })
+        Ok(CompactBvh8 { units, outline: TreeSummary { root, ..wide.outline }, level: wide.level })
     }
 
     #[inline(always)]
-    fn view(&self) -> Option<View<'_>> {
-        View::of(&self.units, &self.outline)
+    fn view(&self) -> Option<TreeView<'_>> {
+        TreeView::of(&self.units, &self.outline)
     }
 }
 

@@ -11,7 +11,7 @@ super::batch_entries!(Avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 struct Avx2;
 
 impl Level for Avx2 {
-    super::tame::of_eight!();
+    super::lane_ray::of_eight!();
 
     // SAFETY: as the trait demands.
     #[inline(always)]

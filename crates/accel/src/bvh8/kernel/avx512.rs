@@ -1,7 +1,7 @@
 //! AVX-512 on eight lanes: masks, and compression for more than two children.
 
-use super::form::Form;
 use super::level::{BatchLevel, Level};
+use super::node_format::NodeFormat;
 use super::stack::Stack;
 use crate::bvh8::layout::Ref;
 use std::arch::x86_64::*;
@@ -12,7 +12,7 @@ super::batch_entries!(Avx512, "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,
 struct Avx512;
 
 impl Level for Avx512 {
-    super::tame::of_eight!();
+    super::lane_ray::of_eight!();
 
     // SAFETY: as the trait demands.
     #[inline(always)]
@@ -22,7 +22,7 @@ impl Level for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn push_sorted<F: Form>(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
+    unsafe fn push_sorted<F: NodeFormat>(node: *const u8, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
             let keys = sorted(mask, enter);
@@ -35,7 +35,7 @@ impl Level for Avx512 {
     }
 
     #[inline(always)]
-    unsafe fn push<F: Form>(node: *const u8, mask: u32, stack: &mut Stack) {
+    unsafe fn push<F: NodeFormat>(node: *const u8, mask: u32, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
             let references = _mm256_load_si256(node.add(F::REFERENCES).cast());

@@ -1,10 +1,10 @@
 //! Many rays at once: made ready in vectors, then together where they run side by side, else each on a way of its own.
 
-use super::form::Wide;
 use super::level::BatchLevel;
+use super::node_format::Wide;
 use super::packet::{self, Packet};
-use super::{View, body, plain, stream};
-use crate::counters::Nothing;
+use super::{TreeView, body, plain, stream};
+use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
 
 /// Fewer rays than these are sooner asked one by one.
@@ -19,7 +19,7 @@ pub(super) const SOMETHING: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, in
 /// The machine must have the level, and the view must be sound.
 #[inline(always)]
 pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
-    view: View<'_>,
+    view: TreeView<'_>,
     rays: &[Ray],
     query: &Query,
     mut answer: impl FnMut(usize, Option<Hit>),
@@ -54,13 +54,13 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
 /// # Safety
 /// As for [`each`].
 #[inline(always)]
-unsafe fn one<L: BatchLevel, const ANY: bool>(view: View<'_>, ray: &Ray, query: &Query) -> Option<Hit> {
+unsafe fn one<L: BatchLevel, const ANY: bool>(view: TreeView<'_>, ray: &Ray, query: &Query) -> Option<Hit> {
     // SAFETY: as the caller promises.
     unsafe {
         if ANY {
-            body::any::<L, Wide, Nothing, false>(view, ray, query, &mut Nothing).then_some(SOMETHING)
+            body::any::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters).then_some(SOMETHING)
         } else {
-            body::closest::<L, Wide, Nothing, false>(view, ray, query, &mut Nothing)
+            body::closest::<L, Wide, NoCounters, false>(view, ray, query, &mut NoCounters)
         }
     }
 }
@@ -68,7 +68,7 @@ unsafe fn one<L: BatchLevel, const ANY: bool>(view: View<'_>, ray: &Ray, query: 
 /// Answers the rays of a mask, which are not tame.
 #[inline(always)]
 fn wild<const ANY: bool>(
-    view: View<'_>,
+    view: TreeView<'_>,
     (mask, rays): (u64, &[Ray]),
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
@@ -78,10 +78,10 @@ fn wild<const ANY: bool>(
         let index = left.trailing_zeros() as usize;
         left &= left - 1;
         if ANY {
-            let found = plain::any::<Wide, _>(view, &rays[index], query, &mut Nothing);
+            let found = plain::any::<Wide, _>(view, &rays[index], query, &mut NoCounters);
             answer(index, found.then_some(SOMETHING));
         } else {
-            answer(index, plain::closest::<Wide, _>(view, &rays[index], query, &mut Nothing));
+            answer(index, plain::closest::<Wide, _>(view, &rays[index], query, &mut NoCounters));
         }
     }
 }

@@ -4,9 +4,9 @@
 //! signs leave a triangle, in f64.
 
 use super::doubles::Doubles;
-use super::form::Form;
+use super::lane_ray::{SIZES, halves};
 use super::level::Level;
-use super::tame::{SIZES, halves};
+use super::node_format::NodeFormat;
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Ray};
 use std::arch::x86_64::*;
@@ -70,7 +70,7 @@ impl BlockRay {
     /// # Safety
     /// The machine must have the level, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn signs<L: Level, F: Form>(&self, block: *const u8) -> (u32, Sheared) {
+    pub(super) unsafe fn signs<L: Level, F: NodeFormat>(&self, block: *const u8) -> (u32, Sheared) {
         // SAFETY: as the caller promises.
         unsafe {
             let corners = F::corners::<L>(block, self.axes);
@@ -101,7 +101,7 @@ impl BlockRay {
     /// # Safety
     /// The machine must have the level of the doubles, and `block` must point to a block.
     #[inline(always)]
-    pub(super) unsafe fn cross<D: Doubles, F: Form>(
+    pub(super) unsafe fn cross<D: Doubles, F: NodeFormat>(
         &self,
         block: *const u8,
         corners: Sheared,

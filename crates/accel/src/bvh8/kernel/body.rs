@@ -1,9 +1,9 @@
 //! The body of the wide kernels, which is the same for all levels.
 
-use super::form::Form;
 use super::level::{Boxes, Level, lanes};
+use super::node_format::NodeFormat;
 use super::stack::{Room, Stack};
-use super::{View, leaf, plain};
+use super::{TreeView, leaf, plain};
 use crate::bvh8::layout::{LANES, Ref};
 use crate::counters::Count;
 use crate::ray::{Hit, Query, Ray};
@@ -14,14 +14,14 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 /// # Safety
 /// `node` must point to a node, and `child` be one of eight.
 #[inline(always)]
-pub(super) unsafe fn reference<F: Form>(node: *const u8, child: usize) -> Ref {
+pub(super) unsafe fn reference<F: NodeFormat>(node: *const u8, child: usize) -> Ref {
     // SAFETY: a node has eight references.
     unsafe { Ref(*node.add(F::REFERENCES + child * 4).cast::<u32>()) }
 }
 
 /// Asks for the lines of a node, or of the first block of a leaf, so that they are there when their turn comes.
 #[inline(always)]
-pub(super) fn prefetch<F: Form>(base: *const u8, reference: Ref) {
+pub(super) fn prefetch<F: NodeFormat>(base: *const u8, reference: Ref) {
     let place = base.wrapping_add(reference.byte()).cast::<i8>();
     for line in 0..F::LINES {
         // SAFETY: a prefetch reads nothing.
@@ -31,7 +31,7 @@ pub(super) fn prefetch<F: Form>(base: *const u8, reference: Ref) {
 
 /// The nearest of the children of a mask that is not zero; the others go to the stack, the nearer on top.
 #[inline(always)]
-pub(super) unsafe fn choose<L: Level, F: Form>(
+pub(super) unsafe fn choose<L: Level, F: NodeFormat>(
     base: *const u8,
     node: *const u8,
     mask: u32,
@@ -70,8 +70,8 @@ pub(super) unsafe fn choose<L: Level, F: Form>(
 /// # Safety
 /// The machine must have the level, and the view must be sound.
 #[inline(always)]
-pub(super) unsafe fn closest<L: Level, F: Form, C: Count, const PLAIN: bool>(
-    view: View<'_>,
+pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -91,8 +91,8 @@ pub(super) unsafe fn closest<L: Level, F: Form, C: Count, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`]; the ray must be tame.
 #[inline(always)]
-pub(super) unsafe fn search<L: Level, F: Form, C: Count, const PLAIN: bool>(
-    view: View<'_>,
+pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
+    view: TreeView<'_>,
     (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
     count: &mut C,
@@ -145,7 +145,7 @@ pub(super) unsafe fn search<L: Level, F: Form, C: Count, const PLAIN: bool>(
 /// # Safety
 /// The root must be one.
 #[inline(always)]
-pub(super) unsafe fn start<F: Form>(base: *const u8, root: Ref, met: u32) -> Ref {
+pub(super) unsafe fn start<F: NodeFormat>(base: *const u8, root: Ref, met: u32) -> Ref {
     if met != 0 && met & (met - 1) == 0 {
         // SAFETY: only of nodes is it known what is met.
         return unsafe { reference::<F>(base.add(root.byte()), met.trailing_zeros() as usize) };
@@ -158,7 +158,7 @@ pub(super) unsafe fn start<F: Form>(base: *const u8, root: Ref, met: u32) -> Ref
 /// # Safety
 /// The machine must have the level, and the root must be one.
 #[inline(always)]
-pub(super) unsafe fn start_any<L: Level, F: Form>(
+pub(super) unsafe fn start_any<L: Level, F: NodeFormat>(
     base: *const u8,
     root: Ref,
     met: u32,
@@ -179,8 +179,8 @@ pub(super) unsafe fn start_any<L: Level, F: Form>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any<L: Level, F: Form, C: Count, const PLAIN: bool>(
-    view: View<'_>,
+pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -199,8 +199,8 @@ pub(super) unsafe fn any<L: Level, F: Form, C: Count, const PLAIN: bool>(
 /// # Safety
 /// As for [`search`].
 #[inline(always)]
-pub(super) unsafe fn search_any<L: Level, F: Form, C: Count, const PLAIN: bool>(
-    view: View<'_>,
+pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
+    view: TreeView<'_>,
     (ray, tame, met): (&Ray, &impl Boxes<Eight = L::Eight>, u32),
     query: &Query,
     count: &mut C,
@@ -241,7 +241,7 @@ pub(super) unsafe fn search_any<L: Level, F: Form, C: Count, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-unsafe fn count_early_outs<L: Level, F: Form, C: Count>(
+unsafe fn count_early_outs<L: Level, F: NodeFormat, C: Count>(
     boxes: &impl Boxes<Eight = L::Eight>,
     node: *const u8,
     mask: u32,

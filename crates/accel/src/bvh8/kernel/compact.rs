@@ -1,6 +1,6 @@
 //! How the compact layout is read: bytes become planes, and corners are gathered from the pool.
 
-use super::form::Form;
+use super::node_format::NodeFormat;
 use crate::bvh8::compact::layout;
 use crate::bvh8::layout::{Planes, Ref, Unit};
 
@@ -43,7 +43,7 @@ fn place(row: usize) -> usize {
     layout::PLANES + row / 4
 }
 
-impl Form for Compact {
+impl NodeFormat for Compact {
     const BLOCK_UNITS: usize = layout::BLOCK_UNITS;
     #[cfg(target_arch = "x86_64")]
     const REFERENCES: usize = layout::REFERENCES;

@@ -4,8 +4,8 @@
 //! keeps the compiler from doing it before it is known.
 
 use super::block::{BlockRay, Crossings};
-use super::form::Form;
 use super::level::Level;
+use super::node_format::NodeFormat;
 use crate::bvh8::layout::{LANES, Unit};
 use crate::ray::{Culling, Hit, Query, Ray};
 use std::hint::black_box;
@@ -13,7 +13,7 @@ use std::hint::black_box;
 /// Where a leaf is, and how many blocks it has.
 pub(super) type Leaf = (*const u8, usize);
 
-pub(super) const fn block_bytes<F: Form>() -> usize {
+pub(super) const fn block_bytes<F: NodeFormat>() -> usize {
     F::BLOCK_UNITS * size_of::<Unit>()
 }
 
@@ -22,7 +22,7 @@ pub(super) const fn block_bytes<F: Form>() -> usize {
 /// # Safety
 /// The machine must have the level, the ray be tame, and the leaf be one.
 #[inline(always)]
-pub(super) unsafe fn closest<L: Level, F: Form, const PLAIN: bool>(
+pub(super) unsafe fn closest<L: Level, F: NodeFormat, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
@@ -60,7 +60,7 @@ pub(super) unsafe fn closest<L: Level, F: Form, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-unsafe fn keep<F: Form, const PLAIN: bool>(
+unsafe fn keep<F: NodeFormat, const PLAIN: bool>(
     block: *const u8,
     crossings: &Crossings,
     query: &Query,
@@ -90,7 +90,7 @@ unsafe fn keep<F: Form, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(always)]
-pub(super) unsafe fn any<L: Level, F: Form, const PLAIN: bool>(
+pub(super) unsafe fn any<L: Level, F: NodeFormat, const PLAIN: bool>(
     ray: &Ray,
     (leaf, blocks): Leaf,
     query: &Query,
@@ -119,7 +119,7 @@ pub(super) unsafe fn any<L: Level, F: Form, const PLAIN: bool>(
 /// # Safety
 /// As for [`closest`].
 #[inline(never)]
-unsafe fn keeps_any<F: Form>(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
+unsafe fn keeps_any<F: NodeFormat>(block: *const u8, crossings: &Crossings, query: &Query) -> bool {
     // SAFETY: as the caller promises.
     let (t, [u, v], mask) = unsafe { (crossings.t(), crossings.weights(), crossings.mask()) };
     (0..LANES).filter(|lane| mask >> lane & 1 == 1).any(|lane| {
@@ -134,7 +134,7 @@ unsafe fn keeps_any<F: Form>(block: *const u8, crossings: &Crossings, query: &Qu
 /// # Safety
 /// `block` must point to a block, and `lane` be below [`LANES`].
 #[inline(always)]
-unsafe fn primitive<F: Form>(block: *const u8, lane: usize) -> u32 {
+unsafe fn primitive<F: NodeFormat>(block: *const u8, lane: usize) -> u32 {
     // SAFETY: a block has four primitives.
     unsafe { *block.add(F::PRIMITIVES).cast::<u32>().add(lane) }
 }

@@ -2,10 +2,10 @@
 
 use super::block::Axes;
 use super::doubles::Doubles;
-use super::form::Form;
+use super::node_format::NodeFormat;
 use super::packet::Wide;
 use super::stack::Stack;
-use super::{View, body::reference};
+use super::{TreeView, body::reference};
 use crate::bvh8::layout::{Ref, WIDTH};
 use crate::ray::Ray;
 use std::arch::x86_64::{__m128, __m256i};
@@ -19,12 +19,12 @@ pub(in crate::bvh8) trait Level {
     /// A distance for each child.
     type Eight: Copy;
     /// A ray that is ready for boxes.
-    type Tame: Boxes<Eight = Self::Eight>;
+    type LaneRay: Boxes<Eight = Self::Eight>;
     /// A number for each triangle of a block, for the exact stage.
     type Doubles: Doubles;
     // SAFETY: as the trait says.
     /// `None` for rays that are not tame, or can hit nothing.
-    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<Self::Tame>;
+    unsafe fn tame(ray: &Ray, view: &TreeView<'_>) -> Option<Self::LaneRay>;
     /// The same distance for all.
     unsafe fn splat(bits: u32) -> Self::Eight;
     /// A bit for each lane where the first is not greater.
@@ -34,7 +34,7 @@ pub(in crate::bvh8) trait Level {
     unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128;
     /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
     #[inline(always)]
-    unsafe fn meet<F: Form, B: Boxes<Eight = Self::Eight>>(
+    unsafe fn meet<F: NodeFormat, B: Boxes<Eight = Self::Eight>>(
         ray: &B,
         node: *const u8,
         limit: Self::Eight,
@@ -50,7 +50,7 @@ pub(in crate::bvh8) trait Level {
     /// Sorted in, one after the other.
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn push_sorted<F: Form>(node: *const u8, mask: u32, enter: Self::Eight, stack: &mut Stack) {
+    unsafe fn push_sorted<F: NodeFormat>(node: *const u8, mask: u32, enter: Self::Eight, stack: &mut Stack) {
         // SAFETY: as the trait demands.
         unsafe {
             let distances = lanes::<Self>(enter);
@@ -75,7 +75,7 @@ pub(in crate::bvh8) trait Level {
     /// Puts the children of the mask on the stack, in any order.
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn push<F: Form>(node: *const u8, mask: u32, stack: &mut Stack) {
+    unsafe fn push<F: NodeFormat>(node: *const u8, mask: u32, stack: &mut Stack) {
         let mut left = mask;
         while left != 0 {
             let child = left.trailing_zeros() as usize;
@@ -110,7 +110,7 @@ pub(in crate::bvh8) trait Boxes {
     ///
     /// # Safety
     /// The machine must have the level that the ray was made ready for, and `node` must point to a node.
-    unsafe fn span<F: Form>(&self, node: *const u8, limit: Self::Eight) -> (Self::Eight, Self::Eight);
+    unsafe fn span<F: NodeFormat>(&self, node: *const u8, limit: Self::Eight) -> (Self::Eight, Self::Eight);
 
     /// The bits of the least distance, as of [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
     /// negative, or nothing can be hit.

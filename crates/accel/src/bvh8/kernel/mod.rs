@@ -13,13 +13,13 @@ macro_rules! entries {
         /// # Safety
         /// The machine must have the level, and the view must be sound; as for all that follow.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest<F: super::Form, C: $crate::counters::Count>(
+        pub(super) unsafe fn closest<F: super::NodeFormat, C: $crate::counters::Count>(
             units: &[super::Unit],
-            outline: &super::Outline,
+            outline: &super::TreeSummary,
             ray: &$crate::Ray,
             count: &mut C,
         ) -> Option<$crate::Hit> {
-            let view = super::View { units, outline };
+            let view = super::TreeView { units, outline };
             // SAFETY: as the caller promises.
             unsafe { super::body::closest::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
         }
@@ -27,8 +27,8 @@ macro_rules! entries {
         /// See [`super::closest`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn closest_by<F: super::Form, C: $crate::counters::Count>(
-            view: super::View<'_>,
+        pub(super) unsafe fn closest_by<F: super::NodeFormat, C: $crate::counters::Count>(
+            view: super::TreeView<'_>,
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
@@ -40,13 +40,13 @@ macro_rules! entries {
         /// See [`super::any`]; for [`crate::Query::PLAIN`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn any<F: super::Form, C: $crate::counters::Count>(
+        pub(super) unsafe fn any<F: super::NodeFormat, C: $crate::counters::Count>(
             units: &[super::Unit],
-            outline: &super::Outline,
+            outline: &super::TreeSummary,
             ray: &$crate::Ray,
             count: &mut C,
         ) -> bool {
-            let view = super::View { units, outline };
+            let view = super::TreeView { units, outline };
             // SAFETY: as the caller promises.
             unsafe { super::body::any::<$level, F, C, true>(view, ray, &$crate::Query::PLAIN, count) }
         }
@@ -54,8 +54,8 @@ macro_rules! entries {
         /// See [`super::any`].
         // SAFETY: as above.
         #[target_feature(enable = $features)]
-        pub(super) unsafe fn any_by<F: super::Form, C: $crate::counters::Count>(
-            view: super::View<'_>,
+        pub(super) unsafe fn any_by<F: super::NodeFormat, C: $crate::counters::Count>(
+            view: super::TreeView<'_>,
             ray: &$crate::Ray,
             query: &$crate::Query,
             count: &mut C,
@@ -76,7 +76,7 @@ macro_rules! batch_entries {
         // SAFETY: as above.
         #[target_feature(enable = $features)]
         pub(super) unsafe fn closest_each(
-            view: super::View<'_>,
+            view: super::TreeView<'_>,
             rays: &[$crate::Ray],
             query: &$crate::Query,
             hits: &mut [Option<$crate::Hit>],
@@ -90,7 +90,7 @@ macro_rules! batch_entries {
         // SAFETY: as above.
         #[target_feature(enable = $features)]
         pub(super) unsafe fn any_each(
-            view: super::View<'_>,
+            view: super::TreeView<'_>,
             rays: &[$crate::Ray],
             query: &$crate::Query,
             hits: &mut [bool],
@@ -118,11 +118,13 @@ mod body;
 mod compact;
 #[cfg(target_arch = "x86_64")]
 mod doubles;
-mod form;
+#[cfg(target_arch = "x86_64")]
+mod lane_ray;
 #[cfg(target_arch = "x86_64")]
 mod leaf;
 #[cfg(target_arch = "x86_64")]
 mod level;
+mod node_format;
 #[cfg(target_arch = "x86_64")]
 mod packet;
 mod plain;
@@ -132,30 +134,28 @@ mod sse42;
 mod stack;
 #[cfg(target_arch = "x86_64")]
 mod stream;
-#[cfg(target_arch = "x86_64")]
-mod tame;
 
 use super::layout::Unit;
-use super::outline::Outline;
-use crate::counters::{Count, Nothing};
+use super::summary::TreeSummary;
+use crate::counters::{Count, NoCounters};
 use crate::cpu_level::CpuLevel;
 use crate::ray::{Hit, Query, Ray};
 
 pub(super) use compact::Compact;
-pub(super) use form::{Form, Wide};
+pub(super) use node_format::{NodeFormat, Wide};
 
 /// What is walked through. The root is a node or a leaf of `units`, and so is all that it refers to.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
+pub(super) struct TreeView<'a> {
     pub(super) units: &'a [Unit],
-    pub(super) outline: &'a Outline,
+    pub(super) outline: &'a TreeSummary,
 }
 
-impl<'a> View<'a> {
+impl<'a> TreeView<'a> {
     /// `None` of a tree without triangles.
     #[inline(always)]
-    pub(super) fn of(units: &'a [Unit], outline: &'a Outline) -> Option<View<'a>> {
-        (!units.is_empty()).then_some(View { units, outline })
+    pub(super) fn of(units: &'a [Unit], outline: &'a TreeSummary) -> Option<TreeView<'a>> {
+        (!units.is_empty()).then_some(TreeView { units, outline })
     }
 }
 
@@ -176,9 +176,9 @@ macro_rules! ask {
 
 /// The nearest hit.
 #[inline(always)]
-pub(super) fn closest<F: Form, C: Count>(
+pub(super) fn closest<F: NodeFormat, C: Count>(
     level: CpuLevel,
-    view: View<'_>,
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -194,9 +194,9 @@ pub(super) fn closest<F: Form, C: Count>(
 
 /// [`closest`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
 #[inline(never)]
-fn lesser_closest<F: Form, C: Count>(
+fn lesser_closest<F: NodeFormat, C: Count>(
     level: CpuLevel,
-    view: View<'_>,
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -210,9 +210,9 @@ fn lesser_closest<F: Form, C: Count>(
 
 /// Whether there is any hit.
 #[inline(always)]
-pub(super) fn any<F: Form, C: Count>(
+pub(super) fn any<F: NodeFormat, C: Count>(
     level: CpuLevel,
-    view: View<'_>,
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -228,9 +228,9 @@ pub(super) fn any<F: Form, C: Count>(
 
 /// [`any`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
 #[inline(never)]
-fn lesser_any<F: Form, C: Count>(
+fn lesser_any<F: NodeFormat, C: Count>(
     level: CpuLevel,
-    view: View<'_>,
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -245,7 +245,7 @@ fn lesser_any<F: Form, C: Count>(
 /// The nearest hit of each ray.
 pub(super) fn closest_each(
     level: CpuLevel,
-    view: View<'_>,
+    view: TreeView<'_>,
     rays: &[Ray],
     query: &Query,
     hits: &mut [Option<Hit>],
@@ -259,14 +259,14 @@ pub(super) fn closest_each(
         CpuLevel::Avx2 => unsafe { avx2::closest_each(view, rays, query, hits) },
         _ => {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = closest::<Wide, _>(level, view, ray, query, &mut Nothing);
+                *hit = closest::<Wide, _>(level, view, ray, query, &mut NoCounters);
             }
         }
     }
 }
 
 /// Whether there is any hit, for each ray.
-pub(super) fn any_each(level: CpuLevel, view: View<'_>, rays: &[Ray], query: &Query, hits: &mut [bool]) {
+pub(super) fn any_each(level: CpuLevel, view: TreeView<'_>, rays: &[Ray], query: &Query, hits: &mut [bool]) {
     match level {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
@@ -276,7 +276,7 @@ pub(super) fn any_each(level: CpuLevel, view: View<'_>, rays: &[Ray], query: &Qu
         CpuLevel::Avx2 => unsafe { avx2::any_each(view, rays, query, hits) },
         _ => {
             for (ray, hit) in rays.iter().zip(hits) {
-                *hit = any::<Wide, _>(level, view, ray, query, &mut Nothing);
+                *hit = any::<Wide, _>(level, view, ray, query, &mut NoCounters);
             }
         }
     }

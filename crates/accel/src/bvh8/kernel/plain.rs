@@ -1,8 +1,8 @@
 //! The twin that the wide kernels are held against, for every machine and every ray: the box tests of
 //! [`SlabRay`], the triangle test as it is.
 
-use super::View;
-use super::form::Form;
+use super::TreeView;
+use super::node_format::NodeFormat;
 use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref, WIDTH};
 use crate::counters::Count;
@@ -12,8 +12,8 @@ use crate::triangle::{Nearest, PreparedRay, hits};
 use std::ops::ControlFlow;
 
 #[inline(never)]
-pub(super) fn closest<F: Form, C: Count>(
-    view: View<'_>,
+pub(super) fn closest<F: NodeFormat, C: Count>(
+    view: TreeView<'_>,
     ray: &Ray,
     query: &Query,
     count: &mut C,
@@ -40,7 +40,12 @@ pub(super) fn closest<F: Form, C: Count>(
 }
 
 #[inline(never)]
-pub(super) fn any<F: Form, C: Count>(view: View<'_>, ray: &Ray, query: &Query, count: &mut C) -> bool {
+pub(super) fn any<F: NodeFormat, C: Count>(
+    view: TreeView<'_>,
+    ray: &Ray,
+    query: &Query,
+    count: &mut C,
+) -> bool {
     let Some((prepared, slabs)) = prepare(&view, ray) else { return false };
     let limit = slabs.limit(ray.t_max);
     let mut found = false;
@@ -61,40 +66,40 @@ pub(super) fn any<F: Form, C: Count>(view: View<'_>, ray: &Ray, query: &Query, c
     found
 }
 
-fn prepare(view: &View<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
+fn prepare(view: &TreeView<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
     let prepared = PreparedRay::new(ray)?;
     let pad = prepared.pad(&view.outline.bounds());
     Some((prepared, SlabRay::new(ray.origin, ray.direction, ray.t_min, pad)))
 }
 
 /// The first units of the blocks of a leaf, each with the places in it.
-fn places<F: Form>(leaf: Ref) -> impl Iterator<Item = (usize, usize)> {
+fn places<F: NodeFormat>(leaf: Ref) -> impl Iterator<Item = (usize, usize)> {
     let blocks = (0..leaf.blocks()).map(move |block| leaf.unit() + block * F::BLOCK_UNITS);
     blocks.flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
 }
 
 /// A subtree still to be visited, and where the ray enters it.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct StackEntry {
     reference: Ref,
     enter: f32,
 }
 
 /// Goes through the leaves that the ray meets up to `limit`, roughly the nearer first.
 #[inline(always)]
-fn walk<F: Form, C: Count>(
-    view: View<'_>,
+fn walk<F: NodeFormat, C: Count>(
+    view: TreeView<'_>,
     ray: &SlabRay,
     mut limit: f32,
     count: &mut C,
     mut leaf: impl FnMut(Ref, &mut C) -> ControlFlow<(), f32>,
 ) {
     let mut stack =
-        [Waiting { reference: view.outline.root, enter: f32::NEG_INFINITY }; MAX_DEPTH * (WIDTH - 1) + 1];
+        [StackEntry { reference: view.outline.root, enter: f32::NEG_INFINITY }; MAX_DEPTH * (WIDTH - 1) + 1];
     let mut height = 1;
     while height > 0 {
         height -= 1;
-        let Waiting { reference, enter } = stack[height];
+        let StackEntry { reference, enter } = stack[height];
         // Comparisons are such that what is not a number, as overflow makes it, leaves nothing out.
         if enter > limit {
             count.early_out();
@@ -126,7 +131,7 @@ fn walk<F: Form, C: Count>(
                 stack[place] = stack[place - 1];
                 place -= 1;
             }
-            stack[place] = Waiting { reference, enter };
+            stack[place] = StackEntry { reference, enter };
             height += 1;
         }
     }

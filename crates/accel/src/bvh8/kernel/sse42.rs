@@ -4,13 +4,13 @@
 //! origin moved by the pad. Each step is rounded in proportion to the distance, and the moved origin once: less than
 //! what the pad has grown by for the fused levels. See `docs/adr/0008-bvh8.md`.
 
-use super::View;
+use super::TreeView;
 use super::block::Axes;
 use super::doubles::Halves;
-use super::form::Form;
+use super::lane_ray::{LEVEL, MIN, ROWS, SHORTEST, SIZES, halves};
 use super::level::{Boxes, Level};
-use super::tame::{LEAST, LEVEL, ROWS, SHORTEST, SIZES, halves};
-use crate::bvh8::outline::FAR_PAD;
+use super::node_format::NodeFormat;
+use crate::bvh8::summary::FAR_PAD;
 use crate::ray::Ray;
 use crate::slab::SLACK;
 use std::arch::x86_64::*;
@@ -19,9 +19,9 @@ super::entries!(Sse42, "sse4.2,popcnt");
 
 struct Sse42;
 
-/// A ray with a lane for each child of half a node; otherwise as [`super::tame::TameRay`].
+/// A ray with a lane for each child of half a node; otherwise as [`super::lane_ray::LaneRay`].
 #[derive(Clone, Copy)]
-struct TameRay {
+struct LaneRay {
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
     inverse: [__m128; 3],
@@ -33,14 +33,14 @@ struct TameRay {
 
 impl Level for Sse42 {
     type Eight = [__m128i; 2];
-    type Tame = TameRay;
+    type LaneRay = LaneRay;
     type Doubles = Halves;
 
     // SAFETY: as the trait demands.
     #[inline(always)]
-    unsafe fn tame(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+    unsafe fn tame(ray: &Ray, view: &TreeView<'_>) -> Option<LaneRay> {
         // SAFETY: as the trait demands.
-        unsafe { TameRay::new(ray, view) }
+        unsafe { LaneRay::new(ray, view) }
     }
 
     #[inline(always)]
@@ -70,13 +70,13 @@ impl Level for Sse42 {
     }
 }
 
-impl TameRay {
-    /// See [`super::tame::TameRay::new`].
+impl LaneRay {
+    /// See [`super::lane_ray::LaneRay::new`].
     ///
     /// # Safety
     /// The machine must have SSE4.2.
     #[inline(always)]
-    unsafe fn new(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+    unsafe fn new(ray: &Ray, view: &TreeView<'_>) -> Option<LaneRay> {
         // SAFETY: as the caller promises; an outline has four numbers for the centre and eight for the reach.
         unsafe {
             let outline = view.outline;
@@ -104,7 +104,7 @@ impl TameRay {
             // Rays come in where planes are farther, and go out where they are nearer.
             let pad = _mm_or_ps(pad, down);
             let (enter, leave) = (_mm_add_ps(origin, pad), _mm_sub_ps(origin, pad));
-            let nearest = (ray.t_min * (1.0 - SLACK) - LEAST).max(0.0);
+            let nearest = (ray.t_min * (1.0 - SLACK) - MIN).max(0.0);
             let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
             let spread = |v: __m128| {
                 [
@@ -113,7 +113,7 @@ impl TameRay {
                     _mm_shuffle_ps::<0b10_10_10_10>(v, v),
                 ]
             };
-            Some(TameRay {
+            Some(LaneRay {
                 enter_rows,
                 leave_rows,
                 inverse: spread(inverse),
@@ -125,13 +125,13 @@ impl TameRay {
     }
 }
 
-impl TameRay {
+impl LaneRay {
     /// See [`Boxes::span`]; of four children. Functions, as closures would be compiled without the instructions.
     ///
     /// # Safety
     /// As for [`Boxes::span`].
     #[inline(always)]
-    unsafe fn half<F: Form, const FROM: usize>(
+    unsafe fn half<F: NodeFormat, const FROM: usize>(
         &self,
         node: *const u8,
         frame: &F::Frame4,
@@ -149,7 +149,7 @@ impl TameRay {
 
     // SAFETY: as above.
     #[inline(always)]
-    unsafe fn enter<F: Form, const FROM: usize>(
+    unsafe fn enter<F: NodeFormat, const FROM: usize>(
         &self,
         node: *const u8,
         k: usize,
@@ -164,7 +164,7 @@ impl TameRay {
 
     // SAFETY: as above.
     #[inline(always)]
-    unsafe fn leave<F: Form, const FROM: usize>(
+    unsafe fn leave<F: NodeFormat, const FROM: usize>(
         &self,
         node: *const u8,
         k: usize,
@@ -178,12 +178,16 @@ impl TameRay {
     }
 }
 
-impl Boxes for TameRay {
+impl Boxes for LaneRay {
     type Eight = [__m128i; 2];
 
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
-    unsafe fn span<F: Form>(&self, node: *const u8, limit: [__m128i; 2]) -> ([__m128i; 2], [__m128i; 2]) {
+    unsafe fn span<F: NodeFormat>(
+        &self,
+        node: *const u8,
+        limit: [__m128i; 2],
+    ) -> ([__m128i; 2], [__m128i; 2]) {
         // SAFETY: as the trait demands.
         unsafe {
             let frame = F::frame4(node);
@@ -195,6 +199,6 @@ impl Boxes for TameRay {
 
     #[inline(always)]
     fn limit_bits(&self, t: f32) -> u32 {
-        (t * (1.0 + 2.0 * SLACK) + LEAST).to_bits()
+        (t * (1.0 + 2.0 * SLACK) + MIN).to_bits()
     }
 }

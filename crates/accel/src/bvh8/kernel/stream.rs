@@ -5,13 +5,13 @@
 
 use super::batch::SOMETHING;
 use super::body::{self, choose, prefetch, start, start_any};
-use super::form::Wide;
 use super::level::{BatchLevel, Boxes};
+use super::node_format::Wide;
 use super::packet::{Lane, Packet, Ready};
 use super::stack::{Room, Stack};
-use super::{View, leaf};
+use super::{TreeView, leaf};
 use crate::bvh8::layout::{Ref, WIDTH};
-use crate::counters::Nothing;
+use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
 
 /// Rays on the way at once.
@@ -26,7 +26,7 @@ const NEAR_UNITS: usize = 3 << 14;
 /// The machine must have the level, the view must be sound, and the packet must be ready.
 #[inline(always)]
 pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
-    view: View<'_>,
+    view: TreeView<'_>,
     (packet, ready): (&Packet, &Ready),
     rays: &[Ray],
     query: &Query,
@@ -61,15 +61,20 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
             answer(
                 index,
                 if ANY {
-                    let found = body::search_any::<L, Wide, Nothing, PLAIN>(
+                    let found = body::search_any::<L, Wide, NoCounters, PLAIN>(
                         view,
                         (ray, &lane, met),
                         query,
-                        &mut Nothing,
+                        &mut NoCounters,
                     );
                     found.then_some(SOMETHING)
                 } else {
-                    body::search::<L, Wide, Nothing, PLAIN>(view, (ray, &lane, met), query, &mut Nothing)
+                    body::search::<L, Wide, NoCounters, PLAIN>(
+                        view,
+                        (ray, &lane, met),
+                        query,
+                        &mut NoCounters,
+                    )
                 },
             );
         }
@@ -80,7 +85,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
 /// As for [`each`].
 #[inline(always)]
 unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
-    view: View<'_>,
+    view: TreeView<'_>,
     next: &mut impl FnMut() -> Option<Next<'r>>,
     query: &Query,
     answer: &mut impl FnMut(usize, Option<Hit>),
@@ -136,7 +141,7 @@ impl<'r> Walk<'r> {
     /// As for [`each`].
     #[inline(always)]
     unsafe fn new<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
-        view: &View<'_>,
+        view: &TreeView<'_>,
         (index, ray, (lane, met)): Next<'r>,
         mut stack: Stack,
     ) -> Walk<'r> {

@@ -10,11 +10,11 @@ const LARGEST_BLOCK: usize = 256;
 /// Bytes of a block, at most.
 const BLOCK_BYTES: usize = 8192;
 /// Bytes that the end has at least.
-const LEAST_TAIL: usize = 32;
+const MIN_TAIL: usize = 32;
 
 /// Fills all elements of `stride` bytes.
 pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Result<(), Broken> {
-    let tail = stride.max(LEAST_TAIL);
+    let tail = stride.max(MIN_TAIL);
     let (&header, rest) = packed.split_first().ok_or(Broken)?;
     let end = rest.len().checked_sub(tail).ok_or(Broken)?;
     if header != HEADER {

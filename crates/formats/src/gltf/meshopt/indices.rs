@@ -12,14 +12,14 @@ const TAIL: usize = 4;
 const PLACES: usize = 13;
 
 /// Sixteen things, the newest first.
-struct Newest<T> {
+struct RecentFifo<T> {
     ring: [T; 16],
     next: usize,
 }
 
-impl<T: Copy> Newest<T> {
-    fn new(unset: T) -> Newest<T> {
-        Newest { ring: [unset; 16], next: 0 }
+impl<T: Copy> RecentFifo<T> {
+    fn new(unset: T) -> RecentFifo<T> {
+        RecentFifo { ring: [unset; 16], next: 0 }
     }
 
     fn push(&mut self, item: T) {
@@ -36,8 +36,8 @@ impl<T: Copy> Newest<T> {
 /// What is known from the triangles before.
 struct Triangles<'a> {
     data: Bytes<'a>,
-    edges: Newest<[u32; 2]>,
-    vertices: Newest<u32>,
+    edges: RecentFifo<[u32; 2]>,
+    vertices: RecentFifo<u32>,
     /// The least vertex that was not named yet.
     next: u32,
     /// The last vertex that was named by itself.
@@ -54,7 +54,7 @@ pub(super) fn unpack_triangles(packed: &[u8], stride: usize, elements: &mut [u8]
         return Err(Broken);
     }
     let codes = data.take(count)?;
-    let (edges, vertices) = (Newest::new([0; 2]), Newest::new(0));
+    let (edges, vertices) = (RecentFifo::new([0; 2]), RecentFifo::new(0));
     let mut state = Triangles { data, edges, vertices, next: 0, last: 0 };
     for (code, corners) in codes.iter().zip(elements.chunks_exact_mut(3 * stride)) {
         let triangle = match code {

@@ -4,7 +4,7 @@ mod attributes;
 mod filters;
 mod indices;
 
-use super::json::Node;
+use super::json::JsonNode;
 use crate::FormatError;
 use crate::budget::Budget;
 use filters::Filter;
@@ -38,7 +38,11 @@ impl<'a> Bytes<'a> {
 }
 
 /// The elements of a packed view, of which `extension` says how it lies in a buffer of these bytes.
-pub(super) fn unpacked(extension: Node, bytes: &[u8], budget: &mut Budget) -> Result<Vec<u8>, FormatError> {
+pub(super) fn unpacked(
+    extension: JsonNode,
+    bytes: &[u8],
+    budget: &mut Budget,
+) -> Result<Vec<u8>, FormatError> {
     let number = |key: &'static str| extension.need(key)?.as_count();
     let (count, stride) = (number("count")?, number("byteStride")?);
     let mode = match extension.need("mode")?.as_text()? {

@@ -3,7 +3,7 @@
 use super::{Check, Role, counted, floats, text, whole};
 use crate::FormatError;
 use crate::gltf::accessor::Accessor;
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 
 /// Bytes of a component; 0 where there is no such type.
 pub(super) fn component_size(code: usize) -> usize {
@@ -29,7 +29,7 @@ pub(super) fn width(kind: &str) -> usize {
 }
 
 /// `VEC3 of FLOAT`.
-pub(super) fn format_words(accessor: Node) -> String {
+pub(super) fn format_words(accessor: JsonNode) -> String {
     let component = match whole(accessor, "componentType") {
         Some(5120) => "BYTE",
         Some(5121) => "UNSIGNED_BYTE",
@@ -44,7 +44,7 @@ pub(super) fn format_words(accessor: Node) -> String {
     format!("{} of {normalized}{component}", text(accessor, "type").unwrap_or("elements"))
 }
 
-pub(super) fn lies_within<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn lies_within<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let is_sound = [("componentType", true), ("count", true), ("type", false)]
         .into_iter()
         .all(|(key, is_number)| node.value().get(key).is_some_and(|v| v.is_number() == is_number));
@@ -61,7 +61,7 @@ pub(super) fn lies_within<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn is_aligned<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn is_aligned<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let size = whole(node, "componentType").map_or(0, component_size);
     let Some((_, view)) = check.named("bufferViews", node, "bufferView").filter(|_| size > 0) else { return };
     let inside = whole(node, "byteOffset").unwrap_or(0);
@@ -81,20 +81,20 @@ pub(super) fn is_aligned<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn normalized<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn normalized<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let is_normalized = node.value().get("normalized").is_some_and(|x| x == true);
     if is_normalized && matches!(whole(node, "componentType"), Some(5125 | 5126)) {
         check.report_key(node, "normalized", "only integers of 8 or 16 bits can be normalized: remove it");
     }
 }
 
-pub(super) fn offset_alone<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn offset_alone<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if node.get("byteOffset").is_some() && node.get("bufferView").is_none() {
         check.report_key(node, "byteOffset", "a byteOffset needs a bufferView: add one, or remove it");
     }
 }
 
-pub(super) fn sparse<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn sparse<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(sparse) = node.get("sparse") else { return };
     let (count, all) = (whole(sparse, "count"), whole(node, "count"));
     if let (Some(count), Some(all)) = (count, all)
@@ -111,7 +111,7 @@ pub(super) fn sparse<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn bounds<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn bounds<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let width = text(node, "type").map_or(0, width);
     let Some(index) = node.number_in_list().filter(|_| width > 0) else { return };
     for key in ["min", "max"] {
@@ -149,7 +149,7 @@ pub(super) fn bounds<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 }
 
 /// What normalised numbers are multiplied by to become those that are stored.
-fn stored_scale(node: Node) -> f32 {
+fn stored_scale(node: JsonNode) -> f32 {
     let is_normalized = node.value().get("normalized").is_some_and(|x| x == true);
     match (is_normalized, whole(node, "componentType")) {
         (true, Some(5120)) => 127.0,

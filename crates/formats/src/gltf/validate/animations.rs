@@ -4,11 +4,11 @@ use super::accessors::format_words;
 use super::meshes::target_count;
 use super::nodes::{as_index, has_joints};
 use super::{Check, Role, counted, is_off, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use std::collections::HashSet;
 
 /// Looks at all animations, after all that they move.
-pub(super) fn all<'d>(check: &mut Check<'d, '_>, _: Node<'d>) {
+pub(super) fn all<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     for animation in check.list("animations") {
         let samplers: Vec<_> =
             animation.get("samplers").into_iter().flat_map(|list| list.children()).collect();
@@ -43,7 +43,7 @@ pub(super) fn all<'d>(check: &mut Check<'d, '_>, _: Node<'d>) {
 }
 
 /// What a channel moves, and whether that can be moved.
-fn aim<'d>(check: &mut Check<'d, '_>, target: Node<'d>, path: &str) {
+fn aim<'d>(check: &mut Check<'d, '_>, target: JsonNode<'d>, path: &str) {
     if let Some(pointer) = target.extension("KHR_animation_pointer") {
         if path != "pointer" {
             check.report_key(
@@ -79,7 +79,7 @@ fn aim<'d>(check: &mut Check<'d, '_>, target: Node<'d>, path: &str) {
     }
 }
 
-fn input<'d>(check: &mut Check<'d, '_>, sampler: Node<'d>) {
+fn input<'d>(check: &mut Check<'d, '_>, sampler: JsonNode<'d>) {
     let Some((index, accessor)) = check.named("accessors", sampler, "input") else { return };
     if text(accessor, "type") != Some("SCALAR") || whole(accessor, "componentType") != Some(5126) {
         let message =
@@ -113,7 +113,7 @@ fn input<'d>(check: &mut Check<'d, '_>, sampler: Node<'d>) {
     }
 }
 
-fn output<'d>(check: &mut Check<'d, '_>, channel: Node<'d>, sampler: Node<'d>, path: &str) {
+fn output<'d>(check: &mut Check<'d, '_>, channel: JsonNode<'d>, sampler: JsonNode<'d>, path: &str) {
     let Some((index, accessor)) = check.named("accessors", sampler, "output") else { return };
     check.give_role(sampler, accessor, Role::Animation);
     let (kind, may_be_normalized) = match path {
@@ -154,7 +154,7 @@ fn output<'d>(check: &mut Check<'d, '_>, channel: Node<'d>, sampler: Node<'d>, p
 }
 
 /// Rotations have length one; the tangents on either side of a spline's need not.
-fn quaternions<'d>(check: &mut Check<'d, '_>, channel: Node<'d>, index: usize, is_cubic: bool) {
+fn quaternions<'d>(check: &mut Check<'d, '_>, channel: JsonNode<'d>, index: usize, is_cubic: bool) {
     let Some(numbers) = check.numbers(index) else { return };
     let length = |q: &[f32]| q.iter().map(|x| x * x).sum::<f32>().sqrt();
     let counts = |i: usize| !is_cubic || i % 3 == 1;

@@ -3,7 +3,7 @@
 use super::accessors::{component_size, format_words, width};
 use super::meshes::{attributes, of_primitive};
 use super::{Check, Role, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 
 /// What an attribute may be made of: types, then codes of components without and with normalising.
 struct Semantic {
@@ -55,7 +55,7 @@ fn semantic(name: &str) -> Option<&'static Semantic> {
     SEMANTICS.iter().find(fits).filter(|_| number.is_none_or(is_number))
 }
 
-pub(super) fn names<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn names<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(holder) = node.get("attributes") else { return };
     let targets = node.get("targets").into_iter().flat_map(|list| list.children());
     for (name, at) in holder.entries().chain(targets.flat_map(|target| target.entries())) {
@@ -90,7 +90,7 @@ pub(super) fn names<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn formats<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn formats<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let required = check.root.get("extensionsRequired");
     let is_quantized = required.is_some_and(|list| {
         list.children().any(|name| name.value().as_str() == Some("KHR_mesh_quantization"))
@@ -125,7 +125,7 @@ pub(super) fn formats<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn layout<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn layout<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let mut all = of_primitive(check, node);
     let targets = node.get("targets").into_iter().flat_map(|list| list.children());
     all.extend(targets.flat_map(|target| attributes(check, target)));

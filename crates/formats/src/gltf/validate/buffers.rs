@@ -1,10 +1,10 @@
 //! Buffers and their views. [glTF 2.0, 3.6.1]
 
 use super::{Check, counted, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use crate::gltf::meshopt;
 
-pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(index) = node.number_in_list() else { return };
     let wanted = whole(node, "byteLength").unwrap_or(0);
     let have = check.document.buffer_length(index);
@@ -20,7 +20,7 @@ pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn mime_type<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn mime_type<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some((kind, _)) = text(node, "uri").and_then(|uri| uri.strip_prefix("data:")?.split_once(',')) else {
         return;
     };
@@ -33,14 +33,14 @@ pub(super) fn mime_type<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn in_glb<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn in_glb<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if check.document.has_binary() && text(node, "uri").is_some_and(|uri| uri.starts_with("data:")) {
         let message = "a GLB file should keep its data in its binary chunk, not in a data URI, which takes a third more";
         check.report_key(node, "uri", message);
     }
 }
 
-pub(super) fn view<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn view<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if check.named("buffers", node, "buffer").is_none() || whole(node, "byteLength").is_none_or(|n| n == 0) {
         return;
     }
@@ -57,7 +57,7 @@ pub(super) fn view<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn stride_target<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn stride_target<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if node.get("byteStride").is_some() && whole(node, "target") == Some(34963) {
         let message =
             "byteStride is for vertex attributes, and the target says that these are indices: remove it";

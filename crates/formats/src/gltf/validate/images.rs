@@ -2,10 +2,10 @@
 
 use super::{Check, Role, text};
 use crate::FormatError;
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use crate::gltf::reader::Gltf;
 
-pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     match (node.get("uri"), node.get("bufferView")) {
         (None, None) => check.report(node, "this image has neither a uri nor a bufferView: it needs one"),
         (Some(_), Some(_)) => {
@@ -56,7 +56,8 @@ impl<'d> Gltf<'d, '_, '_> {
     /// Reads the images that no material has asked for, and compares all with what the document says of them.
     pub(super) fn validate_images(&mut self) -> Result<(), FormatError> {
         let root = self.document.root;
-        let all: Vec<Node<'d>> = root.get("images").map(|list| list.children().collect()).unwrap_or_default();
+        let all: Vec<JsonNode<'d>> =
+            root.get("images").map(|list| list.children().collect()).unwrap_or_default();
         for (number, image) in all.into_iter().enumerate() {
             let is_placed = image.get("uri").is_some() != image.get("bufferView").is_some();
             if !is_placed || !image.is_object() {
@@ -81,7 +82,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    fn validate_kind(&mut self, image: Node<'d>, number: usize, bytes: &[u8]) {
+    fn validate_kind(&mut self, image: JsonNode<'d>, number: usize, bytes: &[u8]) {
         let in_uri = || text(image, "uri")?.strip_prefix("data:")?.split([';', ',']).next();
         let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
         let Some(found) = recognised(bytes) else {

@@ -1,10 +1,10 @@
 //! Materials, and how their extensions go together.
 
 use super::{Check, floats, number, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use std::collections::HashSet;
 
-pub(super) fn cutoff<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn cutoff<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let mode = text(node, "alphaMode").unwrap_or("OPAQUE");
     if node.get("alphaCutoff").is_some() && matches!(mode, "OPAQUE" | "BLEND") {
         let message =
@@ -13,7 +13,7 @@ pub(super) fn cutoff<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn go_together<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn go_together<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(extensions) = node.get("extensions") else { return };
     let has = |name| extensions.get(name);
     for alone in ["KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"] {
@@ -55,12 +55,12 @@ pub(super) fn go_together<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 }
 
 /// The set of texture coordinates that a reference to a texture asks for.
-pub(super) fn coordinates(info: Node) -> usize {
+pub(super) fn coordinates(info: JsonNode) -> usize {
     let moved = info.extension("KHR_texture_transform").and_then(|moved| whole(moved, "texCoord"));
     moved.or_else(|| whole(info, "texCoord")).unwrap_or(0)
 }
 
-pub(super) fn same_coordinates<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn same_coordinates<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(normal) = node.get("normalTexture") else { return };
     let others = [
         ("KHR_materials_anisotropy", "anisotropyTexture", "anisotropy"),
@@ -78,7 +78,7 @@ pub(super) fn same_coordinates<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn thickness<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn thickness<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(film) = node.extension("KHR_materials_iridescence") else { return };
     let range = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)];
     let [least, greatest] = range.map(|(key, default)| number(film, key).unwrap_or(default));
@@ -98,7 +98,7 @@ pub(super) fn thickness<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 }
 
 /// `KHR_materials_variants` of a primitive.
-pub(super) fn mappings<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn mappings<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let variants = check.root.extension("KHR_materials_variants").and_then(|e| e.get("variants"));
     let count = variants.map_or(0, |variants| variants.children().count());
     let mut seen = HashSet::new();

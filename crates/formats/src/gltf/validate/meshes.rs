@@ -2,11 +2,14 @@
 
 use super::materials::coordinates;
 use super::{Check, Role, counted, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 
 /// The attributes of a primitive, with the index and the accessor of each.
-pub(super) fn attributes<'d>(check: &Check<'d, '_>, holder: Node<'d>) -> Vec<(&'d str, usize, Node<'d>)> {
-    let found = |(name, index): (&'d str, Node<'d>)| {
+pub(super) fn attributes<'d>(
+    check: &Check<'d, '_>,
+    holder: JsonNode<'d>,
+) -> Vec<(&'d str, usize, JsonNode<'d>)> {
+    let found = |(name, index): (&'d str, JsonNode<'d>)| {
         let index = usize::try_from(index.value().as_u64()?).ok()?;
         Some((name, index, check.root.item("accessors", index)?))
     };
@@ -14,21 +17,24 @@ pub(super) fn attributes<'d>(check: &Check<'d, '_>, holder: Node<'d>) -> Vec<(&'
 }
 
 /// The attributes under `attributes`.
-pub(super) fn of_primitive<'d>(check: &Check<'d, '_>, node: Node<'d>) -> Vec<(&'d str, usize, Node<'d>)> {
+pub(super) fn of_primitive<'d>(
+    check: &Check<'d, '_>,
+    node: JsonNode<'d>,
+) -> Vec<(&'d str, usize, JsonNode<'d>)> {
     node.get("attributes").map(|holder| attributes(check, holder)).unwrap_or_default()
 }
 
-fn targets<'d>(node: Node<'d>) -> Vec<Node<'d>> {
+fn targets<'d>(node: JsonNode<'d>) -> Vec<JsonNode<'d>> {
     node.get("targets").map(|list| list.children().collect()).unwrap_or_default()
 }
 
 /// How many morph targets the first primitive of a mesh has.
-pub(super) fn target_count(mesh: Node) -> usize {
+pub(super) fn target_count(mesh: JsonNode) -> usize {
     let first = mesh.get("primitives").and_then(|list| list.children().next());
     first.map_or(0, |primitive| targets(primitive).len())
 }
 
-pub(super) fn weights<'d>(check: &mut Check<'d, '_>, mesh: Node<'d>) {
+pub(super) fn weights<'d>(check: &mut Check<'d, '_>, mesh: JsonNode<'d>) {
     let Some(weights) = mesh.get("weights").filter(|list| list.value().is_array()) else { return };
     let (have, wanted) = (weights.children().count(), target_count(mesh));
     if have != wanted {
@@ -37,7 +43,7 @@ pub(super) fn weights<'d>(check: &mut Check<'d, '_>, mesh: Node<'d>) {
     }
 }
 
-pub(super) fn same_targets<'d>(check: &mut Check<'d, '_>, mesh: Node<'d>) {
+pub(super) fn same_targets<'d>(check: &mut Check<'d, '_>, mesh: JsonNode<'d>) {
     let wanted = target_count(mesh);
     for primitive in mesh.get("primitives").into_iter().flat_map(|list| list.children()) {
         let have = targets(primitive).len();
@@ -49,7 +55,7 @@ pub(super) fn same_targets<'d>(check: &mut Check<'d, '_>, mesh: Node<'d>) {
     }
 }
 
-pub(super) fn position_bounds<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn position_bounds<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let mut all = of_primitive(check, node);
     all.extend(targets(node).into_iter().flat_map(|target| attributes(check, target)));
     for (_, _, accessor) in all.into_iter().filter(|(name, ..)| *name == "POSITION") {
@@ -59,7 +65,7 @@ pub(super) fn position_bounds<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn counts<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn counts<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let all = of_primitive(check, node);
     let Some((first, _, accessor)) = all.first() else { return };
     let wanted = whole(*accessor, "count");
@@ -75,7 +81,7 @@ pub(super) fn counts<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn indices<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn indices<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let vertices =
         of_primitive(check, node).iter().filter_map(|(_, _, accessor)| whole(*accessor, "count")).min();
     let mode = whole(node, "mode").unwrap_or(4);
@@ -124,7 +130,7 @@ pub(super) fn indices<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 
 fn index_values<'d>(
     check: &mut Check<'d, '_>,
-    node: Node<'d>,
+    node: JsonNode<'d>,
     all: &[u32],
     vertices: usize,
     is_byte: bool,
@@ -151,7 +157,7 @@ fn index_values<'d>(
     }
 }
 
-fn degenerate<'d>(check: &mut Check<'d, '_>, node: Node<'d>, all: &[u32]) {
+fn degenerate<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[u32]) {
     let is_flat = |t: &&[u32]| t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     let count = all.chunks_exact(3).filter(is_flat).count();
     if count > 0 {
@@ -165,7 +171,7 @@ pub(super) fn have(count: usize, noun: &str) -> String {
     format!("{} {}", counted(count, noun), if count == 1 { "has" } else { "have" })
 }
 
-pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if let Some(list) = node.get("targets") {
         check.items(list, |check, target| {
             if !target.is_object() || target.entries().next().is_none() {
@@ -201,7 +207,7 @@ pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 }
 
 /// Every reference to a texture in a material, with the key that it stands under.
-fn texture_infos<'d>(node: Node<'d>, found: &mut Vec<(&'d str, Node<'d>)>) {
+fn texture_infos<'d>(node: JsonNode<'d>, found: &mut Vec<(&'d str, JsonNode<'d>)>) {
     for (key, value) in node.entries() {
         if key.ends_with("Texture") && value.get("index").is_some() {
             found.push((key, value));
@@ -211,7 +217,7 @@ fn texture_infos<'d>(node: Node<'d>, found: &mut Vec<(&'d str, Node<'d>)>) {
     }
 }
 
-pub(super) fn material<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn material<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some((_, material)) = check.named("materials", node, "material") else { return };
     let Some(holder) = node.get("attributes") else { return };
     let has = |name: &str| holder.value().get(name).is_some();

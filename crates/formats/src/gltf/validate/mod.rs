@@ -22,7 +22,7 @@ mod walk;
 
 use super::accessor::Accessor;
 use super::document::Document;
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use crate::FormatError;
 use crate::budget::Budget;
@@ -32,7 +32,7 @@ use std::collections::{HashMap, HashSet};
 /// What has been found about a document so far.
 struct Check<'d, 'a> {
     document: &'d Document<'d>,
-    root: Node<'d>,
+    root: JsonNode<'d>,
     budget: &'a mut Budget,
     oddities: &'a mut Oddities,
     /// List and index of all that something else names.
@@ -97,23 +97,23 @@ impl Gltf<'_, '_, '_> {
 
 impl<'d> Check<'d, '_> {
     /// Reports a fault at a place.
-    fn report(&mut self, at: Node<'d>, message: impl AsRef<str>) {
+    fn report(&mut self, at: JsonNode<'d>, message: impl AsRef<str>) {
         self.oddities.note(message.as_ref(), || at.at());
     }
 
     /// Reports a fault at a property, or at the object where it has none of that name.
-    fn report_key(&mut self, at: Node<'d>, key: &'d str, message: impl AsRef<str>) {
+    fn report_key(&mut self, at: JsonNode<'d>, key: &'d str, message: impl AsRef<str>) {
         self.report(at.get(key).unwrap_or(at), message);
     }
 
     /// The item that the index under `key` names; none where there is none, which the walk reports.
-    fn named(&self, list: &'static str, node: Node<'d>, key: &'d str) -> Option<(usize, Node<'d>)> {
+    fn named(&self, list: &'static str, node: JsonNode<'d>, key: &'d str) -> Option<(usize, JsonNode<'d>)> {
         let index = whole(node, key)?;
         Some((index, self.root.item(list, index)?))
     }
 
     /// The items of a list of the document.
-    fn list(&self, list: &'static str) -> Vec<Node<'d>> {
+    fn list(&self, list: &'static str) -> Vec<JsonNode<'d>> {
         self.root.get(list).map(|list| list.children().collect()).unwrap_or_default()
     }
 
@@ -137,7 +137,7 @@ impl<'d> Check<'d, '_> {
         self.unless_too_large(node, indices)
     }
 
-    fn unless_too_large<T>(&mut self, node: Node<'d>, read: Result<T, FormatError>) -> Option<T> {
+    fn unless_too_large<T>(&mut self, node: JsonNode<'d>, read: Result<T, FormatError>) -> Option<T> {
         if let Err(FormatError::TooLarge { .. }) = &read {
             self.report(node, "these data were not checked, since that takes more memory than is allowed");
         }
@@ -145,7 +145,7 @@ impl<'d> Check<'d, '_> {
     }
 
     /// Notes what a buffer view is used for, and reports a second use that does not go with the first.
-    fn give_role(&mut self, user: Node<'d>, accessor: Node<'d>, role: Role) {
+    fn give_role(&mut self, user: JsonNode<'d>, accessor: JsonNode<'d>, role: Role) {
         let Some((index, view)) = self.named("bufferViews", accessor, "bufferView") else { return };
         let before = *self.roles.entry(index).or_insert(role);
         let target = whole(view, "target");
@@ -175,7 +175,7 @@ impl<'d> Check<'d, '_> {
 }
 
 /// A whole number; none where there is none.
-fn whole(node: Node, key: &str) -> Option<usize> {
+fn whole(node: JsonNode, key: &str) -> Option<usize> {
     let value = node.value().get(key)?;
     value.as_u64().or_else(|| whole_float(value)).and_then(|x| usize::try_from(x).ok())
 }
@@ -185,15 +185,15 @@ fn whole_float(value: &serde_json::Value) -> Option<u64> {
     value.as_f64().filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x)).map(|x| x as u64)
 }
 
-fn number(node: Node, key: &str) -> Option<f64> {
+fn number(node: JsonNode, key: &str) -> Option<f64> {
     node.value().get(key)?.as_f64()
 }
 
-fn text<'d>(node: Node<'d>, key: &str) -> Option<&'d str> {
+fn text<'d>(node: JsonNode<'d>, key: &str) -> Option<&'d str> {
     node.value().get(key)?.as_str()
 }
 
-fn floats(node: Node, key: &str) -> Option<Vec<f64>> {
+fn floats(node: JsonNode, key: &str) -> Option<Vec<f64>> {
     node.value().get(key)?.as_array()?.iter().map(serde_json::Value::as_f64).collect()
 }
 

@@ -2,10 +2,10 @@
 
 use super::meshes::target_count;
 use super::{Check, counted, floats, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use bilux_math::DVec3;
 
-pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(matrix) = node.get("matrix") else { return };
     if let Some(other) = ["translation", "rotation", "scale"].iter().find(|key| node.get(key).is_some()) {
         check.report(matrix, format!("this node has both a matrix and a {other}: it needs one of them"));
@@ -23,7 +23,7 @@ pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(q) = floats(node, "rotation").filter(|q| q.len() == 4) else { return };
     let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     // Programs write four digits and more.
@@ -37,14 +37,14 @@ pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 }
 
 /// True when a primitive of the mesh has joints.
-pub(super) fn has_joints(mesh: Node) -> bool {
+pub(super) fn has_joints(mesh: JsonNode) -> bool {
     mesh.get("primitives")
         .into_iter()
         .flat_map(|list| list.children())
         .any(|primitive| primitive.get("attributes").is_some_and(|a| a.value().get("JOINTS_0").is_some()))
 }
 
-pub(super) fn mesh<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn mesh<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     for key in ["skin", "weights"] {
         if node.get(key).is_some() && node.get("mesh").is_none() {
             check.report_key(node, key, format!("'{key}' has no effect on a node without a mesh"));
@@ -68,12 +68,12 @@ pub(super) fn mesh<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
 }
 
 /// The transform of a node with a skinned mesh, and of those above it, does nothing.
-pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some((_, mesh)) = check.named("meshes", node, "mesh") else { return };
     if node.get("skin").is_none() || !has_joints(mesh) {
         return;
     }
-    let stands = |node: Node| {
+    let stands = |node: JsonNode| {
         ["matrix", "translation", "rotation", "scale"].iter().any(|key| node.value().get(key).is_some())
     };
     if stands(node) {
@@ -107,7 +107,7 @@ pub(super) fn parents(check: &Check<'_, '_>) -> Vec<Option<usize>> {
     parents
 }
 
-pub(super) fn roots<'d>(check: &mut Check<'d, '_>, scene: Node<'d>) {
+pub(super) fn roots<'d>(check: &mut Check<'d, '_>, scene: JsonNode<'d>) {
     let parents = parents(check);
     for item in scene.get("nodes").into_iter().flat_map(|list| list.children()) {
         let index = item.value().as_u64().and_then(|index| usize::try_from(index).ok());
@@ -117,7 +117,7 @@ pub(super) fn roots<'d>(check: &mut Check<'d, '_>, scene: Node<'d>) {
     }
 }
 
-pub(super) fn trees<'d>(check: &mut Check<'d, '_>, _: Node<'d>) {
+pub(super) fn trees<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     let parents = parents(check);
     for (index, node) in check.list("nodes").into_iter().enumerate() {
         for child in node.get("children").into_iter().flat_map(|list| list.children()) {
@@ -152,16 +152,16 @@ pub(super) fn root_of(parents: &[Option<usize>], mut index: usize) -> usize {
 }
 
 /// The index that a value is.
-pub(super) fn as_index(node: Node) -> Option<usize> {
+pub(super) fn as_index(node: JsonNode) -> Option<usize> {
     node.value().as_u64().and_then(|index| usize::try_from(index).ok())
 }
 
 /// Those that `key` names, of a node or a skin.
-pub(super) fn named_nodes<'d>(node: Node<'d>, key: &'d str) -> Vec<usize> {
+pub(super) fn named_nodes<'d>(node: JsonNode<'d>, key: &'d str) -> Vec<usize> {
     node.get(key).into_iter().flat_map(|list| list.children()).filter_map(as_index).collect()
 }
 
 /// The index of the skin that a node wears.
-pub(super) fn skin_of(node: Node) -> Option<usize> {
+pub(super) fn skin_of(node: JsonNode) -> Option<usize> {
     whole(node, "skin")
 }

@@ -3,11 +3,11 @@
 use super::extension_kinds::{ANYWHERE, EXTENSIONS, WITHOUT_OBJECT};
 use super::walk::singular;
 use super::{Check, number, text};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-pub(super) fn version<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
+pub(super) fn version<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
     let Some(asset) = root.get("asset") else { return };
     let pair = |key| {
         let (major, minor) = text(asset, key)?.split_once('.')?;
@@ -25,11 +25,12 @@ pub(super) fn version<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
     }
 }
 
-pub(super) fn extensions<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
-    let names = |key| -> Vec<Node<'d>> { root.get(key).map(|l| l.children().collect()).unwrap_or_default() };
+pub(super) fn extensions<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
+    let names =
+        |key| -> Vec<JsonNode<'d>> { root.get(key).map(|l| l.children().collect()).unwrap_or_default() };
     let (used, required) = (names("extensionsUsed"), names("extensionsRequired"));
     let contains =
-        |list: &[Node<'d>], name: &str| list.iter().any(|item| item.value().as_str() == Some(name));
+        |list: &[JsonNode<'d>], name: &str| list.iter().any(|item| item.value().as_str() == Some(name));
     for &item in &used {
         let Some(name) = item.value().as_str() else { continue };
         let is_word =
@@ -66,7 +67,7 @@ pub(super) fn extensions<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
 }
 
 /// Objects that nothing names, unless extensions that are not known here may name them.
-pub(super) fn unused<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
+pub(super) fn unused<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
     let is_known = |name: &&str| {
         EXTENSIONS.iter().any(|row| row.name == *name && !row.kind.is_open)
             || WITHOUT_OBJECT.contains(name)
@@ -95,7 +96,7 @@ pub(super) fn unused<'d>(check: &mut Check<'d, '_>, root: Node<'d>) {
     }
 }
 
-pub(super) fn camera<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn camera<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(kind) = text(node, "type") else { return };
     for lens in ["perspective", "orthographic"] {
         match node.get(lens) {
@@ -110,7 +111,7 @@ pub(super) fn camera<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-fn near_and_far<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+fn near_and_far<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if let (Some(near), Some(far)) = (number(node, "znear"), number(node, "zfar"))
         && far <= near
     {
@@ -122,7 +123,7 @@ fn near_and_far<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn orthographic<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn orthographic<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     near_and_far(check, node);
     for key in ["xmag", "ymag"] {
         if let Some(size) = number(node, key).filter(|size| *size <= 0.0) {
@@ -131,7 +132,7 @@ pub(super) fn orthographic<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn perspective<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn perspective<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     near_and_far(check, node);
     if let Some(angle) = number(node, "yfov").filter(|angle| *angle >= PI) {
         let message =
@@ -140,7 +141,7 @@ pub(super) fn perspective<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
     }
 }
 
-pub(super) fn spot<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn spot<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(kind) = text(node, "type") else { return };
     if kind == "directional" && node.get("range").is_some() {
         check.report_key(node, "range", "a directional light has no range: remove it");

@@ -11,7 +11,7 @@ use super::schema::Kind;
 use super::{
     accessors, animations, attributes, buffers, images, materials, meshes, nodes, root, skins, vertices,
 };
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 
 /// One rule.
 pub(super) struct Rule {
@@ -20,13 +20,13 @@ pub(super) struct Rule {
     name: &'static str,
     /// The objects for which it must.
     pub(super) of: &'static Kind,
-    pub(super) check: for<'d> fn(&mut Check<'d, '_>, Node<'d>),
+    pub(super) check: for<'d> fn(&mut Check<'d, '_>, JsonNode<'d>),
 }
 
 const fn rule(
     _name: &'static str,
     of: &'static Kind,
-    check: for<'d> fn(&mut Check<'d, '_>, Node<'d>),
+    check: for<'d> fn(&mut Check<'d, '_>, JsonNode<'d>),
 ) -> Rule {
     Rule {
         #[cfg(test)]

@@ -3,9 +3,9 @@
 use super::accessors::format_words;
 use super::nodes::{named_nodes, parents, root_of, skin_of};
 use super::{Check, Role, counted, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 
-pub(super) fn matrices<'d>(check: &mut Check<'d, '_>, skin: Node<'d>) {
+pub(super) fn matrices<'d>(check: &mut Check<'d, '_>, skin: JsonNode<'d>) {
     let Some((index, accessor)) = check.named("accessors", skin, "inverseBindMatrices") else { return };
     let key = "inverseBindMatrices";
     if text(accessor, "type") != Some("MAT4") || whole(accessor, "componentType") != Some(5126) {
@@ -26,7 +26,7 @@ pub(super) fn matrices<'d>(check: &mut Check<'d, '_>, skin: Node<'d>) {
     }
 }
 
-pub(super) fn common_root<'d>(check: &mut Check<'d, '_>, skin: Node<'d>) {
+pub(super) fn common_root<'d>(check: &mut Check<'d, '_>, skin: JsonNode<'d>) {
     let parents = parents(check);
     let joints: Vec<usize> = named_nodes(skin, "joints").into_iter().filter(|&j| j < parents.len()).collect();
     let Some(&first) = joints.first() else { return };
@@ -52,7 +52,7 @@ pub(super) fn common_root<'d>(check: &mut Check<'d, '_>, skin: Node<'d>) {
 }
 
 /// A mesh is bent by joints of the scenes that it is in.
-pub(super) fn in_scene<'d>(check: &mut Check<'d, '_>, _: Node<'d>) {
+pub(super) fn in_scene<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     let parents = parents(check);
     let nodes = check.list("nodes");
     for scene in check.list("scenes") {

@@ -2,13 +2,13 @@
 
 use super::meshes::{have, of_primitive};
 use super::{Check, is_off, text, whole};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 
 /// Lengths that differ from one by more are reported; bytes and halves keep them within it.
 const LENGTH_TOLERANCE: f32 = 0.01;
 const SUM_TOLERANCE: f32 = 0.01;
 
-pub(super) fn values<'d>(check: &mut Check<'d, '_>, node: Node<'d>) {
+pub(super) fn values<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let all = of_primitive(check, node);
     for &(name, index, accessor) in &all {
         let is_vec4 = text(accessor, "type") == Some("VEC4");
@@ -68,7 +68,7 @@ fn negative_weights(all: &[f32]) -> Option<String> {
 }
 
 /// All joints and weights of a primitive, by vertex, over all sets.
-fn influences<'d>(check: &mut Check<'d, '_>, node: Node<'d>, all: &[(&'d str, usize, Node<'d>)]) {
+fn influences<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[(&'d str, usize, JsonNode<'d>)]) {
     let find = |name: String| all.iter().find(|(other, ..)| **other == name);
     let (mut sets, mut count) = (Vec::new(), usize::MAX);
     for set in 0.. {
@@ -130,7 +130,7 @@ fn influences<'d>(check: &mut Check<'d, '_>, node: Node<'d>, all: &[(&'d str, us
 }
 
 /// The fewest joints of any skin that the mesh of a primitive is worn with.
-fn joint_limit<'d>(check: &Check<'d, '_>, primitive: Node<'d>) -> Option<usize> {
+fn joint_limit<'d>(check: &Check<'d, '_>, primitive: JsonNode<'d>) -> Option<usize> {
     let mesh = primitive.number_of_parent()?;
     let wearing = check.list("nodes").into_iter().filter(|node| whole(*node, "mesh") == Some(mesh));
     let skins = wearing.filter_map(|node| check.named("skins", node, "skin"));

@@ -4,14 +4,14 @@ use super::extension_kinds::{ANYWHERE, EXTENSIONS};
 use super::rules::RULES;
 use super::schema::{Kind, Property, Shape};
 use super::{Check, counted, whole_float};
-use crate::gltf::json::Node;
+use crate::gltf::json::JsonNode;
 use bilux_scene::error::nearest_name;
 use serde_json::Value;
 use std::collections::HashSet;
 
 impl<'d> Check<'d, '_> {
     /// Checks an object, all that it holds, and the rules for its kind.
-    pub(super) fn object(&mut self, node: Node<'d>, kind: &'static Kind) {
+    pub(super) fn object(&mut self, node: JsonNode<'d>, kind: &'static Kind) {
         if !node.is_object() {
             self.wrong(node, "an object in braces");
             return;
@@ -36,7 +36,7 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    fn unknown_keys(&mut self, node: Node<'d>, kind: &Kind) {
+    fn unknown_keys(&mut self, node: JsonNode<'d>, kind: &Kind) {
         for (key, value) in node.entries() {
             if matches!(key, "extensions" | "extras") || kind.properties.iter().any(|p| p.key == key) {
                 continue;
@@ -50,7 +50,7 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    fn property(&mut self, value: Node<'d>, property: &Property) {
+    fn property(&mut self, value: JsonNode<'d>, property: &Property) {
         match &property.shape {
             Shape::Any => {}
             Shape::Text => self.expect(value, value.value().is_string(), "text"),
@@ -93,17 +93,17 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    pub(super) fn expect(&mut self, node: Node<'d>, is_right: bool, wanted: &str) {
+    pub(super) fn expect(&mut self, node: JsonNode<'d>, is_right: bool, wanted: &str) {
         if !is_right {
             self.wrong(node, wanted);
         }
     }
 
-    fn wrong(&mut self, node: Node<'d>, wanted: &str) {
+    fn wrong(&mut self, node: JsonNode<'d>, wanted: &str) {
         self.report(node, format!("this is {}, but must be {wanted}", node.shortened()));
     }
 
-    fn whole_number(&mut self, node: Node<'d>, least: u64, greatest: u64) {
+    fn whole_number(&mut self, node: JsonNode<'d>, least: u64, greatest: u64) {
         let number = whole_of(node.value());
         if number.is_none() || number.is_some_and(|x| x < least) {
             self.wrong(node, &format!("a whole number, {least} or more"));
@@ -113,7 +113,7 @@ impl<'d> Check<'d, '_> {
     }
 
     /// Checks the items of a list, which may not be empty.
-    pub(super) fn items(&mut self, list: Node<'d>, mut check: impl FnMut(&mut Self, Node<'d>)) {
+    pub(super) fn items(&mut self, list: JsonNode<'d>, mut check: impl FnMut(&mut Self, JsonNode<'d>)) {
         match list.value().as_array() {
             None => self.wrong(list, "a list in brackets"),
             Some(items) if items.is_empty() => self.report(list, "this list is empty: leave it out"),
@@ -122,7 +122,7 @@ impl<'d> Check<'d, '_> {
     }
 
     /// The same for a list whose items must all be different.
-    fn different(&mut self, list: Node<'d>, mut check: impl FnMut(&mut Self, Node<'d>)) {
+    fn different(&mut self, list: JsonNode<'d>, mut check: impl FnMut(&mut Self, JsonNode<'d>)) {
         let mut seen = HashSet::new();
         self.items(list, |this, item| {
             check(this, item);
@@ -133,7 +133,7 @@ impl<'d> Check<'d, '_> {
     }
 
     /// Checks that an index names an item of a list of the document.
-    pub(super) fn index(&mut self, node: Node<'d>, list: &'static str) {
+    pub(super) fn index(&mut self, node: JsonNode<'d>, list: &'static str) {
         let Some(index) = whole_of(node.value()).and_then(|index| usize::try_from(index).ok()) else {
             return self.wrong(node, "a whole number, 0 or more");
         };
@@ -149,7 +149,7 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    fn indices_by_name(&mut self, node: Node<'d>, list: &'static str) {
+    fn indices_by_name(&mut self, node: JsonNode<'d>, list: &'static str) {
         if !node.is_object() {
             return self.wrong(node, "an object in braces");
         }
@@ -161,7 +161,7 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    fn extensions(&mut self, node: Node<'d>, extended: &'static Kind) {
+    fn extensions(&mut self, node: JsonNode<'d>, extended: &'static Kind) {
         if !node.is_object() {
             return self.wrong(node, "an object in braces");
         }

@@ -1,7 +1,7 @@
 //! What materials of any kind come to in glTF, which has one kind: our `principled`.
 
 use super::Document;
-use crate::values::{Holds, colour, coloured_metal, number};
+use crate::values::{MaterialSupport, colour, coloured_metal, number};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_math::transcendental::exp;
@@ -9,7 +9,7 @@ use bilux_scene::materials::with_indices;
 use bilux_scene::{Spec, Value};
 
 /// With what other kinds come to that; of their pictures `principled` tells.
-pub(super) const OTHERS: Holds = Holds {
+pub(super) const OTHERS: MaterialSupport = MaterialSupport {
     format: "glTF",
     of_kinds: &[
         ("diffuse", &["reflectance", "roughness"]),

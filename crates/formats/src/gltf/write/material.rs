@@ -4,7 +4,7 @@ use super::Document;
 use super::kinds::{OF_ANY, OTHERS, as_principled};
 use super::pictures::Channel;
 use crate::FormatError;
-use crate::values::{Holds, colour, number, texture};
+use crate::values::{MaterialSupport, colour, number, texture};
 use crate::writing::Writing;
 use bilux_math::Rgb;
 use bilux_scene::{Spec, Texture, Value};
@@ -81,7 +81,7 @@ impl Document<'_> {
         let of_any: Vec<&str> = in_tables.chain(OF_ANY.iter().copied()).collect();
         let pictured = [&of_any[..], &PICTURED].concat();
         let of_kinds = &[("principled", ELSEWHERE)];
-        Holds { format: "glTF", of_kinds, of_any: &of_any, pictured: Some(&pictured) }
+        MaterialSupport { format: "glTF", of_kinds, of_any: &of_any, pictured: Some(&pictured) }
             .tell(&principled, writing);
         let is_front =
             |key| matches!(principled.parameters.find(key), Some((Value::Text(side), _)) if side == "front");

@@ -1,10 +1,10 @@
 //! Materials below a clear layer.
 
-use super::super::inks::{Ink, Meaning};
 use super::super::media::measured;
 use super::super::metals::straight_and_grazing;
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
+use super::super::texture_or_value::{Meaning, TextureOrValue};
 use super::plain::{CONDUCTOR, INTERFACE, Metal, extinction_of};
 use super::roughness::{Keys, OWN, PRINCIPLED};
 use crate::FormatError;
@@ -14,7 +14,8 @@ use bilux_scene::Spec;
 /// A matt base below a dielectric boundary: `principled`, with the base that is left when light has gone to and fro between
 /// the two.
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflectance = pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(Ink::Colour(Rgb::grey(0.5)));
+    let reflectance =
+        pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
     pbrt.mind_layers(list)?;
     Ok(Some(pbrt.below_glass(list, reflectance, index, 0.0, false)?))
@@ -24,7 +25,7 @@ impl Pbrt<'_, '_> {
     pub(super) fn below_glass(
         &mut self,
         list: &ParameterList,
-        reflectance: Ink,
+        reflectance: TextureOrValue,
         index: f32,
         roughness: f32,
         is_old: bool,
@@ -82,11 +83,11 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
     let mut spec = Spec::new("", "principled").with("base_metalness", 1.0f32).with("coat_weight", 1.0f32);
     spec.parameters.set("coat_ior", index);
     let metal = match pbrt.metal(list, ["conductor.eta", "conductor.k"])? {
-        Metal::Reflectance(Ink::Picture(picture)) => {
-            pbrt.set(&mut spec, "base_color", Ink::Picture(picture), list.place("reflectance"));
+        Metal::Reflectance(TextureOrValue::Picture(picture)) => {
+            pbrt.set(&mut spec, "base_color", TextureOrValue::Picture(picture), list.place("reflectance"));
             None
         }
-        Metal::Reflectance(Ink::Colour(colour)) => Some([Rgb::WHITE, extinction_of(colour)]),
+        Metal::Reflectance(TextureOrValue::Colour(colour)) => Some([Rgb::WHITE, extinction_of(colour)]),
         Metal::Indices(indices) => Some(indices),
     };
     if let Some(metal) = metal {
@@ -120,7 +121,7 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
             let reduced = scattering[c] * (1.0 - g);
             seen_from_afar(reduced / (reduced + absorption[c]).max(f32::MIN_POSITIVE))
         };
-        Ink::Colour(Rgb::new(channel(0), channel(1), channel(2)))
+        TextureOrValue::Colour(Rgb::new(channel(0), channel(1), channel(2)))
     };
     let colour = match (named, scattering.zip(absorption), pbrt.ink(list, "reflectance", Meaning::Surface)?) {
         (Some(known), ..) => from_afar(known, 0.0),

@@ -8,15 +8,15 @@ mod version_3;
 pub(super) use coated::reflected_inside;
 pub(super) use plain::extinction_of;
 
-use super::inks::{Ink, Meaning};
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
 use super::spectra::{Named, named};
 use super::state::MaterialKey;
+use super::texture_or_value::{Meaning, TextureOrValue};
 use super::unknown;
 use crate::FormatError;
 use crate::reading::Texels;
-use bilux_scene::materials::{self, Ingredients};
+use bilux_scene::materials::{self, MaterialInputs};
 use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
 
@@ -94,10 +94,10 @@ impl Pbrt<'_, '_> {
         }
         if let Some(name) = list.text("normalmap")? {
             let at = list.place("normalmap");
-            let map = Ink::Picture(Arc::new(self.file(name, Texels::Numbers(None), &at)?));
+            let map = TextureOrValue::Picture(Arc::new(self.file(name, Texels::Numbers(None), &at)?));
             spec.parameters.set_at("normal", self.value(map), at);
         }
-        list.tell_unused(&mut self.oddities);
+        list.report_unused(&mut self.oddities);
         Ok(Some(spec))
     }
 
@@ -135,7 +135,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// Sets a colour or a picture of one.
-    fn set(&mut self, spec: &mut Spec, key: &str, ink: Ink, at: Span) {
+    fn set(&mut self, spec: &mut Spec, key: &str, ink: TextureOrValue, at: Span) {
         let value = self.value(ink);
         spec.parameters.set_at(key, value, at);
     }
@@ -161,7 +161,7 @@ impl Pbrt<'_, '_> {
         self.scene.materials.extend([a, b]);
         let mix =
             mix.with("a", Value::Material(first)).with("b", Value::Material(first + 1)).with("amount", share);
-        if materials::build(&mix, &Ingredients::new(&self.scene.textures, &self.scene.materials)).is_ok() {
+        if materials::build(&mix, &MaterialInputs::new(&self.scene.textures, &self.scene.materials)).is_ok() {
             return mix;
         }
         self.scene.materials.truncate(first);
@@ -181,8 +181,9 @@ pub(super) fn take(spec: &mut Spec, key: &str) -> Option<Value> {
 const DEEPEST: usize = 8;
 
 fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let amount =
-        pbrt.number_ink_or_colour(list, "amount")?.unwrap_or(Ink::Colour(bilux_math::Rgb::grey(0.5)));
+    let amount = pbrt
+        .float_texture_or_colour(list, "amount")?
+        .unwrap_or(TextureOrValue::Colour(bilux_math::Rgb::grey(0.5)));
     let (names, is_old): (Vec<String>, bool) = match list.texts("materials")? {
         [] => {
             let name = |key| Ok::<_, FormatError>(list.text(key)?.map(str::to_owned));
@@ -214,16 +215,16 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatErro
 
 impl Pbrt<'_, '_> {
     /// A number, or a colour in its place, as version 3 has it.
-    fn number_ink_or_colour(
+    fn float_texture_or_colour(
         &mut self,
         list: &ParameterList,
         name: &'static str,
-    ) -> Result<Option<Ink>, FormatError> {
+    ) -> Result<Option<TextureOrValue>, FormatError> {
         if list.find(name).is_some_and(|p| matches!(p.kind, Kind::Rgb | Kind::Spectrum)) {
             return Ok(self
                 .spectrum(list, name, Meaning::Number)?
-                .map(|c| Ink::Colour(bilux_math::Rgb::grey(c.luminance()))));
+                .map(|c| TextureOrValue::Colour(bilux_math::Rgb::grey(c.luminance()))));
         }
-        self.number_ink(list, name)
+        self.float_texture(list, name)
     }
 }

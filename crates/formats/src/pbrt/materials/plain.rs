@@ -1,17 +1,18 @@
 //! Materials of one layer.
 
-use super::super::inks::{Ink, Meaning};
 use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
 use super::super::spectra::{Named, named};
+use super::super::texture_or_value::{Meaning, TextureOrValue};
 use super::roughness::{Names, OWN, PLAIN};
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflectance = pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(Ink::Colour(Rgb::grey(0.5)));
+    let reflectance =
+        pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let mut spec = Spec::new("", "diffuse");
     pbrt.set(&mut spec, "reflectance", reflectance, list.place("reflectance"));
     Ok(Some(spec))
@@ -28,19 +29,22 @@ pub(super) fn diffuse_transmission(
     list: &ParameterList,
 ) -> Result<Option<Spec>, FormatError> {
     let scale = Rgb::grey(list.finite("scale", 1.0)?);
-    let ink = |found: Option<Ink>| found.unwrap_or(Ink::Colour(Rgb::grey(0.25))).scaled(scale);
+    let ink = |found: Option<TextureOrValue>| {
+        found.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.25))).scaled(scale)
+    };
     let reflectance = ink(pbrt.ink(list, "reflectance", Meaning::Surface)?);
     let transmittance = ink(pbrt.ink(list, "transmittance", Meaning::Surface)?);
     let share = share_behind(&reflectance, &transmittance);
     let mut spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
     spec.parameters.set("diffuse_transmission_weight", share);
-    let part = |ink: Ink, share: f32| if share > 0.0 { ink.scaled(Rgb::grey(1.0 / share)) } else { ink };
+    let part =
+        |ink: TextureOrValue, share: f32| if share > 0.0 { ink.scaled(Rgb::grey(1.0 / share)) } else { ink };
     let (front, behind) = (part(reflectance, 1.0 - share), part(transmittance, share));
     for (key, ink, name) in
         [("base_color", front, "reflectance"), ("diffuse_transmission_color", behind, "transmittance")]
     {
         let held = match ink {
-            Ink::Colour(colour) => Ink::Colour(colour.clamp(0.0, 1.0)),
+            TextureOrValue::Colour(colour) => TextureOrValue::Colour(colour.clamp(0.0, 1.0)),
             picture => picture,
         };
         pbrt.set(&mut spec, key, held, list.place(name));
@@ -49,9 +53,9 @@ pub(super) fn diffuse_transmission(
 }
 
 /// The share of the light that comes out behind, so that neither side's colour is above 1 unless both are together.
-fn share_behind(reflectance: &Ink, transmittance: &Ink) -> f32 {
+fn share_behind(reflectance: &TextureOrValue, transmittance: &TextureOrValue) -> f32 {
     match (reflectance, transmittance) {
-        (Ink::Colour(r), Ink::Colour(t)) => {
+        (TextureOrValue::Colour(r), TextureOrValue::Colour(t)) => {
             let (r, t) = (r.max_channel(), t.max_channel());
             if r + t > 0.0 { t / (r + t) } else { 0.0 }
         }
@@ -104,7 +108,7 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
 /// What metal it is.
 pub(super) enum Metal {
     /// Reflects so much straight on.
-    Reflectance(Ink),
+    Reflectance(TextureOrValue),
     /// By its refractive index and its extinction.
     Indices([Rgb; 2]),
 }
@@ -153,7 +157,7 @@ impl Pbrt<'_, '_> {
         let [eta, k] = metals::indices("copper");
         let mut part = |name, default| {
             let ink = self.ink(list, name, Meaning::Number)?;
-            if let Some(Ink::Picture(_)) = &ink {
+            if let Some(TextureOrValue::Picture(_)) = &ink {
                 let what = "a refractive index from a picture is not shown: its mean is taken";
                 self.oddities.note(what, || list.place(name));
             }
@@ -181,10 +185,10 @@ impl Pbrt<'_, '_> {
     }
 
     /// A metal of index 1, as theirs is where only a reflectance is given; of a picture Schlick's law.
-    pub(super) fn set_reflectance(&mut self, spec: &mut Spec, ink: Ink, list: &ParameterList) {
+    pub(super) fn set_reflectance(&mut self, spec: &mut Spec, ink: TextureOrValue, list: &ParameterList) {
         let at = list.place("reflectance");
         match ink {
-            Ink::Colour(colour) => {
+            TextureOrValue::Colour(colour) => {
                 spec.parameters.set_at("eta", Rgb::WHITE.into(), at.clone());
                 spec.parameters.set_at("k", extinction_of(colour).into(), at);
             }
@@ -221,7 +225,7 @@ pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>
         list.has(name);
     }
     // Brown, as theirs is where nothing is said.
-    let colour = colour.unwrap_or(Ink::Colour(Rgb::new(0.16, 0.08, 0.04)));
+    let colour = colour.unwrap_or(TextureOrValue::Colour(Rgb::new(0.16, 0.08, 0.04)));
     let mut spec = Spec::new("", "principled").with("specular_roughness", 0.4f32);
     pbrt.set(&mut spec, "base_color", colour, list.at.clone());
     Ok(Some(spec))

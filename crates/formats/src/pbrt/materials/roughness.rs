@@ -1,9 +1,9 @@
 //! Roughness: theirs is an alpha along u and one along v, or the square of each; ours a square root and what it lacks
 //! along its brushing.
 
-use super::super::inks::Ink;
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
+use super::super::texture_or_value::TextureOrValue;
 use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
@@ -59,12 +59,12 @@ impl Pbrt<'_, '_> {
             (true, false) => Remap::Root,
             (true, true) => Remap::Polynomial,
         };
-        let even = self.number_ink(list, both)?.unwrap_or(Ink::Colour(Rgb::grey(default)));
-        let u = self.number_ink(list, along)?.unwrap_or_else(|| even.clone());
-        let v = self.number_ink(list, across)?.unwrap_or(even);
+        let even = self.float_texture(list, both)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
+        let u = self.float_texture(list, along)?.unwrap_or_else(|| even.clone());
+        let v = self.float_texture(list, across)?.unwrap_or(even);
         let at = list.place(both);
         let ([roughness, anisotropy, rotation], quarter) = keys;
-        if let (Ink::Colour(u), Ink::Colour(v)) = (&u, &v) {
+        if let (TextureOrValue::Colour(u), TextureOrValue::Colour(v)) = (&u, &v) {
             let (u, v) = (remap.alpha(u.r).clamp(0.0, 1.0), remap.alpha(v.r).clamp(0.0, 1.0));
             let ratio = if u == v { 1.0 } else { u.min(v) / u.max(v) };
             let even = u.max(v) * ((1.0 + ratio * ratio) * 0.5).sqrt();
@@ -78,7 +78,7 @@ impl Pbrt<'_, '_> {
             return Ok(());
         }
         let is_same = match (&u, &v) {
-            (Ink::Picture(u), Ink::Picture(v)) => std::sync::Arc::ptr_eq(u, v),
+            (TextureOrValue::Picture(u), TextureOrValue::Picture(v)) => std::sync::Arc::ptr_eq(u, v),
             _ => false,
         };
         if !is_same {

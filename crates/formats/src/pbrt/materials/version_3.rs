@@ -1,8 +1,8 @@
 //! Materials that only version 3 has.
 
-use super::super::inks::{Ink, Meaning};
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
+use super::super::texture_or_value::{Meaning, TextureOrValue};
 use super::plain::Metal;
 use super::roughness::{OWN, PLAIN, PRINCIPLED};
 use crate::FormatError;
@@ -10,8 +10,13 @@ use bilux_math::Rgb;
 use bilux_scene::Spec;
 
 impl Pbrt<'_, '_> {
-    fn ink_or(&mut self, list: &ParameterList, name: &'static str, default: f32) -> Result<Ink, FormatError> {
-        Ok(self.ink(list, name, Meaning::Surface)?.unwrap_or(Ink::Colour(Rgb::grey(default))))
+    fn texture_or(
+        &mut self,
+        list: &ParameterList,
+        name: &'static str,
+        default: f32,
+    ) -> Result<TextureOrValue, FormatError> {
+        Ok(self.ink(list, name, Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
     /// An index under one of its two names.
@@ -23,7 +28,7 @@ impl Pbrt<'_, '_> {
 }
 
 pub(super) fn matte(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let kd = pbrt.ink_or(list, "Kd", 0.5)?;
+    let kd = pbrt.texture_or(list, "Kd", 0.5)?;
     if list.number("sigma")?.unwrap_or(0.0) != 0.0 {
         let what = "a matt surface's 'sigma' is not shown: it is equally bright from everywhere";
         pbrt.oddities.note(what, || list.place("sigma"));
@@ -35,8 +40,8 @@ pub(super) fn matte(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
 
 /// Matt below a boundary that reflects as glass does; how much Ks says of it beside that is told.
 pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let kd = pbrt.ink_or(list, "Kd", 0.25)?;
-    let weight = pbrt.ink_or(list, "Ks", 0.25)?.mean().luminance();
+    let kd = pbrt.texture_or(list, "Kd", 0.25)?;
+    let weight = pbrt.texture_or(list, "Ks", 0.25)?.mean().luminance();
     let index = pbrt.old_index(list)?.max(1.0);
     for name in ["Kr", "Kt", "mfp"] {
         if list.has(name) {
@@ -70,14 +75,14 @@ pub(super) fn metal(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
 }
 
 pub(super) fn mirror(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let kr = pbrt.ink_or(list, "Kr", 0.9)?;
+    let kr = pbrt.texture_or(list, "Kr", 0.9)?;
     let mut spec = Spec::new("", "mirror");
     pbrt.set(&mut spec, "reflectance", kr, list.place("Kr"));
     Ok(Some(spec))
 }
 
 pub(super) fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let (kr, kt) = (pbrt.ink_or(list, "Kr", 1.0)?, pbrt.ink_or(list, "Kt", 1.0)?);
+    let (kr, kt) = (pbrt.texture_or(list, "Kr", 1.0)?, pbrt.texture_or(list, "Kt", 1.0)?);
     if kr.mean() != kt.mean() {
         let what = "glass that reflects in another colour than it lets through is shown in the latter";
         pbrt.oddities.note(what, || list.place("Kt"));
@@ -96,7 +101,7 @@ pub(super) fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
 }
 
 pub(super) fn translucent(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let reflect = pbrt.ink_or(list, "reflect", 0.5)?.mean();
+    let reflect = pbrt.texture_or(list, "reflect", 0.5)?.mean();
     let what = "light that passes a surface diffusely is not shown";
     pbrt.oddities.note(what, || list.at.clone());
     list.has("transmit");
@@ -106,7 +111,7 @@ pub(super) fn translucent(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Optio
     };
     let weight = reflect.luminance();
     if let Some((bilux_scene::Value::List(_), _)) = spec.parameters.find("base_color") {
-        let kd = pbrt.ink_or(list, "Kd", 0.25)?.scaled(Rgb::grey(weight));
+        let kd = pbrt.texture_or(list, "Kd", 0.25)?.scaled(Rgb::grey(weight));
         pbrt.set(&mut spec, "base_color", kd, list.place("Kd"));
     }
     Ok(Some(spec))
@@ -115,7 +120,7 @@ pub(super) fn translucent(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Optio
 /// The terms that `principled` shares with it.
 pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let mut spec = Spec::new("", "principled");
-    let colour = pbrt.ink_or(list, "color", 0.5)?;
+    let colour = pbrt.texture_or(list, "color", 0.5)?;
     pbrt.set(&mut spec, "base_color", colour, list.place("color"));
     for (theirs, ours, default) in [
         ("metallic", "base_metalness", 0.0),
@@ -124,7 +129,7 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
         ("spectrans", "transmission_weight", 0.0),
         ("clearcoat", "coat_weight", 0.0),
     ] {
-        let ink = pbrt.number_ink(list, theirs)?.unwrap_or(Ink::Colour(Rgb::grey(default)));
+        let ink = pbrt.float_texture(list, theirs)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default)));
         let value = pbrt.number_value(ink, [0.0, 1.0]);
         spec.parameters.set_at(ours, value, list.place(theirs));
     }

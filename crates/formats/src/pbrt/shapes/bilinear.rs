@@ -1,7 +1,7 @@
 //! `bilinearmesh`: surfaces stretched between four corners.
 
 use super::super::parameters::ParameterList;
-use super::super::reader::{Form, Pbrt};
+use super::super::reader::{Pbrt, ShapeGeometry};
 use super::{corners, needed_points};
 use crate::FormatError;
 use bilux_math::{Vec2, Vec3};
@@ -14,7 +14,7 @@ const COARSE: u32 = 2;
 /// Patches are very many from here on.
 const MANY: usize = 10_000;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let points = needed_points(list)?;
     let patches = corners::<4>(list, points.len())?;
     let normals = pbrt.normals_of(list, points.len())?;

@@ -1,7 +1,7 @@
 //! `curve`: hair and grass, as tubes of triangles; ribbons as strips.
 
 use super::super::parameters::ParameterList;
-use super::super::reader::{Form, Pbrt};
+use super::super::reader::{Pbrt, ShapeGeometry};
 use super::super::unknown;
 use super::needed_points;
 use crate::FormatError;
@@ -18,7 +18,7 @@ const COARSE: (u32, u32) = (4, 3);
 /// Curves are many from here on.
 const MANY: usize = 2000;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let points: Vec<DVec3> = needed_points(list)?.iter().map(|p| p.as_dvec3()).collect();
     let segments = segments(list, &points)?;
     let width = list.finite("width", 1.0)?;

@@ -2,7 +2,7 @@
 
 use super::super::gzip;
 use super::super::parameters::ParameterList;
-use super::super::reader::{Form, Pbrt};
+use super::super::reader::{Pbrt, ShapeGeometry};
 use crate::FormatError;
 use crate::formats::read_source;
 use crate::reading::Source;
@@ -10,7 +10,7 @@ use bilux_scene::{Mesh, SceneError};
 use std::path::Path;
 use std::sync::Arc;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let Some(name) = list.text("filename")? else {
         let what = "filename (of the PLY file)".to_owned();
         return Err(SceneError::Missing { what, at: list.at.clone() }.into());
@@ -23,7 +23,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>
     let path = pbrt.reading.locate(pbrt.folder.as_deref(), name, &at)?;
     let key = (path.clone(), pbrt.state.reverses);
     if let Some(mesh) = pbrt.cache.files.get(&key) {
-        return Ok(Some(Form::Mesh(mesh.clone())));
+        return Ok(Some(ShapeGeometry::Mesh(mesh.clone())));
     }
     let raw = pbrt.reading.load(&path)?;
     let bytes = gzip::plain(raw, pbrt.reading, &path, &at)?;
@@ -41,7 +41,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>
     // Colours of vertices mean nothing here.
     let mesh = Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), ..mesh };
     let form = pbrt.finished(mesh, list)?;
-    if let Some(Form::Mesh(mesh)) = &form {
+    if let Some(ShapeGeometry::Mesh(mesh)) = &form {
         pbrt.cache.files.insert(key, mesh.clone());
     }
     Ok(form)

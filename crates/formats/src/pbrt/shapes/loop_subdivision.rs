@@ -1,7 +1,7 @@
 //! `loopsubdiv`: a mesh made smooth by cutting each triangle in four, over and over. [Loop 1987]
 
 use super::super::parameters::ParameterList;
-use super::super::reader::{Form, Pbrt};
+use super::super::reader::{Pbrt, ShapeGeometry};
 use super::{corners, needed_points};
 use crate::FormatError;
 use bilux_math::Vec3;
@@ -12,9 +12,9 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// More would be finer than any picture.
-const MOST_LEVELS: i32 = 8;
+const MAX_LEVELS: i32 = 8;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let points = needed_points(list)?;
     let triangles = corners::<3>(list, points.len())?;
     // Version 3 calls them nlevels; the scheme is always this one.
@@ -23,12 +23,12 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>
         None => list.integer("nlevels")?.unwrap_or(3),
     };
     list.has("scheme");
-    if levels > MOST_LEVELS {
-        let what = format!("a mesh is subdivided {MOST_LEVELS} times at most");
+    if levels > MAX_LEVELS {
+        let what = format!("a mesh is subdivided {MAX_LEVELS} times at most");
         pbrt.oddities.note(&what, || list.place("levels"));
     }
     let mut cage = Cage { points: points.iter().map(|p| p.as_dvec3()).collect(), triangles };
-    for _ in 0..levels.clamp(0, MOST_LEVELS) {
+    for _ in 0..levels.clamp(0, MAX_LEVELS) {
         // Four triangles of each, with about half as many points, and the edges while they are made.
         pbrt.reading.budget.take::<[u32; 40]>(cage.triangles.len() * 2, &list.at.file)?;
         cage = cage.refined();

@@ -9,7 +9,7 @@ mod quadrics;
 mod triangles;
 
 use super::parameters::ParameterList;
-use super::reader::{Alpha, Dress, Entity, Form, Pbrt, Piece};
+use super::reader::{Alpha, Entity, Pbrt, Piece, ShapeGeometry, SurfaceAttributes};
 use super::unknown;
 use crate::FormatError;
 use bilux_math::{Vec2, Vec3};
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// What a shape becomes; none where nothing can be seen of it.
-type Make = fn(&mut Pbrt, &ParameterList) -> Result<Option<Form>, FormatError>;
+type Make = fn(&mut Pbrt, &ParameterList) -> Result<Option<ShapeGeometry>, FormatError>;
 
 /// Every shape that is drawn.
 const SHAPES: &[(&str, Make)] = &[
@@ -67,7 +67,7 @@ impl Pbrt<'_, '_> {
             }
         };
         self.reading.budget.take::<Piece>(1, &entity.at.file)?;
-        let dress = Dress {
+        let dress = SurfaceAttributes {
             material: self.state.material.clone(),
             area_light: self.state.area_light,
             alpha,
@@ -78,14 +78,14 @@ impl Pbrt<'_, '_> {
     }
 
     /// A mesh as the state has it: turned inside out or not, and counted in the budget.
-    fn finished(&mut self, mesh: Mesh, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+    fn finished(&mut self, mesh: Mesh, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
         self.reading.budget.take_bytes(mesh.size(), &list.at.file)?;
         if mesh.positions.iter().any(|p| !p.is_finite()) {
             let what = "positions have numbers that are infinite or no numbers; they are kept";
             self.oddities.note(what, || list.place("P"));
         }
         let mesh = if self.state.reverses { reversed(mesh) } else { mesh };
-        Ok((!mesh.triangles.is_empty()).then(|| Form::Mesh(Arc::new(mesh))))
+        Ok((!mesh.triangles.is_empty()).then(|| ShapeGeometry::Mesh(Arc::new(mesh))))
     }
 
     /// One of the round shapes, which look alike wherever they stand.
@@ -94,12 +94,12 @@ impl Pbrt<'_, '_> {
         list: &ParameterList,
         key: Vec<u32>,
         make: impl FnOnce() -> Mesh,
-    ) -> Result<Option<Form>, FormatError> {
+    ) -> Result<Option<ShapeGeometry>, FormatError> {
         if let Some(mesh) = self.cache.round.get(&key) {
-            return Ok(Some(Form::Mesh(mesh.clone())));
+            return Ok(Some(ShapeGeometry::Mesh(mesh.clone())));
         }
         let form = self.finished(make(), list)?;
-        if let Some(Form::Mesh(mesh)) = &form {
+        if let Some(ShapeGeometry::Mesh(mesh)) = &form {
             self.cache.round.insert(key, mesh.clone());
         }
         Ok(form)
@@ -114,10 +114,10 @@ fn reversed(mut mesh: Mesh) -> Mesh {
 }
 
 /// How many shapes a directive is for pbrt.
-fn count(entity: &Entity, form: &Form) -> u32 {
+fn count(entity: &Entity, form: &ShapeGeometry) -> u32 {
     let count = match (entity.kind.as_str(), form) {
         ("bilinearmesh", _) => entity.parameters.integers("indices").map_or(1, |list| list.len() / 4),
-        ("trianglemesh" | "plymesh" | "loopsubdiv", Form::Mesh(mesh)) => mesh.triangles.len(),
+        ("trianglemesh" | "plymesh" | "loopsubdiv", ShapeGeometry::Mesh(mesh)) => mesh.triangles.len(),
         _ => 1,
     };
     u32::try_from(count).unwrap_or(u32::MAX).max(1)

@@ -1,7 +1,7 @@
 //! `sphere`, `disk` and `cylinder`, around the z axis.
 
 use super::super::parameters::ParameterList;
-use super::super::reader::{Form, Pbrt};
+use super::super::reader::{Pbrt, ShapeGeometry};
 use super::grid;
 use crate::FormatError;
 use bilux_math::glam::DVec3;
@@ -36,13 +36,13 @@ fn key(pbrt: &Pbrt, shape: u32, numbers: &[f64]) -> Vec<u32> {
     [shape, u32::from(pbrt.state.reverses)].into_iter().chain(bits).collect()
 }
 
-pub(super) fn sphere(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn sphere(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
     let (bottom, top) = (list.finite("zmin", -radius)?, list.finite("zmax", radius)?);
     let (bottom, top) = (bottom.min(top).max(-radius), bottom.max(top).min(radius));
     let (turn, around) = turn(list)?;
     if turn == 1.0 && bottom == -radius && top == radius {
-        return Ok(Some(Form::Sphere { radius, reversed: pbrt.state.reverses }));
+        return Ok(Some(ShapeGeometry::Sphere { radius, reversed: pbrt.state.reverses }));
     }
     let radius = f64::from(radius);
     let angle = |z: f32| acos_f64((f64::from(z) / radius).clamp(-1.0, 1.0));
@@ -83,7 +83,7 @@ impl Pbrt<'_, '_> {
     }
 }
 
-pub(super) fn disk(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn disk(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
     let radius = f64::from(radius);
     let inner = f64::from(list.finite("innerradius", 0.0)?).clamp(0.0, radius);
@@ -100,7 +100,7 @@ pub(super) fn disk(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>
     })
 }
 
-pub(super) fn cylinder(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn cylinder(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let Some(radius) = radius(pbrt, list, "radius")? else { return Ok(None) };
     let radius = f64::from(radius);
     let (a, b) = (list.finite("zmin", -1.0)?, list.finite("zmax", 1.0)?);

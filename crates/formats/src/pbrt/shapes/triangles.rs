@@ -1,12 +1,12 @@
 //! `trianglemesh`.
 
 use super::super::parameters::ParameterList;
-use super::super::reader::{Form, Pbrt};
+use super::super::reader::{Pbrt, ShapeGeometry};
 use super::{corners, needed_points};
 use crate::FormatError;
 use bilux_scene::Mesh;
 
-pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Form>, FormatError> {
+pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let positions = needed_points(list)?;
     let triangles = corners::<3>(list, positions.len())?;
     let normals = pbrt.normals_of(list, positions.len())?;

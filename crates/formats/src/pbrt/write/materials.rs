@@ -1,8 +1,8 @@
 //! Our materials in their terms: what [`super::super::materials`] reads, the other way round.
 
-use super::held::HOLDS;
-use super::looks::AS_IT_IS;
-use super::textures::{Change, Holds};
+use super::material_parameters::HOLDS;
+use super::shape_attributes::AS_IT_IS;
+use super::textures::{Change, TexelMeaning};
 use super::{Document, float, rgb};
 use crate::FormatError;
 use crate::pbrt::materials::{extinction_of, reflected_inside};
@@ -75,7 +75,7 @@ impl Document<'_> {
         writing: &mut Writing,
     ) -> Result<String, FormatError> {
         if let Some(index) = texture(spec, key)
-            && let Some(name) = self.texture(index, Holds::Colours, change, writing)?
+            && let Some(name) = self.texture(index, TexelMeaning::Colours, change, writing)?
         {
             return Ok(format!(" \"texture x\" \"{name}\""));
         }
@@ -152,7 +152,7 @@ impl Document<'_> {
     ) -> Result<String, FormatError> {
         if let Some(index) = texture(spec, even) {
             let square = Change { name: "squared", of: &|texel| texel * texel };
-            if let Some(name) = self.texture(index, Holds::Numbers, square, writing)? {
+            if let Some(name) = self.texture(index, TexelMeaning::Numbers, square, writing)? {
                 return Ok(format!(" \"texture {before}roughness\" \"{name}\""));
             }
         }
@@ -223,7 +223,7 @@ impl Document<'_> {
 
     fn amount(&mut self, spec: &Spec, key: &str, writing: &mut Writing) -> Result<String, FormatError> {
         if let Some(index) = texture(spec, key)
-            && let Some(name) = self.texture(index, Holds::Numbers, AS_IT_IS, writing)?
+            && let Some(name) = self.texture(index, TexelMeaning::Numbers, AS_IT_IS, writing)?
         {
             return Ok(format!(" \"texture amount\" \"{name}\""));
         }

@@ -1,9 +1,9 @@
 //! Writing pbrt-v4: meshes beside it as PLY, pictures as PNG or EXR.
 
-mod held;
 mod lights;
-mod looks;
+mod material_parameters;
 mod materials;
+mod shape_attributes;
 mod textures;
 mod view;
 
@@ -13,7 +13,7 @@ use crate::text::whole_file;
 use crate::writing::{UnusedNames, Writing};
 use bilux_math::{Rgb, Transform, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
-use looks::Look;
+use shape_attributes::ShapeAttributes;
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ struct Document<'s> {
     /// Textures that are there already, by what they are made of.
     textures: HashMap<String, String>,
     /// What each material of the scene is called here, and what shapes have of it.
-    looks: Vec<Look>,
+    shape_attributes: Vec<ShapeAttributes>,
     /// The files of meshes.
     meshes: HashMap<*const Mesh, String>,
     /// Objects that are used several times, by mesh and material.
@@ -40,7 +40,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
         out: String::new(),
         names: UnusedNames::default(),
         textures: HashMap::new(),
-        looks: Vec::new(),
+        shape_attributes: Vec::new(),
         meshes: HashMap::new(),
         shared: HashMap::new(),
     };
@@ -48,7 +48,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     document.say("WorldBegin");
     for spec in &scene.materials {
         let look = document.look(spec, writing)?;
-        document.looks.push(look);
+        document.shape_attributes.push(look);
     }
     for light in &scene.lights {
         document.light(light, writing)?;
@@ -86,9 +86,9 @@ impl Document<'_> {
             writing.warn("moving objects are written where they are at 0 seconds");
         }
         let place = object.motion.at(0.0);
-        let look = self.looks.get(object.material).cloned().unwrap_or_default();
+        let look = self.shape_attributes.get(object.material).cloned().unwrap_or_default();
         let file = self.mesh(&object.mesh, writing)?;
-        let shape = |look: &Look| {
+        let shape = |look: &ShapeAttributes| {
             let mut out = look.begin.clone();
             let _ = writeln!(out, "Shape \"plymesh\" \"string filename\" \"{file}\"{}", look.alpha);
             out

@@ -19,7 +19,7 @@ pub(super) struct Change<'c> {
 
 /// What a texture's texels are taken for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Holds {
+pub(super) enum TexelMeaning {
     Colours,
     Numbers,
 }
@@ -29,12 +29,12 @@ impl Document<'_> {
     pub(super) fn texture(
         &mut self,
         index: usize,
-        holds: Holds,
+        holds: TexelMeaning,
         change: Change,
         writing: &mut Writing,
     ) -> Result<Option<String>, FormatError> {
         let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
-        let is_number = holds == Holds::Numbers;
+        let is_number = holds == TexelMeaning::Numbers;
         let holds = if is_number { "float" } else { "spectrum" };
         let key = format!("{index} {holds} {}", change.name);
         if let Some(name) = self.textures.get(&key) {

@@ -42,7 +42,7 @@ const STEPS: [usize; 4] = [1, 2, 4, 8];
 const MARGIN: usize = 2 * 8 + 1;
 
 /// Rows that are filtered at a time: memory for so many is all that a picture takes, however high it is.
-const MOST_ROWS: usize = 512;
+const MAX_ROWS: usize = 512;
 
 /// How far away a row may be that shows in another: what the passes look at, and means of variances, outliers and guesses before
 /// them, and edges after them.
@@ -69,7 +69,7 @@ impl Denoiser for Builtin {
     fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError> {
         let (width, height) = source.size();
         let mut all = reserved("denoising", width * height)?;
-        let strips = height.div_ceil(MOST_ROWS).max(1);
+        let strips = height.div_ceil(MAX_ROWS).max(1);
         for strip in 0..strips {
             let rows = height * strip / strips..height * (strip + 1) / strips;
             let around = rows.start.saturating_sub(REACH)..(rows.end + REACH).min(height);
@@ -143,7 +143,7 @@ mod tests {
     /// What strips are cut from shows nowhere: each sees as far as its passes look.
     #[test]
     fn strips_are_the_whole_to_the_bit() {
-        let picture = noise(37, MOST_ROWS + 83);
+        let picture = noise(37, MAX_ROWS + 83);
         let whole = smoothed(picture.rows(0..picture.height()).unwrap()).unwrap();
         let strips = Builtin::new(2).unwrap().denoise(&picture).unwrap();
         assert!(whole == strips);

@@ -81,12 +81,12 @@ pub(super) struct Light {
 }
 
 /// So much albedo is taken to be there at least: what is darker shows no noise.
-const LEAST_ALBEDO: f32 = 0.02;
+const MIN_ALBEDO: f32 = 0.02;
 
 /// What light is divided by.
 pub(super) fn divisor(albedo: Rgb) -> Rgb {
     // A surface that sends on next to nothing of one colour may show a reflection that has it.
-    let least = LEAST_ALBEDO.max(0.1 * albedo.max_channel());
+    let least = MIN_ALBEDO.max(0.1 * albedo.max_channel());
     albedo.map(|c| c.max(least))
 }
 

@@ -1,9 +1,9 @@
 //! The parameters over a surface.
 
 use super::super::normal_map::{self, NormalMap};
-use super::super::{Ingredients, colour_map, number_map};
+use super::super::{MaterialInputs, colour_map, number_map};
 use super::point::Point;
-use crate::bsdf::Film;
+use crate::bsdf::ThinFilm;
 use crate::error::SceneError;
 use crate::parameters::Reader;
 use crate::texture::{ColourMap, NumberMap, Patch};
@@ -43,7 +43,7 @@ pub(super) struct Maps {
 }
 
 impl Maps {
-    pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Maps, SceneError> {
+    pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Maps, SceneError> {
         let colour = |key| colour_map(reader, key, ingredients);
         let number = |key| number_map(reader, key, ingredients);
         let transmission_weight = number("transmission_weight")?;
@@ -142,7 +142,7 @@ impl Maps {
             fuzz_roughness: self.fuzz_roughness.at(uv),
             passing: self.passing.at(uv),
             passing_color: self.passing_color.at(uv).clamp(0.0, 1.0),
-            film: Film {
+            film: ThinFilm {
                 weight: self.film_weight.at(uv),
                 thickness: self.film_thickness.at(uv) * 1e3,
                 eta: self.film_ior.at(uv),

@@ -1,6 +1,9 @@
 //! The parameters at a point, and the lobes that they come to.
 
-use crate::bsdf::{Albedo, Clear, Cover, Film, Fresnel, Fuzz, FuzzAlbedo, Ggx, Gloss, Lambert, Lobe, Matt};
+use crate::bsdf::{
+    Albedo, CoatedDielectric, CoatedDiffuse, Coating, Fresnel, Fuzz, FuzzAlbedo, Ggx, Lambert, Lobe,
+    MicrofacetReflection, ThinFilm,
+};
 use bilux_math::{Rgb, Vec3};
 use std::f32::consts::TAU;
 
@@ -31,7 +34,7 @@ pub(super) struct Point {
     /// How much of the diffuse part comes out behind.
     pub(super) passing: f32,
     pub(super) passing_color: Rgb,
-    pub(super) film: Film,
+    pub(super) film: ThinFilm,
 }
 
 /// Fuzz, coat, boundary, base, clear part.
@@ -49,8 +52,8 @@ impl Point {
         let metal = Fresnel::tinted(self.base_color * self.specular_weight, self.specular_color);
         let metal_weight = tint * self.metalness;
         let gloss = (!metal_weight.is_black() || !glass.is_black()).then(|| {
-            let gloss = Gloss::new(ggx, eta, glass, metal, metal_weight, cover);
-            Lobe::Gloss(if self.film.weight > 0.0 { gloss.below(self.film) } else { gloss })
+            let gloss = MicrofacetReflection::new(ggx, eta, glass, metal, metal_weight, cover);
+            Lobe::MicrofacetReflection(if self.film.weight > 0.0 { gloss.below(self.film) } else { gloss })
         });
         let (albedo, passing) =
             (self.base_color * opaque * (1.0 - self.passing), self.passing_color * opaque * self.passing);
@@ -61,8 +64,8 @@ impl Point {
             }
             // What a film reflects at its brightest colour does not get in at any.
             let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
-            let matt = Matt::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
-            Lobe::Matt(if self.base_roughness > 0.0 {
+            let matt = CoatedDiffuse::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
+            Lobe::CoatedDiffuse(if self.base_roughness > 0.0 {
                 matt.rough(self.base_roughness, self.base_color)
             } else {
                 matt
@@ -70,8 +73,9 @@ impl Point {
         });
         let clear = (!clear.is_black()).then(|| {
             let (reflected, passed) = (self.specular_color * clear, self.passed * clear);
-            let clear = Clear::new((self.ior, self.dispersion), ggx, self.thin, reflected, passed, cover);
-            Lobe::Clear(if self.film.weight > 0.0 { clear.below(self.film) } else { clear })
+            let clear =
+                CoatedDielectric::new((self.ior, self.dispersion), ggx, self.thin, reflected, passed, cover);
+            Lobe::CoatedDielectric(if self.film.weight > 0.0 { clear.below(self.film) } else { clear })
         });
         [fuzz, coat, gloss, base, clear]
     }
@@ -94,25 +98,26 @@ impl Point {
     }
 
     /// Fibres, and what they cover.
-    fn fuzz_and_cover(&self) -> (Option<Lobe>, Cover) {
+    fn fuzz_and_cover(&self) -> (Option<Lobe>, Coating) {
         if self.fuzz == 0.0 {
-            return (None, Cover::NONE);
+            return (None, Coating::NONE);
         }
         let albedo = FuzzAlbedo::new(self.fuzz_roughness);
         let fuzz = Fuzz::new(self.fuzz_color * self.fuzz, albedo).from_below(self.outside());
-        (Some(Lobe::Fuzz(fuzz)), Cover::NONE.below(self.fuzz, albedo))
+        (Some(Lobe::Fuzz(fuzz)), Coating::NONE.below(self.fuzz, albedo))
     }
 
     /// A coat below what covers that, and all of it together.
-    fn coat_and_cover(&self, above: Cover) -> (Option<Lobe>, Cover) {
+    fn coat_and_cover(&self, above: Coating) -> (Option<Lobe>, Coating) {
         if self.coat == 0.0 || self.coat_ior <= 1.0 {
             return (None, above);
         }
         let ggx = Ggx::from_roughness(self.coat_roughness, 0.0, 0.0);
         let none = Fresnel::tinted(Rgb::BLACK, Rgb::WHITE);
-        let coat = Gloss::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, above);
+        let coat =
+            MicrofacetReflection::new(ggx, self.coat_ior, Rgb::grey(self.coat), none, Rgb::BLACK, above);
         let cover = above.coated(self.coat, Albedo::new(&ggx, self.coat_ior)).about(self.coat_up);
-        (Some(Lobe::Gloss(coat.from_below(self.outside()))), cover)
+        (Some(Lobe::MicrofacetReflection(coat.from_below(self.outside()))), cover)
     }
 
     /// Who is inside of what is clear sees neither coat nor fuzz: how much of them is seen from below.

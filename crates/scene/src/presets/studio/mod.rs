@@ -178,10 +178,19 @@ fn orbit_of(scene: &SceneBuilder) -> Option<[f32; 2]> {
     Some([atan2(towards.x, towards.z).to_degrees(), asin(towards.y.clamp(-1.0, 1.0)).to_degrees()])
 }
 
-/// Makes of clay what nobody has said a word about.
+/// Makes of clay what nobody has said a word about; of ink, to be seen on pale ground, what is lines or a few points alone.
 fn of_clay(scene: &mut SceneBuilder) {
-    for material in scene.materials.iter_mut().filter(|m| m.kind == "phong" && m.parameters.0.is_empty()) {
-        let clay = Spec::new(&material.name, "phong").with("kd", Rgb::new(0.62, 0.59, 0.55));
+    const FEW: usize = 5000;
+    let is_drawing = |object: &Object| {
+        let mesh = &object.mesh;
+        mesh.triangles.is_empty() && mesh.points.len() < FEW && mesh.stroke_count() > 0
+    };
+    let drawings: Vec<usize> =
+        scene.objects.iter().filter(|object| is_drawing(object)).map(|object| object.material).collect();
+    let bare = |m: &Spec| m.kind == "phong" && m.parameters.0.is_empty();
+    for (i, material) in scene.materials.iter_mut().enumerate().filter(|(_, m)| bare(m)) {
+        let kd = if drawings.contains(&i) { Rgb::grey(0.06) } else { Rgb::new(0.62, 0.59, 0.55) };
+        let clay = Spec::new(&material.name, "phong").with("kd", kd);
         *material = clay.with("ks", 0.05f32).with("exponent", 40.0f32).with("reflectivity", 0.0f32);
     }
 }

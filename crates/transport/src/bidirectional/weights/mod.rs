@@ -12,8 +12,8 @@ mod path;
 mod samples;
 
 use self::path::{Flaw, Path};
-use crate::bidirectional::{Found, Lanes, Task, Ways};
-use crate::eye::Eye;
+use crate::bidirectional::{Contribution, Lanes, Task, TechniqueCounts};
+use crate::camera_rays::CameraRays;
 use crate::integrators;
 use crate::render::RenderSettings;
 use crate::shapes;
@@ -30,7 +30,7 @@ const PANEL_NORMAL: Vec3 = Vec3::Y;
 
 /// Compares, and counts.
 struct Verdict {
-    ways: Ways,
+    techniques: TechniqueCounts,
     flaw: Flaw,
     compared: usize,
     wrong: usize,
@@ -40,8 +40,8 @@ struct Verdict {
 }
 
 impl Verdict {
-    fn look(&mut self, task: &Task, found: &Found, key: (bool, usize), path: &Path) {
-        let all = path.densities(task, &self.ways, self.flaw);
+    fn look(&mut self, task: &Task, found: &Contribution, key: (bool, usize), path: &Path) {
+        let all = path.densities(task, &self.techniques, self.flaw);
         let sum: f64 = all.iter().map(|(_, density)| density).sum();
         let own = all.iter().find(|(k, _)| *k == key).map_or(0.0, |(_, density)| *density);
         let wanted = own / sum;
@@ -65,12 +65,13 @@ impl Verdict {
 const SAMPLES: u32 = 16;
 
 /// Every path of some samples, by every strategy.
-fn verdict(scene: &Scene, ways: &Ways, flaw: Flaw) -> Verdict {
+fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw) -> Verdict {
     let integrator = integrators::build(&Spec::new("", "bdpt")).unwrap();
     let settings = RenderSettings::new(24, 24, SAMPLES);
-    let eye = Eye::new(scene, &*scene.cameras()[0].1, &*integrator, &settings);
+    let eye = CameraRays::new(scene, &*scene.cameras()[0].1, &*integrator, &settings);
     let mut tracer = Tracer::new(scene, false);
-    let mut verdict = Verdict { ways: *ways, flaw, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
+    let mut verdict =
+        Verdict { techniques: *techniques, flaw, compared: 0, wrong: 0, worst: 0.0, telling: [0; 5] };
     for i in 0..24 * 24 * SAMPLES {
         let (ray, mut task) = eye.sample(&mut tracer, i % 24, i / 24 % 24, i / 576);
         samples::one_sample(&ray, &mut task, &mut verdict);
@@ -131,13 +132,13 @@ fn cameras() -> [Spec; 3] {
 }
 
 /// Without merging, with it, and with it but without joins or without light paths seen from the camera.
-fn sets() -> [Ways; 4] {
+fn sets() -> [TechniqueCounts; 4] {
     let eta = Lanes([300.0]);
     [
-        Ways::BOTH_ENDS,
-        Ways { eta, ..Ways::BOTH_ENDS },
-        Ways { eta, ..Ways::beside_merging(true, false) },
-        Ways { eta, ..Ways::beside_merging(false, true) },
+        TechniqueCounts::BOTH_ENDS,
+        TechniqueCounts { eta, ..TechniqueCounts::BOTH_ENDS },
+        TechniqueCounts { eta, ..TechniqueCounts::beside_merging(true, false) },
+        TechniqueCounts { eta, ..TechniqueCounts::beside_merging(false, true) },
     ]
 }
 
@@ -151,8 +152,8 @@ fn every_weight_is_the_share_of_its_strategy() {
         for (k, camera) in cameras().into_iter().enumerate() {
             let scene = scene(lights, camera);
             for direct in [true, false] {
-                let ways = Ways { direct, ..sets()[(i + k) % 4] };
-                let verdict = verdict(&scene, &ways, Flaw::None);
+                let techniques = TechniqueCounts { direct, ..sets()[(i + k) % 4] };
+                let verdict = verdict(&scene, &techniques, Flaw::None);
                 let Verdict { compared, wrong, worst, telling, .. } = verdict;
                 assert!(
                     wrong == 0,
@@ -175,8 +176,8 @@ fn every_weight_is_the_share_of_its_strategy_among_many_lights() {
     for (i, lights) in MANY.into_iter().enumerate() {
         let scene = scene(lights, cameras()[i].clone());
         assert!(!crate::LightChoice::new(&scene).takes_all());
-        for ways in [sets()[0], Ways { direct: false, ..sets()[1] }] {
-            let Verdict { compared, wrong, worst, telling, .. } = verdict(&scene, &ways, Flaw::None);
+        for techniques in [sets()[0], TechniqueCounts { direct: false, ..sets()[1] }] {
+            let Verdict { compared, wrong, worst, telling, .. } = verdict(&scene, &techniques, Flaw::None);
             assert!(wrong == 0, "{lights:?}: {wrong} of {compared} weights are wrong, by up to {worst}");
             assert!(telling[..2].iter().all(|&n| n > 500), "{telling:?}");
         }
@@ -201,7 +202,7 @@ fn densities_with_a_factor_left_out_give_other_weights() {
         Flaw::Reverse,
     ];
     for flaw in flaws {
-        let verdict = verdict(&scene, &Ways { direct: flaw != Flaw::Direct, ..sets()[1] }, flaw);
+        let verdict = verdict(&scene, &TechniqueCounts { direct: flaw != Flaw::Direct, ..sets()[1] }, flaw);
         let Verdict { compared, wrong, .. } = verdict;
         assert!(wrong > compared / 20, "{flaw:?}: only {wrong} of {compared} weights differ");
     }

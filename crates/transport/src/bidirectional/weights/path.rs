@@ -1,13 +1,13 @@
 //! A whole path, and how often each strategy finds it by the definition.
 
 use super::PANEL_AREA;
-use crate::bidirectional::{Task, TransportMode, Ways};
+use crate::bidirectional::{Task, TechniqueCounts, TransportMode};
 use bilux_math::Vec3;
 use bilux_scene::Bsdf;
 
 /// A vertex between the light and the camera, each way as the code has seen it.
 #[derive(Clone)]
-pub(super) struct Node {
+pub(super) struct PathVertex {
     /// Where it is and its normal, as the path from the light has come there and as that from the camera has: not quite
     /// the same where they merge.
     pub(super) from_light: (Vec3, Vec3),
@@ -31,7 +31,7 @@ pub(super) struct Start {
 /// From the light to the camera.
 pub(super) struct Path {
     pub(super) start: Start,
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<PathVertex>,
     /// Of camera rays at the last node, across them.
     pub(super) camera_density: f32,
 }
@@ -52,12 +52,18 @@ pub(super) enum Flaw {
 
 impl Path {
     /// How often each strategy finds this path; by (merges, s).
-    pub(super) fn densities(&self, task: &Task, ways: &Ways, flaw: Flaw) -> Vec<((bool, usize), f64)> {
+    pub(super) fn densities(
+        &self,
+        task: &Task,
+        techniques: &TechniqueCounts,
+        flaw: Flaw,
+    ) -> Vec<((bool, usize), f64)> {
         let count = self.nodes.len();
         let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
-        let [splats, joins, eta] = [ways.splats, ways.joins, ways.eta].map(|lanes| f64::from(lanes.0[0]));
+        let [splats, joins, eta] =
+            [techniques.splats, techniques.joins, techniques.eta].map(|lanes| f64::from(lanes.0[0]));
         // What comes straight from a light, light paths may leave to the camera's.
-        let leaves_direct = !ways.direct && flaw != Flaw::Direct;
+        let leaves_direct = !techniques.direct && flaw != Flaw::Direct;
         // Nodes have numbers from 1; the light is 0 and the camera count + 1.
         let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
         let mut all = Vec::new();
@@ -91,7 +97,7 @@ impl Path {
     /// roundings of 2⁻²⁴ each, and two that are amplified: a cosine has that error whatever its size, and a distance that
     /// of positions in a scene a few metres wide. A weight is off by no more than the products are. [Higham 2002, 3.1]
     pub(super) fn tolerance(&self) -> f64 {
-        let inverse_cosine = |node: &Node, to: Vec3| 1.0 / cosine(node.from_light.1, to, Flaw::None);
+        let inverse_cosine = |node: &PathVertex, to: Vec3| 1.0 / cosine(node.from_light.1, to, Flaw::None);
         let cosines = self
             .nodes
             .iter()
@@ -138,7 +144,7 @@ impl Path {
             f64::from(self.camera_density) * cosine(last.from_camera.1, last.to_camera, Flaw::None);
         let mut all = vec![1.0, 1.0, product];
         let mode = if flaw == Flaw::Reverse { TransportMode::Importance } else { TransportMode::Radiance };
-        let density = |node: &Node| {
+        let density = |node: &PathVertex| {
             let [a, b] = if flaw == Flaw::Reverse {
                 [node.to_light, node.to_camera]
             } else {
@@ -163,7 +169,7 @@ impl Path {
     }
 }
 
-impl Node {
+impl PathVertex {
     fn density(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f64 {
         if self.is_delta { 1.0 } else { f64::from(self.bsdf.pdf_solid_angle(wo, wi, mode)) }
     }
@@ -174,7 +180,7 @@ fn cosine(n: Vec3, direction: Vec3, flaw: Flaw) -> f64 {
 }
 
 /// From a node to the next one towards the camera, squared.
-fn edge(a: &Node, b: &Node, flaw: Flaw) -> f64 {
+fn edge(a: &PathVertex, b: &PathVertex, flaw: Flaw) -> f64 {
     distance2(a.from_camera.0, b.from_light.0, flaw)
 }
 

@@ -1,6 +1,6 @@
 //! All that is found with a path from each end, with the whole path by which it was.
 
-use super::path::{Node, Path, Start};
+use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
 use crate::bidirectional::photons::{Photon, Spot};
 use crate::bidirectional::*;
@@ -8,9 +8,9 @@ use bilux_math::{Vec2, warp};
 use bilux_scene::Ray;
 
 pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
-    let ways = &{ verdict.ways };
+    let techniques = &{ verdict.techniques };
     task.sampler.enter(LIGHT_STREAM);
-    let Some(walk) = begin_at_light(task, ray.time, ways) else { return };
+    let Some(walk) = begin_at_light(task, ray.time, techniques) else { return };
     let index = walk.light().unwrap();
     let light = &task.scene().lights()[index].light;
     let n = if light.is_infinite() || light.is_delta() { None } else { Some(PANEL_NORMAL) };
@@ -20,9 +20,9 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
         p: (!light.is_infinite()).then(|| walk.ray.origin.into()),
         cos: n.map_or(1.0, |n| n.dot(direction).abs()),
     };
-    let y = followed(walk, task, ways, false);
-    let walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, ways);
-    let z = followed(walk, task, ways, true);
+    let y = followed(walk, task, techniques, false);
+    let walk = Walk::new(TransportMode::Radiance, *ray, Rgb::WHITE, Partial::START, false, techniques);
+    let z = followed(walk, task, techniques, true);
     seen(task, verdict, start, &y);
     met(task, verdict, &z);
     picked(task, verdict, &z);
@@ -30,11 +30,11 @@ pub(super) fn one_sample(ray: &Ray, task: &mut Task, verdict: &mut Verdict) {
 }
 
 fn seen(task: &mut Task, verdict: &mut Verdict, start: Start, y: &Subpath) {
-    let ways = &{ verdict.ways };
-    let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || ways.direct);
+    let techniques = &{ verdict.techniques };
+    let is_seen = |vertex: &Vertex| !vertex.bsdf.is_delta() && (vertex.depth > 0 || techniques.direct);
     for (i, vertex) in y.vertices.iter().enumerate().filter(|(_, vertex)| is_seen(vertex)) {
         task.enter_light_vertex(vertex.depth);
-        let Some((_, found)) = to_camera(task, vertex, ways) else { continue };
+        let Some((_, found)) = to_camera(task, vertex, techniques) else { continue };
         task.enter_light_vertex(vertex.depth);
         let u = task.sampler.next_2d();
         let lens = if task.camera.has_lens() { warp::sample_disc(u) } else { Vec2::ZERO };
@@ -72,11 +72,11 @@ fn met(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
 }
 
 fn picked(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
-    let ways = &{ verdict.ways };
+    let techniques = &{ verdict.techniques };
     for (i, vertex) in z.vertices.iter().enumerate().filter(|(_, vertex)| !vertex.bsdf.is_delta()) {
         for index in 0..task.scene().lights().len() {
             let u = task.sampler.next_2d();
-            let Some(found) = to_light(task, vertex, index, u, ways) else { continue };
+            let Some(found) = to_light(task, vertex, index, u, techniques) else { continue };
             let light = &task.scene().lights()[index].light;
             let sample = light.sample_li(vertex.surface.p, vertex.surface.time, u).unwrap();
             let start = Start { index, p: sample.point, cos: sample.cos() };
@@ -89,31 +89,31 @@ fn picked(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
 
 /// Ends that are joined; and, as if each light vertex lay where each camera vertex does, ends that are merged.
 fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpath, &Subpath)) {
-    let ways = &{ verdict.ways };
+    let techniques = &{ verdict.techniques };
     let open = |subpath: &Subpath| {
         (0..subpath.vertices.len()).filter(|&i| !subpath.vertices[i].bsdf.is_delta()).collect::<Vec<_>>()
     };
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
-        let Some(found) = to_vertex(task, camera_end, light_end, ways) else { continue };
+        let Some(found) = to_vertex(task, camera_end, light_end, techniques) else { continue };
         let direction = (light_end.surface.p - camera_end.surface.p).normalize();
         let mut nodes = y.nodes(b, true, -direction, false);
         nodes.extend(z.nodes(a, false, direction, false));
         let path = Path { start, nodes, camera_density: z.camera_density };
         verdict.look(task, &found, (false, b + 2), &path);
     }
-    if ways.eta == Lanes::ZERO {
+    if techniques.eta == Lanes::ZERO {
         return;
     }
     for (a, b) in open(z).into_iter().flat_map(|a| open(y).into_iter().map(move |b| (a, b))) {
         let (camera_end, light_end) = (&z.vertices[a], &y.vertices[b]);
-        if light_end.depth == 0 && !ways.direct {
+        if light_end.depth == 0 && !techniques.direct {
             continue;
         }
         let (spot, photon) = light_end.photon();
         let spot = Spot { p: camera_end.surface.p, ..spot };
         let photon = Photon { n_geom: camera_end.surface.n_geom, ..photon };
-        let photons = Photons::new(vec![(spot, photon)], 1.0, *ways);
+        let photons = Photons::new(vec![(spot, photon)], 1.0, *techniques);
         // One vertex in the place of both: it scatters as at the camera's end.
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
         let shared = nodes.pop().unwrap();
@@ -139,21 +139,26 @@ struct Subpath<'w> {
 
 impl Subpath<'_> {
     /// The vertices before the last one `upto`, and that one.
-    fn nodes(&self, upto: usize, from_light: bool, onwards: Vec3, is_delta: bool) -> Vec<Node> {
+    fn nodes(&self, upto: usize, from_light: bool, onwards: Vec3, is_delta: bool) -> Vec<PathVertex> {
         let node = |i: usize| {
             let vertex = &self.vertices[i];
             let next = if i < upto { -self.vertices[i + 1].wo } else { onwards };
             let (to_light, to_camera) = if from_light { (vertex.wo, next) } else { (next, vertex.wo) };
             let is_delta = if i < upto { self.is_delta[i] } else { is_delta };
             let at = (vertex.surface.p, vertex.surface.n_geom);
-            Node { from_light: at, from_camera: at, bsdf: vertex.bsdf, to_light, to_camera, is_delta }
+            PathVertex { from_light: at, from_camera: at, bsdf: vertex.bsdf, to_light, to_camera, is_delta }
         };
         let nodes = (0..=upto).map(node);
         if from_light { nodes.collect() } else { nodes.rev().collect() }
     }
 }
 
-fn followed<'w>(mut walk: Walk<'w>, task: &mut Task, ways: &Ways, is_camera: bool) -> Subpath<'w> {
+fn followed<'w>(
+    mut walk: Walk<'w>,
+    task: &mut Task,
+    techniques: &TechniqueCounts,
+    is_camera: bool,
+) -> Subpath<'w> {
     let (mut vertices, mut is_delta, mut left, mut camera_density) = (Vec::new(), Vec::new(), None, 0.0);
     loop {
         let Some(mut vertex) = walk.meet(task) else {
@@ -163,7 +168,7 @@ fn followed<'w>(mut walk: Walk<'w>, task: &mut Task, ways: &Ways, is_camera: boo
         if is_camera && vertex.depth == 0 {
             camera_density = task.camera.density(&walk.ray, vertex.surface.t);
             let cos = vertex.surface.n_geom.dot(vertex.wo).abs();
-            vertex.partial = Partial::of_camera(camera_density * cos, ways);
+            vertex.partial = Partial::of_camera(camera_density * cos, techniques);
             walk.partial = vertex.partial;
         }
         let stream = if is_camera { 1 } else { LIGHT_STREAM + 1 };

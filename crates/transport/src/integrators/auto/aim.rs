@@ -7,8 +7,10 @@
 //! Few light paths tell little, and a guide by what only happened to be seen makes noise instead of less of it. So what each
 //! half of them has learned is tried on the other, and where that gains little nothing is aimed.
 
-use super::pilot::{Grid, SAMPLES, Turn, sample_all};
-use crate::bidirectional::{Found, Lanes, Merging, Onlooker, Tally, Way, Ways};
+use super::pilot::{Grid, PilotRound, SAMPLES, sample_all};
+use crate::bidirectional::{
+    Contribution, Lanes, LightPathVisitor, Merging, Tally, Technique, TechniqueCounts,
+};
 use crate::emission::Guide;
 use crate::sampler::PixelSampler;
 use bilux_math::Vec2;
@@ -16,7 +18,7 @@ use bilux_scene::Counters;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Least light paths of an iteration.
-pub(super) const LEAST_LIGHT_PATHS: u64 = 2048;
+pub(super) const MIN_LIGHT_PATHS: u64 = 2048;
 
 /// So many light paths are begun, and not followed, to see how often each cell is one's.
 const STARTS: u32 = 1 << 16;
@@ -31,12 +33,21 @@ const LANES: usize = 3;
 
 /// All lanes, given η of the look's photons and of the film's, and the light paths that the camera is shown for each sample
 /// of the look.
-fn ways(own: f32, film: f32, shown: f32, direct: bool) -> Ways<LANES> {
-    Ways { splats: Lanes([shown, 1.0, 1.0]), joins: Lanes::ZERO, eta: Lanes([own, film, 0.0]), direct }
+fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<LANES> {
+    TechniqueCounts {
+        splats: Lanes([shown, 1.0, 1.0]),
+        joins: Lanes::ZERO,
+        eta: Lanes([own, film, 0.0]),
+        direct,
+    }
 }
 
 /// Learns from a turn whose light paths are aimed at nothing. `eta` is that of the film's photons, of which `near` are merged with a vertex that the camera sees.
-pub(super) fn learn(turn: Turn, merging: &Merging, (eta, near): (f32, f64)) -> (Option<Guide>, Counters) {
+pub(super) fn learn(
+    turn: PilotRound,
+    merging: &Merging,
+    (eta, near): (f32, f64),
+) -> (Option<Guide>, Counters) {
     let mut counters = Counters::default();
     let Some(untaught) = Guide::untaught(turn.eye.scene) else { return (None, counters) };
     let turn = turn.guided(&Some(Arc::new(untaught.clone())));
@@ -44,13 +55,18 @@ pub(super) fn learn(turn: Turn, merging: &Merging, (eta, near): (f32, f64)) -> (
     let tiles = grid.tiles();
     let pixels = tiles.iter().map(|tile| tile.pixels()).sum::<usize>() as f32;
     let shown = turn.light.settings.width as f32 / pixels;
-    let lanes = |own| ways(own, eta, shown, merging.ways.direct);
-    let mut lessons = Lessons { means: vec![0.0; tiles.len()], finds: Vec::new() };
+    let lanes = |own| techniques(own, eta, shown, merging.techniques.direct);
+    let mut lessons = AimStatistics { means: vec![0.0; tiles.len()], finds: Vec::new() };
     let mut halves = Vec::new();
     for iteration in 0..SAMPLES {
         let wall = Wall::default();
-        let (here, rays) =
-            sample_all::<LANES, Finds, Wall>(&turn, merging, &lanes, (&grid, &tiles, iteration), Some(&wall));
+        let (here, rays) = sample_all::<LANES, Contributions, Wall>(
+            &turn,
+            merging,
+            &lanes,
+            (&grid, &tiles, iteration),
+            Some(&wall),
+        );
         counters += rays;
         for (index, finds) in here.into_iter().enumerate() {
             let share = 1.0 / (tiles[index].pixels() as f64 * f64::from(SAMPLES));
@@ -84,7 +100,7 @@ fn worth(starts: &[f64], squares: &[f64]) -> Vec<f64> {
 }
 
 /// How often each cell is that of a light path that is aimed at nothing.
-fn starts(turn: &Turn, cells: usize) -> Vec<f64> {
+fn starts(turn: &PilotRound, cells: usize) -> Vec<f64> {
     let (scene, seed) = (turn.eye.scene, turn.eye.settings.seed);
     let mut counts = vec![0.0; cells];
     for i in 0..STARTS {
@@ -109,14 +125,14 @@ impl Guide {
 }
 
 /// What the look has seen.
-struct Lessons {
+struct AimStatistics {
     /// Of each of its tiles.
     means: Vec<f64>,
     /// By light paths: tile, cell, and square of the light.
     finds: Vec<(u32, u16, f64)>,
 }
 
-impl Lessons {
+impl AimStatistics {
     /// Sums of the squares for each cell, relative to what there is in the tiles.
     fn squares(&self, part: std::ops::Range<usize>, cells: usize) -> Vec<f64> {
         let dark = super::DARK * self.means.iter().sum::<f64>() / self.means.len() as f64;
@@ -131,16 +147,16 @@ impl Lessons {
 
 /// What a sample has found.
 #[derive(Default)]
-struct Finds {
+struct Contributions {
     /// Not counting what the camera is shown of light paths.
     light: f64,
     /// By photons: the cell of each, and the square of its light.
     here: Vec<(u16, f64)>,
-    there: Vec<Seen>,
+    there: Vec<VisibleContribution>,
 }
 
 /// What the camera sees of a light path.
-struct Seen {
+struct VisibleContribution {
     film: Vec2,
     cell: u16,
     square: f64,
@@ -149,7 +165,7 @@ struct Seen {
 
 /// Light as weighted by the look's ways, and the square of what the ways of another lane would find, times how often they
 /// would.
-fn square(found: &Found<LANES>, lane: usize) -> Option<(f64, f64)> {
+fn square(found: &Contribution<LANES>, lane: usize) -> Option<(f64, f64)> {
     let all = found.own + found.others;
     let light = |lane: usize| f64::from(found.light.luminance() * found.favour) / f64::from(all.0[lane]);
     let often = f64::from(found.own.0[lane]) / f64::from(found.own.0[0]);
@@ -157,41 +173,41 @@ fn square(found: &Found<LANES>, lane: usize) -> Option<(f64, f64)> {
     (light(0).is_finite() && square.is_finite()).then_some((light(0), square))
 }
 
-impl Tally<LANES> for Finds {
-    fn here(&mut self, way: Way, found: &Found<LANES>) {
+impl Tally<LANES> for Contributions {
+    fn here(&mut self, technique: Technique, found: &Contribution<LANES>) {
         let Some((light, square)) = square(found, 1) else { return };
         self.light += light;
-        if matches!(way, Way::Merged { .. }) {
+        if matches!(technique, Technique::Merged { .. }) {
             self.here.push((found.origin, square));
         }
     }
 
-    fn there(&mut self, film: Vec2, _way: Way, found: &Found<LANES>) {
+    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution<LANES>) {
         if let Some((light, square)) = square(found, 2) {
-            self.there.push(Seen { film, cell: found.origin, square, light });
+            self.there.push(VisibleContribution { film, cell: found.origin, square, light });
         }
     }
 }
 
 /// Keeps what the camera sees of light paths.
 #[derive(Default)]
-struct Wall(Mutex<Vec<(usize, Finds)>>);
+struct Wall(Mutex<Vec<(usize, Contributions)>>);
 
-impl Onlooker<LANES> for Wall {
-    type Tally = Finds;
+impl LightPathVisitor<LANES> for Wall {
+    type Tally = Contributions;
 
-    fn tally(&self) -> Finds {
-        Finds::default()
+    fn tally(&self) -> Contributions {
+        Contributions::default()
     }
 
-    fn take(&self, tile: usize, finds: Finds) {
+    fn take(&self, tile: usize, finds: Contributions) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push((tile, finds));
     }
 }
 
 impl Wall {
     /// As it would be on one thread.
-    fn in_order(self) -> Vec<Finds> {
+    fn in_order(self) -> Vec<Contributions> {
         let mut all = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
         all.sort_by_key(|(tile, _)| *tile);
         all.into_iter().map(|(_, finds)| finds).collect()

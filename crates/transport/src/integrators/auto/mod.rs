@@ -12,17 +12,17 @@ mod pilot;
 use super::path::Path;
 use super::vcm::Vcm;
 use super::{IntegratorEntry, PixelIntegrator, merging};
-use crate::bidirectional::{Merging, Ways};
+use crate::bidirectional::{Merging, TechniqueCounts};
+use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
-use crate::eye::Eye;
 use crate::light_choice::LightChoice;
-use crate::plan::{Choice, Plan, Rival};
+use crate::plan::{Candidate, Choice, Plan};
 use crate::render::RenderSettings;
 use crate::task::Task;
 use bilux_math::Rgb;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Counters, Ray, Scene, SceneError};
-use pilot::{Block, Turn};
+use pilot::{Block, PilotRound};
 use std::sync::Arc;
 
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
@@ -40,7 +40,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             },
             Parameter {
                 name: "ways",
-                summary: "take these ways of finding light, whatever the first look says",
+                summary: "take these techniques of finding light, whatever the first look says",
                 unit: "",
                 kind: ParameterKind::Choice(&WAYS),
                 default: "auto",
@@ -68,10 +68,10 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     classic: false,
     default_spp: 64,
     build: |reader| {
-        let (may_merge, ways) = (reader.text("merge") == "auto", reader.text("ways"));
-        let given = SETS.iter().position(|set| set.ways == ways);
+        let (may_merge, techniques) = (reader.text("merge") == "auto", reader.text("ways"));
+        let given = SETS.iter().position(|set| set.techniques == techniques);
         if !may_merge && given.is_some_and(|set| SETS[set].merges()) {
-            let message = format!("'{ways}' merges, and 'merge' is never");
+            let message = format!("'{techniques}' merges, and 'merge' is never");
             return Err(SceneError::invalid(message, reader.span("ways")));
         }
         Ok(Box::new(Auto {
@@ -79,7 +79,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             may_merge,
             given,
             roulette_depth: reader.integer("roulette_depth") as u32,
-            merging: merging::read(reader, Ways::BOTH_ENDS),
+            merging: merging::read(reader, TechniqueCounts::BOTH_ENDS),
         }))
     },
 };
@@ -97,7 +97,7 @@ struct Auto {
 struct Set {
     name: &'static str,
     /// What it is called where it is asked for.
-    ways: &'static str,
+    techniques: &'static str,
     sees: bool,
     joins: bool,
     /// Light paths whose photons are merged with, for each pixel; 0 where nothing is merged.
@@ -106,26 +106,26 @@ struct Set {
 
 /// What there is to choose from, the simplest first.
 const SETS: [Set; 8] = [
-    Set { name: "path", ways: "path", sees: false, joins: false, photons: 0.0 },
-    Set { name: "path and light", ways: "path-light", sees: true, joins: false, photons: 0.0 },
-    Set { name: "bdpt", ways: "bdpt", sees: true, joins: true, photons: 0.0 },
-    Set { name: "path and few photons", ways: "path-few", sees: false, joins: false, photons: FEW },
-    Set { name: "path and photons", ways: "path-photons", sees: false, joins: false, photons: 1.0 },
+    Set { name: "path", techniques: "path", sees: false, joins: false, photons: 0.0 },
+    Set { name: "path and light", techniques: "path-light", sees: true, joins: false, photons: 0.0 },
+    Set { name: "bdpt", techniques: "bdpt", sees: true, joins: true, photons: 0.0 },
+    Set { name: "path and few photons", techniques: "path-few", sees: false, joins: false, photons: FEW },
+    Set { name: "path and photons", techniques: "path-photons", sees: false, joins: false, photons: 1.0 },
     Set {
         name: "path, light and few photons",
-        ways: "path-light-few",
+        techniques: "path-light-few",
         sees: true,
         joins: false,
         photons: FEW,
     },
     Set {
         name: "path, light and photons",
-        ways: "path-light-photons",
+        techniques: "path-light-photons",
         sees: true,
         joins: false,
         photons: 1.0,
     },
-    Set { name: "vcm", ways: "vcm", sees: true, joins: true, photons: 1.0 },
+    Set { name: "vcm", techniques: "vcm", sees: true, joins: true, photons: 1.0 },
 ];
 
 /// Enough where they go where they are of use.
@@ -141,7 +141,10 @@ impl Set {
         Merging {
             radius: if self.merges() { merging.radius } else { 0.0 },
             part: merging.part * self.photons,
-            ways: Ways { direct: merging.ways.direct, ..Ways::beside_merging(self.sees, self.joins) },
+            techniques: TechniqueCounts {
+                direct: merging.techniques.direct,
+                ..TechniqueCounts::beside_merging(self.sees, self.joins)
+            },
             ..merging
         }
     }
@@ -149,13 +152,13 @@ impl Set {
 
 /// What can be asked for.
 const WAYS: [&str; 1 + SETS.len()] = {
-    let mut ways = ["auto"; 1 + SETS.len()];
+    let mut techniques = ["auto"; 1 + SETS.len()];
     let mut i = 0;
     while i < SETS.len() {
-        ways[1 + i] = SETS[i].ways;
+        techniques[1 + i] = SETS[i].techniques;
         i += 1;
     }
-    ways
+    techniques
 };
 
 /// A set has to be so much better than one that stands before it, or that does not blur.
@@ -185,13 +188,13 @@ impl PixelIntegrator for Auto {
 
     fn plan(&self, scene: &Scene, camera: &dyn Camera, film: &RenderSettings) -> Option<Plan> {
         let settings = pilot::settings(film);
-        let least = |turn| if turn == 0 { aim::LEAST_LIGHT_PATHS } else { pilot::LEAST_LIGHT_PATHS };
+        let least = |turn| if turn == 0 { aim::MIN_LIGHT_PATHS } else { pilot::MIN_LIGHT_PATHS };
         let sources = [0, 1, 2].map(|turn| pilot::photon_settings(film, &settings[turn], least(turn)));
-        let eye = |settings| Eye::new(scene, camera, self, settings).merging();
-        let turn = |i: usize| Turn { eye: eye(&settings[i]), light: eye(&sources[i]) };
+        let eye = |settings| CameraRays::new(scene, camera, self, settings).merging();
+        let turn = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
         // A point on each of few lights is always picked; of many, photons find the nearest by themselves.
-        merging.ways.direct = !LightChoice::new(scene).takes_all();
+        merging.techniques.direct = !LightChoice::new(scene).takes_all();
         if merging.radius == 0.0 {
             let pixel = pilot::pixel_radius(&turn(0).eye, film) / scene.bounds().radius();
             merging.radius = if pixel > 0.0 { (PIXELS * pixel).min(WIDEST) } else { merging::RADIUS };
@@ -199,7 +202,7 @@ impl PixelIntegrator for Auto {
         let light_paths =
             (u64::from(film.width) * u64::from(film.height)).min(u64::from(merging.max_light_paths)) as f32;
         let eta = merging.area(scene, TYPICAL_ITERATION) * light_paths;
-        let ways = |set: &Set| set.merging(merging).ways(eta * set.photons, set.photons);
+        let techniques = |set: &Set| set.merging(merging).techniques(eta * set.photons, set.photons);
         let mut counters = Counters::default();
         let mut guide = None;
         if self.aims {
@@ -208,36 +211,36 @@ impl PixelIntegrator for Auto {
             guide = learned.map(Arc::new);
         }
         let lanes = |own: f32| {
-            let all = std::iter::once(merging.ways(own, 1.0)).chain(SETS.iter().map(ways));
-            Ways::together(all)
+            let all = std::iter::once(merging.techniques(own, 1.0)).chain(SETS.iter().map(techniques));
+            TechniqueCounts::together(all)
         };
-        let turns: Vec<Turn> = (1..settings.len()).map(|i| turn(i).guided(&guide)).collect();
+        let turns: Vec<PilotRound> = (1..settings.len()).map(|i| turn(i).guided(&guide)).collect();
         let seen = pilot::look(&turns, &merging, lanes);
         counters += seen.counters;
-        let rivals: Vec<Rival> = SETS
+        let candidates: Vec<Candidate> = SETS
             .iter()
             .enumerate()
-            .map(|(i, set)| Rival {
+            .map(|(i, set)| Candidate {
                 name: set.name,
-                ways: set.ways,
+                techniques: set.techniques,
                 error: outliers::error(&seen.blocks, i + 1),
                 lost: lost(&seen.blocks, i + 1),
-                nanoseconds: seen.steps.nanoseconds(set, ways(set).eta.0[0]),
+                nanoseconds: seen.steps.nanoseconds(set, techniques(set).eta.0[0]),
             })
             .collect();
-        let choice = Choice { chosen: self.given.unwrap_or_else(|| self.choose(&rivals)), rivals };
+        let choice = Choice { chosen: self.given.unwrap_or_else(|| self.choose(&candidates)), candidates };
         Some(Plan { integrator: self.made_of(&SETS[choice.chosen], merging, guide), choice, counters })
     }
 }
 
 impl Auto {
-    fn choose(&self, rivals: &[Rival]) -> usize {
+    fn choose(&self, candidates: &[Candidate]) -> usize {
         let mut best = 0;
         for (i, set) in SETS.iter().enumerate().skip(1) {
-            let (rival, held) = (&rivals[i], &rivals[best]);
-            let is_better = rival.time_to_error() * WORTH_MORE < held.time_to_error();
-            let finds_more = held.misses_more_than(rival);
-            let finds_all = !rival.misses_more_than(held);
+            let (candidate, held) = (&candidates[i], &candidates[best]);
+            let is_better = candidate.time_to_error() * WORTH_MORE < held.time_to_error();
+            let finds_more = held.misses_more_than(candidate);
+            let finds_all = !candidate.misses_more_than(held);
             if (self.may_merge || !set.merges()) && (finds_more || (is_better && finds_all)) {
                 best = i;
             }

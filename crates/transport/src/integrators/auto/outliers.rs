@@ -18,7 +18,7 @@ const BINS: usize = 32;
 
 /// What a lane would find in a block, sorted by how bright a single find is.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Finds([Bin; BINS]);
+pub(super) struct Contributions([Bin; BINS]);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Bin {
@@ -28,7 +28,7 @@ struct Bin {
     square: f64,
 }
 
-impl Finds {
+impl Contributions {
     /// `light` on average, in finds that bring `found` each.
     pub(super) fn add(&mut self, light: f64, found: f64) {
         let octave = (found.to_bits() >> 52 & 0x7ff) as i32 - 1023;
@@ -38,7 +38,7 @@ impl Finds {
     }
 
     /// With others, times `share`.
-    pub(super) fn plus(&mut self, others: &Finds, share: f64) {
+    pub(super) fn plus(&mut self, others: &Contributions, share: f64) {
         for (bin, other) in self.0.iter_mut().zip(&others.0) {
             bin.light += share * other.light;
             bin.square += share * other.square;
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn finds_of_any_size_have_their_bin() {
-        let mut finds = Finds::default();
+        let mut finds = Contributions::default();
         for found in [0.0, 1e-300, 1e-9, 1.0, 3.9, 1e12, f64::MAX] {
             finds.add(0.0, found);
         }

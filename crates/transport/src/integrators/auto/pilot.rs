@@ -6,13 +6,15 @@
 //! number of first samples of the one would have told. [Grittmann 2022, eq. 10 to 13]
 
 use super::cost::Steps;
-use super::outliers::Finds;
-use crate::bidirectional::{Found, Merging, Onlooker, Photons, Step, Tally, Way, Ways};
+use super::outliers::Contributions;
+use crate::bidirectional::{
+    Contribution, LightPathVisitor, Merging, Photons, Step, Tally, Technique, TechniqueCounts,
+};
+use crate::camera_rays::CameraRays;
 use crate::emission::Guide;
-use crate::eye::Eye;
 use crate::integrators::bdpt::BothEnds;
 use crate::render::RenderSettings;
-use crate::splats::Shown;
+use crate::splats::IterationSplats;
 use crate::window::Window;
 use bilux_math::Vec2;
 use bilux_math::hash::hash_words;
@@ -35,14 +37,14 @@ pub(super) const SAMPLES: u32 = 8;
 const BLOCK: u32 = 4;
 
 /// Most pixels of a pilot; and least, unless the film has fewer.
-const MOST_PIXELS: u64 = 1024;
-const LEAST_PIXELS: u64 = 128;
+const MAX_PIXELS: u64 = 1024;
+const MIN_PIXELS: u64 = 128;
 /// One pixel for so many of the film's, between the two.
 const PART: u64 = 48;
 
 /// Most photon paths of one of its iterations, and least.
-const MOST_LIGHT_PATHS: u64 = 8192;
-pub(super) const LEAST_LIGHT_PATHS: u64 = 1024;
+const MAX_LIGHT_PATHS: u64 = 8192;
+pub(super) const MIN_LIGHT_PATHS: u64 = 1024;
 /// One for so many of the film's, between the two.
 const LIGHT_PART: u64 = 8;
 
@@ -53,7 +55,7 @@ pub(super) struct Block {
     /// Expected variance of a pixel, times its samples, for each lane: but for the second moment of `finds`.
     pub(super) variance: [f64; LANES],
     /// What single ways of each lane are expected to find.
-    pub(super) finds: [Finds; LANES],
+    pub(super) finds: [Contributions; LANES],
     /// What the ways of a lane cannot find at all.
     pub(super) lost: [f64; LANES],
 }
@@ -90,7 +92,7 @@ pub(super) struct Grid {
 impl Grid {
     pub(super) fn of(film: &RenderSettings) -> Grid {
         let pixels = u64::from(film.width) * u64::from(film.height);
-        let wanted = (pixels / PART).clamp(LEAST_PIXELS, MOST_PIXELS).min(pixels);
+        let wanted = (pixels / PART).clamp(MIN_PIXELS, MAX_PIXELS).min(pixels);
         let scale = (wanted as f64 / pixels as f64).sqrt();
         let size =
             [film.width, film.height].map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, side));
@@ -122,13 +124,13 @@ impl Grid {
 /// Where the pilot's photons come from: the light paths of a film of its own, `least` or more.
 pub(super) fn photon_settings(film: &RenderSettings, turn: &RenderSettings, least: u64) -> RenderSettings {
     let pixels = u64::from(film.width) * u64::from(film.height);
-    let wanted = (pixels / LIGHT_PART).clamp(least, MOST_LIGHT_PATHS.max(least));
+    let wanted = (pixels / LIGHT_PART).clamp(least, MAX_LIGHT_PATHS.max(least));
     RenderSettings { width: wanted as u32, height: 1, ..turn.clone() }
 }
 
 /// The radius of a disc as large as what a pixel of the film shows of the first surface there, in metres: the median over
 /// the pilot's pixels.
-pub(super) fn pixel_radius(eye: &Eye, film: &RenderSettings) -> f32 {
+pub(super) fn pixel_radius(eye: &CameraRays, film: &RenderSettings) -> f32 {
     let mut tracer = Tracer::new(eye.scene, false);
     let pixels = film.width as f32 * film.height as f32;
     let grid = Grid::of(film);
@@ -148,20 +150,24 @@ pub(super) fn pixel_radius(eye: &Eye, film: &RenderSettings) -> f32 {
 }
 
 /// One turn's camera paths, and whose light paths give it photons.
-pub(super) struct Turn<'a> {
-    pub(super) eye: Eye<'a>,
-    pub(super) light: Eye<'a>,
+pub(super) struct PilotRound<'a> {
+    pub(super) eye: CameraRays<'a>,
+    pub(super) light: CameraRays<'a>,
 }
 
-impl Turn<'_> {
+impl PilotRound<'_> {
     /// With light paths that are aimed as a guide says.
     pub(super) fn guided(self, guide: &Option<Arc<Guide>>) -> Self {
-        Turn { eye: self.eye.guided(guide.clone()), light: self.light.guided(guide.clone()) }
+        PilotRound { eye: self.eye.guided(guide.clone()), light: self.light.guided(guide.clone()) }
     }
 }
 
 /// Takes the samples. `ways` tells all lanes, given the η of the pilot's own photons.
-pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways<LANES> + Sync) -> Pilot {
+pub(super) fn look(
+    turns: &[PilotRound],
+    merging: &Merging,
+    techniques: impl Fn(f32) -> TechniqueCounts<LANES> + Sync,
+) -> Pilot {
     let grid = Grid::of(turns[0].eye.settings);
     let tiles = grid.tiles();
     let mut pilot = Pilot {
@@ -170,10 +176,10 @@ pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways
         counters: Counters::default(),
     };
     let pixels = tiles.iter().map(Window::pixels).sum::<usize>();
-    let sums = |turn: &Turn, pilot: &mut Pilot| -> Vec<Vec<[f64; LANES]>> {
+    let sums = |turn: &PilotRound, pilot: &mut Pilot| -> Vec<Vec<[f64; LANES]>> {
         let mut sums: Vec<_> = tiles.iter().map(|tile| vec![[0.0; LANES]; tile.pixels()]).collect();
         for iteration in 0..SAMPLES {
-            one_sample(turn, merging, &ways, (&grid, &tiles, iteration), pilot, &mut sums);
+            one_sample(turn, merging, &techniques, (&grid, &tiles, iteration), pilot, &mut sums);
         }
         sums
     };
@@ -187,15 +193,20 @@ pub(super) fn look(turns: &[Turn], merging: &Merging, ways: impl Fn(f32) -> Ways
 
 /// One sample of each pixel.
 fn one_sample(
-    turn: &Turn,
+    turn: &PilotRound,
     merging: &Merging,
-    ways: &(impl Fn(f32) -> Ways<LANES> + Sync),
+    techniques: &(impl Fn(f32) -> TechniqueCounts<LANES> + Sync),
     (grid, tiles, iteration): (&Grid, &[Window], u32),
     pilot: &mut Pilot,
     sums: &mut [Vec<[f64; LANES]>],
 ) {
-    let (looked, counters) =
-        sample_all::<LANES, Look, Shown>(turn, merging, ways, (grid, tiles, iteration), None);
+    let (looked, counters) = sample_all::<LANES, PilotSample, IterationSplats>(
+        turn,
+        merging,
+        techniques,
+        (grid, tiles, iteration),
+        None,
+    );
     pilot.counters += counters;
     // One after the other, so that sums do not depend on threads.
     for (index, looks) in looked.into_iter().enumerate() {
@@ -214,28 +225,28 @@ fn one_sample(
 }
 
 /// What camera paths find, a sample of each of the grid's pixels, tile by tile; each with a light path of its own that is seen
-/// from the camera, or without where an `onlooker` sees the photons.
+/// from the camera, or without where an `visitor` sees the photons.
 pub(super) fn sample_all<const N: usize, T, O>(
-    Turn { eye, light }: &Turn,
+    PilotRound { eye, light }: &PilotRound,
     merging: &Merging,
-    ways: &(impl Fn(f32) -> Ways<N> + Sync),
+    techniques: &(impl Fn(f32) -> TechniqueCounts<N> + Sync),
     (grid, tiles, iteration): (&Grid, &[Window], u32),
-    onlooker: Option<&O>,
+    visitor: Option<&O>,
 ) -> (Vec<Vec<T>>, Counters)
 where
     T: Tally<N> + Default + Send,
-    O: Onlooker<N>,
+    O: LightPathVisitor<N>,
 {
     let sources = Window::whole(light.settings.width, 1).tiles(256);
     let (photons, mut counted) =
-        Photons::trace(light, merging, &sources, iteration, |eta, _| ways(eta), onlooker);
+        Photons::trace(light, merging, &sources, iteration, |eta, _| techniques(eta), visitor);
     let of_tile = |tile: &Window| {
         let mut tracer = Tracer::new(eye.scene, eye.settings.count_work);
         let look = |i| {
             let (x, y) = grid.pixel(tile.position(i));
             let mut tally = T::default();
             let (ray, mut task) = eye.sample(&mut tracer, x, y, iteration);
-            let both_ends = BothEnds::merging(&photons, onlooker.is_none(), eye.integrator.roulette_depth());
+            let both_ends = BothEnds::merging(&photons, visitor.is_none(), eye.integrator.roulette_depth());
             both_ends.sample(&ray, true, &mut task, &mut tally);
             tally
         };
@@ -257,10 +268,10 @@ fn share(tile: &Window) -> f64 {
 
 /// One sample of the pilot.
 #[derive(Clone, Debug, Default)]
-struct Look {
+struct PilotSample {
     sample: Sample,
     /// What its light path has left on the film.
-    seen: Vec<(Vec2, Found<LANES>)>,
+    seen: Vec<(Vec2, Contribution<LANES>)>,
     steps: Steps,
 }
 
@@ -273,21 +284,21 @@ struct Sample {
     sums: [f64; LANES],
     squares: [f64; LANES],
     /// That sum of squares as foreseen by all ways.
-    finds: [Finds; LANES],
+    finds: [Contributions; LANES],
     lost: [f64; LANES],
 }
 
 impl Sample {
     /// Of a light path that the camera is shown. They come one by one: there is nothing else of the pixel that this one
     /// would go with.
-    fn seen(found: &Found<LANES>) -> Sample {
+    fn seen(found: &Contribution<LANES>) -> Sample {
         let mut sample = Sample::default();
         sample.take(found);
         Sample { squares: [0.0; LANES], ..sample }
     }
 
-    fn take(&mut self, found: &Found<LANES>) {
-        let Found { light, own, others, favour, .. } = *found;
+    fn take(&mut self, found: &Contribution<LANES>) {
+        let Contribution { light, own, others, favour, .. } = *found;
         let all = own + others;
         let weighted = f64::from(light.luminance()) / f64::from(all.0[0]);
         let favour = f64::from(favour);
@@ -312,23 +323,23 @@ impl Sample {
     }
 }
 
-impl Tally<LANES> for Look {
+impl Tally<LANES> for PilotSample {
     fn spend(&mut self, step: Step, count: usize) {
         self.steps.count(step, count);
     }
 
-    fn here(&mut self, way: Way, found: &Found<LANES>) {
-        if matches!(way, Way::Merged { .. }) {
+    fn here(&mut self, technique: Technique, found: &Contribution<LANES>) {
+        if matches!(technique, Technique::Merged { .. }) {
             self.steps.merged += 1.0 / f64::from(found.own.0[0]);
         }
-        match way {
+        match technique {
             // Lights and sky as the camera sees them: smoothed edges, which all sets have alike, and soon.
-            Way::Joined { s: 0, t: 2 } => self.sample.light += f64::from(found.weighted().luminance()),
+            Technique::Joined { s: 0, t: 2 } => self.sample.light += f64::from(found.weighted().luminance()),
             _ => self.sample.take(found),
         }
     }
 
-    fn there(&mut self, film: Vec2, _way: Way, found: &Found<LANES>) {
+    fn there(&mut self, film: Vec2, _way: Technique, found: &Contribution<LANES>) {
         self.seen.push((film, *found));
     }
 }

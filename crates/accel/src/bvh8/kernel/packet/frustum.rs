@@ -1,7 +1,7 @@
 //! What bounds all rays of a packet, and whether they are near enough to each other for that to be of use.
 #![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
 
-use super::super::View;
+use super::super::TreeView;
 use super::super::level::BatchLevel;
 use super::rays::{Packet, Row};
 use super::ready::Ready;
@@ -65,7 +65,7 @@ impl Frustum {
         packet: &mut Packet,
         ready: &Ready,
         first: &Ray,
-        view: &View<'_>,
+        view: &TreeView<'_>,
     ) -> Option<Frustum> {
         let (down, steep) = way(first);
         let same = |k: usize| ready.down[k] == if down[k] { ready.used } else { 0 };
@@ -163,7 +163,7 @@ impl<W: Wide> Extremes<W> {
     /// # Safety
     /// The machine must have the level.
     #[inline(always)]
-    unsafe fn are_near(&self, down: [bool; 3], axes: [usize; 3], view: &View<'_>) -> bool {
+    unsafe fn are_near(&self, down: [bool; 3], axes: [usize; 3], view: &TreeView<'_>) -> bool {
         let extent = |k: usize| view.outline.corners[1][k] - view.outline.corners[0][k];
         let size = extent(0).max(extent(1)).max(extent(2));
         let mut near = true;

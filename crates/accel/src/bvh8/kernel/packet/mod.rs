@@ -18,12 +18,12 @@ pub(super) use rays::{Packet, RAYS};
 pub(super) use ready::{Lane, Ready};
 pub(super) use wide::{Wide, declare, define};
 
-use super::View;
+use super::TreeView;
 use super::batch::SOMETHING;
 use super::body::{prefetch, reference};
-use super::form;
 use super::leaf::block_bytes;
 use super::level::BatchLevel;
+use super::node_format;
 use super::stack::{Room, Stack};
 use crate::bvh8::layout::{LANES, NO_TRIANGLE, Ref};
 use crate::ray::{Hit, Query, Ray};
@@ -47,7 +47,7 @@ struct Walk<'p> {
 /// The machine must have the level, the view must be sound, and the packet ready.
 #[inline(always)]
 pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
-    view: View<'_>,
+    view: TreeView<'_>,
     (packet, ready): (&mut Packet, &Ready),
     rays: &[Ray],
     query: &Query,
@@ -82,7 +82,7 @@ impl Walk<'_> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn run<L: BatchLevel, const ANY: bool>(&mut self, view: &View<'_>) {
+    unsafe fn run<L: BatchLevel, const ANY: bool>(&mut self, view: &TreeView<'_>) {
         let base = view.units.as_ptr().cast::<u8>();
         let mut room = Room::uninit();
         let mut stack = Stack::new(&mut room);
@@ -97,9 +97,9 @@ impl Walk<'_> {
                     L::push_children(current, mask, enter, &mut stack);
                 }
                 while mask != 0 {
-                    prefetch::<form::Wide>(
+                    prefetch::<node_format::Wide>(
                         base,
-                        reference::<form::Wide>(node, mask.trailing_zeros() as usize),
+                        reference::<node_format::Wide>(node, mask.trailing_zeros() as usize),
                     );
                     mask &= mask - 1;
                 }
@@ -112,7 +112,7 @@ impl Walk<'_> {
                         continue;
                     }
                     let (node, child) = (base.add(parent.byte()), key as usize & 7);
-                    let reference = reference::<form::Wide>(node, child);
+                    let reference = reference::<node_format::Wide>(node, child);
                     if !reference.is_node() {
                         if self.leaf::<L::Wide, ANY>(base, node, child, reference) {
                             limit_bits = self.limit::<L::Wide>().to_bits();
@@ -189,7 +189,7 @@ impl Walk<'_> {
                 let mut group = Group::<W>::new(self.packet, &self.frustum, self.query, from);
                 let mut hits = 0;
                 for index in 0..leaf.blocks() {
-                    let block = base.add(leaf.byte() + index * block_bytes::<form::Wide>());
+                    let block = base.add(leaf.byte() + index * block_bytes::<node_format::Wide>());
                     let primitives = block.add(9 * LANES * 4).cast::<u32>();
                     for lane in 0..LANES {
                         if *primitives.add(lane) == NO_TRIANGLE {

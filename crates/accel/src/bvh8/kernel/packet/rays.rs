@@ -34,7 +34,7 @@ pub(in crate::bvh8::kernel) struct Packet {
     /// The end of the ray, then its nearest hit.
     pub(super) t: Row<f32>,
     pub(super) exclude: Row<u32>,
-    /// As of [`super::super::tame::TameRay`].
+    /// As of [`super::super::lane_ray::LaneRay`].
     pub(super) pace: Row<f32>,
     pub(super) inverse: [Row<f32>; 3],
     /// Origins as planes see them where the ray comes in, and goes out.

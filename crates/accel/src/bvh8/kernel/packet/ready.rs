@@ -1,14 +1,14 @@
 //! Rays made ready for boxes, a group at a time.
 #![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
 
-use super::super::View;
-use super::super::form::Form;
+use super::super::TreeView;
+use super::super::lane_ray::{ROWS, span};
 use super::super::level::{BatchLevel, Boxes};
-use super::super::tame::{ROWS, span};
+use super::super::node_format::NodeFormat;
 use super::rays::{Packet, Row};
 use super::wide::Wide;
 use crate::bvh8::layout::WIDTH;
-use crate::bvh8::outline::BIAS_PAD;
+use crate::bvh8::summary::BIAS_PAD;
 use crate::ray::Ray;
 use crate::slab::{SLACK, STEEPEST, least_of, limit_of};
 use crate::triangle::PAD;
@@ -38,7 +38,7 @@ pub(in crate::bvh8::kernel) struct Lane<'p> {
 }
 
 impl Packet {
-    /// Takes rays over, and makes them ready as [`super::super::tame::TameRay::new`] does.
+    /// Takes rays over, and makes them ready as [`super::super::lane_ray::LaneRay::new`] does.
     ///
     /// # Safety
     /// The machine must have the level; there must be at least one ray, and at most [`super::RAYS`].
@@ -46,7 +46,7 @@ impl Packet {
     pub(in crate::bvh8::kernel) unsafe fn prepare<L: BatchLevel>(
         &mut self,
         rays: &[Ray],
-        view: &View<'_>,
+        view: &TreeView<'_>,
     ) -> Ready {
         let lanes = rays.len().next_multiple_of(L::Wide::LANES);
         // SAFETY: as the caller promises.
@@ -113,7 +113,7 @@ impl Boxes for Lane<'_> {
 
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
-    unsafe fn span<F: Form>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+    unsafe fn span<F: NodeFormat>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
         // SAFETY: as the trait demands; the packet is ready.
         unsafe {
             let all = |row: &Row<f32>| _mm256_set1_ps(*row.at(self.lane));
@@ -137,7 +137,7 @@ impl Boxes for Lane<'_> {
 /// # Safety
 /// As for [`Packet::prepare`], and the packet must be filled.
 #[inline(always)]
-unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &View<'_>, ready: &mut Ready) {
+unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &TreeView<'_>, ready: &mut Ready) {
     // SAFETY: as the caller promises.
     unsafe {
         let load = |rows: &[Row<f32>; 3]| {

@@ -6,7 +6,7 @@ use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
 /// Which lobe it is, and about which normal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Apart {
+pub(super) struct LobeFrame {
     index: u8,
     n: Vec3,
     bends: bool,
@@ -20,7 +20,7 @@ impl Bsdf {
     /// [bent](Bsdf::bending) where it `bends`.
     pub fn with_apart(self, index: usize, n: Vec3, bends: bool) -> Bsdf {
         let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
-        let apart = Apart { index: index as u8, n, bends: bends && n != self.n_geom };
+        let apart = LobeFrame { index: index as u8, n, bends: bends && n != self.n_geom };
         Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
     }
 
@@ -31,7 +31,7 @@ impl Bsdf {
     }
 
     #[inline(never)]
-    fn parted(&self, apart: &Apart) -> Parts {
+    fn parted(&self, apart: &LobeFrame) -> Parts {
         let index = usize::from(apart.index);
         let about = |frame, bends| Bsdf { bends, splits: self.splits, ..Bsdf::empty(frame, self.n_geom) };
         let mut shared = about(self.frame, self.bends);

@@ -6,7 +6,7 @@ use bilux_math::{Aabb, Vec3};
 
 /// Where the tree begins, and how large it is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outline {
+pub(super) struct TreeSummary {
     pub(super) root: Ref,
     /// Of the box around everything; the fourth numbers are zero.
     pub(super) corners: [[f32; 4]; 2],
@@ -30,21 +30,21 @@ pub(super) const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
 pub(super) const FAR_PAD: f32 = PAD + BIAS_PAD + 2.0 / 16_777_216.0;
 
 /// Makes up for underflow: 2⁻⁸⁴ over directions as short as 2⁻⁴⁰ is still a normal number.
-const LEAST_PAD: f32 = 1.0 / (1u128 << 84) as f32;
+const MIN_PAD: f32 = 1.0 / (1u128 << 84) as f32;
 
-impl Outline {
-    pub(super) fn new(root: Ref, corners: [[f32; 3]; 2]) -> Outline {
+impl TreeSummary {
+    pub(super) fn new(root: Ref, corners: [[f32; 3]; 2]) -> TreeSummary {
         let middle = |k: usize| corners[0][k] * 0.5 + corners[1][k] * 0.5;
         let centre = [middle(0), middle(1), middle(2)];
         let away = |k: usize| (corners[0][k] - centre[k]).abs().max((corners[1][k] - centre[k]).abs());
         let half = away(0).max(away(1)).max(away(2));
         let off = centre[0].abs().max(centre[1].abs()).max(centre[2].abs());
         // Twice the roundings of this sum.
-        let pad = (half * PAD + off * BIAS_PAD + LEAST_PAD) * (1.0 + 16.0 / 16_777_216.0);
+        let pad = (half * PAD + off * BIAS_PAD + MIN_PAD) * (1.0 + 16.0 / 16_777_216.0);
         // An empty box, and one of which something is not a number, is nobody's.
         let fits = half <= LARGEST && off <= LARGEST;
         let (reach, pace) = if fits { (LARGEST, LARGEST) } else { (-1.0, -1.0) };
-        Outline {
+        TreeSummary {
             root,
             corners: corners.map(|[x, y, z]| [x, y, z, 0.0]),
             centre: [centre[0], centre[1], centre[2], 0.0],

@@ -16,7 +16,7 @@ use std::arch::x86_64::*;
 /// # Safety
 /// Functions that take pointers must be given those of whole nodes or blocks of the layout, on machines that have the
 /// instructions that each names.
-pub(in crate::bvh8) trait Form {
+pub(in crate::bvh8) trait NodeFormat {
     /// Units of a block.
     const BLOCK_UNITS: usize;
     /// Bytes from the front of a node to the references.
@@ -47,7 +47,7 @@ pub(in crate::bvh8) trait Form {
     #[cfg(target_arch = "x86_64")]
     unsafe fn frame8(node: *const u8) -> Self::Frame8;
     // SAFETY: as the trait says.
-    /// The planes of eight children along an axis; `row` as of [`super::tame::ROWS`]. With AVX2 and FMA.
+    /// The planes of eight children along an axis; `row` as of [`super::lane_ray::ROWS`]. With AVX2 and FMA.
     #[cfg(target_arch = "x86_64")]
     unsafe fn planes8(node: *const u8, row: usize, axis: usize, frame: &Self::Frame8) -> __m256;
     // SAFETY: as the trait says.
@@ -67,7 +67,7 @@ pub(in crate::bvh8) trait Form {
 /// The layout of [`crate::Bvh8`].
 pub(in crate::bvh8) struct Wide;
 
-impl Form for Wide {
+impl NodeFormat for Wide {
     const BLOCK_UNITS: usize = layout::BLOCK_UNITS;
     #[cfg(target_arch = "x86_64")]
     const REFERENCES: usize = 192;

@@ -13,7 +13,7 @@ pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
 /// How many of each way there are for one camera path. A light that is picked (s = 1) and one that is met by
 /// chance (s = 0) are always one each.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ways<const N: usize = 1> {
+pub(crate) struct TechniqueCounts<const N: usize = 1> {
     /// Light paths that are seen from the camera (t = 1).
     pub(crate) splats: Lanes<N>,
     /// Light paths whose vertices are joined with those of the camera path (s, t > 1).
@@ -27,7 +27,7 @@ pub(crate) struct Ways<const N: usize = 1> {
 
 /// What one way has found of one path.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found<const N: usize = 1> {
+pub(crate) struct Contribution<const N: usize = 1> {
     /// Its light, over the density with which one camera path finds it in this way.
     pub(crate) light: Rgb,
     /// How often it is found in this way.
@@ -42,7 +42,7 @@ pub(crate) struct Found<const N: usize = 1> {
 
 /// Which way it was: subpaths of `s` vertices from the light and of `t` from the camera, both ends' own included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum Technique {
     /// Their last vertices are joined. A light is met by chance with s = 0, a point on a light picked with s = 1, and a
     /// light path seen from the camera with t = 1.
     Joined { s: u32, t: u32 },
@@ -74,18 +74,22 @@ pub(crate) trait Tally<const N: usize> {
     fn spend(&mut self, _step: Step, _count: usize) {}
 
     /// In the pixel of the camera path.
-    fn here(&mut self, way: Way, found: &Found<N>);
+    fn here(&mut self, technique: Technique, found: &Contribution<N>);
     /// At a point of the film (0..=1 on both axes), as an integral over the whole of it.
-    fn there(&mut self, film: Vec2, way: Way, found: &Found<N>);
+    fn there(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
 }
 
-impl Ways {
+impl TechniqueCounts {
     /// Paths from the camera alone.
-    pub(crate) const CAMERA: Ways =
-        Ways { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]), direct: true };
+    pub(crate) const CAMERA: TechniqueCounts =
+        TechniqueCounts { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]), direct: true };
     /// With light paths that are seen from the camera or not, and joined or not.
-    pub(crate) fn beside_merging(splats: bool, joins: bool) -> Ways {
-        Ways { splats: Lanes([f32::from(splats)]), joins: Lanes([f32::from(joins)]), ..Ways::CAMERA }
+    pub(crate) fn beside_merging(splats: bool, joins: bool) -> TechniqueCounts {
+        TechniqueCounts {
+            splats: Lanes([f32::from(splats)]),
+            joins: Lanes([f32::from(joins)]),
+            ..TechniqueCounts::CAMERA
+        }
     }
 
     /// True where each camera path has a light path of its own.
@@ -94,13 +98,15 @@ impl Ways {
     }
 
     /// All that need no merging.
-    pub(crate) const BOTH_ENDS: Ways = Ways { splats: Lanes([1.0]), joins: Lanes([1.0]), ..Ways::CAMERA };
+    pub(crate) const BOTH_ENDS: TechniqueCounts =
+        TechniqueCounts { splats: Lanes([1.0]), joins: Lanes([1.0]), ..TechniqueCounts::CAMERA };
 }
 
-impl<const N: usize> Ways<N> {
+impl<const N: usize> TechniqueCounts<N> {
     /// Single sets as lanes, alike in how they find direct light.
-    pub(crate) fn together(mut sets: impl Iterator<Item = Ways>) -> Ways<N> {
-        let mut all = Ways { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO, direct: true };
+    pub(crate) fn together(mut sets: impl Iterator<Item = TechniqueCounts>) -> TechniqueCounts<N> {
+        let mut all =
+            TechniqueCounts { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO, direct: true };
         for k in 0..N {
             let Some(set) = sets.next() else { break };
             (all.splats.0[k], all.joins.0[k], all.eta.0[k]) = (set.splats.0[0], set.joins.0[0], set.eta.0[0]);
@@ -110,10 +116,10 @@ impl<const N: usize> Ways<N> {
     }
 }
 
-impl<const N: usize> Found<N> {
+impl<const N: usize> Contribution<N> {
     /// What is found in no other way.
-    pub(crate) fn only(light: Rgb) -> Found<N> {
-        Found { light, own: Lanes::ONE, others: Lanes::ZERO, favour: 1.0, origin: 0 }
+    pub(crate) fn only(light: Rgb) -> Contribution<N> {
+        Contribution { light, own: Lanes::ONE, others: Lanes::ZERO, favour: 1.0, origin: 0 }
     }
 
     /// The balance heuristic [Veach 1997, eq. 9.8], but for [`favour`].

@@ -4,7 +4,7 @@
 
 use super::conductor::facet_between;
 use super::{
-    Albedo, BsdfEntry, BsdfSample, Cover, Film, Fresnel, Ggx, Lobe, TransportMode, fresnel_dielectric,
+    Albedo, BsdfEntry, BsdfSample, Coating, Fresnel, Ggx, Lobe, ThinFilm, TransportMode, fresnel_dielectric,
 };
 use bilux_math::frame::reflect;
 use bilux_math::registry::Entry;
@@ -25,11 +25,25 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     cases: || {
         let of = |ggx, metal: f32| {
             let tint = Fresnel::tinted(Rgb::new(1.0, 0.78, 0.34), Rgb::new(0.9, 1.0, 0.8));
-            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::grey(1.0 - metal), tint, Rgb::grey(metal), Cover::NONE))
+            Lobe::MicrofacetReflection(MicrofacetReflection::new(
+                ggx,
+                1.5,
+                Rgb::grey(1.0 - metal),
+                tint,
+                Rgb::grey(metal),
+                Coating::NONE,
+            ))
         };
         let white = |ggx| {
             let tint = Fresnel::tinted(Rgb::WHITE, Rgb::WHITE);
-            Lobe::Gloss(Gloss::new(ggx, 1.5, Rgb::BLACK, tint, Rgb::WHITE, Cover::NONE))
+            Lobe::MicrofacetReflection(MicrofacetReflection::new(
+                ggx,
+                1.5,
+                Rgb::BLACK,
+                tint,
+                Rgb::WHITE,
+                Coating::NONE,
+            ))
         };
         vec![
             ("polished plastic", of(Ggx::SMOOTH, 0.0)),
@@ -37,16 +51,16 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
             ("gold", of(Ggx::new(0.3), 1.0)),
             (
                 "below oil",
-                Lobe::Gloss(
-                    Gloss::new(
+                Lobe::MicrofacetReflection(
+                    MicrofacetReflection::new(
                         Ggx::new(0.2),
                         1.5,
                         Rgb::grey(0.5),
                         Fresnel::tinted(Rgb::grey(0.6), Rgb::WHITE),
                         Rgb::grey(0.5),
-                        Cover::NONE,
+                        Coating::NONE,
                     )
-                    .below(Film { weight: 0.8, thickness: 420.0, eta: 1.4 }),
+                    .below(ThinFilm { weight: 0.8, thickness: 420.0, eta: 1.4 }),
                 ),
             ),
             ("half gold", of(Ggx::anisotropic(0.1, 0.5, 0.4), 0.5)),
@@ -60,7 +74,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 
 /// Reflection at the surface, on both of its sides alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gloss {
+pub struct MicrofacetReflection {
     ggx: Ggx,
     /// Index of what is below facets of glass over what is above.
     eta: f32,
@@ -74,18 +88,25 @@ pub struct Gloss {
     again: Rgb,
     /// How often a direction of that is drawn, over what one reflection leaves along `wo`.
     again_share: f32,
-    cover: Cover,
-    film: Option<Film>,
+    cover: Coating,
+    film: Option<ThinFilm>,
     /// Factor on light from below.
     from_below: f32,
 }
 
-impl Gloss {
+impl MicrofacetReflection {
     /// Facets of an index `eta`, at least 1, that reflect `glass` times Fresnel's fraction, and `metal_weight` times that
     /// of metal. The two are at most white together.
-    pub fn new(ggx: Ggx, eta: f32, glass: Rgb, metal: Fresnel, metal_weight: Rgb, cover: Cover) -> Gloss {
+    pub fn new(
+        ggx: Ggx,
+        eta: f32,
+        glass: Rgb,
+        metal: Fresnel,
+        metal_weight: Rgb,
+        cover: Coating,
+    ) -> MicrofacetReflection {
         let albedo = Albedo::new(&ggx, eta);
-        let mut gloss = Gloss {
+        let mut gloss = MicrofacetReflection {
             ggx,
             eta,
             glass,
@@ -109,13 +130,13 @@ impl Gloss {
     }
 
     /// The same with a factor, 0..=1, on light from below the surface.
-    pub fn from_below(self, factor: f32) -> Gloss {
-        Gloss { from_below: factor, ..self }
+    pub fn from_below(self, factor: f32) -> MicrofacetReflection {
+        MicrofacetReflection { from_below: factor, ..self }
     }
 
     /// The same below a thin film.
-    pub fn below(self, film: Film) -> Gloss {
-        Gloss { film: Some(film), ..self }
+    pub fn below(self, film: ThinFilm) -> MicrofacetReflection {
+        MicrofacetReflection { film: Some(film), ..self }
     }
 
     /// True for white metal without a cover, which reflects all light.
@@ -140,8 +161,8 @@ impl Gloss {
     }
 
     #[inline(never)]
-    fn fresnel_below(&self, film: &Film, cos: f32) -> Rgb {
-        let bare = Gloss { film: None, ..*self }.fresnel(cos);
+    fn fresnel_below(&self, film: &ThinFilm, cos: f32) -> Rgb {
+        let bare = MicrofacetReflection { film: None, ..*self }.fresnel(cos);
         let mut reflected = Rgb::BLACK;
         if !self.metal_weight.is_black() {
             reflected = film.over_metal(cos, &self.metal) * self.metal_weight;

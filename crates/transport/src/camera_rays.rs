@@ -13,7 +13,7 @@ use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer, Wavelength};
 use std::sync::Arc;
 
 /// Turns a sample's number into a camera ray and the tools for it.
-pub(crate) struct Eye<'a> {
+pub(crate) struct CameraRays<'a> {
     pub(crate) scene: &'a Scene,
     camera: &'a dyn Camera,
     pub(crate) integrator: &'a dyn PixelIntegrator,
@@ -26,27 +26,27 @@ pub(crate) struct Eye<'a> {
     pub(crate) photons: Option<&'a Photons>,
 }
 
-impl<'a> Eye<'a> {
+impl<'a> CameraRays<'a> {
     pub(crate) fn new(
         scene: &'a Scene,
         camera: &'a dyn Camera,
         integrator: &'a dyn PixelIntegrator,
         settings: &'a RenderSettings,
-    ) -> Eye<'a> {
+    ) -> CameraRays<'a> {
         let (lights, has_lens) = (LightChoice::new(scene), camera.has_lens());
         let emission = Emission::new(scene, integrator.guide());
         let merges = integrator.merging().is_some();
-        Eye { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
+        CameraRays { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
     }
 
     /// For paths that are merged, whatever the integrator does.
-    pub(crate) fn merging(self) -> Eye<'a> {
-        Eye { merges: true, ..self }
+    pub(crate) fn merging(self) -> CameraRays<'a> {
+        CameraRays { merges: true, ..self }
     }
 
     /// With light paths that are aimed as a guide says.
-    pub(crate) fn guided(self, guide: Option<Arc<Guide>>) -> Eye<'a> {
-        Eye { emission: Emission::new(self.scene, guide), ..self }
+    pub(crate) fn guided(self, guide: Option<Arc<Guide>>) -> CameraRays<'a> {
+        CameraRays { emission: Emission::new(self.scene, guide), ..self }
     }
 
     /// The camera ray of a sample, and what its integrator works with.

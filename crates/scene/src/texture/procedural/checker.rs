@@ -1,6 +1,6 @@
 //! Squares of two colours, as on a board.
 
-use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
+use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry, tone};
 use crate::texture::{ColourMap, Filter, Texture, UvTransform};
 use bilux_math::registry::Entry;
@@ -24,7 +24,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
     },
     build: |reader, parts| {
         let [a, b] = ["a", "b"].map(|key| parts.colour(reader, key));
-        Ok(Arc::new(Checker { a, b, place: Place::read(reader) }))
+        Ok(Arc::new(Checker { a, b, place: UvPlacement::read(reader) }))
     },
 };
 
@@ -32,7 +32,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
 struct Checker {
     a: ColourMap,
     b: ColourMap,
-    place: Place,
+    place: UvPlacement,
 }
 
 impl Pattern for Checker {
@@ -48,7 +48,7 @@ impl Pattern for Checker {
             return None;
         }
         let (a, b) = (self.a.colour, self.b.colour);
-        let Place { scale, shift } = self.place;
+        let UvPlacement { scale, shift } = self.place;
         // Rows go downwards, and v upwards.
         let offset = [0.5 * shift.x, 0.5 * (scale.y + shift.y)];
         let transform = Some(UvTransform::new(offset, 0.0, [0.5 * scale.x, -0.5 * scale.y]));

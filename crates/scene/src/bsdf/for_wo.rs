@@ -5,7 +5,7 @@ use bilux_math::{Rgb, Vec3};
 
 /// A [`Bsdf`] with its `wo`.
 #[derive(Clone, Copy, Debug)]
-pub struct Facing<'a> {
+pub struct BsdfForWo<'a> {
     bsdf: &'a Bsdf,
     wo: Vec3,
     local_wo: Vec3,
@@ -18,17 +18,17 @@ pub struct Facing<'a> {
 impl Bsdf {
     /// With the direction that stays the same.
     #[inline]
-    pub fn facing(&self, wo: Vec3, mode: TransportMode) -> Facing<'_> {
+    pub fn facing(&self, wo: Vec3, mode: TransportMode) -> BsdfForWo<'_> {
         let (local_wo, cos_geom) = (self.frame.to_local(wo), wo.dot(self.n_geom));
-        Facing { bsdf: self, wo, local_wo, cos_geom, risen: self.risen(wo), mode }
+        BsdfForWo { bsdf: self, wo, local_wo, cos_geom, risen: self.risen(wo), mode }
     }
 }
 
-impl Facing<'_> {
+impl BsdfForWo<'_> {
     /// [`Bsdf::eval_and_pdf`], and [`Bsdf::pdf_solid_angle`] of the way back, the same bits; `None` where it is black.
     #[inline]
     pub fn both_ways(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
-        let Facing { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;
+        let BsdfForWo { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;
         if bsdf.is_special() {
             let (scattered, pdf) = bsdf.eval_and_pdf(wo, wi, mode);
             let back = || bsdf.pdf_solid_angle(wi, wo, mode.reversed());

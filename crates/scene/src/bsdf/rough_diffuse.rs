@@ -7,7 +7,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 /// How a rough base scatters, over how a matt one would.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grain {
+pub struct RoughDiffuse {
     roughness: f32,
     /// What a facet scatters at once, over all of it: A of [Portsmouth 2025].
     once: f32,
@@ -15,14 +15,14 @@ pub struct Grain {
     again: Rgb,
 }
 
-impl Grain {
+impl RoughDiffuse {
     /// Of a roughness, 0..=1, and the colour of the facets, where light gets there along a direction as `gets_in` says.
-    pub(super) fn new(roughness: f32, colour: Rgb, gets_in: impl Fn(f32) -> f32) -> Grain {
+    pub(super) fn new(roughness: f32, colour: Rgb, gets_in: impl Fn(f32) -> f32) -> RoughDiffuse {
         let once = 1.0 / (1.0 + roughness * (0.5 - 2.0 * FRAC_1_PI / 3.0));
-        let unscaled = Grain { roughness, once, again: Rgb::WHITE };
+        let unscaled = RoughDiffuse { roughness, once, again: Rgb::WHITE };
         // Of what gets there, the part that is scattered again.
         let (mut all, mut left) = (0.0, 0.0);
-        for (t, w) in super::matt::GAUSS {
+        for (t, w) in super::coated_diffuse::GAUSS {
             let here = w * 4.0 * t * t * t * gets_in(t * t);
             all += here;
             left += here * unscaled.left(t * t);
@@ -30,7 +30,7 @@ impl Grain {
         let mean = once * (1.0 + roughness * (2.0 / 3.0 - 28.0 / (15.0 * PI)));
         // Each further time, light takes the facets' colour on.
         let tinted = colour.map(|c| c * mean / (1.0 - c * (1.0 - mean)));
-        Grain { again: tinted * (all / left.max(f32::MIN_POSITIVE)), ..unscaled }
+        RoughDiffuse { again: tinted * (all / left.max(f32::MIN_POSITIVE)), ..unscaled }
     }
 
     /// The part of the light along a direction that one scattering does not send on.
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn it_is_the_model_as_told() {
         for (roughness, colour) in [(0.3f32, 0.9f32), (1.0, 0.5)] {
-            let grain = Grain::new(roughness, Rgb::grey(colour), |_| 1.0);
+            let grain = RoughDiffuse::new(roughness, Rgb::grey(colour), |_| 1.0);
             for (o, i, turn) in [(0.2f32, 0.9f32, 0.0f32), (0.7, 0.6, 2.8), (0.3, 0.2, 0.4), (1.0, 0.5, 0.0)]
             {
                 let (sin, cos) = sin_cos(turn);
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn nothing_is_lost() {
         for roughness in [0.2f32, 0.6, 1.0] {
-            let grain = Grain::new(roughness, Rgb::WHITE, |_| 1.0);
+            let grain = RoughDiffuse::new(roughness, Rgb::WHITE, |_| 1.0);
             for cos in [0.05f32, 0.3, 0.7, 1.0] {
                 let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
                 const N: u32 = 300;

@@ -18,7 +18,7 @@ pub(crate) type Corner = [u32; 3];
 
 /// Faces over lists of positions, texture coordinates and normals, before they are cut into objects.
 #[derive(Default)]
-pub(crate) struct Soup {
+pub(crate) struct IndexedFaces {
     pub(crate) positions: Vec<Vec3>,
     /// As many as positions, or none.
     pub(crate) colours: Vec<Rgb>,
@@ -49,7 +49,7 @@ pub(crate) struct Run {
     pub(crate) material: Option<(String, u64)>,
 }
 
-impl Soup {
+impl IndexedFaces {
     /// Says how the faces from here on join their neighbours.
     #[inline]
     pub(crate) fn smooth(&mut self, smoothing: Smoothing) {

@@ -140,13 +140,13 @@ fn is_in_glass(scene: &Scene, camera: &dyn Camera) -> bool {
 }
 
 /// Surfaces that a ray is followed through; who is behind more than that is not looked for.
-const MOST_SURFACES: usize = 256;
+const MAX_SURFACES: usize = 256;
 
 /// Transparent objects that a ray leaves more often than it enters.
 fn solids_around(scene: &Scene, mut ray: Ray) -> Vec<u32> {
     let mut tracer = Tracer::new(scene, false);
     let mut left: Vec<(u32, i32)> = Vec::new();
-    for _ in 0..MOST_SURFACES {
+    for _ in 0..MAX_SURFACES {
         let Some(surface) = tracer.closest(&ray) else { break };
         let direction = Vec3::from(ray.direction);
         if is_solid_glass(scene, &surface) {

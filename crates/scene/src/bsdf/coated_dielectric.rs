@@ -1,6 +1,8 @@
 //! The clear part of a surface: glass, smooth or rough, solid or a pane, below what covers it.
 
-use super::{BsdfEntry, BsdfSample, Cover, Dielectric, Film, Ggx, Lobe, RoughDielectric, TransportMode};
+use super::{
+    BsdfEntry, BsdfSample, Coating, Dielectric, Ggx, Lobe, RoughDielectric, ThinFilm, TransportMode,
+};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
@@ -15,21 +17,28 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     reciprocal: false,
     lossless: false,
     cases: || {
-        let coat = Cover::coat(1.0, super::Albedo::new(&Ggx::new(0.1), 1.6));
+        let coat = Coating::coat(1.0, super::Albedo::new(&Ggx::new(0.1), 1.6));
         let glass = |ggx, thin, cover| {
-            Lobe::Clear(Clear::new((1.5, 0.0), ggx, thin, Rgb::grey(0.9), Rgb::new(0.5, 0.8, 0.9), cover))
+            Lobe::CoatedDielectric(CoatedDielectric::new(
+                (1.5, 0.0),
+                ggx,
+                thin,
+                Rgb::grey(0.9),
+                Rgb::new(0.5, 0.8, 0.9),
+                cover,
+            ))
         };
         let oily = |ggx, thin| {
-            let film = Film { weight: 0.9, thickness: 380.0, eta: 1.8 };
-            let clear = Clear::new((1.4, 0.0), ggx, thin, Rgb::WHITE, Rgb::WHITE, Cover::NONE);
-            Lobe::Clear(clear.below(film))
+            let film = ThinFilm { weight: 0.9, thickness: 380.0, eta: 1.8 };
+            let clear = CoatedDielectric::new((1.4, 0.0), ggx, thin, Rgb::WHITE, Rgb::WHITE, Coating::NONE);
+            Lobe::CoatedDielectric(clear.below(film))
         };
         vec![
             ("oily glass", oily(Ggx::SMOOTH, false)),
             ("oily pane", oily(Ggx::SMOOTH, true)),
             ("oily frosted glass", oily(Ggx::new(0.2), false)),
             ("oily frosted pane", oily(Ggx::new(0.3), true)),
-            ("bottle", glass(Ggx::SMOOTH, false, Cover::NONE)),
+            ("bottle", glass(Ggx::SMOOTH, false, Coating::NONE)),
             ("coated glass", glass(Ggx::new(0.2), false, coat)),
             ("coated pane", glass(Ggx::new(0.3), true, coat)),
         ]
@@ -38,26 +47,33 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 
 /// Glass that tints what it reflects and what it lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clear {
+pub struct CoatedDielectric {
     /// With facets or without, as it is in the open.
     glass: RoughDielectric,
     reflected: Rgb,
     passed: Rgb,
-    cover: Cover,
+    cover: Coating,
 }
 
-impl Clear {
+impl CoatedDielectric {
     /// An index of the inside over the outside, and its dispersion; `thin` for a pane; factors on what is reflected and on
     /// what passes, 0..=1.
-    pub fn new(index: (f32, f32), ggx: Ggx, thin: bool, reflected: Rgb, passed: Rgb, cover: Cover) -> Clear {
+    pub fn new(
+        index: (f32, f32),
+        ggx: Ggx,
+        thin: bool,
+        reflected: Rgb,
+        passed: Rgb,
+        cover: Coating,
+    ) -> CoatedDielectric {
         let (eta, dispersion) = index;
         let glass = RoughDielectric { eta, dispersion, tint: Rgb::WHITE, thin, ggx, film: None };
-        Clear { glass, reflected, passed, cover }
+        CoatedDielectric { glass, reflected, passed, cover }
     }
 
     /// The same below a thin film.
-    pub fn below(self, film: Film) -> Clear {
-        Clear { glass: RoughDielectric { film: Some(film), ..self.glass }, ..self }
+    pub fn below(self, film: ThinFilm) -> CoatedDielectric {
+        CoatedDielectric { glass: RoughDielectric { film: Some(film), ..self.glass }, ..self }
     }
 
     /// What refracts, as it is in the open.
@@ -67,8 +83,8 @@ impl Clear {
     }
 
     /// The same of another index.
-    pub(super) fn of_index(self, eta: f32) -> Clear {
-        Clear { glass: RoughDielectric { eta, ..self.glass }, ..self }
+    pub(super) fn of_index(self, eta: f32) -> CoatedDielectric {
+        CoatedDielectric { glass: RoughDielectric { eta, ..self.glass }, ..self }
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! Clouds: noise of several sizes on top of each other. [Perlin 2002]
 
-use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
+use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry, tone};
 use crate::texture::ColourMap;
 use bilux_math::hash::hash_words;
@@ -59,7 +59,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         let spread = octaves.iter().map(|w| w * w).sum::<f32>().sqrt();
         octaves.iter_mut().for_each(|weight| *weight *= SQRT_2 / spread);
         let seed = reader.integer("seed") as u64;
-        Ok(Arc::new(Noise { a, b, octaves, seed, place: Place::read(reader) }))
+        Ok(Arc::new(Noise { a, b, octaves, seed, place: UvPlacement::read(reader) }))
     },
 };
 
@@ -70,7 +70,7 @@ struct Noise {
     /// What each is multiplied by.
     octaves: Vec<f32>,
     seed: u64,
-    place: Place,
+    place: UvPlacement,
 }
 
 impl Pattern for Noise {

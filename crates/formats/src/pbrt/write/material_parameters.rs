@@ -1,8 +1,8 @@
 //! What pbrt's materials say of ours.
 
-use crate::values::Holds;
+use crate::values::MaterialSupport;
 
-pub(super) const HOLDS: Holds = Holds {
+pub(super) const HOLDS: MaterialSupport = MaterialSupport {
     format: "pbrt",
     of_kinds: &[
         ("diffuse", &["reflectance"]),

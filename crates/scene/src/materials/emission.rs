@@ -1,6 +1,6 @@
 //! Light that a surface gives out by itself.
 
-use super::{Ingredients, texture};
+use super::{MaterialInputs, texture};
 use crate::error::SceneError;
 use crate::lights::Sides;
 use crate::parameters::Reader;
@@ -36,7 +36,7 @@ pub(super) const EMISSION_SIDES: Parameter = Parameter {
 };
 
 /// What a surface gives out.
-pub(super) struct Glow {
+pub(super) struct SurfaceEmission {
     /// The colour, or what its picture is multiplied by, and that.
     pub(super) map: ColourMap,
     /// The greatest of each channel.
@@ -45,13 +45,16 @@ pub(super) struct Glow {
 }
 
 /// The light that a material is told to give out, if any.
-pub(super) fn read(reader: &Reader, ingredients: &Ingredients) -> Result<Option<Glow>, SceneError> {
+pub(super) fn read(
+    reader: &Reader,
+    ingredients: &MaterialInputs,
+) -> Result<Option<SurfaceEmission>, SceneError> {
     let picture = texture(reader, "emission", ingredients)?;
     let scale = reader.colour(if picture.is_some() { "emission_scale" } else { "emission" });
     let brightest = picture.as_deref().map_or(scale, |picture| brightest(picture) * scale);
     let sides = Sides::named(&reader.text("emission_sides"));
     let map = ColourMap { colour: scale, texture: picture };
-    Ok((!brightest.is_black()).then_some(Glow { map, brightest, sides }))
+    Ok((!brightest.is_black()).then_some(SurfaceEmission { map, brightest, sides }))
 }
 
 /// The greatest of each channel.

@@ -1,7 +1,7 @@
 //! What shapes have of a material: its name, what is inside, the light that they give, and their holes.
 
 use super::lights::area_light;
-use super::textures::{Change, Holds};
+use super::textures::{Change, TexelMeaning};
 use super::{Document, float, rgb};
 use crate::FormatError;
 use crate::values::{colour, number, texture};
@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 /// What stands before and behind a shape.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Look {
+pub(super) struct ShapeAttributes {
     /// Directives.
     pub(super) begin: String,
     /// A parameter of the shape.
@@ -25,9 +25,14 @@ pub(super) const AS_IT_IS: Change = Change { name: "", of: &|texel| texel };
 
 impl Document<'_> {
     /// Writes a material, and gives what shapes have of it.
-    pub(super) fn look(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Look, FormatError> {
+    pub(super) fn look(
+        &mut self,
+        spec: &Spec,
+        writing: &mut Writing,
+    ) -> Result<ShapeAttributes, FormatError> {
         let (name, absorbed) = self.material(spec, writing)?;
-        let mut look = Look { begin: format!("NamedMaterial \"{name}\"\n"), ..Look::default() };
+        let mut look =
+            ShapeAttributes { begin: format!("NamedMaterial \"{name}\"\n"), ..ShapeAttributes::default() };
         if !absorbed.is_black() {
             let medium = self.name(&spec.name, "medium");
             let given = rgb("sigma_a", absorbed) + &rgb("sigma_s", Rgb::BLACK);
@@ -45,7 +50,7 @@ impl Document<'_> {
             if threshold.is_some() {
                 writing.warn("the edges of cut-outs are those of their texels");
             }
-            if let Some(name) = self.texture(index, Holds::Numbers, AS_IT_IS, writing)? {
+            if let Some(name) = self.texture(index, TexelMeaning::Numbers, AS_IT_IS, writing)? {
                 look.alpha = format!(" \"texture alpha\" \"{name}\"");
             }
         } else if let Some(opacity) = number(spec, "opacity").filter(|opacity| *opacity < 1.0) {

@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 /// A film on part of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Film {
+pub struct ThinFilm {
     /// How much of the surface has it, 0..=1.
     pub weight: f32,
     /// Thickness in nm.
@@ -26,7 +26,7 @@ pub struct Film {
 /// How often light goes to and fro before the rest of it counts for nothing.
 const ORDERS: i32 = 5;
 
-impl Film {
+impl ThinFilm {
     /// What a boundary of this index (at least 1) over what is above reflects below the film, by the channels.
     pub(super) fn over_glass(&self, cosine: f32, eta: f32) -> Rgb {
         let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
@@ -134,7 +134,7 @@ mod tests {
     use bilux_math::transcendental::sin_cos_f64;
 
     /// Airy's sum itself, wavelength by wavelength, and by complex amplitudes.
-    fn by_wavelengths(film: &Film, cosine: f32, eta: f32) -> Rgb {
+    fn by_wavelengths(film: &ThinFilm, cosine: f32, eta: f32) -> Rgb {
         let (c1, sin2) = (f64::from(cosine), 1.0 - f64::from(cosine * cosine));
         let (n2, n3) = (f64::from(film.eta), f64::from(eta));
         let (c2, c3) = ((1.0 - sin2 / (n2 * n2)).sqrt(), (1.0 - sin2 / (n3 * n3)).sqrt());
@@ -162,7 +162,7 @@ mod tests {
         let mut most = 0f32;
         for thickness in [0.0f32, 110.0, 250.0, 380.0, 550.0, 800.0] {
             for (film_eta, eta) in [(1.33f32, 1.5f32), (1.8, 1.5), (1.4, 2.6)] {
-                let film = Film { weight: 1.0, thickness, eta: film_eta };
+                let film = ThinFilm { weight: 1.0, thickness, eta: film_eta };
                 for cosine in [1.0f32, 0.8, 0.5, 0.2] {
                     let (found, wanted) = (film.over_glass(cosine, eta), by_wavelengths(&film, cosine, eta));
                     let off = found + wanted * -1.0;
@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn clear_glass_has_airys_colours_from_both_sides() {
         for thickness in [110.0f32, 380.0, 550.0] {
-            let film = Film { weight: 1.0, thickness, eta: 1.8 };
+            let film = ThinFilm { weight: 1.0, thickness, eta: 1.8 };
             for cosine in [1.0f32, 0.8, 0.5, 0.2] {
                 let wanted = by_wavelengths(&film, cosine, 1.5);
                 let below = (1.0 - (1.0 - cosine * cosine) / 2.25f32).sqrt();
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn no_film_at_all_changes_nothing() {
-        let film = Film { weight: 1.0, thickness: 0.0, eta: 1.4 };
+        let film = ThinFilm { weight: 1.0, thickness: 0.0, eta: 1.4 };
         for cosine in [1.0f32, 0.6, 0.3] {
             let (found, wanted) =
                 (film.over_glass(cosine, 1.5).g, super::super::fresnel_dielectric(cosine, 1.5));

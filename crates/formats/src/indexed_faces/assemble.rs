@@ -1,6 +1,6 @@
 //! Faces over separate lists of positions, uvs and normals, into meshes.
 
-use super::{Corner, FaceList, NONE, Run, Soup};
+use super::{Corner, FaceList, IndexedFaces, NONE, Run};
 use crate::FormatError;
 use crate::normals::{FLAT, Faces};
 use crate::polygon::Triangulator;
@@ -13,12 +13,12 @@ use std::sync::Arc;
 /// What a vertex takes while it is made: position, normal, uv, kd and what finds it again.
 type Vertex = [u32; 14];
 
-/// Makes an object of every run. `place` tells where the words of [`Soup::places`] are.
+/// Makes an object of every run. `place` tells where the words of [`IndexedFaces::places`] are.
 pub(crate) fn assemble(
     reading: &mut Reading,
     source: &Source,
     place: &dyn Fn(u64) -> Span,
-    mut soup: Soup,
+    mut soup: IndexedFaces,
     mut materials: HashMap<String, usize>,
     scene: &mut SceneBuilder,
     oddities: &mut Oddities,
@@ -68,7 +68,7 @@ struct Room {
     faces: usize,
 }
 
-fn rooms(soup: &Soup, faces: &FaceList) -> Vec<Room> {
+fn rooms(soup: &IndexedFaces, faces: &FaceList) -> Vec<Room> {
     let mut rooms = vec![Room::default(); soup.runs.len()];
     let mut run = 0;
     for (face, corners) in faces.iter().enumerate() {
@@ -82,7 +82,7 @@ fn rooms(soup: &Soup, faces: &FaceList) -> Vec<Room> {
 /// Indices may point forward, so they are looked at when everything has been read. Without its position a
 /// corner is nothing; it can do without the rest.
 fn check_indices(
-    soup: &mut Soup,
+    soup: &mut IndexedFaces,
     place: &dyn Fn(u64) -> Span,
     oddities: &mut Oddities,
 ) -> Result<(), FormatError> {
@@ -136,7 +136,7 @@ fn check_indices(
 }
 
 /// Gives corners without a normal one by smoothing groups or the crease angle, if any of them needs one.
-fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Result<(), FormatError> {
+fn add_normals(reading: &mut Reading, source: &Source, soup: &mut IndexedFaces) -> Result<(), FormatError> {
     let lacking = soup.faces.iter().flatten().any(|corner| corner[2] == NONE);
     let mixed = lacking && !soup.normals.is_empty();
     let angle = reading.crease_angle;
@@ -175,7 +175,7 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut Soup) -> Resul
 /// The material of a run: one that was read, or a plain one in its place.
 pub(crate) fn material_of(
     run: &Run,
-    soup: &Soup,
+    soup: &IndexedFaces,
     materials: &mut HashMap<String, usize>,
     place: &dyn Fn(u64) -> Span,
     scene: &mut SceneBuilder,
@@ -227,7 +227,7 @@ impl Welder {
 
 /// A mesh in the making.
 struct Piece<'s> {
-    soup: &'s Soup,
+    soup: &'s IndexedFaces,
     mesh: Mesh,
     /// For each vertex: its uv and normal, and the next vertex of the same position.
     made: Vec<[u32; 3]>,
@@ -238,7 +238,7 @@ struct Piece<'s> {
 
 impl<'s> Piece<'s> {
     /// With room for all triangles, and for as many vertices as there may well be; what of it is not needed costs nothing.
-    fn new(soup: &'s Soup, room: Option<Room>) -> Piece<'s> {
+    fn new(soup: &'s IndexedFaces, room: Option<Room>) -> Piece<'s> {
         let Room { corners, faces } = room.unwrap_or_default();
         let longest = soup.positions.len().max(soup.uvs.len()).max(soup.normals.len());
         let vertices = corners.min(longest);

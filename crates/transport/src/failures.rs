@@ -2,7 +2,7 @@
 
 /// What went wrong in one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct PixelTrouble {
+pub(crate) struct PixelFailures {
     pub(crate) non_finite: u32,
     pub(crate) first_non_finite: u32,
     pub(crate) overflowed: u32,
@@ -22,7 +22,7 @@ pub struct SamplePlace {
 
 /// Samples that went wrong.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Trouble {
+pub struct SampleFailures {
     /// How many were infinite or not a number; they are left out of their pixels' means.
     pub non_finite: u64,
     /// The first of them, row by row.
@@ -33,13 +33,13 @@ pub struct Trouble {
     pub first_overflowed: Option<SamplePlace>,
 }
 
-impl PixelTrouble {
-    pub(crate) fn non_finite_at(sample: u32) -> PixelTrouble {
-        PixelTrouble { non_finite: 1, first_non_finite: sample, ..PixelTrouble::default() }
+impl PixelFailures {
+    pub(crate) fn non_finite_at(sample: u32) -> PixelFailures {
+        PixelFailures { non_finite: 1, first_non_finite: sample, ..PixelFailures::default() }
     }
 
-    pub(crate) fn overflowed_at(sample: u32) -> PixelTrouble {
-        PixelTrouble { overflowed: 1, first_overflowed: sample, ..PixelTrouble::default() }
+    pub(crate) fn overflowed_at(sample: u32) -> PixelFailures {
+        PixelFailures { overflowed: 1, first_overflowed: sample, ..PixelFailures::default() }
     }
 
     pub(crate) fn is_any(&self) -> bool {
@@ -47,7 +47,7 @@ impl PixelTrouble {
     }
 
     /// Adds counts; the first sample is the least of both.
-    pub(crate) fn absorb(&mut self, other: &PixelTrouble) {
+    pub(crate) fn absorb(&mut self, other: &PixelFailures) {
         let first = |n: u32, first: u32, m: u32, second: u32| match (n, m) {
             (_, 0) => first,
             (0, _) => second,

@@ -1,6 +1,6 @@
 //! The pictures of a file ahead of whoever asks for them, on all cores: to decode them is most of what a textured model takes.
 
-use super::json::Node;
+use super::json::JsonNode;
 use super::reader::Gltf;
 use super::textures::source;
 use crate::FormatError;
@@ -25,7 +25,7 @@ impl<'d> Gltf<'d, '_, '_> {
         }
         let images =
             wanted.into_iter().filter_map(|number| Some((number, document.root.item("images", number)?)));
-        let images: Vec<(usize, Node<'d>)> = images.collect();
+        let images: Vec<(usize, JsonNode<'d>)> = images.collect();
         let encoded: Vec<_> = images
             .into_iter()
             .filter_map(|(number, image)| Some((number, self.encoded(image).ok()?)))

@@ -6,7 +6,7 @@ use bilux_math::registry::{Parameter, ParameterKind};
 
 /// A scale and a shift.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct UvPlacement {
     pub(super) scale: Vec2,
     pub(super) shift: Vec2,
 }
@@ -26,10 +26,10 @@ pub(super) const fn v_scale(default: &'static str) -> Parameter {
 pub(super) const U_OFFSET: Parameter = number("u_offset", "what is added to u behind that", "0");
 pub(super) const V_OFFSET: Parameter = number("v_offset", "the same of v", "0");
 
-impl Place {
-    pub(super) fn read(reader: &Reader) -> Place {
+impl UvPlacement {
+    pub(super) fn read(reader: &Reader) -> UvPlacement {
         let pair = |u: &str, v: &str| Vec2::new(reader.number(u), reader.number(v));
-        Place { scale: pair("u_scale", "v_scale"), shift: pair("u_offset", "v_offset") }
+        UvPlacement { scale: pair("u_scale", "v_scale"), shift: pair("u_offset", "v_offset") }
     }
 
     pub(super) fn of(&self, uv: Vec2) -> Vec2 {

@@ -1,6 +1,6 @@
 //! From colour to colour.
 
-use super::place::{Place, U_OFFSET, V_OFFSET, u_scale, v_scale};
+use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry};
 use crate::texture::Texture;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -48,7 +48,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
             (None, "radius") => Along::Radius,
             (None, _) => Along::U,
         };
-        Ok(Arc::new(Ramp { stops: reader.stops("stops"), along, place: Place::read(reader) }))
+        Ok(Arc::new(Ramp { stops: reader.stops("stops"), along, place: UvPlacement::read(reader) }))
     },
 };
 
@@ -57,7 +57,7 @@ struct Ramp {
     /// At least one; positions never fall.
     stops: Vec<(f32, Rgb)>,
     along: Along,
-    place: Place,
+    place: UvPlacement,
 }
 
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! Diffuse reflection below a boundary and what covers it: what they let through is all scattered, and comes out again.
-//! [Kulla 2017] Where the base is rough, as [`Grain`] has it: its light is scaled like Lambert's, and so no more comes out than
+//! [Kulla 2017] Where the base is rough, as [`RoughDiffuse`] has it: its light is scaled like Lambert's, and so no more comes out than
 //! got in.
 
-use super::{Albedo, BsdfEntry, BsdfSample, Cover, FuzzAlbedo, Ggx, Grain, Lobe, TransportMode};
+use super::{Albedo, BsdfEntry, BsdfSample, Coating, FuzzAlbedo, Ggx, Lobe, RoughDiffuse, TransportMode};
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3, warp};
 use std::f32::consts::FRAC_1_PI;
@@ -20,23 +20,26 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     cases: || {
         let paint = |alpha: f32, cover| {
             let below = Albedo::new(&Ggx::new(alpha), 1.5);
-            Lobe::Matt(Matt::new(Rgb::new(0.9, 0.5, 0.2), below, cover))
+            Lobe::CoatedDiffuse(CoatedDiffuse::new(Rgb::new(0.9, 0.5, 0.2), below, cover))
         };
         let leaf = |cover| {
             let (green, light) = (Rgb::new(0.2, 0.5, 0.1), Rgb::new(0.4, 0.5, 0.1));
-            Lobe::Matt(Matt::sheet(green, light, Albedo::new(&Ggx::new(0.3), 1.4), cover))
+            Lobe::CoatedDiffuse(CoatedDiffuse::sheet(green, light, Albedo::new(&Ggx::new(0.3), 1.4), cover))
         };
         vec![
-            ("leaf", leaf(Cover::NONE)),
-            ("leaf with a bloom", leaf(Cover::NONE.below(0.7, FuzzAlbedo::new(0.4)))),
-            ("clay", Lobe::Matt(Matt::new(CLAY, Albedo::NONE, Cover::NONE).rough(1.0, CLAY))),
+            ("leaf", leaf(Coating::NONE)),
+            ("leaf with a bloom", leaf(Coating::NONE.below(0.7, FuzzAlbedo::new(0.4)))),
+            (
+                "clay",
+                Lobe::CoatedDiffuse(CoatedDiffuse::new(CLAY, Albedo::NONE, Coating::NONE).rough(1.0, CLAY)),
+            ),
             ("rough clay, glazed", {
                 let glaze = Albedo::new(&Ggx::new(0.0), 1.5);
-                Lobe::Matt(Matt::new(CLAY, glaze, Cover::NONE).rough(0.5, CLAY))
+                Lobe::CoatedDiffuse(CoatedDiffuse::new(CLAY, glaze, Coating::NONE).rough(0.5, CLAY))
             }),
-            ("polished paint", paint(0.0, Cover::NONE)),
-            ("rough paint", paint(0.4, Cover::NONE)),
-            ("coated paint", paint(0.2, Cover::coat(0.8, Albedo::new(&Ggx::new(0.05), 1.6)))),
+            ("polished paint", paint(0.0, Coating::NONE)),
+            ("rough paint", paint(0.4, Coating::NONE)),
+            ("coated paint", paint(0.2, Coating::coat(0.8, Albedo::new(&Ggx::new(0.05), 1.6)))),
         ]
     },
 };
@@ -45,15 +48,15 @@ const CLAY: Rgb = Rgb { r: 0.9, g: 0.6, b: 0.4 };
 
 /// Diffuse reflection below a boundary, on both sides of the surface alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Matt {
+pub struct CoatedDiffuse {
     /// Reflected fraction of the light that gets there, over the mean of what passes.
     scale: Rgb,
     /// The same of what comes out on the other side.
     through: Rgb,
     /// What the boundary reflects.
     boundary: Albedo,
-    cover: Cover,
-    grain: Option<Grain>,
+    cover: Coating,
+    grain: Option<RoughDiffuse>,
 }
 
 /// Gauss and Legendre's places and weights on 0..=1.
@@ -68,15 +71,15 @@ pub(super) const GAUSS: [(f32, f32); 8] = [
     (0.980_144_9, 0.050_614_27),
 ];
 
-impl Matt {
+impl CoatedDiffuse {
     /// Reflects `albedo`, 0..=1, of what passes a boundary and what covers that.
-    pub fn new(albedo: Rgb, boundary: Albedo, cover: Cover) -> Matt {
-        Matt::sheet(albedo, Rgb::BLACK, boundary, cover)
+    pub fn new(albedo: Rgb, boundary: Albedo, cover: Coating) -> CoatedDiffuse {
+        CoatedDiffuse::sheet(albedo, Rgb::BLACK, boundary, cover)
     }
 
     /// A sheet of paper or a leaf: of what gets into it, it reflects one part and lets another out on its other side,
     /// at most 1 together.
-    pub fn sheet(reflected: Rgb, passed: Rgb, boundary: Albedo, cover: Cover) -> Matt {
+    pub fn sheet(reflected: Rgb, passed: Rgb, boundary: Albedo, cover: Coating) -> CoatedDiffuse {
         let gets_in = |cos: f32| (1.0 - boundary.at(cos)) * cover.passed(cos);
         let mean = if cover.is_none() {
             1.0 - boundary.mean()
@@ -85,13 +88,13 @@ impl Matt {
             GAUSS.iter().map(|(t, w)| w * 4.0 * t * t * t * gets_in(t * t)).sum()
         };
         let scale = 1.0 / mean.max(f32::MIN_POSITIVE);
-        Matt { scale: reflected * scale, through: passed * scale, boundary, cover, grain: None }
+        CoatedDiffuse { scale: reflected * scale, through: passed * scale, boundary, cover, grain: None }
     }
 
     /// The same of a base of this roughness, 0..=1, whose own colour this is: what it reflects without what weakens it.
-    pub fn rough(self, roughness: f32, colour: Rgb) -> Matt {
-        let grain = Grain::new(roughness, colour, |cos| self.passed(cos));
-        Matt { grain: (roughness > 0.0).then_some(grain), ..self }
+    pub fn rough(self, roughness: f32, colour: Rgb) -> CoatedDiffuse {
+        let grain = RoughDiffuse::new(roughness, colour, |cos| self.passed(cos));
+        CoatedDiffuse { grain: (roughness > 0.0).then_some(grain), ..self }
     }
 
     /// How often a direction on the other side is drawn.

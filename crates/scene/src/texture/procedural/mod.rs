@@ -55,7 +55,7 @@ impl PartialEq for Formula {
 }
 
 /// More formulas than anybody writes within one, and so few that a surface is not slow.
-const MOST_FORMULAS: usize = 256;
+const MAX_FORMULAS: usize = 256;
 /// Texels on the sides of a picture of a formula.
 const SIDES: [usize; 2] = [1024, 4096];
 
@@ -70,8 +70,8 @@ impl Formula {
         let row = row.ok_or_else(|| SceneError::unknown("texture", &spec.kind, names, &spec.span))?;
         let formulas = parts.iter().filter_map(|part| part.formula());
         let cost = formulas.fold(1, |cost: usize, formula| cost.saturating_add(formula.cost));
-        if cost > MOST_FORMULAS {
-            let message = format!("textures are made of more than {MOST_FORMULAS} others by formula");
+        if cost > MAX_FORMULAS {
+            let message = format!("textures are made of more than {MAX_FORMULAS} others by formula");
             return Err(SceneError::invalid(message, &spec.span));
         }
         let pattern = (row.build)(&Reader::new(&spec, &row.entry)?, &Parts(&parts))?;

@@ -13,10 +13,10 @@
 //! Of a tame ray all of this is finite and no distance that counts is negative. So no NaN can come up, and
 //! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
 
-use super::View;
-use super::form::Form;
+use super::TreeView;
 use super::level::Boxes;
-use crate::bvh8::outline::FAR_PAD;
+use super::node_format::NodeFormat;
+use crate::bvh8::summary::FAR_PAD;
 use crate::ray::Ray;
 use crate::slab::{SLACK, STEEPEST};
 use std::arch::x86_64::*;
@@ -24,7 +24,7 @@ use std::mem::offset_of;
 
 /// A ray with a lane for each child of a node. Distances are `t`.
 #[derive(Clone, Copy)]
-pub(super) struct TameRay {
+pub(super) struct LaneRay {
     /// Bytes from the front of a node to the planes where the ray comes in, and goes out.
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
@@ -42,19 +42,19 @@ pub(super) const SHORTEST: f32 = 1.0 / STEEPEST;
 pub(super) const LEVEL: f32 = SHORTEST * SHORTEST;
 
 /// What makes up for underflow in distances: a normal number, since others are slow.
-pub(super) const LEAST: f32 = 4.0 * f32::MIN_POSITIVE;
+pub(super) const MIN: f32 = 4.0 * f32::MIN_POSITIVE;
 
 /// Keeps the sizes of three numbers, and makes the fourth zero; twice.
 pub(super) const SIZES: [u32; 8] =
     [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
 
-impl TameRay {
+impl LaneRay {
     /// `None` for rays that are not tame, or can hit nothing.
     ///
     /// # Safety
     /// The machine must have AVX2 and FMA.
     #[inline(always)]
-    pub(super) unsafe fn new(ray: &Ray, view: &View<'_>) -> Option<TameRay> {
+    pub(super) unsafe fn new(ray: &Ray, view: &TreeView<'_>) -> Option<LaneRay> {
         // SAFETY: as the caller promises; an outline has four numbers for the centre and eight for the reach.
         unsafe {
             let outline = view.outline;
@@ -80,14 +80,14 @@ impl TameRay {
             let (bias, steep) =
                 (_mm_mul_ps(_mm_xor_ps(origin, minus), inverse), _mm_andnot_ps(minus, inverse));
             let (enter, leave) = (_mm_fnmadd_ps(pad, steep, bias), _mm_fmadd_ps(pad, steep, bias));
-            let nearest = _mm_fmsub_ss(_mm_set_ss(ray.t_min), _mm_set_ss(1.0 - SLACK), _mm_set_ss(LEAST));
+            let nearest = _mm_fmsub_ss(_mm_set_ss(ray.t_min), _mm_set_ss(1.0 - SLACK), _mm_set_ss(MIN));
             let nearest = _mm_max_ss(nearest, _mm_setzero_ps());
             let [enter_rows, leave_rows] = ROWS[_mm_movemask_ps(direction) as usize & 7];
             let lane = |v: __m128, lane: i32| {
                 _mm256_permutevar8x32_ps(_mm256_castps128_ps256(v), _mm256_set1_epi32(lane))
             };
             let spread = |v: __m128| [_mm256_broadcastss_ps(v), lane(v, 1), lane(v, 2)];
-            Some(TameRay {
+            Some(LaneRay {
                 enter_rows,
                 leave_rows,
                 inverse: spread(inverse),
@@ -103,14 +103,14 @@ impl TameRay {
 macro_rules! of_eight {
     () => {
         type Eight = __m256i;
-        type Tame = super::tame::TameRay;
+        type LaneRay = super::lane_ray::LaneRay;
         type Doubles = __m256d;
 
         // SAFETY: as the trait demands.
         #[inline(always)]
-        unsafe fn tame(ray: &$crate::Ray, view: &super::View<'_>) -> Option<Self::Tame> {
+        unsafe fn tame(ray: &$crate::Ray, view: &super::TreeView<'_>) -> Option<Self::LaneRay> {
             // SAFETY: as the trait demands.
-            unsafe { super::tame::TameRay::new(ray, view) }
+            unsafe { super::lane_ray::LaneRay::new(ray, view) }
         }
 
         #[inline(always)]
@@ -152,12 +152,12 @@ pub(super) const ROWS: [[[usize; 3]; 2]; 8] = {
     rows
 };
 
-impl Boxes for TameRay {
+impl Boxes for LaneRay {
     type Eight = __m256i;
 
     // SAFETY: the trait says what is asked for.
     #[inline(always)]
-    unsafe fn span<F: Form>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
+    unsafe fn span<F: NodeFormat>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
         // SAFETY: as the trait demands.
         unsafe {
             let rows = (&self.enter_rows, &self.leave_rows);
@@ -169,7 +169,7 @@ impl Boxes for TameRay {
     fn limit_bits(&self, t: f32) -> u32 {
         // SAFETY: who has a tame ray has FMA.
         unsafe {
-            let t = _mm_fmadd_ss(_mm_set_ss(t), _mm_set_ss(1.0 + 2.0 * SLACK), _mm_set_ss(LEAST));
+            let t = _mm_fmadd_ss(_mm_set_ss(t), _mm_set_ss(1.0 + 2.0 * SLACK), _mm_set_ss(MIN));
             _mm_extract_ps::<0>(t) as u32
         }
     }
@@ -183,7 +183,7 @@ impl Boxes for TameRay {
 /// # Safety
 /// As for [`Boxes::span`].
 #[inline(always)]
-pub(super) unsafe fn span<F: Form>(
+pub(super) unsafe fn span<F: NodeFormat>(
     node: *const u8,
     (enter_rows, leave_rows): (&[usize; 3], &[usize; 3]),
     inverse: [__m256; 3],

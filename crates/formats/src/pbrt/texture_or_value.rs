@@ -23,32 +23,33 @@ pub(super) enum Meaning {
 }
 
 /// Nests of more formulas are baked, so that names of names of names take no time.
-const MOST_PARTS: usize = 16;
+const MAX_PARTS: usize = 16;
 
 /// A constant or a picture.
 #[derive(Clone, Debug)]
-pub(super) enum Ink {
+pub(super) enum TextureOrValue {
     Colour(Rgb),
     Picture(Arc<Texture>),
 }
 
-impl Ink {
+impl TextureOrValue {
     /// Multiplied by a colour.
-    pub(super) fn scaled(self, by: Rgb) -> Ink {
+    pub(super) fn scaled(self, by: Rgb) -> TextureOrValue {
         match self {
-            Ink::Colour(colour) => Ink::Colour(colour * by),
-            Ink::Picture(picture) if by == Rgb::WHITE => Ink::Picture(picture),
-            Ink::Picture(picture) => {
-                Ink::Picture(Arc::new(Texture { factor: picture.factor * by, ..(*picture).clone() }))
-            }
+            TextureOrValue::Colour(colour) => TextureOrValue::Colour(colour * by),
+            TextureOrValue::Picture(picture) if by == Rgb::WHITE => TextureOrValue::Picture(picture),
+            TextureOrValue::Picture(picture) => TextureOrValue::Picture(Arc::new(Texture {
+                factor: picture.factor * by,
+                ..(*picture).clone()
+            })),
         }
     }
 
     /// The constant, or the mean of the picture.
     pub(super) fn mean(&self) -> Rgb {
         match self {
-            Ink::Colour(colour) => *colour,
-            Ink::Picture(picture) => {
+            TextureOrValue::Colour(colour) => *colour,
+            TextureOrValue::Picture(picture) => {
                 let all: Vec<Rgb> = if picture.formula().is_some() {
                     picture.spread(64).collect()
                 } else {
@@ -66,25 +67,29 @@ impl Ink {
     /// At texture coordinates.
     pub(super) fn at(&self, uv: Vec2) -> Rgb {
         match self {
-            Ink::Colour(colour) => *colour,
-            Ink::Picture(picture) => picture.at(uv),
+            TextureOrValue::Colour(colour) => *colour,
+            TextureOrValue::Picture(picture) => picture.at(uv),
         }
     }
 
     pub(super) fn is_black(&self) -> bool {
-        matches!(self, Ink::Colour(colour) if colour.is_black())
+        matches!(self, TextureOrValue::Colour(colour) if colour.is_black())
     }
 }
 
 impl Pbrt<'_, '_> {
     /// Each texel, or the constant, by a rule.
-    pub(super) fn mapped(&mut self, ink: Ink, rule: impl Fn(Rgb) -> Rgb) -> Result<Ink, FormatError> {
+    pub(super) fn mapped(
+        &mut self,
+        ink: TextureOrValue,
+        rule: impl Fn(Rgb) -> Rgb,
+    ) -> Result<TextureOrValue, FormatError> {
         match ink {
-            Ink::Colour(colour) => Ok(Ink::Colour(rule(colour))),
-            Ink::Picture(picture) => {
+            TextureOrValue::Colour(colour) => Ok(TextureOrValue::Colour(rule(colour))),
+            TextureOrValue::Picture(picture) => {
                 let texels = picture.texels().map(rule).collect();
                 let made = self.picture(&picture.name, [picture.width(), picture.height()], texels)?;
-                Ok(Ink::Picture(Arc::new(Texture {
+                Ok(TextureOrValue::Picture(Arc::new(Texture {
                     wrap: picture.wrap,
                     filter: picture.filter,
                     transform: picture.transform,
@@ -110,17 +115,17 @@ impl Pbrt<'_, '_> {
     pub(super) fn by_formula<const N: usize>(
         &mut self,
         kind: &str,
-        inks: [(&str, &Ink); N],
+        inks: [(&str, &TextureOrValue); N],
         numbers: &[(&str, f32)],
         rule: impl Fn(Vec2) -> Rgb,
-    ) -> Result<Ink, FormatError> {
+    ) -> Result<TextureOrValue, FormatError> {
         let mut spec = Spec::new("", kind);
         let mut parts = Vec::new();
         for (key, ink) in inks {
             let value = match ink {
-                Ink::Colour(colour) if key == "amount" => colour.r.into(),
-                Ink::Colour(colour) => (*colour).into(),
-                Ink::Picture(picture) => {
+                TextureOrValue::Colour(colour) if key == "amount" => colour.r.into(),
+                TextureOrValue::Colour(colour) => (*colour).into(),
+                TextureOrValue::Picture(picture) => {
                     parts.push(picture.clone());
                     Value::Texture(parts.len() - 1)
                 }
@@ -129,8 +134,8 @@ impl Pbrt<'_, '_> {
         }
         numbers.iter().for_each(|(key, number)| spec.parameters.set(key, *number));
         match Texture::by_formula(spec, parts, true) {
-            Ok(texture) if texture.formula().is_some_and(|formula| formula.cost() <= MOST_PARTS) => {
-                Ok(Ink::Picture(Arc::new(texture)))
+            Ok(texture) if texture.formula().is_some_and(|formula| formula.cost() <= MAX_PARTS) => {
+                Ok(TextureOrValue::Picture(Arc::new(texture)))
             }
             _ => self.baked(kind, &inks.map(|(_, ink)| ink), rule),
         }
@@ -140,18 +145,18 @@ impl Pbrt<'_, '_> {
     pub(super) fn baked(
         &mut self,
         name: &str,
-        parts: &[&Ink],
+        parts: &[&TextureOrValue],
         rule: impl Fn(Vec2) -> Rgb,
-    ) -> Result<Ink, FormatError> {
+    ) -> Result<TextureOrValue, FormatError> {
         /// Sides of what is baked.
-        const LEAST: usize = 256;
-        const MOST: usize = 2048;
+        const MIN: usize = 256;
+        const MAX: usize = 2048;
         let side = |of: fn(&Texture) -> usize| {
             let sides = parts.iter().map(|ink| match ink {
-                Ink::Picture(picture) if picture.formula().is_none() => of(picture),
+                TextureOrValue::Picture(picture) if picture.formula().is_none() => of(picture),
                 _ => 0,
             });
-            sides.max().unwrap_or(0).clamp(LEAST, MOST)
+            sides.max().unwrap_or(0).clamp(MIN, MAX)
         };
         let (width, height) = (side(Texture::width), side(Texture::height));
         self.reading.budget.take_bytes((width * height * size_of::<Rgb>()) as u64, name)?;
@@ -161,22 +166,22 @@ impl Pbrt<'_, '_> {
         };
         let texels = (0..width * height).map(at).collect();
         self.reading.budget.give_back((width * height * size_of::<Rgb>()) as u64);
-        Ok(Ink::Picture(Arc::new(self.picture(name, [width, height], texels)?)))
+        Ok(TextureOrValue::Picture(Arc::new(self.picture(name, [width, height], texels)?)))
     }
 
     /// An ink as a parameter of ours.
-    pub(super) fn value(&mut self, ink: Ink) -> Value {
+    pub(super) fn value(&mut self, ink: TextureOrValue) -> Value {
         match ink {
-            Ink::Colour(colour) => colour.into(),
-            Ink::Picture(picture) => self.texture_value(picture),
+            TextureOrValue::Colour(colour) => colour.into(),
+            TextureOrValue::Picture(picture) => self.texture_value(picture),
         }
     }
 
     /// The same for what is one number.
-    pub(super) fn number_value(&mut self, ink: Ink, [min, max]: [f32; 2]) -> Value {
+    pub(super) fn number_value(&mut self, ink: TextureOrValue, [min, max]: [f32; 2]) -> Value {
         match ink {
-            Ink::Colour(colour) => colour.r.clamp(min, max).into(),
-            Ink::Picture(picture) => self.texture_value(picture),
+            TextureOrValue::Colour(colour) => colour.r.clamp(min, max).into(),
+            TextureOrValue::Picture(picture) => self.texture_value(picture),
         }
     }
 

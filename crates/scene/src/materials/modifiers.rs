@@ -1,10 +1,10 @@
 //! What any material may have besides its way to scatter light: normals from a picture, light of its own, holes, a back that
 //! is not seen.
 
-use super::glow::{self, Glow};
+use super::emission::{self, SurfaceEmission};
 use super::normal_map::{self, NormalMap};
 use super::visible::VISIBLE_SIDES;
-use super::{Ingredients, Material, MaterialEntry, Nested, opacity};
+use super::{Material, MaterialEntry, MaterialInputs, Nested, opacity};
 use crate::bsdf::Bsdf;
 use crate::classic::ClassicMaterial;
 use crate::error::SceneError;
@@ -20,29 +20,29 @@ pub(super) fn dress(
     material: Arc<dyn Material>,
     row: &MaterialEntry,
     reader: &Reader,
-    ingredients: &Ingredients,
+    ingredients: &MaterialInputs,
 ) -> Result<Arc<dyn Material>, SceneError> {
     let has = |name: &str| row.entry.parameters.iter().any(|parameter| parameter.name == name);
     let normals = normal_map::read(reader, ingredients)?;
-    let glow = if has(glow::EMISSION.name) { glow::read(reader, ingredients)? } else { None };
+    let glow = if has(emission::EMISSION.name) { emission::read(reader, ingredients)? } else { None };
     let opacity = opacity::read(reader, ingredients)?;
     let visible =
         if has(VISIBLE_SIDES.name) { Sides::named(&reader.text(VISIBLE_SIDES.name)) } else { Sides::Both };
     if normals.is_none() && glow.is_none() && opacity.is_none() && visible == Sides::Both {
         return Ok(material);
     }
-    Ok(Arc::new(Dressed { material, normals, glow, opacity, visible }))
+    Ok(Arc::new(ModifiedMaterial { material, normals, glow, opacity, visible }))
 }
 
-struct Dressed {
+struct ModifiedMaterial {
     material: Arc<dyn Material>,
     normals: Option<NormalMap>,
-    glow: Option<Glow>,
+    glow: Option<SurfaceEmission>,
     opacity: Option<NumberMap>,
     visible: Sides,
 }
 
-impl Material for Dressed {
+impl Material for ModifiedMaterial {
     fn n_shade(&self, surface: &Surface) -> Vec3 {
         self.normals.as_ref().map_or(surface.n_shade, |normals| normals.at(surface))
     }

@@ -10,7 +10,7 @@ use bilux_math::Vec3;
 
 /// What lies over a lobe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cover {
+pub struct Coating {
     /// How much of the surface has the coat, 0..=1.
     coat_weight: f32,
     coat: Albedo,
@@ -20,28 +20,28 @@ pub struct Cover {
     up: Vec3,
 }
 
-impl Cover {
+impl Coating {
     /// Nothing.
-    pub const NONE: Cover = Cover { coat_weight: 0.0, coat: Albedo::NONE, fuzz: None, up: Vec3::Z };
+    pub const NONE: Coating = Coating { coat_weight: 0.0, coat: Albedo::NONE, fuzz: None, up: Vec3::Z };
 
     /// A coat on this much of the surface, 0..=1.
-    pub fn coat(weight: f32, coat: Albedo) -> Cover {
-        Cover { coat_weight: weight, coat, ..Cover::NONE }
+    pub fn coat(weight: f32, coat: Albedo) -> Coating {
+        Coating { coat_weight: weight, coat, ..Coating::NONE }
     }
 
     /// The same with a coat too, below the rest.
-    pub fn coated(self, weight: f32, coat: Albedo) -> Cover {
-        Cover { coat_weight: weight, coat, ..self }
+    pub fn coated(self, weight: f32, coat: Albedo) -> Coating {
+        Coating { coat_weight: weight, coat, ..self }
     }
 
     /// The same below fuzz on this much of the surface, 0..=1.
-    pub fn below(self, weight: f32, fuzz: FuzzAlbedo) -> Cover {
-        Cover { fuzz: (weight > 0.0).then_some((weight, fuzz)), ..self }
+    pub fn below(self, weight: f32, fuzz: FuzzAlbedo) -> Coating {
+        Coating { fuzz: (weight > 0.0).then_some((weight, fuzz)), ..self }
     }
 
     /// The same about another normal than that of what it covers.
-    pub fn about(self, up: Vec3) -> Cover {
-        Cover { up, ..self }
+    pub fn about(self, up: Vec3) -> Coating {
+        Coating { up, ..self }
     }
 
     /// True where there is nothing.
