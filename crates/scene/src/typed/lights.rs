@@ -1,7 +1,7 @@
 //! Lights by their types. Made from their table by `cargo xtask docs`; not edited by hand.
 
 typed! {
-    /// Light from a point, the same in all directions.
+    /// Isotropic point light.
     Point = "point" {
         /// Where it is (m); default `0 5 0`.
         position: bilux_math::Vec3,
@@ -10,7 +10,7 @@ typed! {
         /// Colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π; default `-1`.
         classic: bilux_math::Rgb,
     }
-    /// Light from infinitely far, parallel or of a disc, as from the sun.
+    /// Distant light: parallel rays, or those of a disc such as the sun.
     Directional = "directional" {
         /// Where the light goes (m); default `-1 -1 -1`.
         direction: bilux_math::Vec3,
@@ -21,7 +21,7 @@ typed! {
         /// Colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π; default `-1`.
         classic: bilux_math::Rgb,
     }
-    /// Light from a point into a cone, with a soft edge.
+    /// Spotlight: a point light that shines into a cone, with a soft edge.
     Spot = "spot" {
         /// Where it is (m); default `0 5 0`.
         position: bilux_math::Vec3,
@@ -36,7 +36,7 @@ typed! {
         /// Colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π; default `-1`.
         classic: bilux_math::Rgb,
     }
-    /// A flat panel that gives light; seen, and casting soft shadows.
+    /// Rectangular area light, visible to the camera.
     Rect = "rect" {
         /// Its middle (m); default `0 5 0`.
         position: bilux_math::Vec3,
@@ -53,7 +53,7 @@ typed! {
         /// Colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π; default `-1`.
         classic: bilux_math::Rgb,
     }
-    /// A ball that gives light outwards; seen, round at every size, and casting soft shadows.
+    /// Spherical area light, visible to the camera.
     Sphere = "sphere" {
         /// Its middle (m); default `0 5 0`.
         position: bilux_math::Vec3,
@@ -66,7 +66,7 @@ typed! {
         /// Colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π; default `-1`.
         classic: bilux_math::Rgb,
     }
-    /// Light from all around: one colour, a sky that changes with height, or a picture.
+    /// Environment light: a constant colour, a gradient of height, or an environment map.
     Environment = "environment" {
         /// What comes from every direction; a picture by longitude and latitude, its middle towards -z (W/(m² sr)); default `1`.
         radiance: impl Into<crate::Value>,
@@ -83,7 +83,7 @@ typed! {
         /// Only to be seen, in place of the environments that light the scene: it lights nothing; default `false`.
         backdrop: bool,
     }
-    /// The sky of a day with its sun, clear or hazy.
+    /// Analytic daylight sky with its sun, clear or hazy.
     Sky = "sky" {
         /// How high the sun stands (degrees); default `40`.
         elevation: f32,

@@ -19,38 +19,38 @@ typed! {
         eta: f32,
         /// Absorption inside, by Beer's law (1/m); default `0`.
         absorption: bilux_math::Rgb,
-        /// A wall without thickness: light goes straight through; default `false`.
+        /// Thin-walled: light passes straight through; default `false`.
         thin: bool,
         /// Greatest angle by which reflected rays spread, in cook only (degrees); default `0`.
         gloss: f32,
         /// Greatest angle by which refracted rays spread, in cook only (degrees); default `0`.
         translucency: f32,
-        /// Radiance that the surface gives out (W/(m² sr)); default `0`.
+        /// Emitted radiance (W/(m² sr)); default `0`.
         emission: impl Into<crate::Value>,
-        /// What a picture as emission is multiplied by; default `1`.
+        /// Factor on an emission texture; default `1`.
         emission_scale: bilux_math::Rgb,
         /// Where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// Normals as a picture, in tangent space, green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,
         /// Factor on how far the picture's normals lean; default `1`.
         normal_scale: f32,
     }
-    /// Matt, equally bright from everywhere.
+    /// Diffuse reflection.
     Diffuse = "diffuse" {
         /// Reflected fraction of the light; default `0.7`.
         reflectance: impl Into<crate::Value>,
-        /// 0 is matt after Lambert, 1 as rough as clay or the moon: brighter where the light comes from behind the viewer; default `0`.
+        /// Roughness of the diffuse microsurface: 0 is Lambertian, 1 as rough as clay or the moon: brighter where the light comes from behind the viewer; default `0`.
         roughness: impl Into<crate::Value>,
-        /// Radiance that the surface gives out (W/(m² sr)); default `0`.
+        /// Emitted radiance (W/(m² sr)); default `0`.
         emission: impl Into<crate::Value>,
-        /// What a picture as emission is multiplied by; default `1`.
+        /// Factor on an emission texture; default `1`.
         emission_scale: bilux_math::Rgb,
         /// Where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// From where the camera sees it: from both sides, or from the front, where a triangle's corners run counter-clockwise; light meets both: `both`, `front`; default `both`.
         visible_sides: &str,
@@ -65,13 +65,13 @@ typed! {
         reflectance: impl Into<crate::Value>,
         /// Greatest angle by which reflected rays spread, in cook only (degrees); default `0`.
         gloss: f32,
-        /// Radiance that the surface gives out (W/(m² sr)); default `0`.
+        /// Emitted radiance (W/(m² sr)); default `0`.
         emission: impl Into<crate::Value>,
-        /// What a picture as emission is multiplied by; default `1`.
+        /// Factor on an emission texture; default `1`.
         emission_scale: bilux_math::Rgb,
         /// Where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// From where the camera sees it: from both sides, or from the front, where a triangle's corners run counter-clockwise; light meets both: `both`, `front`; default `both`.
         visible_sides: &str,
@@ -92,13 +92,13 @@ typed! {
         reflectance: impl Into<crate::Value>,
         /// With a reflectance: what remains of Schlick's law at 82 degrees; default `1`.
         edge: bilux_math::Rgb,
-        /// 0 is polished, 1 as rough as can be; the square root of GGX's alpha; default `0.3`.
+        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0.3`.
         roughness: impl Into<crate::Value>,
-        /// How much smoother it is along its brushing than across; default `0`.
+        /// Anisotropy: how much smoother the surface is along its tangent than across; default `0`.
         anisotropy: impl Into<crate::Value>,
-        /// Turns the brushing, which goes along u, or around the y axis of meshes without texture coordinates (degrees); default `0`.
+        /// Rotation of the anisotropy's direction, which is along u, or around the y axis of meshes without texture coordinates (degrees); default `0`.
         rotation: f32,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// From where the camera sees it: from both sides, or from the front, where a triangle's corners run counter-clockwise; light meets both: `both`, `front`; default `both`.
         visible_sides: &str,
@@ -121,19 +121,19 @@ typed! {
         absorption: bilux_math::Rgb,
         /// Where several of these overlap, that of the greatest priority is, and eta is over that of air; 0 takes no part in it; default `0`.
         priority: i32,
-        /// A wall without thickness: light goes straight through; default `false`.
+        /// Thin-walled: light passes straight through; default `false`.
         thin: bool,
-        /// 0 is polished, 1 as rough as can be; the square root of GGX's alpha; default `0`.
+        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0`.
         roughness: impl Into<crate::Value>,
-        /// How much smoother it is along its brushing than across; default `0`.
+        /// Anisotropy: how much smoother the surface is along its tangent than across; default `0`.
         anisotropy: impl Into<crate::Value>,
-        /// Turns the brushing, which goes along u, or around the y axis of meshes without texture coordinates (degrees); default `0`.
+        /// Rotation of the anisotropy's direction, which is along u, or around the y axis of meshes without texture coordinates (degrees); default `0`.
         rotation: f32,
         /// Greatest angle by which reflected rays spread, in cook only (degrees); default `0`.
         gloss: f32,
         /// Greatest angle by which refracted rays spread, in cook only (degrees); default `0`.
         translucency: f32,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// Normals as a picture, in tangent space, green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,
@@ -152,13 +152,13 @@ typed! {
         specular_weight: impl Into<crate::Value>,
         /// Factor on what is reflected at the surface; of metal, near grazing; default `1`.
         specular_color: impl Into<crate::Value>,
-        /// 0 is polished, 1 as rough as can be; the square root of GGX's alpha; default `0.3`.
+        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0.3`.
         specular_roughness: impl Into<crate::Value>,
         /// Refractive index of what is not metal; default `1.5`.
         specular_ior: impl Into<crate::Value>,
-        /// How much smoother it is along its brushing than across; default `0`.
+        /// Anisotropy: how much smoother the surface is along its tangent than across; default `0`.
         specular_roughness_anisotropy: impl Into<crate::Value>,
-        /// Turns the brushing, which goes along u (turns); default `0`.
+        /// Rotation of the anisotropy's direction, which is along u (turns); default `0`.
         anisotropy_rotation: impl Into<crate::Value>,
         /// How much of what is not metal is clear; default `0`.
         transmission_weight: impl Into<crate::Value>,
@@ -170,7 +170,7 @@ typed! {
         transmission_dispersion_scale: f32,
         /// The less it is, the further colours are parted: 64 for window glass, 36 for flint glass; default `20`.
         transmission_dispersion_abbe_number: f32,
-        /// A wall without thickness: light goes straight through; default `false`.
+        /// Thin-walled: light passes straight through; default `false`.
         thin_walled: bool,
         /// Where several of these overlap, that of the greatest priority is, and eta is over that of air; 0 takes no part in it; default `0`.
         priority: i32,
@@ -178,7 +178,7 @@ typed! {
         coat_weight: impl Into<crate::Value>,
         /// What is left of light that passes the coat and comes back; default `1`.
         coat_color: impl Into<crate::Value>,
-        /// 0 is polished, 1 as rough as can be; the square root of GGX's alpha; default `0`.
+        /// Surface roughness: 0 is polished; the square root of GGX's alpha; default `0`.
         coat_roughness: impl Into<crate::Value>,
         /// Refractive index of the coat; default `1.6`.
         coat_ior: impl Into<crate::Value>,
@@ -202,13 +202,13 @@ typed! {
         thin_film_thickness: impl Into<crate::Value>,
         /// Refractive index of that film; default `1.4`.
         thin_film_ior: impl Into<crate::Value>,
-        /// Radiance that the surface gives out (W/(m² sr)); default `0`.
+        /// Emitted radiance (W/(m² sr)); default `0`.
         emission: impl Into<crate::Value>,
-        /// What a picture as emission is multiplied by; default `1`.
+        /// Factor on an emission texture; default `1`.
         emission_scale: bilux_math::Rgb,
         /// Where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise: `both`, `front`; default `both`.
         emission_sides: &str,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// From where the camera sees it: from both sides, or from the front, where a triangle's corners run counter-clockwise; light meets both: `both`, `front`; default `both`.
         visible_sides: &str,
@@ -217,15 +217,15 @@ typed! {
         /// Factor on how far the picture's normals lean; default `1`.
         normal_scale: f32,
     }
-    /// Two materials in one place, each for a share of the light.
+    /// A mixture of two materials.
     Mix = "mix" {
         /// The first material, by its name; it has to be given.
         a: impl Into<crate::Value>,
         /// The second material, by its name; may be a mix itself; it has to be given.
         b: impl Into<crate::Value>,
-        /// How much of the second: 0 is all of the first; default `0.5`.
+        /// Weight of the second material; default `0.5`.
         amount: impl Into<crate::Value>,
-        /// How much of the surface there is: 0 is a hole; a picture cuts out leaves and lace; default `1`.
+        /// Opacity: 0 is a hole; a texture cuts out leaves and lace; default `1`.
         opacity: impl Into<crate::Value>,
         /// Normals as a picture, in tangent space, green up as in OpenGL and glTF; default `none`.
         normal: impl Into<crate::Value>,
