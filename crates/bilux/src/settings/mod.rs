@@ -29,8 +29,8 @@ pub const RENDER: Entry = Entry {
     summary: "how the picture is made",
     source: "",
     parameters: &[
-        text("integrator", "light-transport algorithms", "auto"),
-        text("accel", "acceleration structures for ray queries", "auto"),
+        text("integrator", "the light-transport algorithm", "auto"),
+        text("accel", "the acceleration structure for ray queries", "auto"),
         text("size", "width and height of the picture, as WxH", "512x512"),
         integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"),
         number(
@@ -77,7 +77,7 @@ pub const RENDER: Entry = Entry {
         number("time", "when the picture is taken", "s", -1e9, 1e9, "0"),
         number("shutter", "how long light is let in", "s", 0.0, 1e9, "0"),
         number("fps", "frames a second, for --frames", "1/s", 1e-6, 1e6, "24"),
-        text("filter", "pixel reconstruction filters", "box"),
+        text("filter", "the pixel reconstruction filter", "box"),
         choice(
             "texture_filter",
             "pictures on surfaces: as coarse as half a pixel, for less noise, or as fine as they come",
