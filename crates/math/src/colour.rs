@@ -179,6 +179,28 @@ mod tests {
     }
 
     #[test]
+    fn arithmetic_is_by_channels() {
+        let (a, b) = (Rgb::new(1.0, 2.0, 4.0), Rgb::new(8.0, 2.0, 0.5));
+        assert_eq!((a + b, a - b), (Rgb::new(9.0, 4.0, 4.5), Rgb::new(-7.0, 0.0, 3.5)));
+        assert_eq!((a * b, a / b), (Rgb::new(8.0, 4.0, 2.0), Rgb::new(0.125, 1.0, 8.0)));
+        assert_eq!((a * 2.0, a / 2.0), (Rgb::new(2.0, 4.0, 8.0), Rgb::new(0.5, 1.0, 2.0)));
+        let mut sum = a;
+        sum += b;
+        sum *= b;
+        sum *= 0.5;
+        assert_eq!(sum, Rgb::new(36.0, 4.0, 1.125));
+        assert_eq!([a, b, a].into_iter().sum::<Rgb>(), Rgb::new(10.0, 6.0, 8.5));
+        assert_eq!((a.lerp(b, 0.25), a.max_channel()), (Rgb::new(2.75, 2.0, 3.125), 4.0));
+        assert_eq!(([a[0], a[1], a[2]], a.to_array()), ([1.0, 2.0, 4.0], [1.0, 2.0, 4.0]));
+        assert_eq!(a.clamp(1.5, 3.0), Rgb::new(1.5, 2.0, 3.0));
+        assert!(Rgb::BLACK.is_black() && !Rgb::new(0.0, 0.0, 1e-30).is_black());
+        for odd in [f32::NAN, f32::INFINITY] {
+            let one_odd = [Rgb::new(odd, 0.0, 0.0), Rgb::new(0.0, odd, 0.0), Rgb::new(0.0, 0.0, odd)];
+            assert!(a.is_finite() && one_odd.iter().all(|colour| !colour.is_finite()));
+        }
+    }
+
+    #[test]
     fn srgb_round_trips_every_byte() {
         for byte in 0..=255u8 {
             let linear = srgb_decode(f32::from(byte) / 255.0);

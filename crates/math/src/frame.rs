@@ -55,3 +55,59 @@ impl Frame {
 pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
     n * (2.0 * wo.dot(n)) - wo
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn normals() -> impl Iterator<Item = Vec3> {
+        let ring = |z: f32| {
+            (0..12).map(move |i| {
+                let (sin, cos) = crate::transcendental::sin_cos(0.5 + i as f32);
+                let r = (1.0 - z * z).sqrt();
+                Vec3::new(r * cos, r * sin, z).normalize()
+            })
+        };
+        [-0.999, -0.6, -0.1, 0.0, 0.3, 0.9].into_iter().flat_map(ring).chain([Vec3::Z, -Vec3::Z, Vec3::X])
+    }
+
+    fn assert_right_handed(frame: &Frame, n: Vec3) {
+        let Frame { s, t, .. } = *frame;
+        assert_eq!(frame.n, n);
+        assert!((s.cross(t) - n).length() < 1e-5 && (s.length() - 1.0).abs() < 1e-5, "{n}: {frame:?}");
+        assert!((t.length() - 1.0).abs() < 1e-5 && s.dot(t).abs() < 1e-5, "{n}: {frame:?}");
+    }
+
+    #[test]
+    fn frames_are_orthonormal_and_right_handed() {
+        for n in normals() {
+            let frame = Frame::from_normal(n);
+            assert_right_handed(&frame, n);
+            let tangent = Vec3::new(0.5, 2.0, -1.0);
+            let turned = frame.along(tangent);
+            assert_right_handed(&turned, n);
+            // Of all directions across the normal this is the nearest one.
+            let across = (tangent - n * n.dot(tangent)).normalize();
+            assert!((turned.s - across).length() < 1e-4, "{n}: {turned:?}");
+            assert_eq!(frame.along(Vec3::ZERO).s, frame.s);
+        }
+    }
+
+    #[test]
+    fn there_and_back_a_direction_is_the_same() {
+        let v = Vec3::new(0.3, -0.7, 0.4);
+        for n in normals() {
+            let frame = Frame::from_normal(n);
+            let local = frame.to_local(v);
+            assert!((local.z - v.dot(n)).abs() < 1e-6 && (frame.to_world(local) - v).length() < 1e-6, "{n}");
+            assert!((frame.to_world(Vec3::X) - frame.s).length() < 1e-6);
+            assert!((frame.to_world(Vec3::Y) - frame.t).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_mirror_keeps_what_is_along_the_normal_and_turns_the_rest() {
+        assert_eq!(reflect(Vec3::new(0.6, 0.0, 0.8), Vec3::Z), Vec3::new(-0.6, 0.0, 0.8));
+        assert_eq!(reflect(Vec3::new(0.0, -0.8, 0.6), Vec3::NEG_Y), Vec3::new(0.0, -0.8, -0.6));
+    }
+}
