@@ -141,6 +141,8 @@ fn bare_meshes_look_the_same_in_every_format() {
         for material in &mut scene.materials {
             *material = Spec::new(&material.name, "diffuse").with("reflectance", 0.6f32);
         }
+        // These lights are all there is: no studio is put around them.
+        scene.surroundings_unsaid = false;
         scene.warnings.clear();
         scene
     };

@@ -5,9 +5,8 @@
 use bilux::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Files that hold nothing to see, or are broken: these and no others are refused.
-const REFUSED: &[&str] =
-    &["points.ply", "points_ascii.ply", "points_bin.ply", "line-prim.obj", "points-prim.obj"];
+/// Files that hold nothing to see, or are broken: these and no others are refused. Clouds of points and lines are drawn.
+const REFUSED: &[&str] = &[];
 
 fn shared() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
