@@ -136,7 +136,7 @@ fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
             for (i, other) in ["path"].iter().chain(&ALL).enumerate() {
                 // Merging is biased. Between luminous shells it loses 0.9%: see docs/adr/0023-shells.md.
                 let merge = if (name, *other) == ("sign", "auto") { "never" } else { "auto" };
-                let spec = Spec::new("", *other);
+                let spec = Spec::new("", other);
                 let spec = if *other == "auto" { spec.with("merge", merge) } else { spec };
                 let integrator = integrators::build(&spec).unwrap();
                 let found = blocks(&two, &*integrator, 100 * (i as u64 + 1));
