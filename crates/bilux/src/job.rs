@@ -15,7 +15,7 @@ use bilux_scene::{
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Choice, Features, Film, Filter, FirstHalf, Interval, PixelAnchor, Progress, Reached, RenderError,
+    Choice, Features, Film, Filter, BatchMeans, Interval, PixelAnchor, Progress, Reached, RenderError,
     RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;
@@ -72,8 +72,8 @@ pub struct Outcome {
     pub features: Option<Features>,
     /// The part of each pixel that is not transparent, in rows of the film's window, where pictures are to be.
     pub coverage: Option<Vec<f32>>,
-    /// What the first half of the samples says, where variance was asked for ([`Job::with_layers`]).
-    pub first_half: Option<FirstHalf>,
+    /// Batches of samples, which give the variance of each pixel, where variance was asked for ([`Job::with_layers`]).
+    pub batch_means: Option<BatchMeans>,
     linear_transfer: bool,
 }
 
@@ -267,7 +267,7 @@ impl Job {
             interval: rendered.interval,
             features,
             coverage,
-            first_half: rendered.first_half.filter(|_| !rendered.cancelled),
+            batch_means: rendered.batch_means.filter(|_| !rendered.cancelled),
             linear_transfer: self.settings.linear_transfer,
         })
     }
@@ -383,6 +383,6 @@ fn render_settings(settings: &Settings) -> Result<RenderSettings, Error> {
         count_work: false,
         stop: settings.stop,
         interval: false,
-        halves: false,
+        batch_means: false,
     })
 }

@@ -23,7 +23,7 @@ impl Job {
     /// Keeps what is wanted of albedo, normals, depth, ids and variance ([`Outcome::layered`]). It changes no sample.
     pub fn with_layers(&mut self, wanted: &[Aov]) {
         self.features |= wanted.iter().any(|aov| aov.is_feature());
-        self.render.halves |= wanted.contains(&Aov::Variance);
+        self.render.batch_means |= wanted.contains(&Aov::Variance);
     }
 
     /// What is to denoise the picture, if anything is: what the setting `denoise` names, or where that is left open, the best for pictures
@@ -78,8 +78,8 @@ impl Outcome {
             let wants = |layer: &str| wanted.iter().any(|aov| aov.layer() == Some(layer));
             features.push_layers(picture, rows.clone(), wants)?;
         }
-        if let Some(first) = self.first_half.as_ref().filter(|_| wanted.contains(&Aov::Variance)) {
-            push_variance(picture, rows, &self.film, first)?;
+        if let Some(batches) = self.batch_means.as_ref().filter(|_| wanted.contains(&Aov::Variance)) {
+            push_variance(picture, rows, &self.film, batches)?;
         }
         Ok(())
     }

@@ -5,6 +5,7 @@
 //! settings and seed: the same bytes for any number of threads, any crop, and any split into ranges of samples.
 
 pub mod aovs;
+mod batch_means;
 mod bidirectional;
 #[cfg(test)]
 extern crate self as bilux_transport;
@@ -16,7 +17,6 @@ mod failures;
 pub mod features;
 pub mod film;
 pub mod filters;
-pub mod halves;
 pub mod illumination;
 pub mod integrators;
 pub mod interval;
@@ -39,6 +39,7 @@ pub mod strategies;
 mod task;
 pub mod window;
 
+pub use batch_means::{BatchMeans, push_variance};
 pub use bidirectional::{Merging, Photons};
 pub use emission::{Emission, Guide};
 pub use error::{FilmError, RenderError};
@@ -46,7 +47,6 @@ pub use failures::{SampleFailures, SamplePlace};
 pub use features::{FEATURE_SAMPLES, Features, coverage, features};
 pub use film::{Film, scale_exponent};
 pub use filters::{FILTERS, Filter, FilterEntry};
-pub use halves::{FirstHalf, push_variance};
 pub use illumination::{Illumination, illumination};
 pub use integrators::{CameraSpread, INTEGRATORS, IntegratorEntry, PixelIntegrator};
 pub use interval::{Estimate, Interval, REPLICATES};

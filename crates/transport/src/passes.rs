@@ -26,7 +26,7 @@ pub(crate) fn all_passes(
     progress: &dyn Progress,
     before: Rendered,
 ) -> Result<Rendered, RenderError> {
-    let Rendered { film, mut counters, choice, reached, interval, first_half, .. } = before;
+    let Rendered { film, mut counters, choice, reached, interval, batch_means, .. } = before;
     let work = Work {
         eye,
         progress,
@@ -43,7 +43,7 @@ pub(crate) fn all_passes(
         return Err(error.into());
     }
     let (film, cancelled) = work.finish();
-    Ok(Rendered { film, counters, cancelled, choice, reached, interval, first_half })
+    Ok(Rendered { film, counters, cancelled, choice, reached, interval, batch_means })
 }
 
 /// Ranges of samples that double in length, so that the first picture is there soon.

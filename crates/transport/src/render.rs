@@ -5,7 +5,7 @@ use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
-use crate::halves::{FirstHalf, Halves};
+use crate::batch_means::BatchMeans;
 use crate::integrators::PixelIntegrator;
 use crate::interval::Interval;
 use crate::passes::{all_passes, passes};
@@ -60,8 +60,8 @@ pub struct RenderSettings {
     /// Take samples in independent replicates, which tell how far their mean may be off ([`Rendered::interval`]). These are
     /// other samples, a little less evenly spread.
     pub interval: bool,
-    /// Keep what the first half of the samples says, by which denoisers tell noise ([`Rendered::first_half`]).
-    pub halves: bool,
+    /// Estimate the variance of each pixel ([`Rendered::batch_means`]), which denoisers need.
+    pub batch_means: bool,
 }
 
 /// Which point stands for a pixel.
@@ -91,7 +91,7 @@ impl RenderSettings {
             count_work: false,
             stop: Stop::default(),
             interval: false,
-            halves: false,
+            batch_means: false,
         }
     }
 
@@ -112,14 +112,17 @@ impl RenderSettings {
 
     /// As integrators that choose see them: the choice is the same with an interval and without.
     pub(crate) fn as_planned(&self) -> RenderSettings {
-        RenderSettings { interval: false, halves: false, ..self.clone() }
+        RenderSettings { interval: false, batch_means: false, ..self.clone() }
     }
 
-    /// The samples to be taken; the later half apart, if it is to be.
-    fn in_halves(&self) -> [Range<u32>; 2] {
+    /// The samples to be taken, cut into batches where their variance is to be estimated.
+    fn batches(&self) -> Vec<Range<u32>> {
         let Range { start, end } = self.samples;
-        let middle = if self.halves && end - start > 1 { start + (end - start).div_ceil(2) } else { end };
-        [start..middle, middle..end]
+        if !self.batch_means {
+            return vec![start..end];
+        }
+        let ends = (start + 1..end).filter(|&sample| BatchMeans::ends_at(sample - start)).chain([end]);
+        ends.scan(start, |first, end| Some(std::mem::replace(first, end)..end)).collect()
     }
 
     pub(crate) fn check(&self) -> Result<(), RenderError> {
@@ -175,8 +178,8 @@ pub struct Rendered {
     /// Between which bounds pixels lie, where it was asked for ([`RenderSettings::interval`]): of whole iterations, also
     /// where it was stopped.
     pub interval: Option<Interval>,
-    /// What the first half of the samples says, where it was asked for ([`RenderSettings::halves`]) and there are two.
-    pub first_half: Option<FirstHalf>,
+    /// Batches of samples, which give the variance of each pixel, where it was asked for ([`RenderSettings::batch_means`]).
+    pub batch_means: Option<BatchMeans>,
 }
 
 /// Renders the samples asked for.
@@ -218,9 +221,9 @@ pub fn render(
         choice,
         reached: None,
         interval: None,
-        first_half: None,
+        batch_means: None,
     };
-    let mut halves = Halves::default();
+    let mut batches = settings.batch_means.then(BatchMeans::default);
     if settings.stop.is_any() {
         let mut watch = StopMonitor::new(settings, begun.elapsed());
         while !rendered.cancelled
@@ -229,24 +232,28 @@ pub fn render(
             rendered = take(&samples, rendered)?;
             if !rendered.cancelled {
                 watch.look(&rendered.film, &samples);
-                if settings.halves && watch.done.is_power_of_two() {
-                    halves.look(&rendered.film, watch.done);
+                if let Some(batches) = batches.as_mut().filter(|_| BatchMeans::ends_at(watch.done)) {
+                    batches.close(&rendered.film, watch.done);
                 }
                 progress.begin(settings.walked(integrator).pixels() as u64 * u64::from(watch.expected()));
             }
         }
         rendered.reached = watch.reached;
-        rendered.first_half = halves.before(watch.done);
+        if let Some(batches) = batches.as_mut().filter(|_| !rendered.cancelled) {
+            batches.close(&rendered.film, watch.done);
+        }
     } else {
-        let [first, second] = settings.in_halves();
-        rendered = take(&first, rendered)?;
-        if !second.is_empty() && !rendered.cancelled {
-            let half = FirstHalf::of(&rendered.film, first.len() as u32);
-            rendered = take(&second, rendered)?;
-            rendered.first_half = Some(half);
+        for samples in settings.batches() {
+            rendered = take(&samples, rendered)?;
+            if rendered.cancelled {
+                break;
+            }
+            if let Some(batches) = &mut batches {
+                batches.close(&rendered.film, samples.end - settings.samples.start);
+            }
         }
     }
-    Ok(Rendered { interval, ..rendered })
+    Ok(Rendered { interval, batch_means: batches, ..rendered })
 }
 
 /// All that stays the same while a picture is rendered.
