@@ -27,7 +27,7 @@ pub struct DenoiserEntry {
     pub entry: Entry,
     /// Approximate run time, where the task leaves the choice to the denoiser.
     pub time: fn(&Task) -> Duration,
-    /// It is in a library of others, which is loaded, and looked for in folders of theirs.
+    /// True for an external library, which is searched for in folders outside the project and loaded at run time.
     pub is_library: bool,
     /// Prepares the denoiser, or says what is missing and how to get it.
     pub find: fn(&Task) -> Result<Box<dyn Denoiser>, String>,

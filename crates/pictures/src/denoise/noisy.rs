@@ -62,8 +62,8 @@ const NAME: &str = "denoising";
 impl Noisy {
     /// Extracts the input from some rows of a linear picture's layers.
     ///
+    /// # Errors
     /// Returns an error when the picture has no colours, or the machine has no memory left.
-    /// When it has no colours, or the machine has no room.
     pub fn of(picture: &Picture, rows: Range<usize>) -> Result<Noisy, PictureError> {
         let (width, height) = (picture.width(), rows.len());
         let pixels = rows.start * width..rows.end * width;

@@ -1,5 +1,4 @@
-//! The fast builder: items in the order of a space-filling curve, split where its highest bits change [Lauterbach
-//! 2009].
+//! The fast builder: items in space-filling-curve order, split where the highest bits change [Lauterbach 2009].
 
 use super::binary::{Binary, BinaryNode, PARALLEL, Room, depth_allows};
 use super::collapse::{costs_of_inner, costs_of_leaf};
