@@ -1,4 +1,5 @@
-//! How much of the sky each point sees: one ray from the eye a pixel, then short rays all around, in batches.
+//! How much of the sky each point sees: one ray per pixel from the eye, then short rays in all directions, in
+//! batches.
 //!
 //! ```text
 //! cargo run --release -p bilux-accel --example ambient_occlusion
@@ -18,7 +19,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         let shade = |seen: &f32| char::from(b" .:-=+*#%@"[(seen * 9.0) as usize]);
         println!("{}", row.iter().map(shade).collect::<String>());
     }
-    // Near the wall half of the sky is hidden; far from it, next to nothing.
+    // Near the wall half of the sky is occluded; far from it, almost nothing.
     let [near, far] = [&picture[..SIZE], &picture[SIZE * (SIZE - 1)..]].map(|row| row.iter().sum::<f32>());
     assert!(near < 0.75 * far, "{near} {far}");
     Ok(())
@@ -37,7 +38,7 @@ fn corner() -> Result<TriangleMesh, bilux_accel::MeshError> {
     TriangleMesh::new(positions, vec![[0, 2, 1], [0, 3, 2], [0, 1, 5], [0, 5, 4]])
 }
 
-/// The part of the sky that is seen from each point of the floor, from above.
+/// The fraction of the sky that each point of the floor sees, viewed from above.
 fn picture(tree: &dyn Accelerator) -> Vec<f32> {
     let query = Query::default();
     let pixel = |i: usize| {
@@ -45,7 +46,7 @@ fn picture(tree: &dyn Accelerator) -> Vec<f32> {
         let down = Ray::new([x, 3.0, z], [0.0, -1.0, 0.0]);
         let Some(hit) = tree.closest_hit(&down, &query) else { return 1.0 };
         let from = hit.point(&down);
-        // The triangle that a ray leaves is left out, so that no offset is needed.
+        // A ray cannot hit the triangle that it leaves, so no offset is needed.
         let rays: Vec<Ray> =
             (0..DIRECTIONS).map(|k| Ray { exclude: hit.primitive(), ..Ray::new(from, around(k)) }).collect();
         let mut hidden = vec![false; rays.len()];
@@ -55,7 +56,7 @@ fn picture(tree: &dyn Accelerator) -> Vec<f32> {
     (0..SIZE * SIZE).map(pixel).collect()
 }
 
-/// Evenly spread over the half-space above: a spiral of equal areas.
+/// Directions spread uniformly over the hemisphere above: a spiral of equal areas.
 fn around(k: usize) -> [f32; 3] {
     let y = (k as f32 + 0.5) / DIRECTIONS as f32;
     let (sin, cos) = bilux_math::transcendental::sin_cos(2.399_963 * k as f32);

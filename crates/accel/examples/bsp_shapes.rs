@@ -1,10 +1,10 @@
-//! How trees grow over one mesh, and what rays pay in each.
+//! The shapes of the trees that are built over one mesh, and the cost of rays in each.
 //!
 //! ```text
 //! cargo run --release -p bilux-accel --example bsp_shapes -- [MESH.asc [COPIES]]
 //! ```
-//! Without a file the mesh is a torus of 20,000 triangles. Copies stand side by side, each an object of its own.
-//! Rays are those of a 256 × 256 picture, and from each hit a mirrored one and one towards a light.
+//! Without a file, the mesh is a torus of 20,000 triangles. Copies stand next to each other, each an object of its
+//! own. The rays are those of a 256 × 256 image, and from each hit a mirrored ray and one towards a light.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 use bilux_accel::{
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Label, name and options of each; the first that is there is what the others are compared with.
+/// Label, name and options of each structure; the others are compared with the first available one.
 fn structures() -> Vec<(&'static str, &'static str, BuildOptions)> {
     let with = |bsp_split, bsp_group, quality| BuildOptions {
         bsp_split,
@@ -94,7 +94,7 @@ fn structures() -> Vec<(&'static str, &'static str, BuildOptions)> {
     ]
 }
 
-/// Rays for a nearest hit, and rays for any.
+/// Rays for closest-hit queries, and rays for any-hit queries.
 struct Rays {
     closest: Vec<Ray>,
     any: Vec<Ray>,
@@ -127,13 +127,13 @@ impl Rays {
         Ok(rays)
     }
 
-    /// Every so many-th ray, for what is too slow for all.
+    /// Every `step`-th ray, for structures that are too slow for all rays.
     fn sample(&self, step: usize) -> Rays {
         let sample = |rays: &[Ray]| rays.iter().step_by(step).copied().collect();
         Rays { closest: sample(&self.closest), any: sample(&self.any) }
     }
 
-    /// Microseconds a ray, the least of seven runs, and the work counted.
+    /// Microseconds per ray, the minimum of seven runs, and the counted work.
     fn measure(&self, tree: &dyn Accelerator) -> (f64, Counters) {
         let query = Query::default();
         let mut counters = Counters::default();
@@ -154,7 +154,7 @@ impl Rays {
     }
 }
 
-/// A keyword, then three times eight numbers, of which the first three are a place.
+/// A keyword, then three times eight numbers, of which the first three are a position.
 fn read_asc(text: &str) -> Vec<Triangle> {
     let numbers: Vec<f32> = text.split_ascii_whitespace().filter_map(|word| word.parse().ok()).collect();
     let vertex = |numbers: &[f32]| [numbers[0], numbers[1], numbers[2]];

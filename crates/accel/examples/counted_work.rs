@@ -1,11 +1,12 @@
-//! A piece of work whose instructions can be counted: what it does is the same in every run.
+//! Deterministic workloads for counting instructions: each does the same in every run.
 //!
 //! ```text
 //! cargo xtask instructions        # counts all of them and compares with crates/accel/instructions.tsv
 //! counted_work primary-single-avx2
 //! ```
-//! A work is a class of rays (`primary`, `bounce`, `shadow`), a way of asking (`single`, `batch`, or `compact`: `single`, of the
-//! compact layout) and a CPU level. What counts happens in the function `asked`. Prints the number of rays, and of hits.
+//! A workload is a class of rays (`primary`, `bounce`, `shadow`), a kind of query (`single`, `batch`, or `compact`,
+//! which is `single` on the compact layout) and a CPU level. Only the function `asked` is counted. Prints the number
+//! of rays and of hits.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 use bilux_accel::{
@@ -15,7 +16,7 @@ use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::transcendental::{cos, sin};
 use std::error::Error;
 
-/// Rays along a side of the picture.
+/// Rays along a side of the image.
 const SIDE: usize = 64;
 const LIGHT: [f32; 3] = [3.0, 8.0, -2.0];
 
@@ -51,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// How many of the rays hit something in a compact tree.
+/// The number of rays that hit something in a compact tree.
 #[inline(never)]
 fn compact(tree: &CompactBvh8, rays: &[Ray], class: &str) -> usize {
     if class == "shadow" {
@@ -61,7 +62,7 @@ fn compact(tree: &CompactBvh8, rays: &[Ray], class: &str) -> usize {
     }
 }
 
-/// What is counted.
+/// The work that is counted.
 #[inline(never)]
 fn asked<R>(work: impl FnOnce() -> R) -> R {
     work()
@@ -81,7 +82,7 @@ fn hills() -> TriangleMesh {
     TriangleMesh::from_corners((0..n * n).flat_map(cell).collect()).unwrap_or_default()
 }
 
-/// From a camera, in tiles of 4 by 4.
+/// Rays from a camera, in tiles of 4 by 4.
 fn primary() -> Vec<Ray> {
     let ray = |i: usize| {
         let (tile, within) = (i / 16, i % 16);
@@ -92,7 +93,7 @@ fn primary() -> Vec<Ray> {
     (0..SIDE * SIDE).map(ray).collect()
 }
 
-/// On from where those arrive, a little above it.
+/// Rays that continue from where the primary rays arrive, slightly above the surface.
 fn onwards(tree: &Bvh8, next: impl Fn([f32; 3], u64) -> ([f32; 3], [f32; 3])) -> Vec<Ray> {
     let arrive =
         |ray: &Ray| tree.closest_hit(ray, &Query::default()).map(|hit| (ray.at(hit.t), hit.primitive()));

@@ -1,11 +1,11 @@
-//! Sends many rays from inside closed meshes and counts those that get out. There must be none.
+//! Sends many rays from inside closed meshes and counts those that escape. There must be none.
 //!
 //! ```text
 //! cargo run --release -p bilux-accel --example leak_hunt -- [--rays N] [--accel NAME] [--seed N]
 //! ```
-//! Rays (a hundred million, unless told otherwise; `brute` and its kin a thousandth of that) are spread
-//! over all meshes. Without a name, every structure takes its turn. Prints a line of JSON for each mesh and
-//! structure, and one for the total; exits with 1 when a ray got out.
+//! The rays are spread over all meshes; by default there are a hundred million (a thousandth of that for `brute` and
+//! its variants). Without a name, every structure is tested. Prints a line of JSON for each mesh and structure, and
+//! one for the total; exits with 1 if a ray escaped.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 #[path = "../tests/support/mod.rs"]
@@ -46,7 +46,7 @@ impl Arguments {
     }
 }
 
-/// The first ray that gets out, and how many do.
+/// The first ray that escapes, and the number of rays that do.
 fn leaks(structure: &dyn Accelerator, closed: &closed::Closed, seed: u64, rays: u64) -> (Option<u64>, u64) {
     let escapes =
         |&index: &u64| structure.closest_hit(&closed::ray(closed, seed, index), &Query::default()).is_none();

@@ -1,4 +1,4 @@
-//! Moving objects: one mesh, many instances, each with a motion of its own; what a ray meets depends on its time.
+//! Moving objects: one mesh and many instances, each with its own motion; a ray's hit depends on its time.
 //!
 //! ```text
 //! cargo run -p bilux-accel --example moving
@@ -16,7 +16,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let mesh = Arc::new(TriangleMesh::new(square, vec![[0, 1, 2], [0, 2, 3]])?);
     let tree: Arc<dyn Accelerator> = build("auto", mesh, &BuildOptions::default())?.into();
 
-    // One stands still behind, the other passes in front of it within a second.
+    // One stands still at the back, the other passes in front of it within a second.
     let behind = Transform::translate(Vec3::new(0.0, 0.0, -5.0)).ok_or("no such place")?;
     let key = |time_seconds, x| MotionKey {
         time_seconds,

@@ -1,4 +1,4 @@
-//! What is under the mouse: a ray from the eye through a pixel, and what it meets first.
+//! Picking: a ray from the eye through the pixel under the mouse, and its first hit.
 //!
 //! ```text
 //! cargo run -p bilux-accel --example pick
@@ -10,14 +10,14 @@ use std::error::Error;
 use std::sync::Arc;
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    // A square in the plane z = 0, of two triangles.
+    // A square in the plane z = 0, made of two triangles.
     let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let mesh = Arc::new(TriangleMesh::new(corners, vec![[0, 1, 2], [0, 2, 3]])?);
     let tree = build("auto", mesh.clone(), &BuildOptions::default())?;
 
     let eye = [0.5, 0.5, 2.0];
     for (x, y) in [(40, 60), (70, 20), (0, 0)] {
-        // A window of 100 × 100 pixels that sees 1.2 units across at the distance of the square; y goes down.
+        // A window of 100 × 100 pixels that is 1.2 units wide at the distance of the square; y points down.
         let [u, v] = [x, y].map(|pixel| (f32::from(pixel as u8) + 0.5) / 100.0 - 0.5);
         let ray = Ray::new(eye, [1.2 * u, -1.2 * v, -2.0]);
         match tree.closest_hit(&ray, &Query::default()) {

@@ -1,4 +1,5 @@
-//! No structure at all: an honest loop over every triangle. The truth that the others are held against.
+//! No structure at all: a plain loop over every triangle. The ground truth that the other structures are tested
+//! against.
 
 use crate::accelerator::{Traverse, TreeShape};
 use crate::counters::Count;

@@ -1,4 +1,4 @@
-//! What a query cost, counted only when asked for.
+//! The cost of a query, counted only on request.
 
 /// Work done by one or many queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub struct Counters {
     pub nodes: u64,
     /// Triangle tests done.
     pub triangles: u64,
-    /// Subtrees left out because a hit was nearer.
+    /// Subtrees skipped because a hit was nearer.
     pub early_outs: u64,
     /// Back faces rejected by the side of their partition plane, without a triangle test.
     pub culled_back_faces: u64,
@@ -25,7 +25,7 @@ impl std::ops::AddAssign for Counters {
     }
 }
 
-/// Something that a traversal reports its work to. [`NoCounters`] compiles to nothing.
+/// Receives the work that a traversal reports. [`NoCounters`] compiles to nothing.
 pub trait Count {
     /// A query begins.
     fn ray(&mut self) {}
@@ -33,11 +33,11 @@ pub trait Count {
     fn node(&mut self) {}
     /// `n` triangle tests are done.
     fn triangles(&mut self, _n: usize) {}
-    /// A subtree is left out because a hit is nearer.
+    /// A subtree is skipped because a hit is nearer.
     fn early_out(&mut self) {}
     /// A back face is rejected without a triangle test.
     fn culled_back_face(&mut self) {}
-    /// Where to count, if anything is counted: for structures that ask others.
+    /// The counters, if anything is counted: for structures that query others.
     fn counters(&mut self) -> Option<&mut Counters> {
         None
     }

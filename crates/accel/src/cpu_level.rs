@@ -1,24 +1,24 @@
-//! Which instructions kernels may use.
+//! The instruction sets that kernels may use.
 
-/// Levels of instruction sets, each holding those before. What is asked for is chosen when a structure is
-/// built, never per ray, and never changes an answer.
+/// Levels of instruction sets, each including those before it. The level is chosen when a structure is built, never
+/// per ray, and never changes an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CpuLevel {
-    /// What every machine of the target has.
+    /// The baseline that every machine of the target has.
     Baseline,
-    /// SSE4.2 with POPCNT, as all have since 2009: four lanes.
+    /// SSE4.2 with POPCNT, found in all machines since 2009: four lanes.
     Sse42,
-    /// AVX2 with FMA, BMI and its kin, as all have since 2013: eight lanes.
+    /// AVX2 with FMA, BMI and related sets, found in all machines since 2013: eight lanes.
     Avx2,
-    /// AVX-512 F, VL, DQ and BW, as all for servers have since 2017: sixteen lanes, and masks for eight.
+    /// AVX-512 F, VL, DQ and BW, found in all server machines since 2017: sixteen lanes, and masks for eight.
     Avx512,
 }
 
 impl CpuLevel {
-    /// All levels, the lowest first.
+    /// All levels, lowest first.
     pub const ALL: [CpuLevel; 4] = [CpuLevel::Baseline, CpuLevel::Sse42, CpuLevel::Avx2, CpuLevel::Avx512];
 
-    /// The highest level that this machine has.
+    /// The highest level that this machine supports.
     pub fn detect() -> CpuLevel {
         #[cfg(target_arch = "x86_64")]
         {
@@ -39,12 +39,12 @@ impl CpuLevel {
         CpuLevel::Baseline
     }
 
-    /// This level, or the highest that the machine has if that is lower.
+    /// This level, or the highest that the machine supports if that is lower.
     pub fn available(self) -> CpuLevel {
         self.min(CpuLevel::detect())
     }
 
-    /// The name that people type.
+    /// The name used in settings.
     pub const fn name(self) -> &'static str {
         match self {
             CpuLevel::Baseline => "baseline",
@@ -56,7 +56,7 @@ impl CpuLevel {
 }
 
 impl Default for CpuLevel {
-    /// The highest that this machine has.
+    /// The highest level that this machine supports.
     fn default() -> CpuLevel {
         CpuLevel::detect()
     }

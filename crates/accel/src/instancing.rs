@@ -1,20 +1,19 @@
-//! Two levels: instances of structures, each with its own transform, still or moving.
+//! Two levels: instances of structures, each with its own static or moving transform.
 //!
-//! A ray is brought into an instance's space by one arithmetic, whoever asks: in f64, by the inverse of
-//! the f32 matrix, rounded once. Its direction keeps its length there, so `t` is the same in both spaces.
-//! An instance whose transform is the identity is asked with the ray as it is.
+//! A ray is always transformed into an instance's space by the same arithmetic: in f64, by the inverse of the f32
+//! matrix, rounded once. Its direction keeps its length there, so `t` is the same in both spaces. An instance whose
+//! transform is the identity is queried with the ray unchanged.
 //!
 //! # Which side is the front
-//! The front is the instance's own: a mirrored instance shows the same side of its surface as the
-//! original, as in glTF. So culling needs no regard to mirroring.
+//! The front is the instance's own: a mirrored instance shows the same side of its surface as the original, as in
+//! glTF. So culling need not consider mirroring.
 //!
 //! # How far a box must be padded
-//! Let `x` be the point where a ray meets an instance, `M` its matrix and `κ = ‖M‖·‖M⁻¹‖`. In the
-//! instance's space the hit lies within `16 · 2⁻²⁴ · far'` of the mesh (the lemma of [`crate::triangle`]),
-//! and rounding the ray's origin and direction moves it by `2 · 2⁻²⁴ · far'` more, where `far' ≤ ‖M⁻¹‖ · far`
-//! and `far` is the greatest distance from the origin to the instance's box and to the point that its own
-//! origin goes to. Back in the world that is at most `18 · 2⁻²⁴ · κ · far`; [`TwoLevel`] pads by 32. The
-//! whole argument stands in `docs/adr/0002-one-answer.md`.
+//! Let `x` be the point where a ray hits an instance, `M` its matrix and `κ = ‖M‖·‖M⁻¹‖`. In the instance's space the
+//! hit lies within `16 · 2⁻²⁴ · far'` of the mesh (the lemma of [`crate::triangle`]), and rounding the ray's origin
+//! and direction moves it by `2 · 2⁻²⁴ · far'` more, where `far' ≤ ‖M⁻¹‖ · far` and `far` is the maximum distance
+//! from the origin to the instance's box and to the image of the instance's own origin. Back in the world that is at
+//! most `18 · 2⁻²⁴ · κ · far`; [`TwoLevel`] pads by 32. The full argument is in `docs/adr/0002-one-answer.md`.
 
 use crate::accelerator::{Accelerator, Traverse, TreeShape};
 use crate::bvh::tree::Tree;
@@ -27,25 +26,25 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// A structure somewhere in the world. Many instances may share one structure.
+/// A structure placed in the world. Many instances may share one structure.
 #[derive(Clone)]
 pub struct Instance {
-    /// What is there, in its own space.
+    /// The structure, in its own space.
     pub accelerator: Arc<dyn Accelerator>,
-    /// How it lies in the world.
+    /// Its transform into the world, over time.
     pub motion: Motion,
-    /// Which rays can meet it: those that share a bit with it.
+    /// Which rays can hit it: those that share a bit with it.
     pub mask: u32,
 }
 
 impl Instance {
-    /// One that all rays can meet.
+    /// An instance that all rays can hit.
     pub fn new(accelerator: Arc<dyn Accelerator>, motion: Motion) -> Instance {
         Instance { accelerator, motion, mask: u32::MAX }
     }
 }
 
-/// How the instances that a ray may meet are found. The answers are the same.
+/// How the instances that a ray may hit are found. The answers are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TopLevel {
     /// All of them, one after the other.
@@ -55,8 +54,7 @@ pub enum TopLevel {
     Bvh,
 }
 
-/// Instances of structures. Cheap to make anew when something moves: only the boxes of the instances
-/// are looked at.
+/// Instances of structures. Cheap to rebuild when something moves: only the boxes of the instances are read.
 pub struct TwoLevel {
     placed: Vec<Placed>,
     shutter: [f32; 2],
@@ -82,8 +80,8 @@ enum InstancePlacement {
 }
 
 impl TwoLevel {
-    /// Of these instances, for rays sent while the shutter is open (seconds, both ends included); a ray's
-    /// time is clamped to that. Indices of instances in hits are those of the list.
+    /// Builds the top level over these instances, for rays at times while the shutter is open (seconds, both ends
+    /// included); a ray's time is clamped to that interval. Instance indices in hits are those of the list.
     pub fn new(instances: &[Instance], shutter: [f32; 2], top: TopLevel) -> TwoLevel {
         let boxes: Vec<Aabb> = instances
             .par_iter()
@@ -94,7 +92,7 @@ impl TwoLevel {
             .collect();
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
         let top = match top {
-            // One alone is asked at once: it looks at its own box.
+            // A single instance is queried directly: it tests its own box.
             _ if boxes.len() < 2 => Top::List,
             TopLevel::List => Top::List,
             TopLevel::Bvh => {
@@ -107,18 +105,18 @@ impl TwoLevel {
         TwoLevel { placed, shutter, bounds, top }
     }
 
-    /// How many instances there are.
+    /// The number of instances.
     pub fn len(&self) -> usize {
         self.placed.len()
     }
 
-    /// True when there are none.
+    /// True when there are no instances.
     pub fn is_empty(&self) -> bool {
         self.placed.is_empty()
     }
 
-    /// Calls `visit` with the instances that may be hit, in whatever order, until it breaks. It returns the
-    /// `t` beyond which nothing counts any more.
+    /// Calls `visit` with the instances that may be hit, in any order, until it breaks. `visit` returns the `t`
+    /// beyond which hits no longer count.
     #[inline(always)]
     fn visit<C: Count>(
         &self,
@@ -152,7 +150,7 @@ impl TwoLevel {
             InstancePlacement::Identity => (ray.origin, ray.direction),
             InstancePlacement::Still(into) => into.apply(ray),
             InstancePlacement::Moving(motion) => {
-                // Written so that a time that is not a number becomes the opening of the shutter.
+                // Written so that a NaN time becomes the opening of the shutter.
                 let [open, close] = self.shutter;
                 let time = if ray.time > open { ray.time.min(close) } else { open };
                 IntoLocal::new(&motion.at(time)).apply(ray)
@@ -236,7 +234,7 @@ impl Traverse for TwoLevel {
         self.bounds
     }
 
-    /// The structures that instances share are counted once.
+    /// Structures that instances share are counted once.
     fn memory_bytes(&self) -> usize {
         let mut shared: Vec<_> = self.placed.iter().map(|placed| &placed.accelerator).collect();
         shared.sort_by_key(|accelerator| Arc::as_ptr(accelerator).cast::<()>());
@@ -249,7 +247,7 @@ impl Traverse for TwoLevel {
         below + top + size_of_val(self.placed.as_slice())
     }
 
-    /// Of the top level.
+    /// Statistics of the top level.
     fn shape(&self) -> TreeShape {
         match &self.top {
             Top::List => TreeShape::default(),
@@ -258,7 +256,7 @@ impl Traverse for TwoLevel {
     }
 }
 
-/// Lets a structure below count, except that the ray is still the same.
+/// Lets the structure below count, without counting the ray again.
 fn uncounted_ray<R>(counters: &mut crate::Counters, ask: impl FnOnce(&mut crate::Counters) -> R) -> R {
     let rays = counters.rays;
     let answer = ask(counters);
@@ -283,7 +281,7 @@ impl Placed {
     }
 }
 
-/// From the world into an instance's space.
+/// The transform from the world into an instance's space.
 #[derive(Clone, Copy)]
 struct IntoLocal {
     linear: DMat3,
@@ -305,13 +303,13 @@ impl IntoLocal {
     }
 }
 
-/// What the pad of the top level depends on.
+/// The quantities on which the pad of the top level depends.
 struct PadBounds {
-    /// Around all boxes, and the points that the instances' own origins go to.
+    /// Bounds of all boxes and of the images of the instances' own origins.
     hull: Aabb,
-    /// The greatest κ of all transforms.
+    /// The maximum κ of all transforms.
     condition: f64,
-    /// The greatest ‖M‖.
+    /// The maximum ‖M‖.
     growth: f64,
 }
 
@@ -321,7 +319,7 @@ impl PadBounds {
         let mut reach = PadBounds { hull: Aabb::EMPTY, condition: 1.0, growth: 1.0 };
         for (instance, bounds) in instances.iter().zip(boxes) {
             let [grow, shrink] = instance.motion.stretch_over(shutter);
-            // In the maximum norm, each is at most √3 of what it is in the Euclidean one.
+            // In the maximum norm, each is at most √3 times its value in the Euclidean norm.
             reach.condition = reach.condition.max(3.0 * grow * shrink);
             reach.growth = reach.growth.max(2.0 * grow);
             reach.hull = reach.hull.union(*bounds).union(instance.motion.bounds_over(&origin, shutter));
@@ -335,7 +333,7 @@ impl PadBounds {
             let o = f64::from(ray.origin[axis]);
             far.max((f64::from(low[axis]) - o).abs()).max((f64::from(high[axis]) - o).abs())
         });
-        // Directions so short that their digits may get lost in an instance's space are asked everywhere.
+        // For directions so short that their digits may be lost in an instance's space, all instances are queried.
         let length = ray.direction.iter().fold(0f32, |length, d| length.max(d.abs()));
         if f64::from(length) < self.growth * TOO_SHORT {
             return f32::INFINITY;
@@ -348,7 +346,7 @@ impl PadBounds {
 /// 32 units of f32 rounding.
 const PAD: f64 = 32.0 / 16_777_216.0;
 
-/// 2⁻¹⁰⁰, times the growth of lengths: from there on a direction has all its 24 digits in an instance's space.
+/// 2⁻¹⁰⁰, times the growth of lengths: from there on a direction keeps all its 24 digits in an instance's space.
 const TOO_SHORT: f64 = 1.0 / (1u128 << 100) as f64;
 
 #[cfg(test)]
@@ -404,7 +402,7 @@ mod tests {
     #[test]
     fn a_mirrored_instance_keeps_its_own_front() {
         let query = Query { culling: Culling::Back, ..Query::default() };
-        // Mirrored in z, the side that looked along +z looks along −z.
+        // Mirrored in z, the side that faced +z faces −z.
         for world in two_levels(vec![scaled(1.0, 1.0, -1.0, DVec3::ZERO)]) {
             assert!(!world.any_hit(&Ray::new([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]), &query));
             assert!(world.any_hit(&Ray::new([0.25, 0.25, -1.0], [0.0, 0.0, 1.0]), &query));

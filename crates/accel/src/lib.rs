@@ -1,4 +1,4 @@
-//! Ray queries on triangles: watertight, deterministic, one answer whichever structure is asked.
+//! Ray queries on triangles: watertight, deterministic, and with the same answer from every structure.
 //!
 //! ```
 //! use bilux_accel::{build, BuildOptions, Query, Ray, TriangleMesh};
@@ -15,9 +15,8 @@
 //! ```
 //!
 //! # One answer
-//! Every structure returns the same hit as [`brute_force`], bit for bit: the least `t`, and among equal
-//! `t` the lowest primitive. The reasons that this can hold stand in [`triangle`] (the lemma) and in
-//! `docs/adr/0002-one-answer.md`.
+//! Every structure returns the same hit as [`brute_force`], bit for bit: the smallest `t`, and among equal `t` the
+//! lowest primitive. [`triangle`] (the lemma) and `docs/adr/0002-one-answer.md` explain why this holds.
 
 pub mod accelerator;
 pub mod brute_force;

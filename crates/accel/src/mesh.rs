@@ -3,10 +3,9 @@
 use bilux_math::{Aabb, Vec3};
 use std::ops::Range;
 
-/// Triangles as every structure reads them: corner by corner, so that a test touches one cache line or two.
+/// Triangles in the form that every structure reads: corner by corner, so that a test touches one or two cache lines.
 ///
-/// Triangles with a corner that is not finite are kept, so that indices stay those of the caller, and
-/// are never hit.
+/// Triangles with a corner that is not finite are kept, so that the caller's indices remain valid, and are never hit.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleMesh {
     corners: Vec<[[f32; 3]; 3]>,
@@ -14,21 +13,21 @@ pub struct TriangleMesh {
     bounds: Option<Aabb>,
 }
 
-/// Why a mesh cannot be made.
+/// Why a mesh cannot be created.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// An index names no vertex.
+    /// An index refers to no vertex.
     #[error("triangle {triangle} names vertex {vertex}, but there are {count} vertices")]
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,
-        /// The index that it holds.
+        /// The index that it contains.
         vertex: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         count: usize,
     },
-    /// More triangles than an index can name.
+    /// More triangles than an index can number.
     #[error("{0} triangles are more than one mesh can hold (4,294,967,294)")]
     TooManyTriangles(usize),
     /// The groups do not cover the triangles one after the other.
@@ -37,10 +36,10 @@ pub enum MeshError {
 }
 
 impl TriangleMesh {
-    /// From vertices and triples of indices into them.
+    /// Creates a mesh from vertices and triples of indices into them.
     ///
     /// # Errors
-    /// When an index names no vertex, or there are more than 2³² − 2 triangles.
+    /// Returns an error when an index refers to no vertex, or there are more than 2³² − 2 triangles.
     pub fn new(positions: Vec<[f32; 3]>, indices: Vec<[u32; 3]>) -> Result<TriangleMesh, MeshError> {
         let corner = |triangle: usize, vertex: u32| {
             positions.get(vertex as usize).copied().ok_or(MeshError::IndexOutOfRange {
@@ -57,10 +56,10 @@ impl TriangleMesh {
         TriangleMesh::from_corners(corners)
     }
 
-    /// From the corners of each triangle.
+    /// Creates a mesh from the corners of each triangle.
     ///
     /// # Errors
-    /// When there are more than 2³² − 2 triangles.
+    /// Returns an error when there are more than 2³² − 2 triangles.
     pub fn from_corners(corners: Vec<[[f32; 3]; 3]>) -> Result<TriangleMesh, MeshError> {
         if corners.len() >= u32::MAX as usize {
             return Err(MeshError::TooManyTriangles(corners.len()));
@@ -72,11 +71,11 @@ impl TriangleMesh {
         Ok(TriangleMesh { corners, groups: vec![whole], bounds: Some(bounds) })
     }
 
-    /// The same triangles, known to be these objects one after the other. Only structures that are asked
-    /// to keep objects whole look at this.
+    /// The same triangles, grouped into these objects one after the other. Only structures that are asked to keep
+    /// objects whole use the groups.
     ///
     /// # Errors
-    /// When the ranges do not cover the triangles one after the other.
+    /// Returns an error when the ranges do not cover the triangles one after the other.
     pub fn with_groups(mut self, groups: Vec<Range<u32>>) -> Result<TriangleMesh, MeshError> {
         let mut end = 0;
         for group in &groups {
@@ -103,24 +102,24 @@ impl TriangleMesh {
         &self.groups
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     #[inline]
     pub fn len(&self) -> usize {
         self.corners.len()
     }
 
-    /// True when there are none.
+    /// True when there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.corners.is_empty()
     }
 
-    /// The box around all triangles that are finite.
+    /// The bounding box of all finite triangles.
     #[inline]
     pub fn bounds(&self) -> Aabb {
         self.bounds.unwrap_or(Aabb::EMPTY)
     }
 
-    /// The box around one triangle; empty when it is not finite.
+    /// The bounding box of one triangle; empty when the triangle is not finite.
     pub fn triangle_bounds(&self, index: u32) -> Aabb {
         let triangle = &self.corners[index as usize];
         if is_finite(triangle) {
@@ -130,7 +129,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Bytes that the triangles take.
+    /// Size of the triangles in bytes.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(self.corners.as_slice()) + size_of_val(self.groups.as_slice())
     }

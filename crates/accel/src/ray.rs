@@ -1,34 +1,34 @@
-//! Rays, what is asked of them, and what they hit.
+//! Rays, queries, and hits.
 
 use crate::mesh::TriangleMesh;
 use bilux_math::glam::DVec3;
 use std::fmt;
 
-/// A half-line, or a piece of one: points `origin + t * direction` for `t_min <= t <= t_max`.
+/// A half-line, or a segment of one: points `origin + t * direction` for `t_min <= t <= t_max`.
 ///
-/// The direction need not be of unit length; `t` counts in its lengths. A ray whose origin or direction
-/// is not finite, or whose direction is zero, hits nothing.
+/// The direction need not have unit length; `t` is measured in lengths of the direction. A ray whose origin or
+/// direction is not finite, or whose direction is zero, hits nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Ray {
     /// Where it starts.
     pub origin: [f32; 3],
-    /// Where it goes.
+    /// Its direction.
     pub direction: [f32; 3],
-    /// Least `t` that counts as a hit.
+    /// Minimum `t` that counts as a hit.
     pub t_min: f32,
-    /// Greatest `t` that counts as a hit; may be infinite.
+    /// Maximum `t` that counts as a hit; may be infinite.
     pub t_max: f32,
-    /// When it is sent, in seconds; asked by moving instances only.
+    /// The time of the ray, in seconds; only moving instances use it.
     pub time: f32,
-    /// The primitive that it leaves, which it therefore cannot hit: planes do not meet a line twice.
+    /// The primitive that the ray leaves, and therefore cannot hit: a line does not hit a plane twice.
     pub exclude: Primitive,
-    /// Which instances it can meet: those that share a bit with it.
+    /// Which instances it can hit: those that share a bit with it.
     pub mask: u32,
 }
 
 impl Ray {
-    /// A ray from `origin` that goes on for ever.
+    /// A ray from `origin` without an end.
     pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Ray {
         let (exclude, mask) = (Primitive::NONE, u32::MAX);
         Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0, exclude, mask }
@@ -40,7 +40,7 @@ impl Ray {
     }
 }
 
-/// Which triangle of which instance.
+/// A triangle of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Primitive {
     /// Index of the instance; 0 where there is only a mesh.
@@ -54,7 +54,7 @@ impl Primitive {
     pub const NONE: Primitive = Primitive { instance: u32::MAX, index: u32::MAX };
 }
 
-/// Where a ray meets a triangle.
+/// A hit of a ray on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray, in lengths of its direction.
@@ -75,20 +75,20 @@ impl Hit {
         Primitive { instance: self.instance, index: self.primitive }
     }
 
-    /// The point that was hit: `ray` is the one that was asked.
+    /// The hit point; `ray` is the ray of the query.
     pub fn point(&self, ray: &Ray) -> [f32; 3] {
         ray.at(self.t)
     }
 
-    /// The unit normal of the triangle that was hit, on the side from which its vertices run counter-clockwise, in the
-    /// space of its mesh; zero where the triangle has no area. Panics, as slices do, when the hit is of another mesh
-    /// that has more triangles.
+    /// The unit normal of the triangle that was hit, on the side from which its vertices run counter-clockwise, in
+    /// the space of its mesh; zero where the triangle has no area. Panics, as indexing a slice does, when the hit
+    /// comes from another mesh that has more triangles.
     pub fn normal(&self, mesh: &TriangleMesh) -> [f32; 3] {
         let [a, b, c] = mesh.triangles()[self.primitive as usize].map(|p| DVec3::from(p.map(f64::from)));
         (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array()
     }
 
-    /// The same hit, without zeros of negative sign.
+    /// The same hit, without negative zeros.
     pub(crate) fn with_positive_zeros(self) -> Hit {
         // Adding zero changes no number but -0.
         Hit { t: self.t + 0.0, u: self.u + 0.0, v: self.v + 0.0, ..self }
@@ -105,18 +105,18 @@ pub enum Culling {
     Back,
 }
 
-/// Says of a hit whether it counts: false lets the ray pass, as through the holes of a leaf that is drawn on a
-/// square. It must answer the same whenever it is asked of the same hit: structures look at hits in any order,
-/// some twice, and others not at all.
+/// Decides whether a hit counts: false lets the ray pass, as through the cut-out part of a leaf's opacity mask. It
+/// must give the same answer every time for the same hit: structures evaluate hits in any order, some of them twice,
+/// and others not at all.
 pub type Filter<'a> = &'a (dyn Fn(&Hit) -> bool + Sync);
 
-/// What is asked of a structure: the first two are part of the question. The switches below them change how much
-/// work an answer takes, never the answer; they are there so that what each saves can be measured.
+/// The options of a query: the first two are part of the question. The switches below them change how much work an
+/// answer takes, never the answer; they exist so that the saving of each can be measured.
 #[derive(Clone, Copy)]
 pub struct Query<'a> {
     /// Which side of triangles can be hit.
     pub culling: Culling,
-    /// Which hits count; all, where there is none.
+    /// Which hits count; without a filter, all do.
     pub filter: Option<Filter<'a>>,
     /// End the search at the first hit that nothing nearer can beat (on by default).
     pub early_out: bool,
@@ -132,17 +132,17 @@ impl Default for Query<'_> {
 }
 
 impl Query<'_> {
-    /// What most are asked: all hits count, and the search may end early.
+    /// The most common query: all hits count, and the search may end early.
     pub(crate) const PLAIN: Query<'static> =
         Query { culling: Culling::None, filter: None, early_out: true, cull_by_partition: true };
 
-    /// True of what asks no more than [`Query::PLAIN`].
+    /// True for a query that needs no more than [`Query::PLAIN`].
     #[inline(always)]
     pub(crate) fn is_plain(&self) -> bool {
         self.filter.is_none() && self.culling == Culling::None && self.early_out
     }
 
-    /// True when the filter lets a hit count.
+    /// True when the filter accepts a hit.
     #[inline(always)]
     pub(crate) fn keeps(&self, hit: &Hit) -> bool {
         self.filter.is_none_or(|filter| filter(hit))

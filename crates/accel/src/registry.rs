@@ -1,4 +1,4 @@
-//! The table of structures. To add one: a file with its `ENTRY`, and a line here.
+//! The table of structures. To add a structure, add a file with its `ENTRY`, and a line here.
 
 use crate::accelerator::Accelerator;
 use crate::cpu_level::CpuLevel;
@@ -7,7 +7,7 @@ use crate::{brute_force, brute_simd, bsp, bvh, bvh8, kd_tree};
 use bilux_math::registry::Entry;
 use std::sync::Arc;
 
-/// Every structure that there is.
+/// Every available structure.
 pub const ACCELERATORS: &[AcceleratorEntry] = &[
     brute_force::ENTRY,
     brute_simd::ENTRY,
@@ -27,11 +27,11 @@ pub const AUTO: &str = "bvh8";
 pub struct AcceleratorEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// Builds one.
+    /// Builds the structure.
     pub build: BuildFn,
 }
 
-/// How a structure is built.
+/// Type of the function that builds a structure.
 pub type BuildFn = fn(Arc<TriangleMesh>, &BuildOptions) -> Result<Box<dyn Accelerator>, BuildError>;
 
 /// Why a structure cannot be built.
@@ -46,30 +46,30 @@ pub enum BuildError {
     TooManyNodes,
 }
 
-/// What a builder may be told. Each looks only at what it knows.
+/// Options for builders. Each builder uses only those that it knows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BuildOptions {
     /// How `bsp` chooses its planes.
     pub bsp_split: BspSplit,
-    /// What `bsp` keeps together.
+    /// Whether `bsp` keeps objects together.
     pub bsp_group: BspGroup,
-    /// How much time a builder may take for a better structure.
+    /// How much time a builder may spend on a better structure.
     pub quality: Quality,
-    /// Which instructions kernels may use; the best that the machine has, unless told otherwise.
+    /// The instruction set that kernels may use; by default, the best that the machine supports.
     pub cpu_level: CpuLevel,
 }
 
-/// How much time a builder may take for a better structure. `bvh8` sorts along a curve, weighs cuts by area, or
-/// cuts triangles and moves subtrees too; `bsp-sah` weighs planes of any orientation for no partition, small ones, or
-/// larger ones too.
+/// How much time a builder may spend on a better structure. From lowest to highest, `bvh8` sorts along a
+/// space-filling curve, splits by the surface-area heuristic, or also cuts triangles and moves subtrees; `bsp-sah`
+/// evaluates planes of any orientation for no partition, for small ones, or for larger ones too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
-    /// Ready soon.
+    /// Fastest to build.
     Fast,
     /// Between the two.
     #[default]
     Balanced,
-    /// Cheapest to ask.
+    /// Fastest to query.
     Best,
 }
 
@@ -79,18 +79,18 @@ pub enum BspSplit {
     /// Through the average position, with the average orientation (the paper, section 3.2).
     #[default]
     Mean,
-    /// A polygon's own plane: of a few candidates, the one that cuts fewest others. [Fuchs 1983]
+    /// A polygon's own plane: of a few candidates, the one that cuts the fewest others. [Fuchs 1983]
     Fuchs,
 }
 
 impl BspSplit {
-    /// By the name that `bsp` lists for its parameter `bsp_split`.
+    /// The option with the name that `bsp` lists for its parameter `bsp_split`.
     pub fn from_name(name: &str) -> Option<BspSplit> {
         [("mean", BspSplit::Mean), ("fuchs", BspSplit::Fuchs)].into_iter().find_map(named(name))
     }
 }
 
-/// What the paper's tree keeps together.
+/// The units that the paper's tree keeps together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BspGroup {
     /// Single polygons (the paper, section 3.2).
@@ -101,14 +101,14 @@ pub enum BspGroup {
 }
 
 impl BspGroup {
-    /// By the name that `bsp` lists for its parameter `bsp_group`.
+    /// The option with the name that `bsp` lists for its parameter `bsp_group`.
     pub fn from_name(name: &str) -> Option<BspGroup> {
         [("polygons", BspGroup::Polygons), ("objects", BspGroup::Objects)].into_iter().find_map(named(name))
     }
 }
 
 impl Quality {
-    /// By the name that people type.
+    /// The option with the name used in settings.
     pub fn from_name(name: &str) -> Option<Quality> {
         let all = [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("best", Quality::Best)];
         all.into_iter().find_map(named(name))
@@ -122,7 +122,7 @@ fn named<T>(name: &str) -> impl Fn((&str, T)) -> Option<T> {
 /// Builds the structure of this name (`auto` is the fastest) over a mesh.
 ///
 /// # Errors
-/// When no structure has this name.
+/// Returns an error when no structure has this name.
 pub fn build(
     name: &str,
     mesh: Arc<TriangleMesh>,

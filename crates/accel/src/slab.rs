@@ -1,42 +1,43 @@
-//! The ray as boxes and axis-aligned planes see it: never past anything that the triangle test accepts.
+//! A ray as boxes and axis-aligned planes see it: conservative, so that it never misses what the triangle test
+//! accepts.
 //!
-//! Distances are counted along the greatest axis of the direction, `s = t · |d_kz|`, in units of
-//! the geometry, so that nothing here depends on the direction's length. The pad of the lemma in
-//! [`crate::triangle`] is folded into two origins, one for planes that let the ray in and one for those
-//! that let it out; it therefore costs nothing per box.
+//! Distances are measured along the dominant axis of the direction, `s = t · |d_kz|`, in units of the geometry, so
+//! that nothing here depends on the direction's length. The pad of the lemma in [`crate::triangle`] is folded into
+//! two origins, one for planes where the ray enters and one for those where it leaves; it therefore costs nothing per
+//! box.
 //!
-//! What the arithmetic here adds (rounding of the plane distances, the clamp of the inverse direction)
-//! is below 6 · 2⁻²⁴ of the distance to the box; the lemma's pad is twice what its proof asks for,
-//! which leaves 8. See `docs/adr/0002-one-answer.md`.
+//! The error that the arithmetic here adds (rounding of the plane distances, the clamp of the inverse direction) is
+//! below 6 · 2⁻²⁴ of the distance to the box; the lemma's pad is twice what its proof requires, which leaves 8. See
+//! `docs/adr/0002-one-answer.md`.
 
 use bilux_math::Aabb;
 
 /// A ray prepared for slab tests.
 #[derive(Clone, Copy, Debug)]
 pub struct SlabRay {
-    /// For each axis, the coordinate that distances to the plane where the ray comes in are taken from.
+    /// For each axis, the coordinate from which the distance to the entry plane is measured.
     pub enter_origin: [f32; 3],
-    /// The same for the plane where the ray goes out.
+    /// The same for the exit plane.
     pub leave_origin: [f32; 3],
-    /// `|d_kz| / d` for each axis; its size lies between 1 and 2⁴⁰.
+    /// `|d_kz| / d` for each axis; its magnitude lies between 1 and 2⁴⁰.
     pub inverse: [f32; 3],
-    /// For each axis, 1 when the ray comes in through the upper plane.
+    /// For each axis, 1 when the ray enters through the upper plane.
     pub enters_high: [usize; 3],
     /// No hit has an `s` below this.
     pub nearest: f32,
     /// `|d_kz|`.
     pace: f32,
-    /// What makes up for underflow, in `t` and in `s`. A normal number, since others are slow.
+    /// Compensates for underflow, in `t` and in `s`. A normal number, because denormals are slow.
     least: f32,
 }
 
-/// Directions closer than this to a plane are tilted to it: over any distance the tilt is far less than the pad.
+/// Directions closer to a plane than this are tilted: over any distance the tilt is far less than the pad.
 pub(crate) const STEEPEST: f32 = (1u64 << 40) as f32;
 
 /// One unit of f32 rounding.
 const UNIT: f32 = 1.0 / 16_777_216.0;
 
-/// For the roundings of the products below.
+/// Covers the roundings of the products below.
 pub(crate) const SLACK: f32 = 4.0 * UNIT;
 
 /// See [`SlabRay::limit`].
@@ -44,26 +45,26 @@ pub(crate) const SLACK: f32 = 4.0 * UNIT;
 pub(crate) fn limit_of(t: f32, pace: f32, least: f32) -> f32 {
     let s = t * pace;
     let limit = s + s.abs() * SLACK + least;
-    // Only infinities can have made what is not a number: they limit nothing.
+    // Only infinities can have produced a NaN: they limit nothing.
     smaller(limit, f32::INFINITY)
 }
 
-/// What makes up for underflow in [`limit_of`]: a normal number, since others are slow.
+/// Compensates for underflow in [`limit_of`]: a normal number, because denormals are slow.
 #[inline(always)]
 pub(crate) fn least_of(pace: f32) -> f32 {
     larger(pace, 1.0) * f32::MIN_POSITIVE
 }
 
 impl SlabRay {
-    /// For a ray whose origin and direction are finite and whose direction is not zero; `pad` is the
-    /// distance by which every box has to grow, see [`crate::triangle::PreparedRay::pad`].
+    /// Prepares a ray whose origin and direction are finite and whose direction is not zero; `pad` is the distance by
+    /// which every box has to grow, see [`crate::triangle::PreparedRay::pad`].
     #[inline]
     pub fn new(origin: [f32; 3], direction: [f32; 3], t_min: f32, pad: f32) -> SlabRay {
-        // A pad that is not a number comes from overflow: then nothing may be left out.
+        // A NaN pad comes from overflow: then nothing may be skipped.
         let pad = if pad < f32::INFINITY { pad } else { f32::INFINITY };
         let pace = direction[0].abs().max(direction[1].abs()).max(direction[2].abs());
         let inverse = direction.map(|d| (pace / d).clamp(-STEEPEST, STEEPEST));
-        // Two units of rounding more, so that the sums are beyond what they should be.
+        // Two more units of rounding, so that the sums are on the safe side.
         let beyond = origin.map(|o| pad + o.abs() * (2.0 * UNIT));
         let upper: [f32; 3] = std::array::from_fn(|k| origin[k] + beyond[k]);
         let lower: [f32; 3] = std::array::from_fn(|k| origin[k] - beyond[k]);
@@ -82,13 +83,13 @@ impl SlabRay {
         ray
     }
 
-    /// The least `s` that no hit at `t` or before can exceed.
+    /// The smallest `s` that no hit at `t` or before can exceed.
     #[inline]
     pub fn limit(&self, t: f32) -> f32 {
         limit_of(t, self.pace, self.least)
     }
 
-    /// Where the ray enters and leaves a box given as `[least, greatest]` corners; it misses the box when
+    /// The distances at which the ray enters and leaves a box given as `[min, max]` corners; it misses the box when
     /// the first exceeds the second.
     #[inline(always)]
     pub fn span(&self, planes: &[[f32; 3]; 2]) -> [f32; 2] {
@@ -105,8 +106,8 @@ impl SlabRay {
     }
 }
 
-/// The greater of two numbers in one instruction, unlike `f32::max`. With a NaN the result is `b`, so that a
-/// plane distance that is none either drops out or makes the whole comparison say nothing.
+/// The larger of two numbers in one instruction, unlike `f32::max`. With a NaN the result is `b`, so a NaN plane
+/// distance either drops out or makes the whole comparison reject nothing.
 #[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

@@ -1,34 +1,34 @@
 //! The one triangle test that all structures share.
 //!
-//! The test is that of Woop, Benthin and Wald: shear space so that the ray becomes the z axis, then look
-//! on which side of it the three edges lie [Woop 2013]. Two changes make it exact enough to prune by:
+//! The test is that of Woop, Benthin and Wald: shear space so that the ray becomes the z axis, then find on which
+//! side of it the three edges lie [Woop 2013]. Two changes make it exact enough to prune by:
 //!
-//! - Signs are first taken in f32 without fused operations. Rounding is monotone, so a sign that comes
-//!   out strict is the true one; only zeros (and overflows) are undecided.
-//! - Whatever those signs do not reject is evaluated in f64, where a product of two f32 is exact. Signs
-//!   are then all true, and `t`, `u`, `v` have a relative error of about 2⁻⁵⁰ before they are rounded.
+//! - Signs are first computed in f32 without fused operations. Rounding is monotone, so a strictly positive or
+//!   negative result has the true sign; only zeros (and overflows) are undecided.
+//! - Whatever those signs do not reject is evaluated in f64, where a product of two f32 is exact. All signs are then
+//!   true, and `t`, `u`, `v` have a relative error of about 2⁻⁵⁰ before they are rounded.
 //!
-//! # The lemma that pruning rests on
-//! Let `far` be the greatest distance, on any axis, from the ray's origin to a vertex. If the test accepts
-//! a triangle at `t`, then the point `origin + t · direction` lies within `16 · 2⁻²⁴ · far` of some point
-//! of that triangle, on every axis. So a structure that grows its boxes, or moves its planes, by
-//! [`PreparedRay::pad`] never leaves out a triangle that the test would accept. The proof, which is the
-//! sum of the roundings of the shear, stands in `docs/adr/0002-one-answer.md`.
+//! # The lemma behind pruning
+//! Let `far` be the maximum distance, on any axis, from the ray's origin to a vertex. If the test accepts a triangle
+//! at `t`, then the point `origin + t · direction` lies within `16 · 2⁻²⁴ · far` of some point of that triangle, on
+//! every axis. So a structure that enlarges its boxes, or moves its planes, by [`PreparedRay::pad`] never skips a
+//! triangle that the test would accept. The proof, which sums the roundings of the shear, is in
+//! `docs/adr/0002-one-answer.md`.
 //!
-//! Two triangles that share an edge see the same sheared vertices, hence opposite signs there: no ray
-//! passes between them.
+//! Two triangles that share an edge see the same sheared vertices, and hence opposite signs there: no ray passes
+//! between them.
 
 use crate::ray::{Culling, Hit, Query, Ray};
 use bilux_math::Aabb;
 
-/// A ray with what the triangle test needs of it, computed once.
+/// A ray with the values that the triangle test needs, computed once.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedRay {
     /// The ray itself.
     pub ray: Ray,
-    /// Which axes of space are x, y and z of sheared space; z is the greatest of the direction.
+    /// Which axes of space are x, y and z of sheared space; z is the dominant axis of the direction.
     pub(crate) axes: [usize; 3],
-    /// How far x and y lean along z.
+    /// The shear of x and y along z.
     pub(crate) shear: [f32; 2],
 }
 
@@ -66,8 +66,8 @@ impl PreparedRay {
         Some(PreparedRay { ray: *ray, axes: [kx, ky, kz], shear: [d[kx] / d[kz], d[ky] / d[kz]] })
     }
 
-    /// How far every box and plane must be moved outwards so that nothing which the triangle test would
-    /// accept is left out; `bounds` holds all vertices in question. See the lemma above.
+    /// How far every box and plane must be moved outwards so that nothing which the triangle test would accept is
+    /// skipped; `bounds` holds all vertices in question. See the lemma above.
     #[inline]
     pub fn pad(&self, bounds: &Aabb) -> f32 {
         let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
@@ -78,8 +78,8 @@ impl PreparedRay {
         far * PAD + f32::MIN_POSITIVE
     }
 
-    /// Where the line of the ray crosses a triangle, ends of the ray not looked at; `None` where it passes by,
-    /// and for triangles without area as the ray sees them.
+    /// Intersects the infinite line of the ray with a triangle and ignores the ray's ends; `None` where the line
+    /// misses, and for triangles that the ray sees edge-on or without area.
     #[inline(always)]
     pub fn cross(&self, triangle: &[[f32; 3]; 3]) -> Option<Crossing> {
         let [ax, ay, az] = self.shear(&triangle[0]);
@@ -115,7 +115,7 @@ impl PreparedRay {
             return None;
         }
         let det = u + v + w;
-        // Written so that a determinant that is not a number is refused too.
+        // Written so that a NaN determinant is rejected too.
         if !(det.abs() > 0.0 && det.is_finite()) {
             return None;
         }
@@ -130,25 +130,25 @@ impl PreparedRay {
     }
 }
 
-/// 16 units of f32 rounding: twice what the proof asks for.
+/// 16 units of f32 rounding: twice what the proof requires.
 pub(crate) const PAD: f32 = 16.0 / 16_777_216.0;
 
 /// The nearest hit so far.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearest {
-    /// No hit beyond this counts any more. Prune with `entry > t`, never `>=`: ties go to the lowest primitive.
+    /// Hits beyond this no longer count. Prune with `entry > t`, never `>=`: ties go to the lowest primitive.
     pub t: f32,
     hit: Option<Hit>,
 }
 
 impl Nearest {
-    /// Nothing hit yet.
+    /// No hit yet.
     #[inline]
     pub fn new(ray: &Ray) -> Nearest {
         Nearest { t: ray.t_max, hit: None }
     }
 
-    /// Tests a triangle and keeps its hit if it is nearer, or as near and of a lower index.
+    /// Tests a triangle and keeps its hit if it is nearer, or equally near with a lower index.
     #[inline(always)]
     pub fn test(&mut self, ray: &PreparedRay, query: &Query, triangle: &[[f32; 3]; 3], primitive: u32) {
         if let Some(crossing) = ray.cross(triangle) {
@@ -156,7 +156,7 @@ impl Nearest {
         }
     }
 
-    /// The rules of [`Nearest::test`] for a crossing that is known already.
+    /// Applies the rules of [`Nearest::test`] to a crossing that is already known.
     #[inline]
     pub fn offer(&mut self, ray: &PreparedRay, query: &Query, crossing: Crossing, primitive: u32) {
         let Some(found) = counts(ray, query, &crossing, primitive, self.t) else { return };
@@ -184,8 +184,7 @@ pub fn hits(ray: &PreparedRay, query: &Query, triangle: &[[f32; 3]; 3], primitiv
         .is_some_and(|hit| query.keeps(&hit))
 }
 
-/// The hit, when a crossing is between the ends of the ray that count, and on a side that does. The filter
-/// is not asked.
+/// The hit, if a crossing is between the ray's ends, and on a side that counts. The filter is not evaluated.
 #[inline(always)]
 fn counts(ray: &PreparedRay, query: &Query, crossing: &Crossing, primitive: u32, t_max: f32) -> Option<Hit> {
     let Crossing { t, u, v, back } = *crossing;

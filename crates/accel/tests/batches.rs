@@ -1,4 +1,4 @@
-//! A batch gives each of its rays the hit that it gets alone, bit for bit, whatever else is in the batch.
+//! In a batch, each ray gets the same hit as on its own, bit for bit, whatever else is in the batch.
 
 mod support;
 
@@ -7,13 +7,13 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use support::{Numbers, bits, build_variant, meshes, queries, rays, variants};
 
-/// Around the sizes that kernels like.
+/// Lengths around the kernels' group sizes.
 const LENGTHS: [usize; 9] = [0, 1, 3, 15, 16, 17, 64, 255, 1000];
 
-/// What stands where nothing is to be written.
+/// Marks elements that must not be written.
 const UNTOUCHED: Hit = Hit { t: -7.0, u: 0.0, v: 0.0, primitive: 7, instance: 7 };
 
-/// As a camera sends them, tile by tile: alike, but for a few that are not.
+/// Rays as a camera sends them, tile by tile: coherent, except for a few.
 fn camera(eye: [f32; 3], target: [f32; 3], spread: f32, count: usize, seed: u64) -> Vec<Ray> {
     let mut numbers = Numbers::new(seed);
     let one = |i: usize| {
@@ -73,7 +73,7 @@ fn check(name: &str, tree: &dyn Accelerator, rays: &[Ray], query: &Query) {
         let batch = &rays[from..rays.len().min(from + length)];
         let alone = &alone[from..from + batch.len()];
         from = (from + 29) % 400.min(rays.len());
-        // As many places as rays, fewer, more.
+        // As many elements as rays, fewer, more.
         for places in [batch.len(), batch.len() / 2, batch.len() + 5] {
             let mut hits = vec![Some(UNTOUCHED); places];
             tree.closest_hits(batch, query, &mut hits);
@@ -94,7 +94,7 @@ fn check(name: &str, tree: &dyn Accelerator, rays: &[Ray], query: &Query) {
     }
 }
 
-/// Structures with a batch of their own are asked everything; to the others there is nothing but a loop.
+/// Structures with their own batch traversal get every query; the others only loop.
 fn check_kinds(
     name: &str,
     tree: &dyn Accelerator,

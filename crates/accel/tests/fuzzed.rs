@@ -1,5 +1,5 @@
-//! Every structure agrees on any bytes, a mesh and rays made of them: seeds, and as many at random as there is time for.
-//! `fuzz/run.sh rays` goes on from here.
+//! Every structure agrees on a mesh and rays made from arbitrary bytes: the fuzzer's seeds, and as many random ones
+//! as time allows. `fuzz/run.sh rays` continues from here.
 
 #[path = "support/fuzzed.rs"]
 mod fuzzed;
@@ -28,7 +28,7 @@ fn every_structure_agrees_on_random_bytes() {
             let len = 200 + hash_words([seed, 0]) % 1500;
             let byte = |i: u64| {
                 let byte = hash_words([seed, i, 1]) as u8;
-                // Numbers on the lattice more often, or little would be hit.
+                // Numbers on the lattice are made more frequent, or few rays would hit anything.
                 if seed % 4 > 0 && hash_words([seed, i, 2]) % 16 > 0 { byte & 127 } else { byte }
             };
             fuzzed::agree(&(0..len).map(byte).collect::<Vec<u8>>())

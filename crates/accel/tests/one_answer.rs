@@ -1,4 +1,4 @@
-//! Every structure gives the hits of `brute`, bit for bit, on what has hurt ray tracers.
+//! Every structure gives the hits of `brute`, bit for bit, on input that has broken ray tracers.
 
 mod support;
 
@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use support::{Truth, build_variant, meshes, rays, variants};
 
-/// Rays for each mesh; each is asked in eight ways or so.
+/// Rays per mesh; each is queried in about eight variants.
 const RAYS: usize = 400;
 
 #[test]
@@ -93,7 +93,7 @@ fn a_wide_tree_is_fitted_to_no_other_mesh() {
     let mut tree = Bvh8::new(&mesh(broken.clone()), &BuildOptions::default()).expect("few");
     assert_eq!(tree.refit(&mesh(broken)), Ok(()));
     assert_eq!(tree.refit(&mesh(vec![one; 9])), Err(RefitError::OtherTriangles(4)));
-    // Two crossing blades among many small triangles are worth a cut.
+    // Two crossing blades among many small triangles, where a cut is worthwhile.
     let blades = [
         [[0.0, 0.0, 0.0], [9.0, 9.0, 9.0], [9.0, 9.1, 9.0]],
         [[9.0, 0.0, 0.0], [0.0, 9.0, 9.0], [0.0, 9.1, 9.0]],

@@ -1,4 +1,4 @@
-//! What a tree can be asked besides rays, and trees as files.
+//! Queries on a tree other than ray queries, and trees as files.
 
 mod support;
 
@@ -16,7 +16,7 @@ fn of(p: [f32; 3]) -> DVec3 {
     DVec3::from(p.map(f64::from))
 }
 
-/// Walks downhill over a triangle by many small steps of its weights: slow, and another way than the library's.
+/// Walks downhill over a triangle in many small steps of its weights: slow, and independent of the library's method.
 fn distance_by_search(at: DVec3, triangle: &[[f32; 3]; 3]) -> f64 {
     let [a, b, c] = triangle.map(of);
     let distance = |u: f64, v: f64| at.distance(a + (b - a) * u + (c - a) * v);
@@ -109,7 +109,7 @@ fn boxes_are_touched_by_the_triangles_that_they_hold_and_cut() {
         }
         assert!(tree.overlapping([1.0; 3], [-1.0; 3]).is_empty(), "{name}: a box inside out holds nothing");
     }
-    // Across a corner of the box, but beside it.
+    // Passes a corner of the box without touching it.
     let slanted = vec![[[2.2, 0.0, 0.0], [0.0, 2.2, 0.0], [0.0, 2.2, 5.0]]];
     let tree = tree(&TriangleMesh::from_corners(slanted).expect("one"));
     assert!(tree.overlapping([-1.0; 3], [1.0; 3]).is_empty());
@@ -137,7 +137,7 @@ fn a_tree_that_was_saved_gives_the_same_hits_loaded_and_mapped() {
 
 #[allow(unsafe_code, reason = "the test is alone with its file")]
 fn map(path: &std::path::Path) -> Result<Bvh8, StorageError> {
-    // SAFETY: nobody else knows the file.
+    // SAFETY: no other process knows the file.
     unsafe { Bvh8::map(path) }
 }
 

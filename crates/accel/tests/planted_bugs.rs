@@ -1,4 +1,4 @@
-//! Structures with a mistake in them, each of which the harness must find.
+//! Structures with a deliberate mistake, each of which the harness must detect.
 
 mod support;
 
@@ -11,14 +11,14 @@ use bilux_math::Aabb;
 use std::sync::Arc;
 use support::{Truth, build_variant, closed, meshes, rays};
 
-/// Boxes around four triangles each, one after the other, with what may be wrong about them.
+/// Boxes around four triangles each, one after the other, with optional mistakes.
 struct Boxes {
     mesh: Arc<TriangleMesh>,
-    /// 1 is right.
+    /// Factor on the pad; 1 is correct.
     pad: f32,
-    /// Part of each box's size that is cut off every side; 0 is right.
+    /// Fraction of each box's size that is cut off on every side; 0 is correct.
     shrink: f32,
-    /// False is right.
+    /// False is correct.
     prunes_ties: bool,
 }
 
@@ -89,7 +89,7 @@ fn pruning_what_is_as_near_is_found() {
     assert!(differences(|mesh| Boxes { mesh, pad: 1.0, shrink: 0.0, prunes_ties: true }) > 0);
 }
 
-/// A loop over all triangles with a test of one's own.
+/// A loop over all triangles with its own triangle test.
 struct Loop<F>(Arc<TriangleMesh>, F);
 
 impl<F: Fn(&mut Nearest, &PreparedRay, &Query, &[[f32; 3]; 3], u32) + Send + Sync> Traverse for Loop<F> {
@@ -157,7 +157,7 @@ fn crossed_by_fused_edges(ray: &Ray, triangle: &[[f32; 3]; 3]) -> Option<Crossin
     (det != 0.0).then_some(Crossing { t, u: v / det, v: w / det, back: false })
 }
 
-/// Rays out of those from inside a closed mesh that hit nothing by this test.
+/// The number of rays from inside a closed mesh that hit nothing by this test.
 fn leaks(test: impl Fn(&Ray, &[[f32; 3]; 3]) -> Option<Crossing>) -> usize {
     let closed = closed::all();
     let of = |closed: &closed::Closed| {

@@ -1,4 +1,4 @@
-//! Spheres and their kin: a tree finds what a loop finds, and formulas hold.
+//! Spheres and other primitives: a tree finds what a loop finds, and the formulas hold.
 
 mod support;
 
@@ -44,7 +44,7 @@ fn random_shape(numbers: &mut Numbers, scale: f32) -> Shape {
     }
 }
 
-/// A loop over all, by the trait alone.
+/// A loop over all shapes, using the trait alone.
 fn closest_by_loop(shapes: &Vec<Shape>, ray: &Ray, query: &Query) -> Option<Hit> {
     let mut nearest: Option<Hit> = None;
     for primitive in 0..Primitives::len(shapes) as u32 {
@@ -90,7 +90,7 @@ fn a_tree_finds_what_a_loop_finds() {
                     }
                     let Some(hit) = tree.closest_hit(&ray, &plain) else { break };
                     hits += 1;
-                    // On from there, in another direction.
+                    // A second ray from there, in another direction.
                     let exclude = hit.primitive();
                     ray = Ray { exclude, ..Ray::new(ray.at(hit.t), numbers.vector().map(|x| x * scale)) };
                     if step == 1 {
@@ -120,7 +120,7 @@ fn no_ray_leaves_a_sphere_unseen_and_none_meets_it_twice_at_its_start() {
                 assert!(
                     tree.closest_hit(&ray, &Query { culling: Culling::Back, ..Query::default() }).is_none()
                 );
-                // From the surface, whatever its rounding: outwards nothing, inwards the far side.
+                // From the surface, whatever its rounding: an outward ray hits nothing, an inward ray the far side.
                 let p = ray.at(hit.t);
                 let out: [f32; 3] = std::array::from_fn(|k| p[k] - centre[k]);
                 let leave = |direction| Ray {
@@ -150,7 +150,7 @@ fn hits_lie_where_the_formulas_say() {
     assert_eq!(all(Shape::Cone(cylinder)), [(4.0, 0.375), (6.0, 0.375)]);
     let cone = Cone { ends: [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], radii: [2.0, 0.0] };
     assert_eq!(all(Shape::Cone(cone)), [(4.5, 0.5), (5.5, 0.5)]);
-    // A round end, the side, and one that is a ball.
+    // A round end, the side, and a capsule that is a sphere.
     let capsule = Capsule { ends: [[0.0, -1.0, 0.0], [0.0, 3.0, 0.0]], radius: 2.0 };
     assert_eq!(all(Shape::Capsule(capsule)), [(4.0, 0.375), (6.0, 0.375)]);
     let below = Capsule { ends: [[0.0, -2.5, 0.0], [0.0, -2.5, 0.0]], radius: 5.0 };
@@ -159,7 +159,7 @@ fn hits_lie_where_the_formulas_say() {
     assert_eq!(all(Shape::Capsule(end)), [(3.0, 1.0), (7.0, 1.0)]);
     let along = Capsule { ends: [[0.0, 0.5, 0.0], [0.0, 0.5, 4.0]], radius: 1.0 };
     assert_eq!(all(Shape::Capsule(along)), [(2.5, 1.0), (5.5, 0.0)]);
-    // Beyond the tip there would be the other half.
+    // The other half of the double cone would lie beyond the apex.
     assert_eq!(all(Shape::Cone(Cone { ends: [[0.0, -1.5, 0.0], [0.0, 0.0, 0.0]], radii: [3.0, 0.0] })), []);
     // A paraboloid z = x² + y².
     let bowl = Quadric {
@@ -173,7 +173,7 @@ fn hits_lie_where_the_formulas_say() {
     assert_eq!(all(Shape::Curve(Curve::new(straight, [0.1, 0.1]))), [(4.5, 0.5)]);
 }
 
-/// The part of rays through a square, all along z, that are hit; the square is `[-1, 1]²`.
+/// The fraction of rays through a square, all along z, that hit something; the square is `[-1, 1]²`.
 fn coverage(shapes: Vec<Shape>) -> f64 {
     let (tree, side) = (PrimitiveTree::new(shapes), 700);
     let place = |i: usize| (i as f32 + 0.5) / side as f32 * 2.0 - 1.0;
@@ -191,13 +191,13 @@ fn areas_are_those_of_the_shadows() {
     };
     let circle = std::f64::consts::PI / 4.0;
     close(coverage(vec![Shape::Sphere(Sphere { centre: [0.0; 3], radius: 0.8 })]), circle * 0.64);
-    // A disc seen at 60 degrees shows half of itself.
+    // A disc seen at 60 degrees covers half of its area.
     let normal = [0.75f32.sqrt(), 0.0, 0.5];
     close(coverage(vec![Shape::Disc(Disc { centre: [0.0; 3], normal, radius: 0.8 })]), circle * 0.32);
-    // A cone lying down: a triangle.
+    // A cone lying on its side: a triangle.
     let cone = Cone { ends: [[-0.8, 0.0, 0.0], [0.8, 0.0, 0.0]], radii: [0.5, 0.0] };
     close(coverage(vec![Shape::Cone(cone)]), 1.6 * 0.5 / 4.0);
-    // Half a circle of radius 0.7 as two Bézier curves, and their length times their width; in one piece or nine.
+    // Half a circle of radius 0.7 as two Bézier curves, with its length times its width; in one piece or nine.
     let k = 0.7 * 0.552_284_8;
     let arcs = [
         [[0.7, 0.0, 0.0], [0.7, k, 0.0], [k, 0.7, 0.0], [0.0, 0.7, 0.0]],
@@ -289,7 +289,7 @@ fn a_capsule_is_met_where_its_surface_is_and_not_again_at_the_start() {
         hits += 1;
         let p = ray.at(hit.t);
         assert!((distance(p) - f64::from(capsule.radius)).abs() < 1e-5, "{capsule:?} {ray:?}");
-        // On through it: the far side, or nothing where the ray only grazes it.
+        // A ray through it: it hits the far side, or nothing if it only grazes the surface.
         let on = Ray { exclude: hit.primitive(), t_min: 0.0, ..Ray::new(p, ray.direction) };
         if let Some(far) = tree.closest_hit(&on, &Query::default()) {
             across += 1;

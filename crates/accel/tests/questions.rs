@@ -1,4 +1,4 @@
-//! What can be asked besides the nearest hit: with a filter, with a mask, for all hits along the ray.
+//! Queries other than the closest hit: with a filter, with a mask, and for all hits along the ray.
 
 mod support;
 
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use support::{SIEVE, build_variant, meshes, rays, variants};
 
-/// By the triangle test alone, and by sorting.
+/// By the triangle test alone, and sorting.
 fn all_hits_by_hand(mesh: &TriangleMesh, ray: &Ray, query: &Query) -> Vec<Hit> {
     let Some(prepared) = PreparedRay::new(ray) else { return Vec::new() };
     let mut hits: Vec<Hit> = (0..)
@@ -62,7 +62,7 @@ fn behind(i: u32) -> Transform {
     Transform::from_matrix(matrix).expect("a shift can be undone")
 }
 
-/// Squares one behind the other, at z = 0, -1 and -2, each with its own bit.
+/// Squares one behind the other, at z = 0, -1 and -2, each with its own mask bit.
 fn stack(top: TopLevel) -> TwoLevel {
     let square = square(0.0);
     let instance =

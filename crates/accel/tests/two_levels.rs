@@ -1,4 +1,4 @@
-//! Instances found by a tree give the hits of instances looked at one by one, bit for bit.
+//! Instances found by a tree give the same hits as instances tested one by one, bit for bit.
 
 mod support;
 
@@ -56,7 +56,7 @@ fn motion(numbers: &mut Numbers) -> Motion {
     }
 }
 
-/// Rays at the world's own scale and at that of what is in it, at any time.
+/// Rays at the world's own scale and at that of its contents, at any time.
 fn world_rays(around: &TriangleMesh, seed: u64) -> Vec<Ray> {
     let mut numbers = Numbers::new(seed + 500);
     let mut rays = rays::nasty(around, 120, seed);

@@ -1,4 +1,4 @@
-//! Every exact algorithm sees what rays see.
+//! Every exact algorithm gives the image of ray casting.
 
 use bilux_accel::visibility::{
     BACKGROUND, VISIBILITY, View, VisibilityOptions, VisibilityResult, visibility, wrong_pixels,
@@ -34,7 +34,7 @@ fn soup(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
     (0..count).map(|_| triangle()).collect()
 }
 
-/// A closed surface around the y axis, its tube 0.6 thick.
+/// A closed surface around the y axis, with a tube 0.6 thick.
 fn torus(radius: f32, around: usize, across: usize, offset: [f32; 3]) -> Vec<Triangle> {
     let point = |i: usize, j: usize| {
         let (a, b) = ((i % around) as f32 / around as f32 * TAU, (j % across) as f32 / across as f32 * TAU);
@@ -58,7 +58,7 @@ fn floor(height: f32, half: f32) -> Vec<Triangle> {
     vec![[a, b, c], [a, c, d]]
 }
 
-/// Three bars, each over the next.
+/// Three bars that overlap in a cycle.
 fn cycle() -> Vec<Triangle> {
     (0..3)
         .map(|k| {
@@ -98,8 +98,8 @@ fn check_with(what: &str, view: &View, mesh: &TriangleMesh, options: &Visibility
     reference.iter().filter(|&&id| id != BACKGROUND).count()
 }
 
-/// Holds all exact algorithms against rays, with and without culling, switches on and off. Answers how many
-/// pixels saw anything, back faces included.
+/// Compares all exact algorithms with ray casting, with and without culling, with switches on and off. Returns the
+/// number of pixels in which anything is visible, back faces included.
 fn check(what: &str, view: &View, triangles: Vec<Triangle>) -> usize {
     let mesh = mesh(triangles);
     let back = VisibilityOptions { culling: Culling::Back, ..VisibilityOptions::default() };
@@ -123,8 +123,8 @@ fn random_triangles() {
     }
 }
 
-/// Corners on a grid, so that edges run through pixel centres, surfaces fold onto themselves and planes through the
-/// eye; sizes and places of every kind.
+/// Corners on a grid, so that edges run through pixel centres, surfaces fold onto themselves, and planes pass through
+/// the eye; sizes and positions of every kind.
 fn nasty(seed: u64) -> (Option<View>, Vec<Triangle>) {
     let mut numbers = Numbers(seed << 20);
     let mut pick = |choices: &[f32]| {
@@ -212,8 +212,8 @@ fn a_cycle_of_three() {
 
 #[test]
 fn a_cycle_that_no_plane_of_its_own_cuts() {
-    // Thin bars along skew lines. The plane of each also holds the direction of the next, which therefore
-    // lies wholly behind it.
+    // Thin bars along skew lines. The plane of each also contains the direction of the next, which therefore lies
+    // wholly behind it.
     let bars = cycle();
     let direction = |t: &Triangle| -> [f32; 3] { std::array::from_fn(|axis| t[2][axis] - t[0][axis]) };
     let tilted = (0..3)
@@ -343,7 +343,7 @@ fn order_spares_depth_comparisons() {
 
 #[test]
 fn too_many_pieces_are_left_to_depth() {
-    // Each of these crosses most of the others.
+    // Each of these triangles intersects most of the others.
     let (mesh, view) = (mesh(soup(1500, 1.5, 6)), view_from([0.3, 0.4, 4.0], 24));
     let reference = run("z-buffer", &view, &mesh).ids;
     for row in VISIBILITY.iter().filter(|row| row.exact) {

@@ -1,4 +1,4 @@
-//! Rays from inside closed meshes always hit. A share of what `cargo run --release --example leak_hunt` does.
+//! Rays from inside closed meshes always hit: a fraction of what `cargo run --release --example leak_hunt` does.
 
 mod support;
 

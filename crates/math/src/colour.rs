@@ -1,4 +1,4 @@
-//! Linear Rec. 709 colour, and sRGB at the edges.
+//! Linear Rec. 709 colour, and sRGB for input and output.
 
 use crate::transcendental::powf;
 use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Sub};
@@ -21,7 +21,7 @@ impl Rgb {
     /// One in every channel.
     pub const WHITE: Rgb = Rgb::grey(1.0);
 
-    /// From three channels.
+    /// Creates a colour from three channels.
     pub const fn new(r: f32, g: f32, b: f32) -> Rgb {
         Rgb { r, g, b }
     }
@@ -31,12 +31,12 @@ impl Rgb {
         Rgb { r: value, g: value, b: value }
     }
 
-    /// From an array in the order red, green, blue.
+    /// Creates a colour from an array in the order red, green, blue.
     pub const fn from_array(c: [f32; 3]) -> Rgb {
         Rgb { r: c[0], g: c[1], b: c[2] }
     }
 
-    /// As an array in the order red, green, blue.
+    /// Converts to an array in the order red, green, blue.
     pub const fn to_array(self) -> [f32; 3] {
         [self.r, self.g, self.b]
     }
@@ -47,7 +47,7 @@ impl Rgb {
         0.2126 * self.r + 0.7152 * self.g + 0.0722 * self.b
     }
 
-    /// The greatest channel.
+    /// The maximum channel.
     #[inline]
     pub fn max_channel(self) -> f32 {
         self.r.max(self.g).max(self.b)
@@ -59,25 +59,25 @@ impl Rgb {
         self == Rgb::BLACK
     }
 
-    /// True when no channel is infinite or not a number.
+    /// True when no channel is infinite or NaN.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.r.is_finite() && self.g.is_finite() && self.b.is_finite()
     }
 
-    /// A function of every channel.
+    /// Applies a function to every channel.
     #[inline]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Rgb {
         Rgb::new(f(self.r), f(self.g), f(self.b))
     }
 
-    /// Every channel held within `low..=high`.
+    /// Clamps every channel to `low..=high`.
     #[inline]
     pub fn clamp(self, low: f32, high: f32) -> Rgb {
         self.map(|c| c.clamp(low, high))
     }
 
-    /// `self` at 0, `other` at 1.
+    /// Linear interpolation: `self` at 0, `other` at 1.
     #[inline]
     pub fn lerp(self, other: Rgb, t: f32) -> Rgb {
         self * (1.0 - t) + other * t
@@ -162,7 +162,7 @@ pub fn srgb_decode(encoded: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// By hand from the standard: a curve that both ways share would come back as well.
+    /// Values computed by hand from the standard: an error common to both directions would pass a round trip.
     #[test]
     fn srgb_is_the_curve_of_the_standard() {
         for (encoded, linear) in [(0.02, 0.001_548), (0.5, 0.214_041), (188.0 / 255.0, 0.502_886), (1.0, 1.0)]

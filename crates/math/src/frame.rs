@@ -14,7 +14,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame around a unit normal, without a branch that could seam. [Duff 2017]
+    /// A frame around a unit normal, computed without a branch that could leave a seam. [Duff 2017]
     #[inline]
     pub fn from_normal(n: Vec3) -> Frame {
         let sign = 1f32.copysign(n.z);
@@ -27,8 +27,8 @@ impl Frame {
         }
     }
 
-    /// The same frame turned about its normal, so that its x axis is as near to `tangent` as may be; as it was where
-    /// the tangent is along the normal or zero.
+    /// The same frame rotated about its normal, so that its x axis is as close to `tangent` as possible; unchanged
+    /// where the tangent is along the normal or zero.
     #[inline]
     pub fn along(self, tangent: Vec3) -> Frame {
         match (tangent - self.n * tangent.dot(self.n)).try_normalize() {
@@ -37,20 +37,20 @@ impl Frame {
         }
     }
 
-    /// World direction to local.
+    /// Transforms a world direction to local.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.s), v.dot(self.t), v.dot(self.n))
     }
 
-    /// Local direction to world.
+    /// Transforms a local direction to world.
     #[inline]
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.s * v.x + self.t * v.y + self.n * v.z
     }
 }
 
-/// `wo` mirrored about `n`, both unit and both away from the surface.
+/// `wo` reflected about `n`; both are unit vectors pointing away from the surface.
 #[inline]
 pub fn reflect(wo: Vec3, n: Vec3) -> Vec3 {
     n * (2.0 * wo.dot(n)) - wo
@@ -86,7 +86,7 @@ mod tests {
             let tangent = Vec3::new(0.5, 2.0, -1.0);
             let turned = frame.along(tangent);
             assert_right_handed(&turned, n);
-            // Of all directions across the normal this is the nearest one.
+            // Of all directions perpendicular to the normal, this is the closest one.
             let across = (tangent - n * n.dot(tangent)).normalize();
             assert!((turned.s - across).length() < 1e-4, "{n}: {turned:?}");
             assert_eq!(frame.along(Vec3::ZERO).s, frame.s);

@@ -1,7 +1,7 @@
 //! The mathematics under Bilux: vectors, boxes, frames, transforms, colour, warps, distributions.
 //!
-//! Nothing here knows what a scene is. Sampling routines come in triplets (`sample_x`, `x_pdf_…`, and
-//! the inverse where it exists) so that each can be tested against the others without any luck.
+//! Nothing here knows what a scene is. Sampling routines come in triplets (`sample_x`, `x_pdf_…`, and the inverse
+//! where it exists) so that each can be tested against the others deterministically.
 
 pub mod aabb;
 pub mod colour;

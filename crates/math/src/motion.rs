@@ -6,38 +6,38 @@ use glam::{DMat3, DMat4, DQuat, DVec3, Quat, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// A transform for every moment. Between keys, translation and scale go along straight lines and rotation
-/// along the shorter great arc at constant speed [Shoemake 1985]; before the first and after the last
-/// key everything rests.
+/// A transform as a function of time. Between keys, translation and scale are interpolated linearly, and rotation
+/// along the shorter great arc at constant speed [Shoemake 1985]; before the first and after the last key the
+/// transform is constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     course: Course,
 }
 
-/// Where something is at one moment.
+/// The pose of an object at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionKey {
-    /// When, in seconds.
+    /// Time of the key, in seconds.
     pub time_seconds: f32,
     /// Applied last.
     pub translation: Vec3,
-    /// Applied second; of any length but zero.
+    /// Applied second; of any non-zero length.
     pub rotation: Quat,
     /// Applied first; no component may be zero.
     pub scale: Vec3,
 }
 
-/// Shared by its copies: a scene of a million instances has each several times.
+/// Shared between copies: a scene of a million instances holds each one several times.
 #[derive(Clone, PartialEq)]
 enum Course {
     /// The identity, to the bit.
     Rest,
     Still(Arc<Transform>),
-    /// Two poses at least, in order of time.
+    /// At least two poses, in order of time.
     Keys(Arc<Vec<Pose>>),
 }
 
-/// The identity is written as every transform is: fingerprints of films are made of this.
+/// Formats the identity like any other transform: film fingerprints are computed from this text.
 impl fmt::Debug for Course {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -57,18 +57,18 @@ struct Pose {
     scale: DVec3,
 }
 
-/// Scales and translations beyond this (2⁶⁰), and scales below its inverse, are refused, so that every
-/// matrix on the way and its inverse are finite in f32.
+/// Scales and translations beyond this (2⁶⁰), and scales below its inverse, are rejected, so that every interpolated
+/// matrix and its inverse are finite in f32.
 const EXTREME: f64 = (1u64 << 60) as f64;
 
-/// Pieces that a segment is sampled in for its bounds.
+/// Number of pieces in which a segment is sampled for its bounds.
 const PIECES: usize = 16;
 
 impl Motion {
-    /// No motion at all, where it was made.
+    /// No motion, and the identity transform.
     pub const REST: Motion = Motion { course: Course::Rest };
 
-    /// No motion at all.
+    /// No motion, with a constant transform.
     pub fn still(transform: Transform) -> Motion {
         let bits =
             |t: &Transform| [*t.matrix(), *t.inverse_matrix()].map(|m| m.to_cols_array().map(f32::to_bits));
@@ -78,7 +78,7 @@ impl Motion {
         Motion { course: Course::Still(Arc::new(transform)) }
     }
 
-    /// The transform of what has no keys, for all times.
+    /// The transform, if it has no keys and so is the same at all times.
     #[inline]
     pub fn resting(&self) -> Option<&Transform> {
         match &self.course {
@@ -88,7 +88,7 @@ impl Motion {
         }
     }
 
-    /// Bytes that it holds beside its own, shared with its copies.
+    /// Bytes that it holds on the heap, shared with its copies.
     pub fn heap_bytes(&self) -> usize {
         match &self.course {
             Course::Rest => 0,
@@ -104,9 +104,9 @@ impl Motion {
         }
     }
 
-    /// Through keys; `None` when there are none, when their times do not increase, when a number is not
-    /// finite or beyond 2⁶⁰, when a scale is below 2⁻⁶⁰ or changes its sign on the way (it would pass
-    /// through zero), or when a rotation is zero.
+    /// Motion through keys; `None` when there are none, when their times do not increase, when a number is not finite
+    /// or beyond 2⁶⁰, when a scale is below 2⁻⁶⁰ or changes its sign between keys (it would pass through zero), or
+    /// when a rotation is zero.
     pub fn from_keys(keys: Vec<MotionKey>) -> Option<Motion> {
         let poses = keys.iter().map(Pose::new).collect::<Option<Vec<_>>>()?;
         let in_order = poses.windows(2).all(|pair| pair[0].time < pair[1].time);
@@ -121,8 +121,8 @@ impl Motion {
         }
     }
 
-    /// The transform at a time in seconds. The same bits for the same time, always; a time that is not a
-    /// number means the first key's.
+    /// The transform at a time in seconds. The same time always gives the same bits; a NaN time means the first key's
+    /// time.
     pub fn at(&self, time_seconds: f32) -> Transform {
         if let Some(transform) = self.resting() {
             return *transform;
@@ -137,8 +137,9 @@ impl Motion {
         }
     }
 
-    /// First this motion, then `next`. `None` when this one moves and `next` is not a similarity (a turn, an even
-    /// scaling and a shift; even and square within a thousandth), for then no keys say the same.
+    /// First this motion, then `next`. `None` when this one moves and `next` is not a similarity (a rotation, a
+    /// uniform scale and a translation; uniform and orthogonal to within a thousandth), because then no keys describe
+    /// the same motion.
     pub fn then(&self, next: &Transform) -> Option<Motion> {
         if let Some(transform) = self.resting() {
             return Some(Motion::still(transform.then(next)));
@@ -153,7 +154,7 @@ impl Motion {
         Some(Motion { course: Course::Keys(Arc::new(moved.collect())) })
     }
 
-    /// The keys, in order of time, rotations of unit length; none where there were none or only one.
+    /// The keys, in order of time, with rotations of unit length; empty if there were none or only one.
     pub fn keys(&self) -> Vec<MotionKey> {
         let key = |pose: &Pose| MotionKey {
             time_seconds: pose.time as f32,
@@ -169,17 +170,17 @@ impl Motion {
         self.poses().windows(2).all(|pair| pair[0].same_place(&pair[1]))
     }
 
-    /// True when [`Motion::at`] is the same, to the bit, for all times between these, both included.
+    /// True when [`Motion::at`] is the same, to the bit, for all times in this closed interval.
     pub fn is_still_over(&self, seconds: [f32; 2]) -> bool {
         self.segments_over(seconds).all(|(segment, _)| segment.from.same_place(&segment.to))
     }
 
-    /// A box that holds `bounds` moved by [`Motion::at`] any time between these, both included.
+    /// A box that contains `bounds` moved by [`Motion::at`] at any time in this closed interval.
     ///
-    /// Each segment is sampled in pieces. Along a piece of length `h` (as a fraction of the segment) a
-    /// point leaves the chord between its samples by at most `h²/8` times its greatest acceleration, which
-    /// is `θ² |S p| + 2 θ |ΔS p|` for a rotation by `θ`; the chord itself lies in the samples' box.
-    /// What rounding to f32 adds is below `8 · 2⁻²⁴` of the coordinates.
+    /// Each segment is sampled in pieces. Along a piece of length `h` (as a fraction of the segment) a point deviates
+    /// from the chord between its samples by at most `h²/8` times its maximum acceleration, which is
+    /// `θ² |S p| + 2 θ |ΔS p|` for a rotation by `θ`; the chord itself lies in the samples' box. The error of
+    /// rounding to f32 is below `8 · 2⁻²⁴` of the coordinates.
     pub fn bounds_over(&self, bounds: &Aabb, seconds: [f32; 2]) -> Aabb {
         if bounds.is_empty() {
             return Aabb::EMPTY;
@@ -194,8 +195,8 @@ impl Motion {
         })
     }
 
-    /// Bounds, between these times, on how much lengths grow under the transform and under its inverse
-    /// (the greatest singular values of both).
+    /// Bounds, over these times, on how much the transform and its inverse stretch lengths (the largest singular
+    /// values of both).
     pub fn stretch_over(&self, seconds: [f32; 2]) -> [f64; 2] {
         let stretch = |transform: &Transform| {
             let linear = DMat3::from_mat4(transform.matrix().as_dmat4());
@@ -206,7 +207,7 @@ impl Motion {
         }
         let still = [self.at(seconds[0]), self.at(seconds[1])].map(|transform| stretch(&transform));
         let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
-        // Beyond the scales, 2⁻²⁰ covers what rounding the matrix to f32 changes.
+        // On top of the scales, 2⁻²⁰ covers the rounding of the matrix to f32.
         let slack = 1.0 + 1.0 / 1_048_576.0;
         self.segments_over(seconds).fold(larger(still[0], still[1]), |all, (segment, _)| {
             let (s, r) = (segment.from.scale.abs(), segment.to.scale.abs());
@@ -214,7 +215,7 @@ impl Motion {
         })
     }
 
-    /// The segments that an interval meets, each with the part of it that is met, in `0..=1`.
+    /// The segments that overlap an interval, each with the overlapping part of it, in `0..=1`.
     fn segments_over(&self, seconds: [f32; 2]) -> impl Iterator<Item = (Segment, [f64; 2])> {
         let poses = self.poses();
         let [start, end] = [f64::from(seconds[0].min(seconds[1])), f64::from(seconds[0].max(seconds[1]))];
@@ -260,7 +261,7 @@ impl Pose {
         (self.translation, self.rotation, self.scale) == (other.translation, other.rotation, other.scale)
     }
 
-    /// Where between two poses a moment lies, clamped to `0..=1`.
+    /// The position of a time between two poses, clamped to `0..=1`.
     fn fraction(&self, next: &Pose, time: f64) -> f64 {
         ((time - self.time) / (next.time - self.time)).clamp(0.0, 1.0)
     }
@@ -269,13 +270,13 @@ impl Pose {
         DMat4::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
     }
 
-    /// Never fails on what [`Pose::new`] lets through.
+    /// Never fails on what [`Pose::new`] accepts.
     fn transform(&self) -> Transform {
         Transform::from_matrix(self.matrix()).unwrap_or_default()
     }
 }
 
-/// The way from one pose to the next.
+/// The interpolation from one pose to the next.
 struct Segment {
     from: Pose,
     to: Pose,
@@ -286,7 +287,7 @@ struct Segment {
 impl Segment {
     fn new(from: &Pose, to: &Pose) -> Segment {
         let mut to = *to;
-        // A rotation has two quaternions; the nearer one gives the shorter arc.
+        // A rotation has two quaternions; the closer one gives the shorter arc.
         if from.rotation.dot(to.rotation) < 0.0 {
             to.rotation = -to.rotation;
         }
@@ -336,15 +337,15 @@ impl Segment {
     }
 }
 
-/// 8 units of f32 rounding: an entry of a rotation times a scale is rounded once, and the sum over a row
-/// of the entries' sizes is at most √3 times the length of the scaled point.
+/// 8 units of f32 rounding: an entry of a rotation times a scale is rounded once, and the sum over a row of the
+/// entries' magnitudes is at most √3 times the length of the scaled point.
 const ROUNDING: f64 = 8.0 / 16_777_216.0;
 
 fn frobenius(m: DMat3) -> f64 {
     m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The box around a box moved by the matrix of a transform, taken as exact.
+/// The bounding box of a box transformed by a matrix, which is taken as exact.
 fn moved_by(transform: &Transform, bounds: &Aabb) -> Aabb {
     let matrix = transform.matrix().as_dmat4();
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -358,7 +359,7 @@ fn moved_by(transform: &Transform, bounds: &Aabb) -> Aabb {
     grown_outwards(low, high, far * 1e-14)
 }
 
-/// A box in f32 that holds one in f64 grown by `margin`.
+/// An f32 box that contains an f64 box enlarged by `margin`.
 fn grown_outwards(low: DVec3, high: DVec3, margin: f64) -> Aabb {
     let margin = DVec3::splat(margin);
     let (low, high) = ((low - margin).as_vec3(), (high + margin).as_vec3());
@@ -400,7 +401,7 @@ mod tests {
     #[test]
     fn halfway_is_half_the_way_half_the_angle_and_the_mean_scale() {
         let p = spin().at(2.0).point(Vec3::X);
-        // Half of a half turn about z brings x to y, scaled by 2, moved by 2.
+        // Half of a half turn about z takes x to y, scaled by 2, moved by 2.
         assert!((p - Vec3::new(2.0, 2.0, 0.0)).length() < 1e-6, "{p}");
     }
 
@@ -457,7 +458,7 @@ mod tests {
         Motion::from_keys(keys.collect()).unwrap()
     }
 
-    /// How many of many sampled points of moving boxes leave the box shrunk by `shrink` of its size.
+    /// How many of many sampled points of moving boxes lie outside the box shrunk by `shrink` of its size.
     fn escapes(shrink: f64) -> usize {
         let mut escaped = 0;
         for seed in 0..200 {

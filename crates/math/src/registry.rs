@@ -1,53 +1,53 @@
-//! The shape that every table of variants shares, so that help, docs, scene files, `bilux list` and the
-//! tests can all read the same rows.
+//! The row type that every table of variants shares, so that help, docs, scene files, `bilux list` and the tests all
+//! read the same rows.
 
-/// What values a parameter takes.
+/// The values that a parameter can take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParameterKind {
     /// True or false.
     Bool,
-    /// A whole number within the bounds, both inclusive.
+    /// An integer within the bounds, both inclusive.
     Integer {
-        /// Least value.
+        /// Minimum value.
         min: i64,
-        /// Greatest value.
+        /// Maximum value.
         max: i64,
     },
     /// A number within the bounds, both inclusive.
     Number {
-        /// Least value.
+        /// Minimum value.
         min: f64,
-        /// Greatest value.
+        /// Maximum value.
         max: f64,
     },
     /// A linear Rec. 709 triple, each channel within the bounds.
     Colour {
-        /// Least channel.
+        /// Minimum channel.
         min: f64,
-        /// Greatest channel.
+        /// Maximum channel.
         max: f64,
     },
-    /// As [`ParameterKind::Colour`], or a texture in its place.
+    /// As [`ParameterKind::Colour`], or a texture instead.
     ColourTexture {
-        /// Least channel.
+        /// Minimum channel.
         min: f64,
-        /// Greatest channel.
+        /// Maximum channel.
         max: f64,
     },
-    /// As [`ParameterKind::Number`], or a texture in its place.
+    /// As [`ParameterKind::Number`], or a texture instead.
     NumberTexture {
-        /// Least value.
+        /// Minimum value.
         min: f64,
-        /// Greatest value.
+        /// Maximum value.
         max: f64,
     },
     /// A texture of numbers; none by default.
     Texture,
-    /// Colours of a gradient, each channel within the bounds: `[position, colour]`, one behind the other.
+    /// Colours of a gradient, each channel within the bounds: a list of `[position, colour]`.
     Stops {
-        /// Least channel.
+        /// Minimum channel.
         min: f64,
-        /// Greatest channel.
+        /// Maximum channel.
         max: f64,
     },
     /// The name of a material.
@@ -65,17 +65,17 @@ pub enum ParameterKind {
 pub struct Parameter {
     /// Its key in scene files, `snake_case`.
     pub name: &'static str,
-    /// One line for people.
+    /// One line for the user.
     pub summary: &'static str,
     /// Its unit, or "" where it has none.
     pub unit: &'static str,
-    /// What values it takes.
+    /// The values that it can take.
     pub kind: ParameterKind,
-    /// Its default as it would be written in a scene file, or "" where it has to be given.
+    /// Its default as written in a scene file, or "" where the value is required.
     pub default: &'static str,
 }
 
-/// One of these words.
+/// A parameter with a choice of words.
 pub const fn choice(
     name: &'static str,
     summary: &'static str,
@@ -85,7 +85,7 @@ pub const fn choice(
     Parameter { name, summary, unit: "", kind: ParameterKind::Choice(words), default }
 }
 
-/// A whole number, both bounds inclusive.
+/// An integer parameter, both bounds inclusive.
 pub const fn integer(
     name: &'static str,
     summary: &'static str,
@@ -96,14 +96,14 @@ pub const fn integer(
     Parameter { name, summary, unit: "", kind: ParameterKind::Integer { min, max }, default }
 }
 
-/// What every row of every table tells about itself.
+/// The common part of every row of every table.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// The name that people type.
+    /// The name used in settings.
     pub name: &'static str,
-    /// One line for people.
+    /// One line for the user.
     pub summary: &'static str,
-    /// Where it comes from: a key of `REFERENCES.md`, or "" for our own.
+    /// Its source: a key of `REFERENCES.md`, or "" for our own work.
     pub source: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],

@@ -1,8 +1,7 @@
 //! The only source of transcendental functions (`clippy.toml` bans the standard library's).
 //!
-//! `libm` is pure Rust, so that the same call gives the same bits on every machine, which the
-//! platform's own C library does not promise. Square roots, `floor` and `abs` are exact in IEEE 754
-//! and are used from `std`.
+//! `libm` is pure Rust, so that the same call gives the same bits on every machine, which the platform's own C
+//! library does not guarantee. Square roots, `floor` and `abs` are exact in IEEE 754 and are used from `std`.
 
 pub use libm::{
     acos as acos_f64, acosf as acos, asin as asin_f64, asinf as asin, atan2 as atan2_f64, atan2f as atan2,

@@ -1,9 +1,9 @@
-//! Affine transforms with their inverses, made in f64 and used in f32.
+//! Affine transforms with their inverses, computed in f64 and used in f32.
 
 use crate::Aabb;
 use glam::{DMat4, Mat4, Vec3};
 
-/// An invertible affine map of space, kept with its inverse.
+/// An invertible affine map, stored with its inverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     forward: Mat4,
@@ -17,13 +17,15 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// The map that moves nothing.
+    /// The identity.
     pub const IDENTITY: Transform = Transform { forward: Mat4::IDENTITY, inverse: Mat4::IDENTITY };
 
-    /// From a matrix of column vectors; `None` when it is not affine, not finite or not invertible.
+    /// Creates a transform from a matrix of column vectors; `None` when it is not affine, not finite or not
+    /// invertible.
     pub fn from_matrix(matrix: DMat4) -> Option<Transform> {
         let affine = matrix.row(3) == glam::DVec4::W && matrix.is_finite();
-        // The inverse is that of the rounded matrix, so that a matrix written to a file and read again is the same map.
+        // The inverse is that of the rounded matrix, so that a matrix written to a file and read again is the same
+        // map.
         let forward = matrix.as_mat4();
         let rounded = forward.as_dmat4();
         let inverse = rounded.inverse().as_mat4();
@@ -31,13 +33,13 @@ impl Transform {
         (affine && sound).then_some(Transform { forward, inverse })
     }
 
-    /// Moves by `offset`; `None` when that is not finite.
+    /// Translates by `offset`; `None` when that is not finite.
     pub fn translate(offset: Vec3) -> Option<Transform> {
         Transform::from_matrix(DMat4::from_translation(offset.as_dvec3()))
     }
 
-    /// Turns by `radians` about an axis through the origin, counter-clockwise as seen from where it points; `None` when
-    /// the axis has no length, or something is not finite.
+    /// Rotates by `radians` about an axis through the origin, counter-clockwise seen from where the axis points;
+    /// `None` when the axis has no length, or something is not finite.
     pub fn rotate(axis: Vec3, radians: f32) -> Option<Transform> {
         let axis = axis.as_dvec3().try_normalize()?;
         Transform::from_matrix(DMat4::from_axis_angle(axis, f64::from(radians)))
@@ -53,7 +55,7 @@ impl Transform {
         Transform { forward: next.forward * self.forward, inverse: self.inverse * next.inverse }
     }
 
-    /// True when this moves nothing, to the bit.
+    /// True when this is the identity, to the bit.
     pub fn is_identity(&self) -> bool {
         *self == Transform::IDENTITY
     }
@@ -68,35 +70,35 @@ impl Transform {
         &self.inverse
     }
 
-    /// The opposite map.
+    /// The inverse map.
     pub fn inverted(&self) -> Transform {
         Transform { forward: self.inverse, inverse: self.forward }
     }
 
-    /// Moves a point.
+    /// Transforms a point.
     #[inline]
     pub fn point(&self, p: Vec3) -> Vec3 {
         self.forward.transform_point3(p)
     }
 
-    /// Moves a vector.
+    /// Transforms a vector.
     #[inline]
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.forward.transform_vector3(v)
     }
 
-    /// Moves a normal (by the inverse transpose); not normalised.
+    /// Transforms a normal (by the inverse transpose); not normalised.
     #[inline]
     pub fn normal(&self, n: Vec3) -> Vec3 {
         self.inverse.transpose().transform_vector3(n)
     }
 
-    /// The box around a moved box.
+    /// The bounding box of a transformed box.
     pub fn bounds(&self, bounds: &Aabb) -> Aabb {
         if bounds.is_empty() { Aabb::EMPTY } else { Aabb::of_points(bounds.corners().map(|c| self.point(c))) }
     }
 
-    /// True when it turns right-handed into left-handed.
+    /// True when it swaps handedness.
     pub fn mirrors(&self) -> bool {
         self.forward.determinant() < 0.0
     }

@@ -4,7 +4,7 @@ use crate::transcendental::{atan2, cos, powf, sin, sin_cos};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-/// The unit square to the unit disc, keeping neighbours neighbours. [Shirley 1997]
+/// Maps the unit square to the unit disc and keeps neighbours close together. [Shirley 1997]
 pub fn sample_disc(u: Vec2) -> Vec2 {
     let p = u * 2.0 - Vec2::ONE;
     if p == Vec2::ZERO {
@@ -23,7 +23,7 @@ pub fn disc_pdf_area() -> f32 {
     FRAC_1_PI
 }
 
-/// Directions about +z with density cosθ/π, by Malley's method: points of the disc, raised to the sphere.
+/// Directions about +z with density cosθ/π, by Malley's method: points of the disc, projected up onto the sphere.
 pub fn sample_cosine_hemisphere(u: Vec2) -> Vec3 {
     let d = sample_disc(u);
     Vec3::new(d.x, d.y, (1.0 - d.length_squared()).max(0.0).sqrt())
@@ -34,7 +34,7 @@ pub fn cosine_hemisphere_pdf_solid_angle(cos_theta: f32) -> f32 {
     cos_theta.max(0.0) * FRAC_1_PI
 }
 
-/// Directions, all equally likely.
+/// Uniformly distributed directions.
 pub fn sample_sphere(u: Vec2) -> Vec3 {
     let z = 1.0 - 2.0 * u.x;
     let r = (1.0 - z * z).max(0.0).sqrt();
@@ -47,12 +47,12 @@ pub fn sphere_pdf_solid_angle() -> f32 {
     1.0 / (4.0 * PI)
 }
 
-/// The unit square to the sphere, equal areas to equal areas and neighbours to neighbours: its middle to +z, its corners
-/// to -z. [Clarberg 2008]
+/// Maps the unit square to the sphere, preserving areas and keeping neighbours close together: its centre to +z, its
+/// corners to -z. [Clarberg 2008]
 pub fn square_to_sphere(u: Vec2) -> Vec3 {
     let p = u * 2.0 - Vec2::ONE;
     let (x, y) = (p.x.abs(), p.y.abs());
-    // How far inside of the diamond that is the upper half; negative in the lower one.
+    // How far inside the diamond of the upper hemisphere; negative in the lower one.
     let inside = 1.0 - (x + y);
     let r = 1.0 - inside.abs();
     let angle = if r == 0.0 { 0.0 } else { ((y - x) / r + 1.0) * FRAC_PI_4 };
@@ -62,7 +62,7 @@ pub fn square_to_sphere(u: Vec2) -> Vec3 {
     Vec3::new((cos * across).copysign(p.x), (sin * across).copysign(p.y), z)
 }
 
-/// Where [`square_to_sphere`] leads to a unit vector from.
+/// The inverse of [`square_to_sphere`] for a unit vector.
 pub fn sphere_to_square(d: Vec3) -> Vec2 {
     let r = (1.0 - d.z.abs()).max(0.0).sqrt();
     let y = atan2(d.y.abs(), d.x.abs()) * (2.0 * FRAC_1_PI) * r;
@@ -70,32 +70,32 @@ pub fn sphere_to_square(d: Vec3) -> Vec2 {
     (Vec2::new(x.copysign(d.x), y.copysign(d.y)) * 0.5 + Vec2::splat(0.5)).clamp(Vec2::ZERO, Vec2::ONE)
 }
 
-/// Directions about +z, all equally likely down to a cosine of `cos_max`, -1..=1.
+/// Directions about +z, uniform within a cone with a minimum cosine of `cos_max`, -1..=1.
 pub fn sample_cone(u: Vec2, cos_max: f32) -> Vec3 {
     sample_cap(u, 1.0 - cos_max)
 }
 
-/// Density of [`sample_cone`] within the cone; infinite for one without width.
+/// Density of [`sample_cone`] within the cone; infinite for a cone of zero width.
 pub fn cone_pdf_solid_angle(cos_max: f32) -> f32 {
     cap_pdf_solid_angle(1.0 - cos_max)
 }
 
-/// Directions about +z, all equally likely, over a cap of the unit sphere of this height, 0..=2: what the cosine of a
-/// cone lacks to 1, which keeps the digits of a narrow one.
+/// Directions about +z, uniform over a cap of the unit sphere of this height, 0..=2. The height is one minus the
+/// cosine of the cone, which keeps the digits of a narrow one.
 pub fn sample_cap(u: Vec2, height: f32) -> Vec3 {
     let below = u.x * height;
-    // By what the cosine lacks to 1, which a narrow cone would lose.
+    // From one minus the cosine, because the cosine of a narrow cone would lose it.
     let r = (below * (2.0 - below)).max(0.0).sqrt();
     let (s, c) = sin_cos(TAU * u.y);
     Vec3::new(r * c, r * s, 1.0 - below)
 }
 
-/// Density of [`sample_cap`] within the cap; infinite for one without height.
+/// Density of [`sample_cap`] within the cap; infinite for a cap of zero height.
 pub fn cap_pdf_solid_angle(height: f32) -> f32 {
     1.0 / (TAU * height)
 }
 
-/// Directions about +z with density (n+1)/2π · cosⁿα, the lobe of Phong. [Lafortune 1994]
+/// Directions about +z with density (n+1)/2π · cosⁿα, the Phong lobe. [Lafortune 1994]
 pub fn sample_power_cosine(u: Vec2, exponent: f32) -> Vec3 {
     let cos_alpha = powf(1.0 - u.x, 1.0 / (exponent + 1.0));
     let sin_alpha = (1.0 - cos_alpha * cos_alpha).max(0.0).sqrt();
@@ -114,7 +114,7 @@ pub fn sample_triangle(u: Vec2) -> Vec2 {
     Vec2::new(root * (1.0 - u.y), root * u.y)
 }
 
-/// The point of the unit square that [`sample_triangle`] takes to these weights.
+/// The inverse of [`sample_triangle`]: the point of the unit square for these weights.
 pub fn invert_triangle(weights: Vec2) -> Vec2 {
     let root = weights.x + weights.y;
     Vec2::new(root * root, if root > 0.0 { weights.y / root } else { 0.0 })
@@ -147,7 +147,7 @@ mod tests {
             octants[(0..3).map(|k| usize::from(d[k] > 0.0) << k).sum::<usize>()] += 1;
             sum += d * d / (SIDE * SIDE) as f32;
         }
-        // The diamond's edge passes through the middles of cells, which are on either side of it.
+        // The diamond's edge passes through the centres of cells, which fall on either side of it.
         assert!(octants.iter().all(|n| n.abs_diff(SIDE * SIDE / 8) <= SIDE / 2), "{octants:?}");
         assert!((sum - Vec3::splat(1.0 / 3.0)).abs().max_element() < 1e-3, "{sum}");
         for d in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z] {
@@ -162,7 +162,8 @@ mod tests {
             for i in 0..=16 {
                 let u = Vec2::new(i as f32 / 16.0, 0.3);
                 let d = sample_cone(u, cos_max);
-                // The part of the cone's solid angle about the axis, by the sine, which a narrow cone keeps.
+                // The fraction of the cone's solid angle about the axis, by the sine, which keeps its digits in a
+                // narrow cone.
                 let sin2 = f64::from(d.x) * f64::from(d.x) + f64::from(d.y) * f64::from(d.y);
                 let below = 1.0 - (1.0 - sin2).max(0.0).sqrt() * f64::from(1f32.copysign(d.z));
                 assert!((below - f64::from(u.x * width)).abs() < 1e-5 * f64::from(width), "{cos_max}: {d}");

@@ -1,8 +1,8 @@
-//! What can go wrong with a picture.
+//! Errors of pictures.
 
 use std::path::{Path, PathBuf};
 
-/// Why a picture cannot be read, written, made or compared.
+/// Why a picture cannot be read, written, created or compared.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PictureError {
@@ -14,54 +14,54 @@ pub enum PictureError {
         /// What is wrong with it.
         source: Box<PictureError>,
     },
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("cannot {action}: {}", reason(source))]
     Io {
-        /// What was tried.
+        /// What was attempted.
         action: &'static str,
-        /// Why it did not work.
+        /// Why it failed.
         source: std::io::Error,
     },
-    /// No picture format goes by this name or extension.
+    /// No picture format has this name or extension.
     #[error(
         "{} that can be {verb}{}; there are: {known}",
         format_in_question(name),
         did_you_mean(suggestion)
     )]
     UnknownFormat {
-        /// What was asked for.
+        /// The requested name.
         name: String,
         /// `read` or `written`.
         verb: &'static str,
-        /// The nearest name that there is.
+        /// The closest existing name.
         suggestion: Option<&'static str>,
-        /// Every name that there is.
+        /// All existing names.
         known: String,
     },
     /// A table has no row of this name.
     #[error("there is no {kind} '{name}'{}; there are: {known}", did_you_mean(suggestion))]
     UnknownName {
-        /// What kind of thing was asked for.
+        /// The kind of table.
         kind: &'static str,
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// The nearest name that there is.
+        /// The closest existing name.
         suggestion: Option<&'static str>,
-        /// Every name that there is.
+        /// All existing names.
         known: String,
     },
-    /// The bytes look like no picture format that we know.
+    /// The bytes do not look like any known picture format.
     #[error("this is not a picture of a known format; there are: {known}")]
     Unrecognised {
-        /// Every name that there is.
+        /// All existing names.
         known: String,
     },
-    /// The file breaks the rules of its format.
+    /// The file violates the rules of its format.
     #[error("{format}: {what}: the file is damaged or was written wrongly; save it again")]
     Invalid {
         /// The format.
         format: &'static str,
-        /// Which rule, with the values in question.
+        /// Which rule, and the values in question.
         what: String,
     },
     /// The file ends too early.
@@ -69,20 +69,20 @@ pub enum PictureError {
     Truncated {
         /// The format.
         format: &'static str,
-        /// What was being read.
+        /// The part that was being read.
         part: String,
     },
-    /// The file is right, but uses something that is not supported.
+    /// The file is valid, but uses a feature that is not supported.
     #[error("{format}: {what} is not supported; {advice}")]
     Unsupported {
         /// The format.
         format: &'static str,
-        /// What the file uses.
+        /// The feature that the file uses.
         what: String,
         /// What to do instead.
         advice: &'static str,
     },
-    /// The picture would take more memory than allowed.
+    /// The picture would take more memory than the limit allows.
     #[error(
         "{format}: {width} x {height} pixels need {}, and the limit is {limit}: raise the memory limit if you trust the file",
         bytes_in_words(*needed)
@@ -90,47 +90,47 @@ pub enum PictureError {
     TooLarge {
         /// The format.
         format: &'static str,
-        /// Pixels across.
+        /// Width in pixels.
         width: u64,
-        /// Pixels down.
+        /// Height in pixels.
         height: u64,
-        /// Bytes that decoding would take; `u64::MAX` where even that overflows.
+        /// Bytes that decoding would take; `u64::MAX` if even that overflows.
         needed: u64,
         /// The limit in bytes.
         limit: u64,
     },
-    /// The file has more bytes than allowed.
+    /// The file has more bytes than the limit allows.
     #[error("the file has more than the limit of {limit} bytes: raise the memory limit if you trust it")]
     FileTooLarge {
         /// The limit in bytes.
         limit: u64,
     },
-    /// The machine has no room.
+    /// The machine has no memory left.
     #[error("{format}: no room for {bytes} bytes; free some memory or make the picture smaller")]
     OutOfMemory {
         /// The format or operation.
         format: &'static str,
-        /// How many bytes were wanted.
+        /// Number of bytes requested.
         bytes: u64,
     },
-    /// The picture cannot be put into this format.
+    /// The picture cannot be stored in this format.
     #[error("{format} cannot hold this picture: {what}")]
     Unwritable {
         /// The format.
         format: &'static str,
-        /// What it has that the format cannot hold, or lacks that it needs, and what to do.
+        /// What the format cannot hold, or what it needs and the picture lacks, and what to do.
         what: String,
     },
-    /// The denoiser that was asked for is not to be had, or does not work.
+    /// The requested denoiser is not available, or does not work.
     #[error("cannot denoise: {what}")]
     NoDenoiser {
         /// What is missing, and how to get it; or what went wrong.
         what: String,
     },
-    /// A picture was put together wrongly.
+    /// A picture was assembled incorrectly.
     #[error("{0}")]
     Malformed(String),
-    /// Two pictures that should be of one size are not.
+    /// Two pictures that should have the same size do not.
     #[error("the pictures differ in size: {} x {} and {} x {} pixels; render or crop them to one size", a.0, a.1, b.0, b.1)]
     SizesDiffer {
         /// Width and height of the first.
@@ -149,7 +149,7 @@ impl PictureError {
         PictureError::Truncated { format, part: part.into() }
     }
 
-    /// The same error, with the file that it is about.
+    /// The same error, with the file that caused it.
     pub fn in_file(self, path: &Path) -> PictureError {
         match self {
             PictureError::InFile { .. } => self,
@@ -158,7 +158,7 @@ impl PictureError {
     }
 }
 
-/// Why the operating system refused, in its words and without its number.
+/// The reason given by the operating system, without its number.
 pub fn reason(error: &std::io::Error) -> String {
     let text = error.to_string();
     match text.find(" (os error") {
@@ -171,7 +171,7 @@ fn bytes_in_words(bytes: u64) -> String {
     if bytes == u64::MAX { "more bytes than any machine has".to_owned() } else { format!("{bytes} bytes") }
 }
 
-/// A name without an extension asks for no format.
+/// A name without an extension does not name a format.
 fn format_in_question(name: &str) -> String {
     match name {
         "" => "the name has no extension of a picture format".to_owned(),
@@ -183,7 +183,7 @@ fn did_you_mean(suggestion: &Option<&'static str>) -> String {
     suggestion.map(|name| format!(" (did you mean '{name}'?)")).unwrap_or_default()
 }
 
-/// The name nearest to `given`, unless all are far from it.
+/// The name closest to `given`, unless all are too different.
 pub(crate) fn nearest(given: &str, names: impl Iterator<Item = &'static str>) -> Option<&'static str> {
     let given = given.to_lowercase();
     names

@@ -1,12 +1,12 @@
-//! Letters of 5 × 7 pixels for the printable ASCII, drawn for this.
+//! Glyphs of 5 × 7 pixels for printable ASCII, drawn for this project.
 
-/// Pixels across a letter.
+/// Width of a glyph in pixels.
 pub(crate) const GLYPH_WIDTH: usize = 5;
-/// Pixels down a letter.
+/// Height of a glyph in pixels.
 pub(crate) const GLYPH_HEIGHT: usize = 7;
 
-/// The rows of a letter from the top; the leftmost pixel is the highest of five bits. A box where the font
-/// lacks the letter; a cross for the multiplication sign.
+/// The rows of a glyph from the top; the leftmost pixel is the highest of five bits. A box where the font lacks the
+/// character; a cross for the multiplication sign.
 pub(crate) fn glyph(letter: char) -> [u8; GLYPH_HEIGHT] {
     let index = (letter as usize).checked_sub(0x20);
     let known = index.and_then(|index| GLYPHS.get(index)).copied();

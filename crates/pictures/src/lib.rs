@@ -20,8 +20,8 @@
 //! # }
 //! ```
 //!
-//! Readers keep samples as they are in the file and say what they mean; [`Picture::into_linear`] gives
-//! light. Files come from strangers: readers allocate within [`Limits`] and answer any bytes with a
+//! Readers keep samples as they are in the file and say what they mean; [`Picture::into_linear`] converts them to
+//! light. Files may come from untrusted sources: readers allocate within [`Limits`] and answer any bytes with a
 //! picture or an error. The same picture and options always give the same bytes.
 
 pub mod denoise;

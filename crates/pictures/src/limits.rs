@@ -1,12 +1,12 @@
-//! How much memory a stranger's file may make us use.
+//! Limits on the memory that an untrusted file may make us use.
 
 use crate::PictureError;
 
 /// Bounds that every reader checks before it allocates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The most bytes that one picture may take while it is decoded: the planes together with the
-    /// decoder's own buffers, and (apart from them) the file's bytes.
+    /// Maximum number of bytes that one picture may take while it is decoded: the planes together with the decoder's
+    /// own buffers, and (separately) the file's bytes.
     pub max_bytes: u64,
 }
 
@@ -18,13 +18,13 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Bounds with this many bytes.
+    /// Creates limits with this many bytes.
     pub const fn new(max_bytes: u64) -> Limits {
         Limits { max_bytes }
     }
 
-    /// Refuses a picture whose size is zero, or which would take more than the limit at
-    /// `bytes_per_pixel`; gives the number of pixels.
+    /// Rejects a picture whose size is zero, or which would exceed the limit at `bytes_per_pixel`; returns the number
+    /// of pixels.
     pub(crate) fn check(
         &self,
         format: &'static str,
@@ -45,17 +45,17 @@ impl Limits {
     }
 }
 
-/// The longest side of a picture: what the coordinates of all our formats can hold.
+/// The maximum side length of a picture: what the coordinates of all our formats can hold.
 pub(crate) const MAX_SIDE: u64 = i32::MAX as u64 / 2;
 
-/// A zeroed buffer, or an error where the machine has no room for it.
+/// A zeroed buffer, or an error if the machine has no memory for it.
 pub(crate) fn zeroed<T: Clone + Default>(format: &'static str, count: usize) -> Result<Vec<T>, PictureError> {
     let mut buffer = reserved(format, count)?;
     buffer.resize(count, T::default());
     Ok(buffer)
 }
 
-/// An empty buffer with room for `count`, or an error where the machine has no room for it.
+/// An empty buffer with capacity for `count`, or an error if the machine has no memory for it.
 pub(crate) fn reserved<T>(format: &'static str, count: usize) -> Result<Vec<T>, PictureError> {
     let mut buffer = Vec::new();
     let bytes = count as u64 * size_of::<T>() as u64;

@@ -1,15 +1,15 @@
-//! Pictures beside each other, smaller, and with words on them: for figures and reports.
+//! Pictures side by side, downscaled, and with text labels: for figures and reports.
 
 use crate::font::{GLYPH_HEIGHT, GLYPH_WIDTH, glyph};
 use crate::{Picture, PictureError};
 use bilux_math::Rgb;
 
-/// The main pictures in a row from left to right, all linear, tops aligned, `gap` black pixels between
-/// them. Errors where there are none, or one has no colour.
+/// Arranges the main pictures in a row from left to right, all linear, aligned at the top, with `gap` black pixels
+/// between them. Returns an error if there are none, or one has no colour.
 pub fn side_by_side(pictures: &[Picture], gap: usize) -> Result<Picture, PictureError> {
     let width = pictures.iter().map(|picture| picture.width() + gap).sum::<usize>().saturating_sub(gap);
     let height = pictures.iter().map(Picture::height).max().unwrap_or(0);
-    // Refuses sizes that do not fit before any room is made.
+    // Rejects sizes that do not fit before any memory is allocated.
     Picture::new(width, height)?;
     let mut pixels = vec![Rgb::BLACK; width * height];
     let mut left = 0;
@@ -23,7 +23,7 @@ pub fn side_by_side(pictures: &[Picture], gap: usize) -> Result<Picture, Picture
     Picture::from_rgb(width, height, pixels)
 }
 
-/// The main pictures one under the other, on the terms of [`side_by_side`].
+/// Arranges the main pictures from top to bottom, under the conditions of [`side_by_side`].
 pub fn stacked(pictures: &[Picture], gap: usize) -> Result<Picture, PictureError> {
     let width = pictures.iter().map(Picture::width).max().unwrap_or(0);
     let height = pictures.iter().map(|picture| picture.height() + gap).sum::<usize>().saturating_sub(gap);
@@ -39,9 +39,9 @@ pub fn stacked(pictures: &[Picture], gap: usize) -> Result<Picture, PictureError
     Picture::from_rgb(width, height, pixels)
 }
 
-/// The main picture in linear light, `factor` times smaller each way: every pixel is the mean of a square of
-/// the old ones, of what is left of it at the right and bottom edges. Errors where the factor is zero or the
-/// picture has no colour.
+/// The main picture in linear light, `factor` times smaller in each direction: every pixel is the mean of a square of
+/// the old ones, or of the remaining part of it at the right and bottom edges. Returns an error if the factor is zero
+/// or the picture has no colour.
 pub fn downscaled(picture: &Picture, factor: usize) -> Result<Picture, PictureError> {
     if factor == 0 {
         return Err(PictureError::Malformed("a picture cannot be made smaller by a factor of 0".to_owned()));
@@ -68,9 +68,9 @@ fn linear_colours(picture: &Picture) -> Result<Vec<Rgb>, PictureError> {
     colours.ok_or_else(|| PictureError::Malformed("a panel needs the channels R, G and B, or Y".to_owned()))
 }
 
-/// Writes a line of text: white letters on a dark ground, each `6 × 8` pixels times `scale`, their top left
-/// corner at (x, y). What lies beyond the picture's edges is left out; letters that the font lacks are
-/// boxes. Alpha, where there is one, becomes 1 under the text.
+/// Writes a line of text: white letters on a dark ground, each `6 × 8` pixels times `scale`, with their top left
+/// corner at (x, y). Whatever lies beyond the picture's edges is dropped; letters that the font lacks are boxes.
+/// Alpha, if present, becomes 1 under the text.
 pub fn label(picture: &mut Picture, x: usize, y: usize, text: &str, scale: usize) {
     let scale = scale.max(1);
     let (cell_width, cell_height) = ((GLYPH_WIDTH + 1) * scale, (GLYPH_HEIGHT + 1) * scale);
@@ -80,7 +80,7 @@ pub fn label(picture: &mut Picture, x: usize, y: usize, text: &str, scale: usize
         (x.saturating_add(columns).min(width), y.saturating_add(cell_height + scale).min(height));
     let letters: Vec<[u8; GLYPH_HEIGHT]> = text.chars().take(width / cell_width + 1).map(glyph).collect();
     let lit = |column: usize, row: usize| {
-        // One free row and column before the first letter.
+        // One empty row and column before the first letter.
         let (Some(column), Some(row)) = (column.checked_sub(scale), row.checked_sub(scale)) else {
             return false;
         };
@@ -100,7 +100,7 @@ pub fn label(picture: &mut Picture, x: usize, y: usize, text: &str, scale: usize
     }
 }
 
-/// Dark enough to read white on, and not black.
+/// Dark enough for white text, and not black.
 const GROUND: f32 = 0.01;
 
 #[cfg(test)]

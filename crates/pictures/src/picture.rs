@@ -1,4 +1,4 @@
-//! Planes of samples under one roof: what every reader gives and every writer takes.
+//! Pictures as sets of planes: the type that every reader returns and every writer takes.
 
 use crate::PictureError;
 use crate::limits::MAX_SIDE;
@@ -8,22 +8,22 @@ use bilux_math::transcendental::powf;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// A picture: named planes of `width * height` samples, row 0 on top.
+/// A picture: named planes of `width * height` samples, with row 0 at the top.
 ///
-/// The main picture's planes are `R`, `G`, `B` (or `Y` for grey) and `A`; those of a layer have its
-/// name in front, as in EXR: `albedo.R`, `normal.X`. Samples are kept exactly as the file has them;
-/// [`Picture::colour_space`] and [`Picture::alpha`] say what they mean.
+/// The main picture's planes are `R`, `G`, `B` (or `Y` for grey) and `A`; those of a layer are prefixed with its
+/// name, as in EXR: `albedo.R`, `normal.X`. Samples are kept exactly as the file has them; [`Picture::colour_space`]
+/// and [`Picture::alpha`] say what they mean.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: usize,
     height: usize,
     channels: Vec<Channel>,
     integer_planes: Vec<IntegerPlane>,
-    /// What the samples of colour channels stand for.
+    /// The meaning of the samples of colour channels.
     pub colour_space: ColourSpace,
     /// Whether `A` has been multiplied into the colours.
     pub alpha: Alpha,
-    /// Texts that travel with the picture, where its format can hold them.
+    /// Texts that are stored with the picture, if its format can hold them.
     pub metadata: BTreeMap<String, String>,
 }
 
@@ -32,21 +32,21 @@ pub struct Picture {
 pub struct Channel {
     /// Such as `R`, or `albedo.R`.
     pub name: String,
-    /// `width * height` samples in rows, the top one first.
+    /// `width * height` samples in rows from the top.
     pub samples: Vec<f32>,
 }
 
-/// One named plane of integers, kept bit for bit (EXR's `uint`): object numbers, or one 32-bit limb of
-/// a film's fixed-point sums.
+/// One named plane of integers, preserved bit for bit (EXR's `uint`): object numbers, or one 32-bit limb of a film's
+/// fixed-point sums.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IntegerPlane {
     /// Such as `id`, or `sum.R.0`.
     pub name: String,
-    /// `width * height` samples in rows, the top one first.
+    /// `width * height` samples in rows from the top.
     pub samples: Vec<u32>,
 }
 
-/// What a colour sample stands for.
+/// The meaning of a colour sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ColourSpace {
     /// Proportional to light, Rec. 709 primaries.
@@ -54,31 +54,31 @@ pub enum ColourSpace {
     LinearRec709,
     /// Encoded for a display, by the sRGB curve. [IEC 61966-2-1]
     Srgb,
-    /// Light to this power (a PNG's `gAMA`); alpha and data are as they are.
+    /// Light to this power (a PNG's `gAMA`); alpha and data are not affected.
     Gamma(f32),
 }
 
 /// Whether the colours of a picture have been multiplied by its alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Alpha {
-    /// They have, as in EXR: light that the pixel sends.
+    /// Premultiplied, as in EXR: the light that the pixel emits.
     #[default]
     Premultiplied,
-    /// They have not, as in PNG: the colour of what is there.
+    /// Straight, as in PNG: the colour of what is there.
     Straight,
 }
 
-/// Samples that are infinite or not a number.
+/// Samples that are infinite or NaN.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct NonFinite {
-    /// How many there are, in all channels.
+    /// Their number, over all channels.
     pub count: u64,
     /// The first one, channel by channel: channel, x, y.
     pub first: Option<(String, usize, usize)>,
 }
 
 impl Picture {
-    /// A picture without planes. Errors where a side is zero or too long.
+    /// Creates a picture without planes. Returns an error if a side is zero or too long.
     pub fn new(width: usize, height: usize) -> Result<Picture, PictureError> {
         let fits = |side: usize| side > 0 && side as u64 <= MAX_SIDE;
         if !fits(width) || !fits(height) || width.checked_mul(height).is_none() {
@@ -96,29 +96,29 @@ impl Picture {
         })
     }
 
-    /// A linear picture of `width * height` colours in rows, the top one first.
+    /// Creates a linear picture from `width * height` colours in rows from the top.
     pub fn from_rgb(width: usize, height: usize, pixels: Vec<Rgb>) -> Result<Picture, PictureError> {
         let mut picture = Picture::new(width, height)?;
         picture.push_rgb("", &pixels)?;
         Ok(picture)
     }
 
-    /// Pixels across.
+    /// Width in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Pixels down.
+    /// Height in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// Pixels in all: the length of every plane.
+    /// Total number of pixels: the length of every plane.
     pub fn pixel_count(&self) -> usize {
         self.width * self.height
     }
 
-    /// Adds a plane. Errors where the name is taken or empty, or the length is not `width * height`.
+    /// Adds a plane. Returns an error if the name is taken or empty, or the length is not `width * height`.
     pub fn push_channel(&mut self, name: impl Into<String>, samples: Vec<f32>) -> Result<(), PictureError> {
         let name = name.into();
         self.check_plane(&name, samples.len())?;
@@ -126,7 +126,7 @@ impl Picture {
         Ok(())
     }
 
-    /// Adds a plane of integers, on the same terms.
+    /// Adds a plane of integers, under the same conditions.
     pub fn push_integer_plane(
         &mut self,
         name: impl Into<String>,
@@ -181,7 +181,7 @@ impl Picture {
         self.channels.iter().find(|c| c.name == name).map(|c| &c.samples[..])
     }
 
-    /// The samples of one plane, to be changed.
+    /// The samples of one plane, mutable.
     pub fn channel_mut(&mut self, name: &str) -> Option<&mut [f32]> {
         self.channels.iter_mut().find(|c| c.name == name).map(|c| &mut c.samples[..])
     }
@@ -191,8 +191,7 @@ impl Picture {
         self.integer_planes.iter().find(|plane| plane.name == name).map(|plane| &plane.samples[..])
     }
 
-    /// The three planes of the main picture's colour, all the same one where it is grey; `None` where it
-    /// has no colour.
+    /// The three planes of the main picture's colour, all the same one if it is grey; `None` if it has no colour.
     pub fn rgb_planes(&self) -> Option<[&[f32]; 3]> {
         match (self.channel("R"), self.channel("G"), self.channel("B"), self.channel("Y")) {
             (Some(r), Some(g), Some(b), _) => Some([r, g, b]),
@@ -201,15 +200,15 @@ impl Picture {
         }
     }
 
-    /// The main picture's colours in rows, as stored; `None` where it has none.
+    /// The main picture's colours in rows, as stored; `None` if it has none.
     pub fn to_rgb(&self) -> Option<Vec<Rgb>> {
         let [r, g, b] = self.rgb_planes()?;
         Some((0..self.pixel_count()).map(|i| Rgb::new(r[i], g[i], b[i])).collect())
     }
 
-    /// The main picture as bytes for a display, four to a pixel in rows, the top one first: red, green, blue and alpha,
-    /// sRGB-encoded, alpha not multiplied in, 255 where the picture has none. `None` where it has no colour. Light above 1
-    /// becomes 255: see [`crate::to_display`] for exposure and tone curves.
+    /// The main picture as bytes for a display, four per pixel in rows from the top: red, green, blue and alpha,
+    /// sRGB-encoded, with straight alpha, which is 255 if the picture has none. `None` if it has no colour. Light
+    /// above 1 becomes 255: see [`crate::to_display`] for exposure and tone curves.
     pub fn to_rgba8(&self) -> Option<Vec<u8>> {
         let shown = self.main().into_srgb();
         let [r, g, b] = shown.rgb_planes()?;
@@ -219,14 +218,14 @@ impl Picture {
         Some((0..self.pixel_count()).flat_map(pixel).collect())
     }
 
-    /// The colour of one pixel as stored, black where the picture has no colour. Panics beyond the edges,
-    /// as slices do; for whole pictures [`Picture::to_rgb`] is faster.
+    /// The colour of one pixel as stored, black if the picture has no colour. Panics outside the picture, as indexing
+    /// a slice does; for whole pictures [`Picture::to_rgb`] is faster.
     pub fn rgb(&self, x: usize, y: usize) -> Rgb {
         let i = self.index(x, y);
         self.rgb_planes().map_or(Rgb::BLACK, |[r, g, b]| Rgb::new(r[i], g[i], b[i]))
     }
 
-    /// The alpha of one pixel, 1 where the picture has none. Panics beyond the edges, as slices do.
+    /// The alpha of one pixel, 1 if the picture has none. Panics outside the picture, as indexing a slice does.
     pub fn alpha_at(&self, x: usize, y: usize) -> f32 {
         let i = self.index(x, y);
         self.channel("A").map_or(1.0, |a| a[i])
@@ -237,7 +236,7 @@ impl Picture {
         y * self.width + x
     }
 
-    /// The names of the layers beside the main picture, each once, in order of appearance.
+    /// The names of the layers other than the main picture, each once, in order of appearance.
     pub fn layers(&self) -> Vec<&str> {
         let names = self.channels.iter().map(|c| &c.name[..]);
         let names = names.chain(self.integer_planes.iter().map(|plane| &plane.name[..]));
@@ -250,7 +249,7 @@ impl Picture {
         layers
     }
 
-    /// The main picture without its layers and texts: `R`, `G`, `B` and `Y` as far as there are any, and `A`.
+    /// The main picture without its layers and texts: `R`, `G`, `B` and `Y` as far as present, and `A`.
     pub fn main(&self) -> Picture {
         let mut picture = self.like();
         let main = self.channels.iter().filter(|c| MAIN.contains(&&c.name[..]));
@@ -258,7 +257,7 @@ impl Picture {
         picture
     }
 
-    /// One layer as a picture of its own, without its name in front; `None` where there is none.
+    /// One layer as a picture of its own, without its name as a prefix; `None` if there is no such layer.
     pub fn layer(&self, layer: &str) -> Option<Picture> {
         let prefix = qualified(layer, "");
         let mut picture = self.like();
@@ -283,7 +282,7 @@ impl Picture {
         }
     }
 
-    /// Every sample that is infinite or not a number, counted, and the first one located.
+    /// Counts the samples that are infinite or NaN, and locates the first one.
     pub fn non_finite(&self) -> NonFinite {
         let mut found = NonFinite::default();
         for channel in &self.channels {
@@ -295,7 +294,7 @@ impl Picture {
         found
     }
 
-    /// The picture in linear Rec. 709 with alpha multiplied in: what light transport speaks.
+    /// The picture in linear Rec. 709 with premultiplied alpha: the form that light transport uses.
     pub fn into_linear(mut self) -> Picture {
         let space = self.colour_space;
         self.map_colours(|encoded| space.decode(encoded));
@@ -307,8 +306,8 @@ impl Picture {
         self
     }
 
-    /// The picture encoded by the sRGB curve, alpha not multiplied in. Linear values are held within
-    /// 0..=1 first: tone map before, where they go beyond.
+    /// The picture encoded by the sRGB curve, with straight alpha. Linear values are first clamped to 0..=1: apply a
+    /// tone map before if they exceed that.
     pub fn into_srgb(mut self) -> Picture {
         if self.alpha == Alpha::Premultiplied && self.channel("A").is_some() {
             self = self.into_linear();
@@ -323,7 +322,7 @@ impl Picture {
         self
     }
 
-    /// A picture for a display with a colour of linear light behind it, and no alpha any more.
+    /// Composites a picture for a display over a background colour of linear light, and removes alpha.
     pub(crate) fn before(self, colour: Rgb) -> Picture {
         let mut picture = self.into_linear();
         let Some(at) = picture.channels.iter().position(|c| c.name == "A") else {
@@ -366,7 +365,7 @@ impl Picture {
 }
 
 impl ColourSpace {
-    /// A stored sample to one proportional to light.
+    /// Decodes a stored sample to a value proportional to light.
     pub fn decode(self, sample: f32) -> f32 {
         match self {
             ColourSpace::LinearRec709 => sample,
@@ -376,13 +375,13 @@ impl ColourSpace {
     }
 }
 
-/// Samples that one thread changes at a time.
+/// Number of samples that one thread processes at a time.
 const PIECE: usize = 1 << 14;
 
-/// The channels that are no layer's.
+/// The channels that belong to no layer.
 const MAIN: [&str; 5] = ["R", "G", "B", "Y", "A"];
 
-/// Holds a sample within 0 and `most`; what is not a number becomes 0, which `clamp` would leave.
+/// Clamps a sample to 0..=`most`; NaN becomes 0, whereas `clamp` would keep it.
 pub(crate) fn hold_within(sample: f32, most: f32) -> f32 {
     if sample > 0.0 { sample.min(most) } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! Every seed of the fuzz targets: what is called broken is refused, with a reason; the rest is read.
+//! Every seed of the fuzz targets: those named broken are rejected with a reason; the others are read.
 
 use bilux_pictures::{Limits, PICTURE_FORMATS, format_named};
 use std::path::Path;
@@ -35,7 +35,7 @@ fn every_seed_is_told_by_its_first_bytes() {
             let path = seed.unwrap().path();
             let bytes = std::fs::read(&path).unwrap();
             let told = PICTURE_FORMATS.iter().find(|row| (row.sniff)(&bytes)).map(|row| row.entry.name);
-            // TGA has no first bytes of its own, and nobody else takes them for theirs.
+            // TGA has no signature, and no other format claims its files.
             let expected = Some(row.entry.name).filter(|&name| name != "tga");
             assert_eq!(told, expected, "{}", path.display());
             let extension = path.extension().unwrap().to_string_lossy();

@@ -1,5 +1,5 @@
-//! What every denoiser has to keep, on a picture whose truth is known: a chequered floor under light that changes slowly,
-//! with a sharp shadow on it, and noise of known variance.
+//! Requirements on every denoiser, on a picture whose ground truth is known: a chequered floor under slowly varying
+//! light, with a sharp shadow on it, and noise of known variance.
 #![allow(clippy::print_stderr, reason = "tells what it skips")]
 
 use bilux_math::Rgb;
@@ -8,7 +8,7 @@ use bilux_pictures::denoise::{Chosen, Task, denoise, denoiser};
 use bilux_pictures::{DENOISERS, Picture};
 
 const SIZE: usize = 96;
-/// Standard deviation of the noise, as a part of the light.
+/// Standard deviation of the noise, relative to the light.
 const NOISE: f32 = 0.3;
 
 fn albedo(i: usize) -> Rgb {
@@ -21,7 +21,7 @@ fn light(i: usize) -> f32 {
     if x + 0.5 * y > 0.9 { 0.1 } else { 1.0 + 0.5 * x - 0.3 * y }
 }
 
-/// Even in ±√3, so that its variance is 1.
+/// Uniform in ±√3, so that its variance is 1.
 fn number(i: usize, k: u64) -> f32 {
     (unit_f32(hash_words([i as u64, k]) as u32) * 2.0 - 1.0) * 3f32.sqrt()
 }
@@ -34,7 +34,7 @@ fn truth() -> Vec<Rgb> {
     plane(|i| albedo(i) * light(i))
 }
 
-/// The truth with noise, and the layers that a render gives beside it.
+/// The truth with noise, and the layers that a render adds to it.
 fn noisy() -> Picture {
     let seen = |i: usize| albedo(i) * light(i) * (1.0 + NOISE * number(i, 1));
     let mut picture = Picture::from_rgb(SIZE, SIZE, plane(seen)).unwrap();
@@ -42,7 +42,7 @@ fn noisy() -> Picture {
     for (name, value) in [("normal.X", 0.0), ("normal.Y", 1.0), ("normal.Z", 0.0), ("depth.Z", 5.0)] {
         picture.push_channel(name, vec![value; SIZE * SIZE]).unwrap();
     }
-    // One estimate each, as two halves of the samples give it.
+    // One estimate each, as from two halves of the samples.
     let variance = |i: usize| {
         let error = albedo(i) * light(i) * (NOISE * number(i, 2));
         error * error
@@ -63,7 +63,7 @@ fn task(threads: usize) -> Task {
     Task { size: (SIZE, SIZE), threads, ..Task::default() }
 }
 
-/// All that can be had here; the others are told.
+/// Runs a check on every denoiser that is available here; the others are reported.
 fn each(check: impl Fn(&str, &Chosen)) {
     for row in DENOISERS {
         match denoiser(row.entry.name, &task(2)) {
@@ -73,7 +73,7 @@ fn each(check: impl Fn(&str, &Chosen)) {
     }
 }
 
-/// By what the error falls. Networks have learned from renders, not from chequers of 3 pixels.
+/// The factor by which the error must fall. Networks are trained on renders, not on chequers of 3 pixels.
 fn at_least(name: &str) -> f64 {
     if name == "builtin" { 8.0 } else { 3.0 }
 }
@@ -86,12 +86,12 @@ fn noise_goes_and_textures_stay() {
         let smooth = denoise(&noisy, &*chosen.denoiser).unwrap();
         let after = relative_error(&smooth.to_rgb().unwrap());
         assert!(after < before / at_least(name), "{name}: {before} to {after}");
-        // The layers are as they were.
+        // The layers are unchanged.
         assert_eq!(smooth.channel("variance.R"), noisy.channel("variance.R"));
     });
 }
 
-/// The planted fault: with a layer that tells the wrong surface it must not do so well.
+/// The planted fault: with a layer that describes the wrong surface, the result must be worse.
 #[test]
 fn albedo_is_what_keeps_textures() {
     let mut blind = Picture::from_rgb(SIZE, SIZE, noisy().to_rgb().unwrap()).unwrap();
@@ -106,7 +106,7 @@ fn albedo_is_what_keeps_textures() {
 
 #[test]
 fn light_from_the_sources_is_smoothed_apart() {
-    // Half of the light comes by light paths, noisy too; the other half has no noise at all.
+    // Light paths contribute half of the light, with noise; the other half has no noise at all.
     let splats = plane(|i| albedo(i) * light(i) * 0.5 * (1.0 + NOISE * number(i, 3)));
     let sum = plane(|i| albedo(i) * light(i) * 0.5 + splats[i]);
     let mut picture = Picture::from_rgb(SIZE, SIZE, sum).unwrap();
@@ -118,7 +118,7 @@ fn light_from_the_sources_is_smoothed_apart() {
     let before = relative_error(&picture.to_rgb().unwrap());
     each(|name, chosen| {
         let after = relative_error(&denoise(&picture, &*chosen.denoiser).unwrap().to_rgb().unwrap());
-        // Who is not told the variance smooths the noiseless half as well.
+        // A denoiser that ignores the variance smooths the noiseless half as well.
         assert!(name != "builtin" || after < before / 5.0, "{name}: {before} to {after}");
         assert!(after < before, "{name}: {before} to {after}");
     });
@@ -150,7 +150,7 @@ fn small_bare_and_broken_pictures_are_denoised_as_well() {
         broken.channel_mut("albedo.B").unwrap()[900] = f32::NAN;
         broken.channel_mut("depth.Z").unwrap()[1100] = f32::INFINITY;
         let smooth = denoise(&broken, &*chosen.denoiser).unwrap().to_rgb().unwrap();
-        // Never turned black in silence, and nothing else harmed.
+        // They are not silently turned black, and nothing else is affected.
         assert!(smooth[500].r.is_nan(), "{name}");
         assert!(smooth.iter().enumerate().all(|(i, c)| i == 500 || c.is_finite()), "{name}");
     });
@@ -166,13 +166,13 @@ fn misspelt_names_are_answered_with_the_nearest() {
 fn what_has_no_time_is_passed_over_unless_it_is_asked_for() {
     let hurried = Task { time: Some(std::time::Duration::from_millis(1)), ..task(1) };
     assert_eq!(denoiser("auto", &hurried).unwrap().denoiser.describe(), "the built-in filter");
-    // Asked for by its name it comes, or says why not.
+    // When requested by name, it is used, or the error says why not.
     if let Ok(chosen) = denoiser("oidn", &hurried) {
         assert!(chosen.denoiser.describe().contains("Open Image Denoise"));
     }
 }
 
-/// Rare paths: one sample in a few hundred pixels is hundreds of times as bright.
+/// Rare paths: one pixel in a few hundred is hundreds of times as bright.
 #[test]
 fn fireflies_make_no_blots() {
     let mut picture = noisy();
@@ -186,7 +186,7 @@ fn fireflies_make_no_blots() {
     let with = relative_error(&denoise(&picture, &*chosen.denoiser).unwrap().to_rgb().unwrap());
     let without = relative_error(&denoise(&noisy(), &*chosen.denoiser).unwrap().to_rgb().unwrap());
     assert!(with < 1.5 * without, "{without} to {with}");
-    // What is as bright in both halves of the samples is there.
+    // If both halves of the samples are equally bright, the light is real.
     for plane in ["R", "G", "B"] {
         picture.channel_mut(&format!("variance.{plane}")).unwrap().fill(1e-6);
     }
@@ -194,7 +194,8 @@ fn fireflies_make_no_blots() {
     assert!(kept.channel("R").unwrap()[77] > 50.0);
 }
 
-/// How much of the right surface pixel `i` of a slanted edge shows, by so many of its samples; by 0 for all that there are.
+/// The fraction of the right surface in pixel `i` of a slanted edge, from this many of its samples; 0 means all
+/// available samples.
 fn covered(i: usize, samples: usize) -> f32 {
     let fine = if samples == 0 { 256 } else { samples };
     let (x, y) = ((i % SIDE_OF_EDGE) as f32, (i / SIDE_OF_EDGE) as f32);
@@ -207,8 +208,8 @@ fn covered(i: usize, samples: usize) -> f32 {
 
 const SIDE_OF_EDGE: usize = 64;
 
-/// Error of the pixels on a slanted edge between a bright and a dark surface, before and after: four samples told their light, and more
-/// of them their albedo, if it is told.
+/// Error of the pixels on a slanted edge between a bright and a dark surface, before and after denoising: their light
+/// comes from four samples, and their albedo from `features`, which may use more.
 fn error_of_edge(features: impl Fn(usize) -> f32) -> [f64; 2] {
     let mixed = |share: f32| Rgb::new(0.7, 0.6, 0.5) * (1.0 - share) + Rgb::new(0.05, 0.1, 0.1) * share;
     let plane = |of: &dyn Fn(usize) -> Rgb| (0..SIDE_OF_EDGE * SIDE_OF_EDGE).map(of).collect::<Vec<_>>();
@@ -236,7 +237,7 @@ fn error_of_edge(features: impl Fn(usize) -> f32) -> [f64; 2] {
 fn edges_are_rebuilt_by_what_is_known_of_the_surfaces() {
     let [before, after] = error_of_edge(|i| covered(i, 0));
     assert!(after < 0.2 * before, "{before} to {after}");
-    // The twin: where albedo is as uncertain as light, there is nothing to rebuild edges by.
+    // The twin: where albedo is as uncertain as light, edges cannot be reconstructed from it.
     let [before, after] = error_of_edge(|i| covered(i, 4));
     assert!(after > 0.3 * before, "{before} to {after}");
 }

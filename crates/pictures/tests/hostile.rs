@@ -1,4 +1,4 @@
-//! Bytes from strangers: a picture or an error, never a panic, never more memory than allowed.
+//! Untrusted bytes: a picture or an error, never a panic, never more memory than allowed.
 
 use bilux_pictures::{Limits, PICTURE_FORMATS, Picture, PictureError, PictureFormatEntry, read_bytes};
 use proptest::prelude::*;
@@ -69,13 +69,13 @@ proptest! {
     }
 }
 
-/// Whatever is cut off, either the file is refused or nothing of the picture was in it.
+/// Wherever a file is cut, either it is rejected or the lost part held nothing of the picture.
 #[test]
 fn files_cut_short_are_refused() {
     for row in PICTURE_FORMATS {
         for seed in seeds(row.entry.name) {
             let whole = (row.read)(&seed, &LIMITS).unwrap();
-            // The last number of a text loses its last digit without anybody noticing.
+            // The last number of a text file can lose its last digit undetected.
             let text = seed.starts_with(b"P2") || seed.starts_with(b"P3");
             for length in 0..seed.len() - if text { 4 } else { 0 } {
                 if let Ok(picture) = (row.read)(&seed[..length], &LIMITS) {

@@ -1,4 +1,4 @@
-//! Metrics against figures that other programs gave for the same pictures.
+//! Metrics against values that other programs computed for the same pictures.
 
 use bilux_math::Rgb;
 use bilux_pictures::metrics::{HeatMap, METRICS, Pair, compare, heat_map, ramp};
@@ -7,7 +7,7 @@ use bilux_pictures::{ColourSpace, Picture, PictureError, TONEMAPS};
 const WIDTH: usize = 96;
 const HEIGHT: usize = 64;
 
-/// An encoded picture from the byte of every pixel and channel.
+/// An encoded picture, given the byte of every pixel and channel.
 fn picture(byte: impl Fn(i64, i64, i64) -> i64) -> Picture {
     let mut picture = Picture::new(WIDTH, HEIGHT).unwrap();
     picture.colour_space = ColourSpace::Srgb;
@@ -66,8 +66,8 @@ fn figures_of_other_programs() {
     for (i, (a, b, expected)) in cases.iter().enumerate() {
         let report = compare(a, b).unwrap();
         for ((name, value), expected) in report.values.iter().zip(*expected) {
-            // flip-evaluator computes in f32, we in f64: where features hardly differ, the square root
-            // turns its roundings into up to 1e-4 in single pixels of the checks, 5e-6 in the mean.
+            // flip-evaluator computes in f32, we in f64: where features hardly differ, the square root amplifies its
+            // rounding errors to as much as 1e-4 in single pixels of the checks, 5e-6 in the mean.
             let tolerance = if *name == "flip" { 1e-5 } else { 1e-6 * expected.max(1.0) };
             assert!((value - expected).abs() <= tolerance, "{name} of case {i}: {value}, not {expected}");
         }
@@ -87,7 +87,7 @@ fn equal_pictures_do_not_differ() {
     }
 }
 
-/// Each metric has to notice a small change, and one that is twice as great more.
+/// Each metric must detect a small change, and report a larger error for one twice as large.
 #[test]
 fn more_error_is_worse() {
     let reference = picture(gradient);

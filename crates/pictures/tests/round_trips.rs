@@ -1,4 +1,5 @@
-//! What is written comes back, to the bit where the format can hold it, and the same bytes every time.
+//! Round trips: what is written is read back, to the bit where the format can hold it, and the same bytes are written
+//! every time.
 
 use bilux_math::Rgb;
 use bilux_pictures::{
@@ -6,7 +7,7 @@ use bilux_pictures::{
     read_bytes, write, write_bytes,
 };
 
-/// Values that a careless writer loses: signed zero, subnormal, huge, infinite, not a number.
+/// Values that a careless writer loses: signed zero, subnormal, huge, infinite, NaN.
 const NASTY: [f32; 8] = [0.0, -0.0, 1e-40, f32::MAX, f32::MIN_POSITIVE, f32::INFINITY, f32::NAN, -3.25];
 
 fn hash(seed: u32) -> u32 {
@@ -152,24 +153,26 @@ fn hdr_holds_whole_numbers_and_limits() {
     assert_eq!(back.rgb(3, 0), Rgb::BLACK);
 }
 
-/// Bytes by hand, as the formats' own pages have them: what is written wrongly and read wrongly comes back too.
+/// Bytes by hand, from the formats' own specifications: an error that writer and reader share would survive a round
+/// trip.
 #[test]
 fn bytes_mean_what_their_formats_say() {
     let read = |bytes: &[u8]| read_bytes(bytes, None, &Limits::default()).unwrap();
-    // Radiance: a mantissa is a part of 256, and the exponent is over 128. One pixel of 1, 1/2 and 1/4; one of 64, 0 and 0.
+    // Radiance: a mantissa is in units of 1/256, and the exponent is biased by 128. One pixel of 1, 1/2 and 1/4; one
+    // of 64, 0 and 0.
     let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
     let hdr = read(&[&header[..], &[128, 64, 32, 129], &[128, 0, 0, 135]].concat());
     assert_eq!(hdr.to_rgb().unwrap(), [Rgb::new(1.0, 0.5, 0.25), Rgb::new(64.0, 0.0, 0.0)]);
-    // PFM: the lowest row first; the sign of the scale is the order of bytes.
+    // PFM: bottom row first; the sign of the scale is the byte order.
     for (scale, bytes) in [("1.0", 2.0f32.to_be_bytes()), ("-1.0", 2.0f32.to_le_bytes())] {
         let pfm = read(&[format!("Pf\n1 2\n{scale}\n").as_bytes(), &bytes, &[0; 4]].concat());
         assert_eq!(pfm.channel("Y").unwrap(), [0.0, 2.0], "{scale}");
     }
-    // PPM of 16 bits: the greater byte first, by the sRGB curve.
+    // PPM of 16 bits: most significant byte first, by the sRGB curve.
     let ppm = read(&[&b"P6\n1 1\n65535\n"[..], &[0x80, 0x00, 0xff, 0xff, 0x00, 0x00]].concat());
     let light = ppm.into_linear().to_rgb().unwrap()[0];
     assert!((light - Rgb::new(0.214_05, 1.0, 0.0)).map(f32::abs).max_channel() < 2e-5, "{light:?}");
-    // Written, the other way round.
+    // The reverse: written.
     let picture = Picture::from_rgb(1, 2, vec![Rgb::grey(1.0), Rgb::grey(0.502_886)]).unwrap();
     let written = |format: &str| write_bytes(format, &picture, &WriteOptions::default()).unwrap();
     assert!(written("ppm").ends_with(&[255, 255, 255, 188, 188, 188]));
@@ -256,7 +259,7 @@ fn planes_have_to_fit() {
 fn bytes_for_a_display_are_encoded_and_have_alpha() {
     let mut picture = Picture::from_rgb(2, 1, vec![Rgb::new(0.5, 0.0, 7.0), Rgb::grey(0.25)]).unwrap();
     assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 137, 137, 137, 255]);
-    // Half there, and its light multiplied by that.
+    // Half transparent, with premultiplied light.
     picture.push_channel("A", vec![1.0, 0.5]).unwrap();
     assert_eq!(picture.to_rgba8().unwrap(), [188, 0, 255, 255, 188, 188, 188, 128]);
     assert_eq!(Picture::new(2, 1).unwrap().to_rgba8(), None);

@@ -1,4 +1,4 @@
-//! Other people's files, where the folder with them is there.
+//! Files by other programs, if the folder with them is present.
 
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
@@ -29,7 +29,7 @@ fn pictures_below(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Large files are read in the tests of those who need them: here they would only take time.
+/// Large files are read in the tests that need them: here they would only take time.
 const LARGEST: u64 = 300_000;
 
 #[test]
@@ -74,7 +74,7 @@ fn png_suite(name: &str) -> Option<Picture> {
     path.map(|path| read(path).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// The suite has most pictures twice: interlaced and not, in one chunk or in many, packed well or not.
+/// The suite has most pictures twice: interlaced and not, in one chunk or in many, at different compression levels.
 #[test]
 fn pairs_of_the_png_suite_agree() {
     let mut pairs: Vec<(String, String)> = Vec::new();
@@ -106,7 +106,7 @@ fn pairs_of_the_png_suite_agree() {
     }
 }
 
-/// Known from the suite's own description: sizes by name, transparent or not, gamma.
+/// Known from the suite's own description: sizes by name, transparency, gamma.
 #[test]
 fn the_png_suite_is_understood() {
     for side in 1..=9 {
@@ -135,7 +135,7 @@ fn every_half_is_read_exactly() {
         assert!(half.to_f32().to_bits() == sample.to_bits() || sample.is_nan());
         seen[half.to_bits() as usize] = true;
     }
-    // Numbers that are none lose their names, finite ones and infinities all occur.
+    // NaN values lose their payload; finite numbers and infinities all occur.
     let finite = seen.iter().enumerate().filter(|(bits, _)| !half::f16::from_bits(*bits as u16).is_nan());
     assert!(finite.into_iter().all(|(_, seen)| *seen));
 }

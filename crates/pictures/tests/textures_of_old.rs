@@ -1,4 +1,4 @@
-//! TIFF, BMP and TGA as other programs write them. All files show one picture, in all ways that there are.
+//! TIFF, BMP and TGA as other programs write them. All files show the same picture, in all available encodings.
 
 use bilux_math::colour::srgb_decode;
 use bilux_pictures::{Alpha, ColourSpace, Limits, Picture, Rgba8, read_bytes, read_rgba8};
@@ -15,7 +15,7 @@ fn picture(format: &str, name: &str) -> Picture {
         .unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What was drawn, in bytes.
+/// The original picture, in bytes.
 fn colour(x: usize, y: usize) -> [u8; 4] {
     let blue = if (x + y) % 2 == 1 { 255 } else { 10 };
     [x as u8 * 40, y as u8 * 60, blue, if x < 4 { 255 } else { 80 }]
@@ -25,7 +25,7 @@ fn grey(x: usize, y: usize) -> u8 {
     (x * 30 + y * 7) as u8
 }
 
-/// Holds each pixel of 7 x 5 against what was drawn, to a part of white.
+/// Compares each pixel of 7 x 5 with the original, to within a fraction of white.
 fn check(picture: &Picture, name: &str, off: f32, truth: impl Fn(usize, usize) -> [f32; 3]) {
     assert_eq!((picture.width(), picture.height()), (7, 5), "{name}");
     for (y, x) in (0..5).flat_map(|y| (0..7).map(move |x| (y, x))) {
@@ -104,7 +104,7 @@ fn colours_are_in_their_places() {
         let picture = picture(format, name);
         assert_eq!(picture.colour_space, ColourSpace::Srgb, "{name}");
         check(&picture, name, 1e-7, in_srgb);
-        // A BMP of 32 bits without masks has no alpha, whatever is in its place.
+        // A BMP of 32 bits without masks has no alpha, whatever its fourth byte holds.
         if name.starts_with("rgba") && name != "rgba.bmp" {
             check_alpha(&picture, name, 1e-7);
         } else {
@@ -114,7 +114,7 @@ fn colours_are_in_their_places() {
     for (format, name) in [("bmp", "rgb555.bmp"), ("bmp", "rgb565_masks.bmp"), ("tga", "rgb555.tga")] {
         check(&picture(format, name), name, 0.5 / 31.0 + 0.5 / 255.0, in_srgb);
     }
-    // Colours that were multiplied in eight bits come back as well as these allow.
+    // Premultiplied colours of eight bits are recovered as well as their precision allows.
     let multiplied = picture("tiff", "rgba_multiplied.tif");
     check(&multiplied, "rgba_multiplied.tif", 0.5 / 80.0 + 0.001, in_srgb);
     check_alpha(&multiplied, "rgba_multiplied.tif", 1e-7);
@@ -193,7 +193,7 @@ fn textures_in_bytes_are_the_same_picture() {
     }
 }
 
-/// A kilobyte that says that it is a picture of gigabytes.
+/// A kilobyte that claims to be a picture of gigabytes.
 #[test]
 fn what_a_file_is_too_short_for_takes_no_memory() {
     for (format, name) in [

@@ -1,4 +1,4 @@
-//! What every tone map has to keep.
+//! Requirements on every tone map.
 
 use bilux_math::Rgb;
 use bilux_pictures::{ColourSpace, Picture, TONEMAPS, to_display, tone_map};
@@ -51,13 +51,13 @@ fn misspelt_names_are_answered_with_the_nearest() {
     assert!(error.contains("did you mean 'reinhard'") && error.contains("aces"), "{error}");
 }
 
-/// What the published formulas give, worked out apart from this code in double precision.
+/// Values of the published formulas, computed independently of this code in double precision.
 #[test]
 fn curves_are_those_that_were_published() {
     let known = [
         // Narkowicz: 0.18 (2.51 · 0.18 + 0.03) / (0.18 (2.43 · 0.18 + 0.59) + 0.14).
         ("aces", [0.18, 0.18, 0.18], [0.266_899, 0.266_899, 0.266_899]),
-        // Up to 0.8 it takes 0.04 off; darker greys lie on a parabola; 1 becomes 1 - 0.24² / 0.44.
+        // Up to 0.8 it subtracts 0.04; darker greys lie on a parabola; 1 becomes 1 - 0.24² / 0.44.
         ("neutral", [0.5, 0.5, 0.5], [0.46, 0.46, 0.46]),
         ("neutral", [0.04, 0.04, 0.04], [0.01, 0.01, 0.01]),
         ("neutral", [0.8, 0.2, 0.0], [0.794_286, 0.199_082, 0.000_680]),

@@ -1,13 +1,13 @@
-//! The sign stage of the triangle test on sixteen triangles: a plain twin, and what wider machines take.
+//! The sign stage of the triangle test on sixteen triangles at once: a scalar version, and AVX2 and AVX-512 kernels.
 //!
-//! No operation is fused: each product and difference is rounded as in [`PreparedRay::cross`], so that
-//! every level gives the same mask.
-#![allow(unsafe_code)] // Calls and loads of the wide kernels; each says why it is sound.
+//! No operation is fused: each product and difference is rounded as in [`PreparedRay::cross`], so that every level
+//! gives the same mask.
+#![allow(unsafe_code)] // Calls and loads of the wide kernels; each call says why it is sound.
 
 use crate::cpu_level::CpuLevel;
 use crate::triangle::PreparedRay;
 
-/// Triangles of a block.
+/// Triangles in a block.
 pub(super) const LANES: usize = 16;
 
 /// Sixteen triangles: `[corner][axis][lane]`.
@@ -16,7 +16,7 @@ pub(super) const LANES: usize = 16;
 pub(super) struct Block([[[f32; LANES]; 3]; 3]);
 
 impl Block {
-    /// Of up to sixteen triangles; lanes beyond them are all zero.
+    /// Packs up to sixteen triangles; the remaining lanes are all zero.
     pub(super) fn new(triangles: &[[[f32; 3]; 3]]) -> Block {
         let mut block = Block([[[0.0; LANES]; 3]; 3]);
         for (lane, triangle) in triangles.iter().take(LANES).enumerate() {
@@ -30,8 +30,8 @@ impl Block {
     }
 }
 
-/// For each block, a bit for each triangle that the signs of its edges do not reject. The level must be one
-/// that [`CpuLevel::available`] gave.
+/// For each block, sets a bit for each triangle that the signs of its edges do not reject. The level must be one that
+/// [`CpuLevel::available`] returned.
 #[inline]
 pub(super) fn sign_stage(level: CpuLevel, blocks: &[Block], ray: &PreparedRay, masks: &mut [u16]) {
     match level {
@@ -45,7 +45,7 @@ pub(super) fn sign_stage(level: CpuLevel, blocks: &[Block], ray: &PreparedRay, m
     }
 }
 
-/// The twin that the others are held against.
+/// The scalar version that the others are tested against.
 fn sign_stage_plain(blocks: &[Block], ray: &PreparedRay, masks: &mut [u16]) {
     for (block, mask) in blocks.iter().zip(masks) {
         let [a, b, c] = [0, 1, 2].map(|corner| shear(&block.0[corner], ray));
@@ -143,7 +143,7 @@ mod tests {
     use crate::Ray;
     use bilux_math::hash::hash_words;
 
-    /// Any bits at all, or small whole numbers that make many zeros.
+    /// Arbitrary bits, or small integers, which produce many zeros.
     fn number(seed: u64, i: u64) -> f32 {
         let word = hash_words([seed, i]);
         if seed.is_multiple_of(3) { f32::from_bits(word as u32) } else { (word % 9) as f32 - 4.0 }

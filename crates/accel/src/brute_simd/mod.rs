@@ -1,4 +1,4 @@
-//! A loop over every triangle, sixteen at a time: the fairest rival that a tree can have.
+//! A loop over every triangle, sixteen at a time: the fairest baseline for a tree.
 
 mod kernel;
 
@@ -24,9 +24,9 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     build: |mesh, options| Ok(Box::new(BruteSimd::new(mesh, options.cpu_level))),
 };
 
-/// All triangles, in blocks of sixteen. The sign stage of the triangle test runs on all lanes of a block at
-/// once, in the same order of operations as [`PreparedRay::cross`]; the few that it does not reject go
-/// through that test itself. So the answers are those of `brute`, whatever the level.
+/// All triangles, in blocks of sixteen. The sign stage of the triangle test runs on all lanes of a block at once, in
+/// the same order of operations as [`PreparedRay::cross`]; the few triangles that it does not reject go through that
+/// test itself. So the answers are those of `brute`, whatever the level.
 #[derive(Debug)]
 pub struct BruteSimd {
     mesh: Arc<TriangleMesh>,
@@ -34,17 +34,18 @@ pub struct BruteSimd {
     level: CpuLevel,
 }
 
-/// Blocks whose survivors are collected before they are looked at.
+/// Blocks whose surviving triangles are collected before they are tested.
 const BATCH: usize = 32;
 
 impl BruteSimd {
-    /// Sorts triangles into blocks, for kernels of this level or what the machine has of it.
+    /// Packs triangles into blocks, for kernels of this level, or of the highest level below it that the machine
+    /// supports.
     pub fn new(mesh: Arc<TriangleMesh>, level: CpuLevel) -> BruteSimd {
         let blocks = mesh.triangles().chunks(LANES).map(Block::new).collect();
         BruteSimd { mesh, blocks, level: level.available() }
     }
 
-    /// Calls `visit` with every triangle that the sign stage leaves, in order, until it returns false.
+    /// Calls `visit` with every triangle that the sign stage lets through, in order, until `visit` returns false.
     #[inline(always)]
     fn survivors(&self, ray: &PreparedRay, mut visit: impl FnMut(&[[f32; 3]; 3], u32) -> bool) {
         let mut masks = [0u16; BATCH];
@@ -55,7 +56,7 @@ impl BruteSimd {
                 while left != 0 {
                     let index = (batch * BATCH + block) * LANES + left.trailing_zeros() as usize;
                     left &= left - 1;
-                    // Lanes beyond the last triangle hold none.
+                    // Lanes beyond the last triangle are empty.
                     let Some(triangle) = self.mesh.triangles().get(index) else { break };
                     if !visit(triangle, index as u32) {
                         return;

@@ -1,10 +1,10 @@
-//! Convex cells, for the areas that the surface-area heuristic asks for. Only the quality of a tree depends
-//! on them, never an answer.
+//! Convex cells, for the areas that the surface-area heuristic needs. They affect only the quality of a tree, never
+//! an answer.
 
 use super::plane::Plane;
 use bilux_math::DVec3;
 
-/// A convex polyhedron: its faces one after the other, corners counter-clockwise as seen from outside.
+/// A convex polyhedron: its faces one after the other, corners counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cell {
     points: Vec<DVec3>,
@@ -33,12 +33,12 @@ impl Cell {
         cell
     }
 
-    /// Its surface.
+    /// Its surface area.
     pub(super) fn area(&self) -> f64 {
         self.area
     }
 
-    /// The surfaces of the parts left and right of a plane.
+    /// The surface areas of the parts left and right of a plane.
     pub(super) fn areas(&self, plane: &Plane) -> [f64; 2] {
         let (mut left, mut right, mut cap) = (0.0, 0.0, FanArea::default());
         for (face, points) in self.faces() {
@@ -70,13 +70,13 @@ impl Cell {
         [left + cap, right + cap]
     }
 
-    /// The parts left and right of a plane, each reaching over it by `tolerance`: so much do the pieces of a
-    /// side, and cells thinner than that would not hold what they are said to.
+    /// The parts left and right of a plane, each extended over the plane by `tolerance`. The pieces on a side reach
+    /// that far, and a cell thinner than that would not contain the pieces it is meant to hold.
     pub(super) fn split(&self, plane: &Plane, tolerance: f64) -> [Cell; 2] {
         [self.cut(&plane.moved(tolerance), false), self.cut(&plane.moved(-tolerance), true)]
     }
 
-    /// The part left of a plane, or right of it.
+    /// The part to the left of a plane, or to the right.
     fn cut(&self, plane: &Plane, right: bool) -> Cell {
         let (mut part, mut rim) = (Cell::default(), Vec::new());
         for (_, points) in self.faces() {
@@ -110,7 +110,7 @@ impl Cell {
         })
     }
 
-    /// Makes one face of the points added since the last; drops them when they span nothing.
+    /// Closes a face from the points added since the last one; drops them if they have no area.
     fn close(&mut self) {
         let start = self.faces.last().map_or(0, |face| face.end);
         let mut fan = FanArea::default();
@@ -125,7 +125,7 @@ impl Cell {
     }
 }
 
-/// Corners of a box by their bits (x lowest), counter-clockwise from outside.
+/// Corners of a box by their bits (x lowest), counter-clockwise seen from outside.
 const BOX_FACES: [[usize; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
@@ -136,8 +136,8 @@ enum Corner {
     Crossing(DVec3, bool),
 }
 
-/// Goes around a polygon, naming its corners and where its edges cross a plane. Corners in the plane are
-/// left ones.
+/// Goes around a polygon and reports its corners and where its edges cross a plane. Corners in the plane count as
+/// left.
 #[inline]
 fn around(points: &[DVec3], plane: &Plane, mut visit: impl FnMut(Corner)) {
     let Some(&last) = points.last() else { return };
@@ -154,7 +154,7 @@ fn around(points: &[DVec3], plane: &Plane, mut visit: impl FnMut(Corner)) {
     }
 }
 
-/// The two points where a face meets the plane.
+/// The two points where a face crosses the plane.
 #[derive(Default)]
 struct Crossings {
     leaves: Option<DVec3>,
@@ -168,8 +168,8 @@ impl Crossings {
     }
 }
 
-/// The area of a polygon, as half the length of a sum of cross products about its first point. The sum
-/// does not care for the order of segments, so the rim of a cut need not be sorted to be measured.
+/// The area of a polygon, as half the length of a sum of cross products about its first point. The order of the
+/// segments does not matter to the sum, so the rim of a cut need not be sorted to be measured.
 #[derive(Default)]
 struct FanArea {
     first: Option<DVec3>,
@@ -204,7 +204,7 @@ impl FanArea {
     }
 }
 
-/// The points of a convex polygon in a plane, counter-clockwise as seen from the right of the plane.
+/// The points of a convex polygon in a plane, counter-clockwise seen from the right of the plane.
 fn in_order(mut points: Vec<DVec3>, plane: &Plane) -> Vec<DVec3> {
     let Some(&first) = points.first() else { return points };
     let middle = first + points.iter().map(|&p| p - first).sum::<DVec3>() / points.len() as f64;

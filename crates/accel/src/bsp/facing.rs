@@ -1,29 +1,29 @@
-//! Which way the triangles of a partition face, so that back faces can be left out together.
+//! Which way the triangles of a partition face, so that back faces can be culled together.
 
 use crate::mesh::TriangleMesh;
 use crate::triangle::PreparedRay;
 use bilux_math::{Aabb, DVec3, Vec3};
 
-/// The common orientation of a run of triangles, and how far each may be from it.
+/// The common orientation of a run of triangles, and how far each triangle may deviate from it.
 ///
-/// The triangle test calls a triangle a back face by the sign of its sheared area, which is exact for the
-/// sheared vertices; those are off by at most 6 units of rounding of `far`. With edges no longer than `L`
-/// and twice the area `2A`, that sign is beyond doubt where the unit normal and the ray's direction
-/// have a cosine above `24 · 6 · 2⁻²⁴ · far · L / 2A`, which is nine times [`PreparedRay::pad`] times the
-/// `roughness` L / 2A. Sixteen are granted.
+/// The triangle test decides that a triangle is back-facing by the sign of its sheared area, which is exact for the
+/// sheared vertices; those are off by at most 6 units of rounding of `far`. With edges no longer than `L` and twice
+/// the area `2A`, that sign is certain where the unit normal and the ray's direction have a cosine above
+/// `24 · 6 · 2⁻²⁴ · far · L / 2A`, which is nine times [`PreparedRay::pad`] times the `roughness` L / 2A. The code
+/// allows sixteen times.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Facing {
-    /// How many triangles the run has.
+    /// The number of triangles in the run.
     pub(super) count: u32,
     normal: Vec3,
-    /// Longest difference between `normal` and the unit normal of a triangle.
+    /// Largest difference between `normal` and the unit normal of a triangle.
     spread: f32,
-    /// Greatest longest edge over twice the area.
+    /// Largest ratio of longest edge to twice the area.
     roughness: f32,
 }
 
 impl Facing {
-    /// Of triangles with area, at least one.
+    /// For at least one triangle, each with a non-zero area.
     fn of(mesh: &TriangleMesh, run: &[u32]) -> Facing {
         let corners = || run.iter().map(|&index| &mesh.triangles()[index as usize]);
         let sum: DVec3 = corners().filter_map(orientation).sum();
@@ -39,13 +39,13 @@ impl Facing {
         }
     }
 
-    /// For triangles without area, of which nothing is ever known.
+    /// For triangles without area, about which nothing is known.
     fn unknown(count: usize) -> Facing {
         Facing { count: count as u32, normal: Vec3::ZERO, spread: f32::INFINITY, roughness: f32::INFINITY }
     }
 }
 
-/// Puts the triangles of a partition into runs that face much the same way, each run like its first.
+/// Groups the triangles of a partition into runs that face much the same way; each run follows its first triangle.
 pub(super) fn in_runs(mesh: &TriangleMesh, triangles: &[u32]) -> (Vec<u32>, Vec<Facing>) {
     let facing = |&index: &u32| Some((index, orientation(&mesh.triangles()[index as usize])?));
     let mut oriented: Vec<(u32, DVec3)> = triangles.iter().filter_map(facing).collect();
@@ -65,10 +65,10 @@ pub(super) fn in_runs(mesh: &TriangleMesh, triangles: &[u32]) -> (Vec<u32>, Vec<
     (order, facings)
 }
 
-/// Cosine between normals that face alike.
+/// Minimum cosine between normals that count as facing alike.
 const ALIKE: f64 = 0.9;
 
-/// Unit normal towards the side from which the vertices run counter-clockwise; `None` without area.
+/// Unit normal on the side from which the vertices run counter-clockwise; `None` without area.
 pub(super) fn orientation(triangle: &[[f32; 3]; 3]) -> Option<DVec3> {
     let [a, b, c] = triangle.map(|vertex| Vec3::from(vertex).as_dvec3());
     (b - a).cross(c - a).try_normalize()
@@ -80,13 +80,13 @@ fn edge_over_area(triangle: &[[f32; 3]; 3]) -> f64 {
     longest / (b - a).cross(c - a).length()
 }
 
-/// Makes up for the rounding to f32.
+/// Compensates for the rounding to f32.
 const ROUND_UP: f32 = 1.000_001;
 
-/// Makes up for the rounding of a dot product of three, and of the normal.
+/// Compensates for the rounding of a three-term dot product and of the normal.
 const EVALUATION: f32 = 16.0 / 16_777_216.0;
 
-/// What a ray needs to be asked whether it sees backs only.
+/// What is needed of a ray to decide whether it sees only back faces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayView {
     direction: Vec3,
@@ -102,7 +102,7 @@ impl RayView {
         RayView { direction, length: length * ROUND_UP, margin: 16.0 * ray.pad(bounds) }
     }
 
-    /// True when the triangle test, with back faces culled, is sure to reject every one of these triangles.
+    /// True when the triangle test, with back faces culled, is certain to reject every one of these triangles.
     #[inline]
     pub(super) fn sees_backs_only(&self, facing: &Facing) -> bool {
         let least = facing.spread + self.margin * facing.roughness;

@@ -1,17 +1,17 @@
-//! The paper's tree, of polygons or of whole objects.
+//! The paper's tree, over polygons or over whole objects.
 //!
-//! Its planes lie where the partition's polygons are and look as they look. Nothing in such a rule promises
-//! that a plane parts anything: of a smooth surface, the mean plane is nearly the tangent, and cuts most of
-//! what is left. A plane makes progress when each side keeps at most nine tenths and at most a quarter
-//! is cut. Where the rule's does not, the plane through the mean position, perpendicular to the axis along which
-//! positions vary most, is taken (whatever it cuts), and a leaf where that leaves more than nine
-//! tenths on a side. Growth also ends
+//! Its planes lie where the polygons of the partition lie and face as they face. Nothing in such a rule guarantees
+//! that a plane separates anything: on a smooth surface, the mean plane is nearly the tangent plane and cuts most of
+//! what is left. A plane makes progress when each side keeps at most nine tenths and at most a quarter is cut. Where
+//! the rule's plane makes no progress, the builder takes the plane through the mean position, perpendicular to the
+//! axis along which positions vary most (whatever it cuts), and makes a leaf where that leaves more than nine tenths
+//! on a side. Growth also ends
 //! - at few enough polygons (`LEAF`), or one object;
-//! - below `MAX_DEPTH` planes;
-//! - by `GROWTH`: a polygon that a plane cuts is referred to from both sides. No way down the tree may
-//!   multiply references by more than this, so there are never more than this many per polygon.
+//! - at a depth of `MAX_DEPTH` planes;
+//! - by `GROWTH`: a polygon that a plane cuts is referenced from both sides. No path down the tree may multiply
+//!   references by more than this, so there are never more than this many per polygon.
 //!
-//! With [`BspSplit::Fuchs`] the polygons within a plane stay with it, as in a drawing tree, and are seen
+//! With [`BspSplit::Fuchs`] the polygons within a plane stay with it, as in a BSP tree for drawing, and are visited
 //! between its two sides.
 
 use super::partition::{Item, Objects, Partition, Polygons};
@@ -52,25 +52,25 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// Most polygons in a leaf that could be parted.
+/// Maximum number of polygons in a leaf that could still be split.
 pub const LEAF: usize = 4;
 
-/// Most references per polygon.
+/// Maximum number of references per polygon.
 pub const GROWTH: f64 = 4.0;
 
-/// Most of a partition that may stay together.
+/// Maximum fraction of a partition that may stay together.
 const PROGRESS: f64 = 0.9;
 
-/// Most of a partition that the rule's plane may cut.
+/// Maximum fraction of a partition that the rule's plane may cut.
 const CUT: f64 = 0.25;
 
 /// Polygons whose planes are tried [Fuchs 1983].
 const CANDIDATES: usize = 5;
 
-/// A mean of unit vectors shorter than this is what their roundings left over, not an orientation.
+/// A mean of unit vectors shorter than this is rounding error, not an orientation.
 const DISORIENTED: f64 = 1.0 / 1024.0;
 
-/// Partitions of more references grow on two threads.
+/// Partitions with more references than this are built on two threads.
 const PARALLEL: usize = 4096;
 
 fn build(mesh: Arc<TriangleMesh>, options: &BuildOptions) -> Result<Box<dyn crate::Accelerator>, BuildError> {
@@ -81,7 +81,7 @@ impl BspTree {
     /// The paper's tree over a mesh.
     ///
     /// # Errors
-    /// When the tree has more nodes than can be numbered.
+    /// Returns an error when the tree has more nodes than can be numbered.
     pub fn paper(mesh: &TriangleMesh, split: BspSplit, group: BspGroup) -> Result<BspTree, BuildError> {
         let space = Space::new(&mesh.bounds());
         let root = match group {
@@ -115,20 +115,20 @@ fn grow<P: Partition>(partition: P, split: BspSplit, growth: f64, depth: usize) 
     Branch::Fork { plane, on: on.into_triangles(), children: Box::new([left, right]) }
 }
 
-/// Parts a partition by the rule's plane or, when that makes no progress, by the widest spread's.
+/// Splits a partition by the rule's plane or, when that makes no progress, by the plane of widest spread.
 fn part<P: Partition>(partition: &P, split: BspSplit) -> Option<(Plane, Parts<P>)> {
     let items = partition.items();
     let ruled = match split {
         BspSplit::Mean => mean_plane(&items),
         BspSplit::Fuchs => own_plane(&items, partition),
     };
-    // Nothing is known to be better than the widest spread, so that one may cut as it must.
+    // No better plane than that of the widest spread is known, so that one may cut as much as it must.
     let tries = [(ruled, CUT), (spread_plane(&items), 1.0)];
     tries.into_iter().find_map(|(plane, may_cut)| {
         let plane = plane?;
         let mut parts = partition.split(&plane);
         if split == BspSplit::Mean {
-            // Nothing was chosen for lying in the plane, so whatever does may go to either side.
+            // The rule did not choose polygons for lying in the plane, so those that do may go to either side.
             let on = std::mem::replace(&mut parts.on, partition.none());
             if parts.left.len() < parts.right.len() { parts.left.join(on) } else { parts.right.join(on) }
         }
@@ -147,7 +147,7 @@ fn mean_plane(items: &[Item]) -> Option<Plane> {
     oriented.then(|| Plane::through(mean(items.iter().map(|item| item.position)), orientation))?
 }
 
-/// Of a few items' own planes, the one that cuts fewest others; among those, the one that parts them most
+/// Of a few items' own planes, the one that cuts the fewest others; among those, the one that splits them most
 /// evenly; among those, the first.
 fn own_plane<P: Partition>(items: &[Item], partition: &P) -> Option<Plane> {
     let candidates = CANDIDATES.min(items.len());

@@ -1,4 +1,4 @@
-//! What the paper's tree keeps together: polygons, or whole objects.
+//! The units that the paper's tree partitions: polygons, or whole objects.
 
 use super::facing::orientation;
 use super::pieces::{Parts, Pieces};
@@ -6,11 +6,11 @@ use super::plane::{Plane, Side, Space};
 use crate::mesh::TriangleMesh;
 use bilux_math::DVec3;
 
-/// What the rules look at in a polygon or an object.
+/// What the rules inspect in a polygon or an object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) position: DVec3,
-    /// Of unit length, or zero for something without area.
+    /// Unit length, or zero for something without area.
     pub(super) orientation: DVec3,
 }
 
@@ -18,17 +18,17 @@ pub(super) struct Item {
 pub(super) trait Partition: Sized + Send {
     /// How many items there are.
     fn len(&self) -> usize;
-    /// How many triangles these hold.
+    /// How many triangles they hold.
     fn references(&self) -> usize;
-    /// True when it is not worth parting.
+    /// True when it is not worth splitting.
     fn is_small(&self) -> bool;
-    /// Each of them, as the rules see it.
+    /// Each item, as the rules see it.
     fn items(&self) -> Vec<Item>;
-    /// How many reach to the left of a plane, to the right, and to both.
+    /// How many items reach to the left of a plane, to the right, and to both.
     fn sides(&self, plane: &Plane) -> [usize; 3];
-    /// Deals them out.
+    /// Distributes the items over the sides of a plane.
     fn split(&self, plane: &Plane) -> Parts<Self>;
-    /// An empty one.
+    /// An empty partition.
     fn none(&self) -> Self;
     /// Adds another's items to this one.
     fn join(&mut self, other: Self);
@@ -36,7 +36,7 @@ pub(super) trait Partition: Sized + Send {
     fn into_triangles(self) -> Vec<u32>;
 }
 
-/// Counts the sides that things lie on.
+/// Counts the sides on which items lie.
 fn count_sides(sides: impl Iterator<Item = Side>) -> [usize; 3] {
     sides.fold([0; 3], |[left, right, both], side| match side {
         Side::Left => [left + 1, right, both],
@@ -106,7 +106,7 @@ impl Partition for Polygons<'_> {
     }
 }
 
-/// Whole objects, never cut: each is on every side that it reaches to.
+/// Whole objects, never cut: each is on every side that it reaches into.
 pub(super) struct Objects {
     tolerance: f64,
     all: std::sync::Arc<[Object]>,

@@ -1,13 +1,13 @@
-//! A ray in a tree's coordinates: which sides of a plane it has to see, and between which distances.
+//! A ray in a tree's coordinates: which sides of a plane it must visit, and between which distances.
 //!
 //! # Why no hit is missed
-//! Say the triangle test accepts a triangle at `t`. By the lemma of [`crate::triangle`] the point P at `t`
-//! is within `pad` of a point Q of the triangle, on every axis. Follow Q down the tree: a builder puts
-//! a triangle on each side where it has points, and leaves a side out only when the triangle reaches
-//! less than `tolerance` over the plane. So at every node some side that holds the triangle has Q no
-//! further than `tolerance` behind the plane, and P no further than `tolerance + pad · |n|₁`. A child is
-//! walked where the ray is at most [`Path`]'s `slack` behind the plane, which covers this and the roundings
-//! of the walk itself, with u = 2⁻²⁴ and all lengths in units of `far`:
+//! Suppose the triangle test accepts a triangle at `t`. By the lemma of [`crate::triangle`], the point P at `t` is
+//! within `pad` of a point Q of the triangle, on every axis. Follow Q down the tree: a builder puts a triangle on
+//! each side where it has points, and omits a side only when the triangle reaches less than `tolerance` over the
+//! plane. So at every node, some side that holds the triangle has Q no further than `tolerance` behind the plane, and
+//! P no further than `tolerance + pad · |n|₁`. Traversal visits a child where the ray is at most [`Path`]'s `slack`
+//! behind the plane, which covers this and the roundings of the traversal itself, with u = 2⁻²⁴ and all lengths in
+//! units of `far`:
 //!
 //! | | axis planes, u | other planes, u (|n|₁ ≤ √3) |
 //! | --- | --- | --- |
@@ -17,27 +17,27 @@
 //! | direction along the normal, times t | – | 6 |
 //! | offset, reciprocal and product | 5 | 7 |
 //! | sum | 31 | 60 |
-//! | granted | 32 = 2 pads | 64 = 4 pads |
+//! | allowed | 32 = 2 pads | 64 = 4 pads |
 
 use crate::triangle::PreparedRay;
 use bilux_math::{Aabb, Vec3};
 
-/// A ray as it walks down a tree.
+/// A ray on its way down a tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path {
     origin: [f32; 3],
     direction: [f32; 3],
     inverse: [f32; 3],
-    /// Added to a plane's place, these give the distances (before `inverse`) up to which its near side,
-    /// and from which its far side, has to be seen.
+    /// Added to a plane's offset, these give the distances (before `inverse`) up to which the near side must be
+    /// visited, and from which the far side must be.
     near: [f32; 3],
     far: [f32; 3],
-    /// 1 where the ray goes down an axis, so that the right child is the near one.
+    /// 1 where the ray travels down an axis, so that the right child is the near one.
     flip: [u32; 3],
     slack: f32,
 }
 
-/// How a ray passes a plane.
+/// How a ray crosses a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneCrossing {
     /// 1 when the right side is the near one.
@@ -67,7 +67,8 @@ impl Path {
         }
     }
 
-    /// Where the ray is inside a box (in the tree's coordinates), between two distances; `None` if nowhere.
+    /// The interval between two distances in which the ray is inside a box (in the tree's coordinates); `None` if it
+    /// never is.
     pub(super) fn clip(&self, low: Vec3, high: Vec3, mut from: f32, mut until: f32) -> Option<(f32, f32)> {
         for axis in 0..3 {
             let (near, far) =
@@ -78,7 +79,7 @@ impl Path {
         (from <= until).then_some((from, until))
     }
 
-    /// Passing a plane perpendicular to an axis.
+    /// The crossing of a plane perpendicular to an axis.
     #[inline(always)]
     pub(super) fn across(&self, axis: usize, at: f32) -> PlaneCrossing {
         let inverse = self.inverse[axis];
@@ -89,7 +90,7 @@ impl Path {
         }
     }
 
-    /// Passing any plane, given as its normal and place.
+    /// The crossing of any plane, given as its normal and offset.
     #[inline(always)]
     pub(super) fn through(&self, [x, y, z, at]: [f32; 4]) -> PlaneCrossing {
         let [ox, oy, oz] = self.origin;
@@ -106,8 +107,8 @@ impl Path {
     }
 }
 
-/// The lemma's pad, or infinity for rays whose arithmetic might leave the range of f32: those are not
-/// pruned at all. A `t` that underflows is off by up to 2⁻¹⁴⁹, hence the last term (a normal number: others are slow).
+/// The lemma's pad, or infinity for rays whose arithmetic might leave the range of f32: those are not pruned at all.
+/// A `t` that underflows is off by up to 2⁻¹⁴⁹, hence the last term (a normal number, because denormals are slow).
 fn slack(ray: &PreparedRay, bounds: &Aabb) -> f32 {
     let pad = ray.pad(bounds);
     let reach = ray.ray.direction.iter().fold(0f32, |reach, d| reach.max(d.abs()));
@@ -118,14 +119,14 @@ fn slack(ray: &PreparedRay, bounds: &Aabb) -> f32 {
 /// 2¹⁰⁰.
 const LARGE: f32 = 1.267_650_6e30;
 
-/// The lesser of two distances. The second may be no number (0 · ∞, for a ray within a plane): it then
-/// says nothing, and the first stands.
+/// The smaller of two distances. The second may be NaN (0 · ∞, for a ray within a plane): it then carries no
+/// information, and the first is returned.
 #[inline(always)]
 pub(super) fn earlier(this: f32, that: f32) -> f32 {
     if that < this { that } else { this }
 }
 
-/// The greater of two distances, likewise.
+/// The larger of two distances, likewise.
 #[inline(always)]
 pub(super) fn later(this: f32, that: f32) -> f32 {
     if that > this { that } else { this }

@@ -1,14 +1,14 @@
-//! What is left of each triangle inside a cell, while a tree grows.
+//! What remains of each triangle inside a cell, while a tree is built.
 
 use super::plane::{Plane, Side, Space};
 use crate::mesh::TriangleMesh;
 use bilux_math::DVec3;
 
-/// Convex polygons, each cut from one triangle. Leaves only ever hold the triangles' numbers; the pieces
-/// tell which leaves those belong to.
+/// Convex polygons, each cut from one triangle. Leaves hold only the triangles' numbers; the pieces determine which
+/// leaves a triangle belongs to.
 ///
-/// A cut gives both sides the same new points, so the two pieces together are the whole piece; nothing
-/// gets lost between them, however inexact those points are.
+/// A cut gives both sides the same new points, so the two pieces together are the whole piece; nothing is lost
+/// between them, however inexact those points are.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pieces {
     triangles: Vec<u32>,
@@ -17,7 +17,7 @@ pub(super) struct Pieces {
     points: Vec<DVec3>,
 }
 
-/// What a plane makes of a partition.
+/// The parts into which a plane splits a partition.
 #[derive(Default)]
 pub(super) struct Parts<P> {
     pub(super) left: P,
@@ -26,7 +26,7 @@ pub(super) struct Parts<P> {
 }
 
 impl Pieces {
-    /// All triangles of a mesh, whole; those that are not finite are left out, as no ray hits them.
+    /// All triangles of a mesh, whole. Triangles that are not finite are left out, since no ray hits them.
     pub(super) fn of_mesh(mesh: &TriangleMesh, space: &Space) -> Pieces {
         let mut pieces = Pieces::default();
         for (index, triangle) in mesh.triangles().iter().enumerate() {
@@ -46,7 +46,7 @@ impl Pieces {
         self.triangles.is_empty()
     }
 
-    /// The triangles that the pieces are of.
+    /// The triangles that the pieces were cut from.
     pub(super) fn triangles(&self) -> &[u32] {
         &self.triangles
     }
@@ -104,7 +104,7 @@ impl Pieces {
     }
 }
 
-/// Deals the corners of a convex polygon out to the two sides of a plane.
+/// Distributes the corners of a convex polygon over the two sides of a plane.
 fn cut(points: &[DVec3], plane: &Plane, left: &mut Vec<DVec3>, right: &mut Vec<DVec3>) {
     let Some(&last) = points.last() else { return };
     let (mut from, mut from_distance) = (last, plane.distance(last));

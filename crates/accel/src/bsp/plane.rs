@@ -1,17 +1,17 @@
-//! Partition planes as a tree stores them, and on which side of one something lies.
+//! Partition planes as a tree stores them, and the side of a plane on which something lies.
 
 use bilux_math::{Aabb, DVec3, Vec3};
 
-/// Where a tree's own coordinates have their origin, and how exact they are.
+/// The origin of a tree's own coordinates, and their precision.
 ///
-/// Planes are stored in f32 relative to the middle of the mesh, so that their rounding is bounded by the
-/// size of the mesh, however far from the origin it stands. Builders work in f64.
+/// Planes are stored in f32 relative to the centre of the mesh, so that their rounding is bounded by the size of the
+/// mesh, however far the mesh is from the origin. Builders work in f64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Space {
-    /// Middle of the mesh.
+    /// Centre of the mesh.
     pub(super) centre: Vec3,
-    /// What counts as touching a plane: 8 units of f32 rounding of the greatest half-extent. A plane through
-    /// points of the mesh, once its coefficients are rounded to f32, is never further from them.
+    /// What counts as touching a plane: 8 units of f32 rounding of the largest half-extent. A plane through points of
+    /// the mesh, once its coefficients are rounded to f32, is never further from them.
     pub(super) tolerance: f64,
 }
 
@@ -31,16 +31,16 @@ impl Space {
     }
 }
 
-/// A plane: points where `normal · x = at`. The coefficients are exactly f32, whatever type holds them.
+/// A plane: the points where `normal · x = at`. The coefficients are exact f32 values, whatever type holds them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
     normal: DVec3,
     at: f64,
-    /// The axis that the normal is, or 3.
+    /// The axis that the normal points along, or 3.
     axis: u8,
 }
 
-/// On which side of a plane something lies, the tolerance granted.
+/// The side of a plane on which something lies, within the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     /// Where `normal · x` is less.
@@ -49,20 +49,21 @@ pub(super) enum Side {
     Right,
     /// In the plane.
     On,
-    /// On either side.
+    /// Reaches into both sides.
     Both,
 }
 
-/// A normal that leans less than this is taken for an axis: the plane then moves by less than the tolerance.
+/// A normal that deviates less than this from an axis is snapped to it: the plane then moves by less than the
+/// tolerance.
 const NEARLY_STRAIGHT: f64 = 1.0 / 16_777_216.0;
 
 impl Plane {
-    /// Perpendicular to an axis.
+    /// The plane perpendicular to an axis.
     pub(super) fn perpendicular(axis: usize, at: f64) -> Plane {
         Plane { normal: DVec3::AXES[axis], at: f64::from(at as f32), axis: axis as u8 }
     }
 
-    /// Through a point; `None` when the normal has no direction.
+    /// The plane through a point; `None` when the normal has no direction.
     pub(super) fn through(point: DVec3, normal: DVec3) -> Option<Plane> {
         let normal = normal.try_normalize()?;
         let slant = |axis: usize| (normal - normal[axis] * DVec3::AXES[axis]).abs().max_element();
@@ -73,22 +74,22 @@ impl Plane {
         Some(Plane { normal, at: f64::from(normal.dot(point) as f32), axis: 3 })
     }
 
-    /// The plane so much further right; no longer exactly f32, so not for a tree.
+    /// The plane moved to the right by a distance; no longer exactly f32, so not for a tree.
     pub(super) fn moved(&self, by: f64) -> Plane {
         Plane { at: self.at + by, ..*self }
     }
 
-    /// The axis that it is perpendicular to, if it is.
+    /// The axis that it is perpendicular to, if any.
     pub(super) fn axis(&self) -> Option<usize> {
         (self.axis < 3).then_some(usize::from(self.axis))
     }
 
-    /// Normal and distance from the origin of the tree's coordinates.
+    /// The normal, and the distance from the origin of the tree's coordinates.
     pub(super) fn coefficients(&self) -> ([f32; 3], f32) {
         (self.normal.as_vec3().to_array(), self.at as f32)
     }
 
-    /// Two directions within it; with the normal they make a right-handed frame.
+    /// Two directions within the plane; with the normal they form a right-handed frame.
     pub(super) fn axes(&self) -> (DVec3, DVec3) {
         let x = self.normal.any_orthonormal_vector();
         (x, self.normal.cross(x))
@@ -100,7 +101,7 @@ impl Plane {
         self.normal.dot(point) - self.at
     }
 
-    /// Where the convex hull of some points lies.
+    /// The side on which the convex hull of some points lies.
     #[inline]
     pub(super) fn side(&self, points: &[DVec3], tolerance: f64) -> Side {
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);

@@ -1,15 +1,14 @@
-//! The tree that makes rays cheapest: planes of any orientation, weighed by the surface-area heuristic
-//! [Ize 2008].
+//! The tree that makes rays cheapest: planes of any orientation, evaluated by the surface-area heuristic [Ize 2008].
 //!
-//! A random ray that crosses a convex cell crosses a convex part of it with the probability that is the ratio
-//! of their surfaces. So a plane costs a ray one step and, weighed thus, the triangles on either side;
-//! the cheapest plane is taken, or none where a leaf is cheaper.
-//! - High in the tree, where cells are boxes, only planes perpendicular to the axes are weighed, all of them
-//!   in one sweep: other planes do not pay there, and cost much to find.
-//! - Near the leaves ([`Quality`] says how near) ten planes of every triangle are: its own, three
-//!   through its edges perpendicular to it, and the six of the box around what the cell has left of it.
+//! A random ray that crosses a convex cell crosses a convex part of it with a probability equal to the ratio of their
+//! surface areas. So a plane costs a ray one step plus, weighted by these probabilities, the triangles on either
+//! side. The builder takes the cheapest plane, or makes a leaf where that is cheaper.
+//! - High in the tree, where cells are boxes, only planes perpendicular to the axes are evaluated, all of them in one
+//!   sweep: other planes do not pay there, and are expensive to find.
+//! - Near the leaves ([`Quality`] decides how near) ten planes of every triangle are evaluated: its own, three
+//!   through its edges perpendicular to it, and the six of the bounding box of what remains of it in the cell.
 //!
-//! Planes perpendicular to an axis are stored, walked and weighed as the cheaper ones that they are.
+//! Planes perpendicular to an axis are cheaper, and are stored, traversed and costed as such.
 
 use super::cell::Cell;
 use super::pieces::{Parts, Pieces};
@@ -32,20 +31,20 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     build,
 };
 
-/// Most references per triangle. No way down the tree may multiply references by more.
+/// Maximum number of references per triangle. No path down the tree may multiply references by more.
 pub const GROWTH: f64 = 8.0;
 
-/// Forks above a leaf beyond twice those of a balanced tree of triangles. Around a vertex where many triangles
-/// meet, a plane pays at every scale, without end.
+/// Maximum inner nodes above a leaf, beyond twice those of a balanced tree of triangles. Around a vertex that many
+/// triangles share, a plane pays off at every scale, without end.
 const DEPTH: usize = 8;
 
-/// What a ray pays for a plane perpendicular to an axis, in triangle tests.
+/// The cost of a plane perpendicular to an axis, in triangle tests.
 pub(super) const AXIS_STEP: f64 = 0.4;
 
-/// What a ray pays for any other plane, in triangle tests.
+/// The cost of any other plane, in triangle tests.
 const STEP: f64 = 0.8;
 
-/// Partitions of more references grow on two threads.
+/// Partitions with more references than this are built on two threads.
 const PARALLEL: usize = 1024;
 
 fn build(mesh: Arc<TriangleMesh>, options: &BuildOptions) -> Result<Box<dyn crate::Accelerator>, BuildError> {
@@ -56,7 +55,7 @@ impl BspTree {
     /// The tree that makes rays cheapest.
     ///
     /// # Errors
-    /// When the tree has more nodes than can be numbered.
+    /// Returns an error when the tree has more nodes than can be numbered.
     pub fn sah(mesh: &TriangleMesh, quality: Quality) -> Result<BspTree, BuildError> {
         let space = Space::new(&mesh.bounds());
         let few = match quality {
@@ -76,30 +75,30 @@ impl BspTree {
     }
 }
 
-/// The cell that a partition fills.
+/// The cell that a partition occupies.
 enum Room {
-    /// Between two corners.
+    /// The box between two corners.
     Box(DVec3, DVec3),
-    /// Cut by other planes than boxes have.
+    /// A box cut by planes that are not axis-aligned.
     Polyhedron(Cell),
 }
 
-/// A plane and what it is expected to cost, in triangle tests.
+/// A plane and its expected cost, in triangle tests.
 #[derive(Clone, Copy)]
 pub(super) struct Choice {
     pub(super) plane: Plane,
     pub(super) cost: f64,
-    /// What lies in the plane goes left.
+    /// Whether what lies in the plane goes left.
     pub(super) on_left: bool,
 }
 
 struct Grower<'a> {
     mesh: &'a TriangleMesh,
     space: Space,
-    /// Partitions of at most so many references have all their planes weighed; larger ones of which a sweep
-    /// makes nothing, those of half as many triangles.
+    /// In partitions of at most this many references, all planes are evaluated; in larger ones where the sweep finds
+    /// no plane, those of half as many triangles.
     few: usize,
-    /// Most forks above a leaf.
+    /// Maximum number of inner nodes above a leaf.
     deepest: usize,
 }
 
@@ -154,7 +153,7 @@ impl Grower<'_> {
         best
     }
 
-    /// The planes that belong to one piece.
+    /// The candidate planes of one piece.
     fn planes(&self, pieces: &Pieces, piece: usize) -> [Option<Plane>; 10] {
         let triangle = self.mesh.triangles()[pieces.triangles()[piece] as usize];
         let [a, b, c] = triangle.map(|vertex| self.space.local(vertex));
@@ -176,7 +175,7 @@ impl Grower<'_> {
         ]
     }
 
-    /// What a plane costs, if less than `limit` and without more than `most` references.
+    /// The cost of a plane, if it is less than `limit` and the plane leaves at most `most` references.
     fn weigh(&self, plane: Plane, pieces: &Pieces, cell: &Cell, limit: f64, most: usize) -> Option<Choice> {
         let (mut left, mut right, mut on) = (0, 0, 0);
         for points in pieces.iter() {
@@ -188,7 +187,7 @@ impl Grower<'_> {
             }
         }
         let step = if plane.axis().is_some() { AXIS_STEP } else { STEP };
-        // Surfaces of the parts sum to at least the whole's: no plane is cheaper than this.
+        // The surface areas of the parts sum to at least the whole's: no plane is cheaper than this.
         if left + right + on > most || step + left.min(right) as f64 >= limit {
             return None;
         }
@@ -199,13 +198,13 @@ impl Grower<'_> {
 }
 
 impl Choice {
-    /// From the surfaces of the two parts over the whole's and how many references lie left, right and
-    /// in the plane. `None` for a plane that parts nothing.
+    /// From the ratios of the two parts' surface areas to the whole's, and the numbers of references left, right and
+    /// in the plane. `None` for a plane that separates nothing.
     pub(super) fn new(plane: Plane, step: f64, areas: [f64; 2], counts: [usize; 3]) -> Option<Choice> {
         let [left, right, on] = counts.map(|count| count as f64);
         let on_left = areas[0] < areas[1];
         let cost = step + areas[0] * left + areas[1] * right + areas[0].min(areas[1]) * on;
-        // Also refuses what is not a number.
+        // Also rejects NaN.
         (cost >= step && areas[0] > 0.0 && areas[1] > 0.0).then_some(Choice { plane, cost, on_left })
     }
 }

@@ -1,11 +1,12 @@
-//! Every plane perpendicular to an axis that touches a piece, weighed in one sweep per axis [Wald 2006].
+//! Every plane perpendicular to an axis that touches a piece, evaluated in one sweep per axis [Wald 2006].
 
 use super::pieces::Pieces;
 use super::plane::Plane;
 use super::sah::{AXIS_STEP, Choice};
 use bilux_math::DVec3;
 
-/// The cheapest such plane of a box that leaves at most `most` references; of equally cheap ones the first.
+/// The cheapest axis-aligned plane of a box that leaves at most `most` references; among equally cheap ones, the
+/// first.
 pub(super) fn cheapest(
     pieces: &Pieces,
     low: DVec3,
@@ -30,7 +31,7 @@ struct Sweep {
     low: DVec3,
     high: DVec3,
     tolerance: f64,
-    /// Where pieces begin and end, and where pieces are that fit in a plane; each in order.
+    /// Where pieces begin and end, and where pieces lie that fit within a plane; each in ascending order.
     begins: Vec<f64>,
     ends: Vec<f64>,
     flats: Vec<f64>,
@@ -63,7 +64,7 @@ impl Sweep {
             .min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    /// The cheapest of planes at these places, which are in order.
+    /// The cheapest of the planes at these positions, which are in ascending order.
     fn cheapest_of(&self, places: &[f64], most: usize) -> Option<Choice> {
         let extent = self.high - self.low;
         let across = extent[(self.axis + 1) % 3] * extent[(self.axis + 2) % 3];
@@ -101,7 +102,7 @@ impl Sweep {
     }
 }
 
-/// Counts how many of some sorted places lie before a place that only ever grows.
+/// Counts how many of a sorted list of positions lie before a position that only ever increases.
 struct Pointer<'a> {
     places: &'a [f64],
     passed: usize,

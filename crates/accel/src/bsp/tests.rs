@@ -1,4 +1,4 @@
-//! Trees against brute force, on meshes and rays made to be awkward.
+//! Trees against brute force, on deliberately awkward meshes and rays.
 
 use super::BspTree;
 use super::plane::{Plane, Space};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 type Triangle = [[f32; 3]; 3];
 
-/// Numbers that look random and are the same everywhere.
+/// Deterministic pseudo-random numbers, the same on every machine.
 struct Numbers(u64);
 
 impl Numbers {
@@ -42,7 +42,7 @@ fn mapped(triangles: &[Triangle], map: impl Fn(Vec3) -> Vec3) -> Vec<Triangle> {
     triangles.iter().map(|triangle| triangle.map(|vertex| map(Vec3::from(vertex)).to_array())).collect()
 }
 
-/// A closed surface, convex here and saddle-shaped there, its normals outwards.
+/// A closed surface, partly convex and partly saddle-shaped, with outward normals.
 fn torus(around: usize, across: usize) -> Vec<Triangle> {
     let point = |i: usize, j: usize| {
         let turn = |k: usize, of: usize| (k % of) as f32 / of as f32 * std::f32::consts::TAU;
@@ -69,7 +69,7 @@ fn floor(n: usize) -> Vec<Triangle> {
     (0..n * n).flat_map(square).collect()
 }
 
-/// Meshes that go wrong somewhere, by name.
+/// Meshes that are degenerate or awkward in some way, by name.
 fn meshes() -> Vec<(&'static str, TriangleMesh)> {
     let mut numbers = Numbers(1);
     let soup: Vec<Triangle> = (0..300).map(|_| numbers.triangle(0.15)).collect();
@@ -134,7 +134,7 @@ fn meshes() -> Vec<(&'static str, TriangleMesh)> {
     .into()
 }
 
-/// Rays at vertices, along edges, along axes, from surfaces, from far and near, long, short and bounded.
+/// Rays at vertices, along edges, along axes, from surfaces, from far and near; long, short and bounded.
 fn rays(mesh: &TriangleMesh, count: usize) -> Vec<Ray> {
     let mut numbers = Numbers(1 << 32);
     let bounds = mesh.bounds();
@@ -209,7 +209,7 @@ fn trees(mesh: &TriangleMesh) -> Vec<(String, BspTree)> {
     trees
 }
 
-/// The first ray to which a tree answers otherwise than brute force.
+/// The first ray for which a tree's answer differs from brute force.
 fn disagreement(mesh: &TriangleMesh, tree: &dyn Accelerator, count: usize) -> Option<String> {
     let brute = build("brute", Arc::new(mesh.clone()), &BuildOptions::default()).unwrap();
     for ray in rays(mesh, count) {
@@ -250,7 +250,7 @@ fn every_point_of_a_triangle_is_in_a_leaf_that_holds_it() {
     }
 }
 
-/// The planted bug that the two tests above have to see: a side of a plane on which a triangle is missing.
+/// The planted bug that the two tests above must detect: one side of a plane lacks a triangle that belongs there.
 #[test]
 fn a_lost_reference_is_seen() {
     let mesh = TriangleMesh::from_corners(floor(4)).unwrap();
@@ -268,7 +268,7 @@ fn a_lost_reference_is_seen() {
     assert!(disagreement(&mesh, &wrong, 2000).is_some());
 }
 
-/// Work done by rays that see the whole mesh from outside.
+/// The work done by rays that see the whole mesh from outside.
 fn work(mesh: &TriangleMesh, tree: &dyn Accelerator, query: Query) -> Counters {
     let mut counters = Counters::default();
     let mut numbers = Numbers(7);
@@ -286,7 +286,7 @@ fn back_faces_are_rejected_by_side_and_only_when_asked() {
     let mesh = TriangleMesh::from_corners(torus(40, 20)).unwrap();
     for split in [BspSplit::Mean, BspSplit::Fuchs] {
         let tree = BspTree::paper(&mesh, split, BspGroup::Polygons).unwrap();
-        // Where every leaf on the way is looked at, about half of what is there faces away.
+        // Where every leaf on the way is visited, about half of its triangles face away.
         let culling = Query { culling: Culling::Back, early_out: false, ..Query::default() };
         let with = work(&mesh, &tree, culling);
         let without = work(&mesh, &tree, Query { cull_by_partition: false, ..culling });
@@ -332,7 +332,7 @@ fn references_and_depth_keep_their_caps() {
     }
 }
 
-/// Triangles that no plane can part end in one leaf, whichever rule looks for a plane.
+/// Triangles that no plane can separate end in one leaf, whichever rule searches for a plane.
 #[test]
 fn planes_that_make_no_progress_end_in_a_leaf() {
     let spokes = |k: usize| {

@@ -1,4 +1,4 @@
-//! The tree as rays walk it, whatever rule it was grown by.
+//! The tree as rays traverse it, whichever rule it was built by.
 
 use super::facing::{Facing, RayView, in_runs};
 use super::path::{Path, PlaneCrossing, earlier, later};
@@ -12,44 +12,44 @@ use crate::triangle::{Nearest, PreparedRay, hits};
 use bilux_math::{Aabb, DVec3, Vec3};
 use std::ops::{ControlFlow, Range};
 
-/// A grown tree, before it is laid out.
+/// A built tree, before it is laid out in memory.
 #[derive(Debug)]
 pub(super) enum Branch {
     /// Triangles that are tested together.
     Leaf(Vec<u32>),
-    /// A plane, the triangles within it, and what lies left and right of it.
+    /// A plane, the triangles within it, and the children to the left and right of it.
     Fork { plane: Plane, on: Vec<u32>, children: Box<[Branch; 2]> },
 }
 
-/// Most forks on the way from the root to a leaf.
+/// Maximum number of inner nodes on the path from the root to a leaf.
 pub(super) const MAX_DEPTH: usize = 48;
 
-/// A fork leaves at most two things for later: what lies in its plane, and its far side.
+/// An inner node pushes at most two entries for later: what lies in its plane, and its far side.
 const STACK: usize = 2 * MAX_DEPTH;
 
 /// Binary space partitioning: planes of any orientation, front to back.
 #[derive(Debug)]
 pub struct BspTree {
-    /// In depth-first order: the left child of a fork follows it.
+    /// In depth-first order: the left child of an inner node follows it.
     nodes: Vec<BspNode>,
-    /// Normal and place of planes that are not perpendicular to an axis.
+    /// Normal and offset of the planes that are not perpendicular to an axis.
     planes: Vec<[f32; 4]>,
-    /// The triangles of each leaf, side by side; one that belongs to several leaves is stored in each.
+    /// The triangles of each leaf, contiguous; a triangle that belongs to several leaves is stored in each.
     references: Vec<Reference>,
     facings: Vec<Facing>,
     bounds: Aabb,
     centre: Vec3,
 }
 
-/// Eight bytes: what it is (lowest three bits of `tag`), a number (the rest), and a payload.
+/// Eight bytes: the kind (lowest three bits of `tag`), a number (the other bits), and a payload.
 ///
 /// | kind | number | payload |
 /// | --- | --- | --- |
-/// | 0, 1, 2: axis plane | right child | the plane's place, as f32 |
+/// | 0, 1, 2: axis plane | right child | the plane's offset, as f32 |
 /// | 3: plane | right child | index of the plane |
 /// | 4: plane with triangles in it | right child | index of the plane; the next node is a leaf with those |
-/// | 5: leaf | how many references | the first reference |
-/// | 6: leaf in runs that have facings | how many references | the first; the next node's payload is its first facing |
+/// | 5: leaf | number of references | the first reference |
+/// | 6: leaf in runs with facings | number of references | the first; the next node's payload is its first facing |
 #[derive(Clone, Copy, Debug)]
 struct BspNode {
     tag: u32,
@@ -79,7 +79,7 @@ impl BspNode {
     }
 
     /// # Errors
-    /// When the numbers do not fit, beyond some hundred million nodes.
+    /// Returns an error when the numbers do not fit, beyond some hundred million nodes.
     fn new(kind: u32, number: usize, payload: usize) -> Result<BspNode, BuildError> {
         match (u32::try_from(number), u32::try_from(payload)) {
             (Ok(number), Ok(payload)) if number < 1 << 29 => Ok(BspNode { tag: number << 3 | kind, payload }),
@@ -89,7 +89,7 @@ impl BspNode {
 }
 
 impl BspTree {
-    /// Lays a grown tree out. With `with_facings`, leaves know which way their triangles face.
+    /// Lays out a built tree. With `with_facings`, leaves store which way their triangles face.
     pub(super) fn new(
         mesh: &TriangleMesh,
         space: &Space,
@@ -158,7 +158,7 @@ impl BspTree {
     }
 }
 
-/// Something that a walk has put off.
+/// A node whose visit is postponed.
 #[derive(Clone, Copy, Default)]
 struct DeferredNode {
     node: u32,
@@ -167,8 +167,8 @@ struct DeferredNode {
 }
 
 impl BspTree {
-    /// Takes a ray to every leaf that may hold a hit, nearest first. What `visit` gives back is the distance
-    /// beyond which nothing counts any more.
+    /// Takes a ray to every leaf that may hold a hit, nearest first. `visit` returns the distance beyond which hits
+    /// no longer count.
     #[inline(always)]
     fn walk<C: Count>(
         &self,
@@ -237,12 +237,12 @@ impl BspTree {
         }
     }
 
-    /// The node behind a leaf.
+    /// The node after a leaf.
     fn after_leaf(&self, leaf: usize) -> usize {
         if self.nodes[leaf].kind() == FACING_LEAF { leaf + 2 } else { leaf + 1 }
     }
 
-    /// Visits the triangles of a leaf, but for those of which the ray is sure to see only backs.
+    /// Visits the triangles of a leaf, except for those of which the ray is certain to see only back faces.
     #[inline(always)]
     fn visit_leaf<C: Count>(
         &self,
@@ -346,7 +346,7 @@ impl Traverse for BspTree {
     }
 }
 
-/// A node, read out.
+/// A decoded node.
 pub(super) enum Content {
     Leaf(Range<usize>),
     Fork { normal: DVec3, at: f64, on: Option<usize>, left: usize, right: usize },
@@ -362,7 +362,7 @@ impl BspTree {
         self.references[references].iter().map(|reference| reference.primitive)
     }
 
-    /// What a node is.
+    /// Decodes a node.
     pub(super) fn content(&self, index: usize) -> Content {
         let node = self.nodes[index];
         let (number, payload) = (node.number() as usize, node.payload as usize);
@@ -378,7 +378,7 @@ impl BspTree {
         Content::Fork { normal, at: f64::from(at), on, left, right: number }
     }
 
-    /// Counts a branch into a shape. Triangles within a plane count as a leaf of their own.
+    /// Adds a branch to the statistics. Triangles within a plane count as a leaf of their own.
     fn measure(&self, index: usize, depth: usize, shape: &mut TreeShape) {
         match self.content(index) {
             Content::Leaf(references) => shape.add_leaf(depth, references.len()),

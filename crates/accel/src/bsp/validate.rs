@@ -1,4 +1,4 @@
-//! Whether a tree keeps what walks rely on.
+//! Checks whether a tree maintains what traversal relies on.
 
 use super::plane::Space;
 use super::tree::{BspTree, Content, MAX_DEPTH};
@@ -6,11 +6,11 @@ use crate::mesh::TriangleMesh;
 use bilux_math::DVec3;
 
 impl BspTree {
-    /// Checks the layout, and the invariant of [`super`]: that every point of every triangle is in some leaf
-    /// which holds the triangle. Points tried are a grid of `(n + 1)(n + 2) / 2` on each triangle.
+    /// Checks the layout, and the invariant of [`super`]: that every point of every triangle is in some leaf which
+    /// holds the triangle. It tries a grid of `(n + 1)(n + 2) / 2` points on each triangle.
     ///
     /// # Errors
-    /// What is broken first, in words.
+    /// Describes the first violation.
     pub fn validate(&self, mesh: &TriangleMesh, n: usize) -> Result<(), String> {
         if self.is_empty() {
             return if mesh.bounds().is_empty() { Ok(()) } else { Err("there is no root".into()) };
@@ -30,8 +30,8 @@ impl BspTree {
         Ok(())
     }
 
-    /// Leaves use the references one after the other, children come after their parents, and nothing is
-    /// too deep for the walk's stack.
+    /// Checks that leaves use the references one after the other, that children come after their parents, and that
+    /// nothing is too deep for the traversal stack.
     fn check_layout(&self, node: usize, depth: usize, references: &mut usize) -> Result<(), String> {
         if depth > MAX_DEPTH {
             return Err(format!("node {node} is too deep"));
@@ -57,7 +57,7 @@ impl BspTree {
         }
     }
 
-    /// True when a leaf around a point, give or take the tolerance at each plane, holds a triangle.
+    /// True when some leaf that contains a point, up to the tolerance at each plane, holds a triangle.
     fn holds(&self, node: usize, triangle: u32, point: DVec3, tolerance: f64) -> bool {
         match self.content(node) {
             Content::Leaf(range) => self.primitives(range).any(|primitive| primitive == triangle),
@@ -73,7 +73,7 @@ impl BspTree {
     }
 }
 
-/// Points all over a triangle, corners and edges included.
+/// Points spread over a triangle, corners and edges included.
 fn grid([a, b, c]: [DVec3; 3], n: usize) -> impl Iterator<Item = DVec3> {
     let steps = n.max(1);
     (0..=steps).flat_map(move |i| {

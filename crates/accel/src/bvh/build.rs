@@ -1,17 +1,17 @@
-//! Building top down by the surface-area heuristic over bins [Wald 2007].
+//! Top-down building by the binned surface-area heuristic [Wald 2007].
 //!
-//! No step depends on the number of threads: boxes are joined by minima and maxima and items are
-//! counted in whole numbers, so that the order in which pieces are done does not matter.
+//! No step depends on the number of threads: boxes are merged by minima and maxima and items are counted in integers,
+//! so the order in which chunks finish does not matter.
 
 use super::tree::{BvhNode, EMPTY, MAX_DEPTH, Pair, Tree, planes_of, union};
 use bilux_math::Aabb;
 use rayon::prelude::*;
 
-/// Bins an axis.
+/// Bins per axis.
 const BINS: usize = 16;
-/// What a visit to a pair of nodes costs, in triangle tests.
+/// Cost of visiting a pair of nodes, in triangle tests.
 const NODE_COST: f32 = 1.0;
-/// Leaves are never larger.
+/// Maximum number of items in a leaf.
 const MAX_LEAF: usize = 8;
 /// Below this many items a subtree is built on one thread.
 const PARALLEL: usize = 4096;
@@ -50,7 +50,7 @@ pub(super) fn build(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, V
     (compact(root, room), order)
 }
 
-/// Items to put under one node, and room for the pairs below it: one less than there are items.
+/// Items to put under one node, and space for the pairs below it: one fewer than there are items.
 struct Task<'a> {
     items: &'a mut [Item],
     first_item: u32,
@@ -95,13 +95,13 @@ fn subtree(task: Task<'_>, planes: [[f32; 3]; 2]) -> BvhNode {
     BvhNode { planes, first: first_pair, count: 0 }
 }
 
-/// True when both children of a node at this depth can still be halved down to single items in time.
+/// True when both children of a node at this depth can still be halved down to single items before the depth limit.
 fn depth_allows(depth: usize, counts: [usize; 2]) -> bool {
     let levels = |count: usize| count.next_power_of_two().ilog2() as usize;
     counts.iter().all(|&count| depth + 1 + levels(count) <= MAX_DEPTH)
 }
 
-/// Where to cut, and what lies on both sides.
+/// Where to split, and what lies on both sides.
 struct Split {
     axis: usize,
     grid: Grid,
@@ -123,7 +123,7 @@ struct Grid {
 impl Grid {
     #[inline(always)]
     fn bin(&self, item: &Item, axis: usize) -> usize {
-        // A float cast saturates, and what is not a number becomes 0.
+        // A float cast saturates, and turns NaN into 0.
         (((item.centre(axis) - self.least[axis]) * self.scale[axis]) as usize).min(BINS - 1)
     }
 }
@@ -145,7 +145,7 @@ impl Bin {
 
 type Bins = [[Bin; BINS]; 3];
 
-/// The cheapest cut between two bins; `None` when there is nothing to choose, as when all centres are one.
+/// The cheapest split between two bins; `None` when there is nothing to choose, as when all centres coincide.
 fn best_split(items: &[Item], planes: &[[f32; 3]; 2]) -> Option<Split> {
     let grid = grid_over(items);
     let bins = fill_bins(items, &grid);
@@ -164,7 +164,7 @@ fn best_split(items: &[Item], planes: &[[f32; 3]; 2]) -> Option<Split> {
             let tests =
                 half_area(&left.planes) * left.count as f32 + half_area(&right.planes) * right.count as f32;
             let cost = NODE_COST + tests / area;
-            // Boxes without area, or beyond all numbers, make costs that say nothing.
+            // Boxes without area, or that overflow, give meaningless costs.
             let usable = left.count > 0 && right.count > 0 && cost.is_finite();
             if usable && best.as_ref().is_none_or(|best| cost < best.cost) {
                 let (counts, halves) = ([left.count, right.count], [left.planes, right.planes]);
@@ -221,7 +221,7 @@ fn half_area(planes: &[[f32; 3]; 2]) -> f32 {
     x * y + y * z + z * x
 }
 
-/// Moves the items of the left side to the front and returns how many there are.
+/// Moves the items of the left side to the front and returns their number.
 fn partition(items: &mut [Item], split: &Split) -> usize {
     let goes_left = |item: &Item| split.grid.bin(item, split.axis) < split.bin;
     let (mut front, mut back) = (0, items.len());
@@ -239,7 +239,7 @@ fn partition(items: &mut [Item], split: &Split) -> usize {
     }
 }
 
-/// Cuts by number, along the axis on which centres are furthest apart.
+/// Splits into halves by count, along the axis on which the centres spread furthest.
 fn halve(items: &mut [Item]) -> (usize, [[[f32; 3]; 2]; 2]) {
     let middle = items.len() / 2;
     let spread = |axis: usize| {
@@ -254,11 +254,11 @@ fn halve(items: &mut [Item]) -> (usize, [[[f32; 3]; 2]; 2]) {
     (middle, [around(&items[..middle]), around(&items[middle..])])
 }
 
-/// Leaves out the room that was not needed. Parents come before their children, left before right, as they did: each pair
-/// moves forward or stays, onto one that has moved already.
+/// Removes the space that was not needed. The order stays the same: parents before their children, left before right.
+/// Each pair moves forward or stays, onto one that has already moved.
 fn compact(mut root: BvhNode, mut pairs: Vec<Pair>) -> Tree {
     let mut count = 0;
-    // Places that hold the old index of a pair: None for the root's.
+    // Slots that hold the old index of a pair; `None` for the root's.
     let mut waiting: Vec<(Option<(usize, usize)>, u32)> =
         if root.count == 0 { vec![(None, root.first)] } else { Vec::new() };
     while let Some((place, old)) = waiting.pop() {

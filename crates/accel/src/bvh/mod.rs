@@ -1,4 +1,4 @@
-//! A binary bounding volume hierarchy: scalar, and the reference that wider ones are held against.
+//! A binary bounding volume hierarchy: scalar, and the reference that the wide ones are tested against.
 
 mod build;
 pub(crate) mod tree;
@@ -25,17 +25,17 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     build: |mesh, _options| Ok(Box::new(Bvh::new(&mesh))),
 };
 
-/// Boxes around boxes around triangles, chosen by the surface-area heuristic over bins [Wald 2007].
+/// A hierarchy of bounding boxes around triangles, built by the binned surface-area heuristic [Wald 2007].
 #[derive(Clone, Debug)]
 pub struct Bvh {
     tree: Tree,
-    /// In the order of the leaves.
+    /// In leaf order.
     triangles: Vec<LeafTriangle>,
-    /// Triangles of the mesh, those that are not finite included.
+    /// Number of triangles in the mesh, including those that are not finite.
     mesh_len: usize,
 }
 
-/// A triangle beside its index, so that a test touches one place in memory.
+/// A triangle next to its index, so that a test touches one place in memory.
 #[derive(Clone, Copy, Debug)]
 struct LeafTriangle {
     corners: [[f32; 3]; 3],
@@ -43,7 +43,7 @@ struct LeafTriangle {
 }
 
 impl Bvh {
-    /// Builds one. The same tree whatever the number of threads.
+    /// Builds a hierarchy. The tree is the same whatever the number of threads.
     pub fn new(mesh: &TriangleMesh) -> Bvh {
         let (tree, order) = Tree::over(mesh.len(), |index| mesh.triangle_bounds(index));
         let corners = mesh.triangles();
@@ -54,9 +54,9 @@ impl Bvh {
         Bvh { tree, triangles, mesh_len: mesh.len() }
     }
 
-    /// Fits the boxes to vertices that have moved, the tree staying as it is: quicker than to build, and
-    /// as good as the motion is small. Returns false, and changes nothing, when the mesh has another number
-    /// of triangles or others of them are finite: then build anew.
+    /// Refits the boxes to vertices that have moved and keeps the topology. This is faster than building, and the
+    /// tree stays good while the motion is small. Returns false, and changes nothing, when the number of triangles
+    /// differs or other triangles are finite: in that case, rebuild.
     #[must_use]
     pub fn refit(&mut self, mesh: &TriangleMesh) -> bool {
         let is_finite = |index: u32| !mesh.triangle_bounds(index).is_empty();

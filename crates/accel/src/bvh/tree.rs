@@ -1,4 +1,4 @@
-//! The tree of boxes itself, over anything that has a box.
+//! The bounding volume hierarchy itself, over any items that have a bounding box.
 
 use super::build;
 use crate::accelerator::TreeShape;
@@ -7,15 +7,15 @@ use crate::slab::SlabRay;
 use bilux_math::{Aabb, Vec3};
 use std::ops::{ControlFlow, Range};
 
-/// No way from the root to a leaf has more nodes than this, so that a stack of this size never overflows:
-/// the builder splits in halves where it would.
+/// Maximum number of nodes on a path from the root to a leaf. A stack of this size never overflows: the builder
+/// splits in halves where the tree would become deeper.
 pub(crate) const MAX_DEPTH: usize = 64;
 
-/// Boxes around boxes around items; leaves name the items by ranges of an order that the builder chose.
+/// A hierarchy of boxes around items; leaves name the items by ranges of an order that the builder chose.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     pub(super) root: BvhNode,
-    /// Both children of a node stand together, in one cache line. Parents stand before their children.
+    /// Both children of a node are adjacent, in one cache line. Parents come before their children.
     pub(super) pairs: Vec<Pair>,
 }
 
@@ -24,10 +24,10 @@ pub(crate) struct Tree {
 #[repr(align(64))]
 pub(crate) struct Pair(pub(super) [BvhNode; 2]);
 
-/// A box, and what is in it. 32 bytes.
+/// A bounding box and its contents. 32 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BvhNode {
-    /// Least and greatest corner.
+    /// Minimum and maximum corner.
     pub(super) planes: [[f32; 3]; 2],
     /// The first item of a leaf, or the pair of children.
     pub(super) first: u32,
@@ -43,7 +43,7 @@ impl Default for BvhNode {
 
 pub(super) const EMPTY: [[f32; 3]; 2] = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
-/// A node still to be visited, and where the ray enters it.
+/// A node that is still to be visited, and the distance at which the ray enters it.
 #[derive(Clone, Copy)]
 struct StackEntry {
     first: u32,
@@ -52,13 +52,13 @@ struct StackEntry {
 }
 
 impl Tree {
-    /// A tree over items `0..len`, and the order that its leaves' ranges refer to. Items with an empty box
-    /// are left out.
+    /// Builds a tree over items `0..len`, and the order that its leaves' ranges refer to. Items with an empty box are
+    /// left out.
     pub(crate) fn over(len: usize, bounds: impl Fn(u32) -> Aabb + Sync) -> (Tree, Vec<u32>) {
         build::build(len, bounds)
     }
 
-    /// Whether `hits` is true of any slot of the order that the ray comes by up to `limit`.
+    /// Whether `hits` is true of any slot of the order in the leaves that the ray passes through up to `limit`.
     #[inline(always)]
     pub(crate) fn find<C: Count>(
         &self,
@@ -78,8 +78,8 @@ impl Tree {
         found
     }
 
-    /// Goes through the leaves that the ray meets up to `limit` (an `s` of [`SlabRay`]), the nearer
-    /// sibling first. `leaf` gets a range of the order and returns the limit from there on, or a break.
+    /// Visits the leaves that the ray hits up to `limit` (an `s` of [`SlabRay`]), the nearer sibling first. `leaf`
+    /// receives a range of the order and returns the limit that applies from then on, or a break.
     #[inline(always)]
     pub(crate) fn walk<C: Count>(
         &self,
@@ -89,7 +89,7 @@ impl Tree {
         mut leaf: impl FnMut(Range<usize>, &mut C) -> ControlFlow<(), f32>,
     ) {
         let [enter, leave] = ray.span(&self.root.planes);
-        // Comparisons are such that what is not a number, as overflow makes it, leaves nothing out.
+        // The comparisons are written so that a NaN, which overflow may produce, excludes nothing.
         if self.is_empty() || enter > leave || enter > limit || leave < ray.nearest {
             return;
         }
@@ -141,7 +141,7 @@ impl Tree {
         }
     }
 
-    /// Fits all boxes to items that have moved; `bounds` takes a position in the order.
+    /// Refits all boxes to items that have moved; `bounds` takes a position in the order.
     pub(crate) fn refit(&mut self, bounds: impl Fn(usize) -> Aabb) {
         let fitted = |node: &BvhNode, pairs: &[Pair]| {
             if node.count == 0 {
@@ -155,7 +155,7 @@ impl Tree {
         if self.is_empty() {
             return;
         }
-        // Children stand behind their parents.
+        // Children come after their parents.
         for index in (0..self.pairs.len()).rev() {
             for side in 0..2 {
                 self.pairs[index].0[side].planes = fitted(&self.pairs[index].0[side], &self.pairs);
@@ -164,7 +164,7 @@ impl Tree {
         self.root.planes = fitted(&self.root, &self.pairs);
     }
 
-    /// The box around everything.
+    /// The bounding box of everything.
     pub(crate) fn bounds(&self) -> Aabb {
         Aabb { min: Vec3::from(self.root.planes[0]), max: Vec3::from(self.root.planes[1]) }
     }

@@ -1,30 +1,31 @@
-//! How the tree lies in memory: one array of 32-byte units that holds nodes and leaves side by side.
+//! The memory layout of the tree: one array of 32-byte units that holds both nodes and leaves.
 //!
-//! - A *node* is 7 units: the lower and the upper planes of its eight children, axis by axis, then eight
-//!   references to them. A place without a child has an empty box and the reference [`Ref::EMPTY`].
-//! - A *leaf* is one to [`MAX_BLOCKS`] blocks of 5 units: for each axis the coordinates of the three
-//!   corners of four triangles, then the primitives of the four. Places without a triangle
-//!   repeat the corners of the last one and have the primitive [`NO_TRIANGLE`]; in a leaf primitives ascend.
+//! - A *node* is 7 units: the lower and the upper planes of its eight children, axis by axis, then eight references
+//!   to them. A slot without a child has an empty box and the reference [`Ref::EMPTY`].
+//! - A *leaf* is one to [`MAX_BLOCKS`] blocks of 5 units: for each axis the coordinates of the three corners of four
+//!   triangles, then the primitives of the four. Lanes without a triangle repeat the corners of the last one and have
+//!   the primitive [`NO_TRIANGLE`]; primitives ascend within a leaf.
 //!
-//! Nodes stand before their children, subtrees one behind the other. In a leaf each triangle stands once; in a tree
-//! whose builder cuts triangles it may stand in several leaves, whose boxes then hold only a piece of it each. All
-//! give the same hit, since the whole triangle is tested; who gathers hits may meet one more than once.
+//! Nodes come before their children, and subtrees follow one another. A leaf holds each triangle once; in a tree
+//! whose builder cuts triangles, a triangle may be in several leaves, each of whose boxes then contains only a piece
+//! of it. All give the same hit, since the whole triangle is tested; a caller that collects hits may see the same one
+//! more than once.
 
 use std::ops::Range;
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
-/// Triangles of a block.
+/// Triangles in a block.
 pub(super) const LANES: usize = 4;
-/// Blocks of the largest leaf.
+/// Blocks in the largest leaf.
 pub(super) const MAX_BLOCKS: usize = 15;
-/// Units of a node.
+/// Units in a node.
 pub(super) const NODE_UNITS: usize = 7;
-/// Units of a block.
+/// Units in a block.
 pub(super) const BLOCK_UNITS: usize = 5;
-/// The primitive of a place without a triangle. Those of triangles are below 2³¹, so that a sign tells them apart.
+/// The primitive of a lane without a triangle. Those of triangles are below 2³¹, so the sign bit distinguishes them.
 pub(super) const NO_TRIANGLE: u32 = u32::MAX;
-/// More cannot be referred to.
+/// Maximum number of units that references can address.
 pub(super) const MAX_UNITS: usize = 1 << 28;
 
 /// 32 bytes, never across two cache lines.
@@ -32,14 +33,15 @@ pub(super) const MAX_UNITS: usize = 1 << 28;
 #[repr(C, align(32))]
 pub(super) struct Unit(pub(super) [u32; 8]);
 
-/// A child: its first unit in the upper 28 bits; below, how many blocks its leaf has, or 0 for a node.
+/// A reference to a child: its first unit in the upper 28 bits, and below them the number of blocks of a leaf, or 0
+/// for a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub(super) struct Ref(pub(super) u32);
 
 impl Ref {
-    /// Of a place without a child: a node in the place of the root. Its box is empty, so nobody goes there;
-    /// the plain kernel, which is asked for rays whose arithmetic overflows, looks for it.
+    /// For a slot without a child: a node in the place of the root. Its box is empty, so no ray goes there; the plain
+    /// kernel, which handles rays whose arithmetic overflows, checks for it.
     pub(super) const EMPTY: Ref = Ref(u32::MAX);
 
     pub(super) fn node(unit: usize) -> Ref {
@@ -65,13 +67,13 @@ impl Ref {
         (self.0 >> 4) as usize
     }
 
-    /// Bytes from the front of the first unit of all.
+    /// Bytes from the start of the first unit.
     #[inline(always)]
     pub(super) fn byte(self) -> usize {
         (self.0 & !15) as usize * 2
     }
 
-    /// Where the blocks of a leaf lie.
+    /// The units of a leaf's blocks.
     pub(super) fn leaf_units(self) -> Range<usize> {
         self.unit()..self.unit() + self.blocks() * BLOCK_UNITS
     }
@@ -80,7 +82,7 @@ impl Ref {
 /// The lower, then the upper corner of a box.
 pub(super) type Planes = [[f32; 3]; 2];
 
-/// Holds nothing.
+/// The empty box.
 pub(super) const EMPTY: Planes = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// Writes a node.
@@ -96,7 +98,7 @@ pub(super) fn write_node(units: &mut [Unit], children: &[(Planes, Ref)]) {
     }
 }
 
-/// The children of a node, empty places left out.
+/// The children of a node, without the empty slots.
 pub(super) fn children(units: &[Unit]) -> impl Iterator<Item = (Planes, Ref)> + '_ {
     let planes = move |child: usize| -> Planes {
         std::array::from_fn(|side| {
@@ -106,7 +108,7 @@ pub(super) fn children(units: &[Unit]) -> impl Iterator<Item = (Planes, Ref)> + 
     (0..WIDTH).map(move |child| (planes(child), Ref(units[6].0[child]))).filter(|(_, r)| *r != Ref::EMPTY)
 }
 
-/// Writes the blocks of a leaf over some triangles, each with its primitive.
+/// Writes the blocks of a leaf for some triangles, each with its primitive.
 pub(super) fn write_leaf(units: &mut [Unit], mut triangles: impl Iterator<Item = ([[f32; 3]; 3], u32)>) {
     let mut last = ([[0.0; 3]; 3], NO_TRIANGLE);
     for block in units.chunks_exact_mut(BLOCK_UNITS) {
@@ -133,7 +135,7 @@ pub(super) fn triangles(block: &[Unit]) -> impl Iterator<Item = ([[f32; 3]; 3], 
     (0..LANES).map(|lane| triangle(block, lane)).filter(|(_, primitive)| *primitive != NO_TRIANGLE)
 }
 
-/// What stands in one place of a block.
+/// The triangle in one lane of a block.
 #[inline(always)]
 pub(super) fn triangle(block: &[Unit], lane: usize) -> ([[f32; 3]; 3], u32) {
     let word = |row: usize| block[row * LANES / 8].0[row * LANES % 8 + lane];

@@ -1,4 +1,4 @@
-//! Units in memory, or in a file that is mapped into it.
+//! Units in memory, or in a memory-mapped file.
 #![allow(unsafe_code)] // Mapping, and reading mapped bytes as units; each block says why it is sound.
 
 use super::Bvh8;
@@ -10,14 +10,14 @@ use std::ops::Deref;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Where the units of a tree lie.
+/// Storage for the units of a tree.
 #[derive(Clone, Debug)]
 pub(super) struct Units(UnitStorage);
 
 #[derive(Clone, Debug)]
 enum UnitStorage {
     Memory(Vec<Unit>),
-    /// From byte [`HEADER`] on; the length was found to be a whole number of units.
+    /// From byte [`HEADER`] on; the length has been checked to be a whole number of units.
     File(Arc<Mmap>),
 }
 
@@ -28,7 +28,7 @@ impl From<Vec<Unit>> for Units {
 }
 
 impl Units {
-    /// Changes units: those in memory, or a copy there of what is mapped.
+    /// Modifies the units in memory; mapped units are first copied there.
     pub(super) fn change<T>(&mut self, work: impl FnOnce(&mut [Unit]) -> T) -> T {
         let mut units = match std::mem::replace(&mut self.0, UnitStorage::Memory(Vec::new())) {
             UnitStorage::Memory(units) => units,
@@ -49,8 +49,8 @@ impl Deref for Units {
             UnitStorage::Memory(units) => units,
             UnitStorage::File(map) => {
                 let bytes = &map[HEADER..];
-                // SAFETY: a map begins at a page, so that byte 64 is aligned as units are; every pattern of bits is
-                // a unit, and only whole ones are counted.
+                // SAFETY: a map begins at a page, so byte 64 is aligned as units are; every bit pattern is a valid
+                // unit, and only whole units are counted.
                 unsafe { std::slice::from_raw_parts(bytes.as_ptr().cast(), bytes.len() / size_of::<Unit>()) }
             }
         }
@@ -58,20 +58,21 @@ impl Deref for Units {
 }
 
 impl Bvh8 {
-    /// A tree that was saved, as it lies in its file: nothing is copied, so that several processes share it and what is
-    /// not asked for leaves memory again. All of it is read once, to be checked.
+    /// Maps a saved tree from its file: nothing is copied, so several processes can share it, and pages that are not
+    /// in use can leave memory. The whole file is read once, to check it.
     ///
     /// # Errors
-    /// When it cannot be read, or is not what [`Bvh8::save`] wrote; on machines that are not little-endian.
+    /// Returns an error when the file cannot be read, is not what [`Bvh8::save`] wrote, or the machine is not
+    /// little-endian.
     ///
     /// # Safety
-    /// Nobody may change or cut off the file while the tree or a clone of it lives.
+    /// The file must not be modified or truncated while the tree or a clone of it lives.
     pub unsafe fn map(path: impl AsRef<Path>) -> Result<Bvh8, StorageError> {
         if cfg!(target_endian = "big") {
             return Err(StorageError::Damaged("only little-endian machines can map trees: load it"));
         }
         let file = File::open(path)?;
-        // SAFETY: the caller promises that the file stays as it is.
+        // SAFETY: the caller promises that the file does not change.
         let map = unsafe { Mmap::map(&file) }?;
         let header = map.first_chunk::<HEADER>().ok_or(StorageError::NotATree)?;
         let header = Header::read(header)?;

@@ -1,7 +1,7 @@
-//! A bounding volume hierarchy eight children wide: the fast one.
+//! A bounding volume hierarchy with eight children per node: the fast one.
 //!
-//! Nodes hold eight boxes, axis by axis, so that one instruction looks at all of them; leaves hold
-//! triangles four by four, for the same reason. What was tried stands in `docs/adr/0008-bvh8.md`.
+//! Nodes hold eight boxes, axis by axis, so that one instruction tests all of them; leaves hold triangles in blocks
+//! of four, for the same reason. `docs/adr/0008-bvh8.md` records what was tried.
 
 mod build;
 mod compact;
@@ -44,7 +44,7 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     build: |mesh, options| Ok(Box::new(Bvh8::new(&mesh, options)?)),
 };
 
-/// Boxes around boxes around triangles, eight by eight.
+/// A wide bounding volume hierarchy, with eight children per node.
 #[derive(Clone, Debug)]
 pub struct Bvh8 {
     units: Units,
@@ -53,10 +53,10 @@ pub struct Bvh8 {
 }
 
 impl Bvh8 {
-    /// Builds one. The same tree whatever the number of threads.
+    /// Builds a hierarchy. The tree is the same whatever the number of threads.
     ///
     /// # Errors
-    /// When it would take more than 8 GiB.
+    /// Returns an error when it would take more than 8 GiB.
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<Bvh8, BuildError> {
         let built = build::build(mesh, options.quality)?;
         let outline = TreeSummary::new(built.root, built.planes);
@@ -109,7 +109,7 @@ impl Traverse for Bvh8 {
     }
 }
 
-/// The shape of a tree, whatever its layout.
+/// The statistics of a tree, whatever its layout.
 fn shape<F: NodeFormat>(view: Option<TreeView>) -> TreeShape {
     let mut shape = TreeShape::default();
     let Some(TreeView { units, outline }) = view else { return shape };

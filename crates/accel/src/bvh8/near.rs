@@ -1,4 +1,4 @@
-//! Which point of a mesh is nearest to a given one.
+//! Finds the point of a mesh that is nearest to a given point.
 
 use super::Bvh8;
 use super::layout::{self, BLOCK_UNITS, Planes, Ref};
@@ -9,9 +9,9 @@ use std::collections::BinaryHeap;
 /// A point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// How far away it is.
+    /// Its distance from the given point.
     pub distance: f32,
-    /// Where it is.
+    /// Its position.
     pub point: [f32; 3],
     /// Barycentric weight of the triangle's second vertex, 0..=1.
     pub u: f32,
@@ -22,19 +22,19 @@ pub struct NearestPoint {
 }
 
 impl Bvh8 {
-    /// The point of the mesh that is nearest to `point`, of equals that of the lowest primitive; `None` where all is
-    /// farther away than `within` (which may be infinite), and for points that are not finite.
+    /// The point of the mesh that is nearest to `point`, ties to the lowest primitive. Returns `None` where
+    /// everything is farther away than `within` (which may be infinite), and for points that are not finite.
     ///
-    /// Computed in f64. To know on which side of a closed mesh the point lies, ask [`crate::Accelerator::all_hits`] of
-    /// any ray from it, and count.
+    /// Computed in f64. To find out on which side of a closed mesh the point lies, call
+    /// [`crate::Accelerator::all_hits`] with any ray from it, and count the hits.
     pub fn nearest_point(&self, point: [f32; 3], within: f32) -> Option<NearestPoint> {
         let at = DVec3::from(point.map(f64::from));
-        // Written so that a reach that is not a number reaches nothing.
+        // Written so that a NaN reach finds nothing.
         if self.units.is_empty() || !at.is_finite() || within.is_nan() || within < 0.0 {
             return None;
         }
         let mut best = Best { squared: f64::from(within) * f64::from(within), at: None };
-        // Subtrees, the nearest first: the bits of distances that are not negative are in their order.
+        // Subtrees, nearest first: the bits of non-negative distances sort like the distances.
         let mut waiting = BinaryHeap::from([Reverse((0, self.outline.root.0))]);
         while let Some(Reverse((squared, reference))) = waiting.pop() {
             let reference = Ref(reference);
@@ -60,7 +60,7 @@ impl Bvh8 {
     }
 }
 
-/// The square of the distance to a box, never more than that to anything in it as it is computed below.
+/// The squared distance to a box, never more than that to anything in it as computed below.
 fn to_box(at: DVec3, [low, high]: &Planes) -> f64 {
     let [low, high] = [low, high].map(|p| DVec3::from(p.map(f64::from)));
     at.distance_squared(at.clamp(low, high)) * (1.0 - 1e-12)
@@ -94,7 +94,7 @@ impl Best {
     }
 }
 
-/// The nearest point of a triangle, whatever its shape, and the weights of its second and third vertex.
+/// The nearest point of a triangle, degenerate or not, and the weights of its second and third vertex.
 fn nearest_of_triangle(at: DVec3, [a, b, c]: [DVec3; 3]) -> ([f64; 2], DVec3) {
     let (ab, ac, ap) = (b - a, c - a, at - a);
     let normal = ab.cross(ac);

@@ -1,13 +1,13 @@
-//! Which triangles touch a box.
+//! Finds the triangles that touch a box.
 
 use super::Bvh8;
 use super::layout::{self, BLOCK_UNITS};
 use bilux_math::glam::DVec3;
 
 impl Bvh8 {
-    /// The triangles that share a point with the box from `low` to `high`, both ends included, in rising order.
+    /// The triangles that share a point with the closed box from `low` to `high`, in ascending order.
     ///
-    /// Computed in f64: of triangles that pass the box by less than its rounding, some are named too.
+    /// Computed in f64: a triangle that misses the box by less than the rounding error may be included too.
     pub fn overlapping(&self, low: [f32; 3], high: [f32; 3]) -> Vec<u32> {
         let mut found = Vec::new();
         let mut stack = if self.units.is_empty() { Vec::new() } else { vec![self.outline.root] };
@@ -34,8 +34,8 @@ impl Bvh8 {
     }
 }
 
-/// Looks for a plane between both: square to an axis, to the triangle, or to an edge of each.
-/// [Akenine-Möller 2001]
+/// Searches for a separating plane: perpendicular to an axis, parallel to the triangle, or parallel to an edge of
+/// each. [Akenine-Möller 2001]
 fn touches(corners: &[[f32; 3]; 3], low: [f32; 3], high: [f32; 3]) -> bool {
     let beside = |k: usize| corners.iter().all(|p| p[k] > high[k]) || corners.iter().all(|p| p[k] < low[k]);
     if (0..3).any(beside) || (0..3).any(|k| low[k] > high[k]) {
@@ -44,7 +44,7 @@ fn touches(corners: &[[f32; 3]; 3], low: [f32; 3], high: [f32; 3]) -> bool {
     let [low, high] = [low, high].map(|p| DVec3::from(p.map(f64::from)));
     let (centre, reach) = ((low + high) * 0.5, (high - low) * 0.5);
     let [a, b, c] = corners.map(|p| DVec3::from(p.map(f64::from)) - centre);
-    // A margin of the rounding of what is compared, so that nothing which touches is left out.
+    // A margin for the rounding of the compared values, so that no touching triangle is left out.
     let scale = [a, b, c].iter().fold(reach, |scale, p| scale.max(p.abs())).max_element();
     let separates = |axis: DVec3| {
         let [p, q, r] = [a, b, c].map(|corner| corner.dot(axis));

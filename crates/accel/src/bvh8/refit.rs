@@ -1,4 +1,4 @@
-//! Moving triangles without building anew: the same tree, its boxes and corners as they are now.
+//! Moves triangles without a rebuild: the same tree, with its boxes and corners updated.
 
 use super::Bvh8;
 use super::layout::{
@@ -9,25 +9,26 @@ use super::summary::TreeSummary;
 use crate::bvh::tree::union;
 use crate::mesh::TriangleMesh;
 
-/// Why a tree cannot be fitted to a mesh.
+/// Why a tree cannot be refitted to a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefitError {
-    /// The tree has other triangles than the mesh has finite ones.
+    /// The triangles of the tree are not the finite triangles of the mesh.
     #[error("triangle {0} is in the tree and no finite one of the mesh, or the other way: build a new tree")]
     OtherTriangles(u32),
-    /// The boxes of pieces cannot be told from where the corners are.
+    /// The boxes of cut triangles cannot be computed from the corners.
     #[error("the tree was built with triangles cut in pieces, by the quality 'best': build it with another")]
     Pieces,
 }
 
 impl Bvh8 {
-    /// Fits the tree to triangles that have moved, in about a third of the time of building on one thread. The
-    /// further triangles have left their neighbours, the slower rays become.
+    /// Refits the tree to triangles that have moved, in about a third of the time of a build on one thread. The
+    /// further triangles have moved from their neighbours, the slower rays become.
     ///
     /// # Errors
-    /// When the finite triangles of the mesh are not those that the tree has, by number, or when it was built with
-    /// [`Quality::Best`](crate::registry::Quality::Best) and has cut some. The tree is then as before.
+    /// Returns an error when the finite triangles of the mesh are not the triangles of the tree, by number, or when
+    /// the tree was built with [`Quality::Best`](crate::registry::Quality::Best) and has cut some. The tree is then
+    /// unchanged.
     pub fn refit(&mut self, mesh: &TriangleMesh) -> Result<(), RefitError> {
         self.check(mesh)?;
         if !self.units.is_empty() {
@@ -63,7 +64,7 @@ impl Bvh8 {
     }
 }
 
-/// Fits a subtree and gives its box.
+/// Refits a subtree and returns its box.
 fn fit(units: &mut [Unit], reference: Ref, meshed: &[[[f32; 3]; 3]]) -> Planes {
     if !reference.is_node() {
         return fit_leaf(&mut units[reference.leaf_units()], meshed);

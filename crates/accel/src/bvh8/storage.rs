@@ -1,8 +1,9 @@
-//! Trees as files: written once, read or mapped by whoever needs them next.
+//! Trees as files: written once, then read or mapped.
 //!
-//! A file is a header of 64 bytes and then the units as they lie in memory, all little-endian: `BILUXBV8`, the
-//! version, the root, the number of units (u64), the corners of the box around everything (6 f32), zeros, and a
-//! checksum of all but itself (u64). Nothing of a file is trusted before all of it was looked at.
+//! A file is a header of 64 bytes followed by the units as they lie in memory, all little-endian. The header holds
+//! `BILUXBV8`, the version, the root, the number of units (u64), the corners of the bounding box of everything (6
+//! f32), zeros, and a checksum of everything but itself (u64). Nothing in a file is trusted before all of it has been
+//! checked.
 
 use super::Bvh8;
 use super::build::binary::MAX_DEPTH;
@@ -20,25 +21,25 @@ const VERSION: u32 = 2;
 pub(super) const HEADER: usize = 64;
 const UNIT: usize = size_of::<Unit>();
 
-/// Why a file is no tree.
+/// Why a file is not a valid tree.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StorageError {
     /// It cannot be read.
     #[error("cannot read the tree: {0}")]
     Io(#[from] io::Error),
-    /// It begins otherwise.
+    /// It does not begin with the magic bytes.
     #[error("this is no tree of bvh8: it does not begin with BILUXBV8")]
     NotATree,
     /// It was written by another version.
     #[error("the tree has version {0}, and this library reads {VERSION}: build it anew")]
     Version(u32),
-    /// It ends too soon, or goes on.
+    /// It is too short or too long.
     #[error("the tree has {found} bytes, and its header says {expected}")]
     Length {
-        /// What the header says.
+        /// The length that the header states.
         expected: u64,
-        /// What there is.
+        /// The actual length.
         found: u64,
     },
     /// Its bytes are not those that were written.
@@ -46,7 +47,7 @@ pub enum StorageError {
     Damaged(&'static str),
 }
 
-/// What stands before the units.
+/// The header in front of the units.
 pub(super) struct Header {
     root: Ref,
     units: usize,
@@ -60,7 +61,7 @@ impl Bvh8 {
     /// Writes the tree, with its triangles; [`Bvh8::load`] and [`Bvh8::map`] read it.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Returns the errors of the writer.
     pub fn save(&self, mut to: impl Write) -> io::Result<()> {
         let mut header = Vec::with_capacity(HEADER);
         header.extend(MAGIC);
@@ -80,10 +81,10 @@ impl Bvh8 {
         to.flush()
     }
 
-    /// Reads a tree that was saved, for this machine's instructions.
+    /// Reads a saved tree, for use with this machine's instructions.
     ///
     /// # Errors
-    /// When it cannot be read, or is not what [`Bvh8::save`] wrote.
+    /// Returns an error when it cannot be read, or is not what [`Bvh8::save`] wrote.
     pub fn load(mut from: impl Read) -> Result<Bvh8, StorageError> {
         let mut header = [0; HEADER];
         if fill(&mut from, &mut header)? < HEADER {
@@ -94,7 +95,7 @@ impl Bvh8 {
         let mut units = Vec::new();
         let mut bytes = vec![0; UNIT << 12];
         while units.len() < header.units {
-            // Memory grows with what was read, not with what is promised.
+            // Memory grows with what was read, not with what the header promises.
             let chunk = (header.units - units.len()).min(1 << 12);
             let bytes = &mut bytes[..chunk * UNIT];
             let read = fill(&mut from, bytes)?;
@@ -111,7 +112,7 @@ impl Bvh8 {
         Bvh8::trust(&header, Units::from(units))
     }
 
-    /// A tree of what was read, once all of it makes sense.
+    /// Makes a tree of what was read, once all of it has been validated.
     pub(super) fn trust(header: &Header, units: Units) -> Result<Bvh8, StorageError> {
         if checksum(&header.front, &units) != header.checksum {
             return Err(StorageError::Damaged("its checksum is another"));
@@ -142,13 +143,13 @@ impl Header {
         Ok(Header { root: Ref(word(12)), units: units as usize, corners, checksum: long(HEADER - 8), front })
     }
 
-    /// Of the whole file.
+    /// Size of the whole file in bytes.
     pub(super) fn bytes(&self) -> u64 {
         (HEADER + self.units * UNIT) as u64
     }
 }
 
-/// Reads until the room is full or nothing is left; says how much that was.
+/// Reads until the buffer is full or nothing is left; returns the number of bytes read.
 fn fill(from: &mut impl Read, room: &mut [u8]) -> io::Result<usize> {
     let mut found = 0;
     while found < room.len() {
@@ -162,7 +163,7 @@ fn fill(from: &mut impl Read, room: &mut [u8]) -> io::Result<usize> {
     Ok(found)
 }
 
-/// Of what stands before it, and of the units: four sums side by side, each of mixed words.
+/// The checksum of the bytes before it and of the units: four parallel sums of mixed words.
 pub(super) fn checksum(front: &[u8], units: &[Unit]) -> u64 {
     let mut sums = [0u64; 4];
     for unit in units {
@@ -175,8 +176,8 @@ pub(super) fn checksum(front: &[u8], units: &[Unit]) -> u64 {
     sums.iter().fold(front, |all, &sum| mix64(all ^ sum))
 }
 
-/// Follows every reference once: nothing may be reached twice or lie outside, no way may be longer than the stacks of
-/// the kernels, and leaves hold finite triangles.
+/// Follows every reference once: nothing may be reached twice or lie outside the file, no path may be longer than the
+/// stacks of the kernels allow, and leaves must hold finite triangles.
 fn check(units: &[Unit], root: Ref) -> Result<(), StorageError> {
     let mut reached = vec![false; units.len()];
     let mut stack = if units.is_empty() { Vec::new() } else { vec![(root, 1)] };

@@ -1,21 +1,21 @@
-//! A tree as a whole: what a ray has to know of it before it walks.
+//! Data about the whole tree that a ray needs before traversal.
 
 use super::layout::Ref;
 use crate::triangle::PAD;
 use bilux_math::{Aabb, Vec3};
 
-/// Where the tree begins, and how large it is.
+/// The root of the tree, and its extent.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TreeSummary {
     pub(super) root: Ref,
-    /// Of the box around everything; the fourth numbers are zero.
+    /// Corners of the bounding box of everything; the fourth components are zero.
     pub(super) corners: [[f32; 4]; 2],
-    /// Of that box; the fourth number is zero.
+    /// Centre of that box; the fourth component is zero.
     pub(super) centre: [f32; 4],
-    /// What a ray must not exceed for the wide kernels: four times how far its origin is from the centre, on any axis,
-    /// and four times its greatest component.
+    /// Limits for rays in the wide kernels: four times the maximum distance of the origin from the centre, on any
+    /// axis, and four times the maximum component of the direction.
     pub(super) reach: [f32; 8],
-    /// How far boxes have to grow for a ray from the centre.
+    /// The pad of boxes for a ray that starts at the centre.
     pub(super) pad: f32,
 }
 
@@ -25,11 +25,11 @@ const LARGEST: f32 = (1u64 << 40) as f32;
 /// 4 units of f32 rounding: what the fused box test adds to the pad of the lemma; see `docs/adr/0008-bvh8.md`.
 pub(super) const BIAS_PAD: f32 = 4.0 / 16_777_216.0;
 
-/// How far boxes have to grow for each unit of distance between the ray's origin and the centre; two more, for the
-/// rounding of that distance and of the sum.
+/// The pad of boxes per unit of distance between the ray's origin and the centre; two units more, for the rounding of
+/// that distance and of the sum.
 pub(super) const FAR_PAD: f32 = PAD + BIAS_PAD + 2.0 / 16_777_216.0;
 
-/// Makes up for underflow: 2⁻⁸⁴ over directions as short as 2⁻⁴⁰ is still a normal number.
+/// Compensates for underflow: 2⁻⁸⁴ over directions as short as 2⁻⁴⁰ is still a normal number.
 const MIN_PAD: f32 = 1.0 / (1u128 << 84) as f32;
 
 impl TreeSummary {
@@ -39,9 +39,9 @@ impl TreeSummary {
         let away = |k: usize| (corners[0][k] - centre[k]).abs().max((corners[1][k] - centre[k]).abs());
         let half = away(0).max(away(1)).max(away(2));
         let off = centre[0].abs().max(centre[1].abs()).max(centre[2].abs());
-        // Twice the roundings of this sum.
+        // Twice the rounding error of this sum.
         let pad = (half * PAD + off * BIAS_PAD + MIN_PAD) * (1.0 + 16.0 / 16_777_216.0);
-        // An empty box, and one of which something is not a number, is nobody's.
+        // An empty box, or one with a NaN, fits no ray.
         let fits = half <= LARGEST && off <= LARGEST;
         let (reach, pace) = if fits { (LARGEST, LARGEST) } else { (-1.0, -1.0) };
         TreeSummary {
@@ -53,7 +53,7 @@ impl TreeSummary {
         }
     }
 
-    /// The box around everything.
+    /// The bounding box of everything.
     pub(super) fn bounds(&self) -> Aabb {
         let [min, max] = self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
         Aabb { min, max }

@@ -1,4 +1,4 @@
-//! What must hold of every tree, whatever it is built over.
+//! Properties that hold for every tree, whatever it is built over.
 
 use super::build::binary::MAX_DEPTH;
 use super::layout::{self, BLOCK_UNITS, Planes, Ref};
@@ -25,8 +25,8 @@ fn build(triangles: &[Triangle], quality: Quality) -> Bvh8 {
     Bvh8::new(&mesh, &BuildOptions { quality, ..BuildOptions::default() }).expect("few nodes")
 }
 
-/// Checks that each child lies in its parent's box and each triangle in one leaf, or that of one in several there is
-/// no point in none; returns the depth, and whether any is in several.
+/// Checks that each child lies in its parent's box, and that each triangle is in one leaf or, if it is in several,
+/// that no point of it is missing from all of them; returns the depth, and whether any triangle is in several leaves.
 fn validate(tree: &Bvh8, triangles: &[Triangle]) -> (usize, bool) {
     let mut seen: Vec<Vec<Planes>> = vec![Vec::new(); triangles.len()];
     let corners = tree.outline.corners.map(|[x, y, z, _]| [x, y, z]);
@@ -68,7 +68,7 @@ fn validate(tree: &Bvh8, triangles: &[Triangle]) -> (usize, bool) {
                 p + (q - p) * a + (r - p) * b
             };
             let is_in = |planes: &Planes| {
-                // A few roundings in f64 may put the point beside the triangle.
+                // A few roundings in f64 may put the point slightly outside the triangle.
                 let slack =
                     |axis: usize| 1e-14 * triangle.iter().fold(0.0, |m, p| f64::from(p[axis].abs()).max(m));
                 (0..3).all(|axis| {
@@ -91,7 +91,7 @@ fn trees_are_sound_and_shallow_over_what_makes_builders_slow() {
     };
     let huge = [[-1e6, -1e6, 0.5], [1e6, -1e6, 0.5], [0.0, 1e6, 0.5]];
     let far = |i: usize| small(i).map(|p| p.map(|x| x * f32::from_bits((64 + i as u32 % 128) << 23)));
-    // As long as the whole, in all directions: what cuts are made for.
+    // As long as the whole, in all directions: the case that cuts are made for.
     let long = |i: usize| -> Triangle {
         let from: [f32; 3] = std::array::from_fn(|k| number(k as u64, i));
         let to = std::array::from_fn(|k| number(k as u64 + 3, i));
@@ -111,8 +111,8 @@ fn trees_are_sound_and_shallow_over_what_makes_builders_slow() {
         for quality in QUALITIES {
             let tree = build(&triangles, quality);
             let (depth, has_pieces) = validate(&tree, &triangles);
-            // What the stack of the kernels has room for, and what bounds the work: every item is looked at a fixed
-            // number of times on each level.
+            // The depth that the stack of the kernels has space for, and that bounds the work: every item is
+            // processed a fixed number of times on each level.
             assert!(depth <= MAX_DEPTH, "{name} by {quality:?} is {depth} deep");
             let is_cut = quality == Quality::Best && name == "long";
             assert!(!is_cut || has_pieces, "{name}");
@@ -150,7 +150,7 @@ fn all_levels_count_the_same_hits() {
     }
     for count in &counts {
         assert_eq!(count.rays, 500);
-        // Pads differ a little between levels, and so may what is visited.
+        // Pads differ slightly between levels, and so may the visited nodes.
         assert!(count.nodes.abs_diff(counts[0].nodes) < counts[0].nodes / 100);
         assert!(count.nodes > 500 && count.triangles > 500);
     }
@@ -173,7 +173,7 @@ fn forged_trees_are_refused_or_harmless() {
             let at = 8 + (hash_words([i, k, 0]) % (forged.len() as u64 - 8)) as usize;
             forged[at] = hash_words([i, k, 1]) as u8;
         }
-        // As a forger would: with the right checksum.
+        // As a forger would do it: with the right checksum.
         let units: Vec<layout::Unit> = forged[64..]
             .chunks_exact(32)
             .map(|unit| {

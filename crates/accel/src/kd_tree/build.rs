@@ -1,4 +1,4 @@
-//! Building top down. No step depends on the number of threads.
+//! Top-down building. No step depends on the number of threads.
 
 use super::clip::{Planes, clipped_bounds};
 use super::split::{Split, best_split};
@@ -7,7 +7,7 @@ use crate::mesh::TriangleMesh;
 use crate::registry::BuildError;
 use rayon::prelude::*;
 
-/// References to triangles, over all leaves, for each triangle at most.
+/// Maximum number of references over all leaves, per triangle.
 const MAX_REFERENCES_EACH: usize = 6;
 /// Below this many references a subtree is built on one thread.
 const PARALLEL: usize = 8192;
@@ -34,7 +34,7 @@ pub(super) fn build(mesh: &TriangleMesh) -> Result<Tree, BuildError> {
         return Ok(Tree::default());
     }
     let count = references.len();
-    // [Havran 2000]'s rule for the depth of the tree, with room for more.
+    // [Havran 2000]'s rule for the depth of the tree, with some reserve.
     let max_depth = (12 + 2 * (count.ilog2() as usize)).min(MAX_DEPTH);
     let builder = Builder { triangles: mesh.triangles(), max_depth };
     let task = Task {
@@ -45,7 +45,7 @@ pub(super) fn build(mesh: &TriangleMesh) -> Result<Tree, BuildError> {
     };
     let mut tree = Tree::default();
     builder.grow(task, &mut tree);
-    // Leaves without references are counted too, hence both.
+    // Leaves without references count too, so both are checked.
     if tree.nodes.len() > MAX_NODES || tree.references.len() > MAX_NODES {
         return Err(BuildError::TooManyNodes);
     }
@@ -59,17 +59,17 @@ struct Builder<'a> {
     max_depth: usize,
 }
 
-/// A cell to be filled.
+/// A cell that is still to be built.
 struct Task {
     references: Vec<Reference>,
     cell: Planes,
     depth: usize,
-    /// How many more references may be made below.
+    /// How many more references may be created below.
     spare: usize,
 }
 
 impl Builder<'_> {
-    /// Adds the subtree of a cell at the end of a tree.
+    /// Appends the subtree of a cell to a tree.
     fn grow(&self, task: Task, tree: &mut Tree) {
         let Some((split, [below, above])) = self.part(&task) else {
             tree.nodes.push(KdNode::leaf(tree.references.len(), task.references.len()));
@@ -96,7 +96,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The tasks below and above the best plane; `None` for what is to be a leaf.
+    /// The tasks below and above the best plane; `None` if this becomes a leaf.
     fn part(&self, task: &Task) -> Option<(Split, [Task; 2])> {
         if task.depth >= self.max_depth || task.references.len() <= 1 {
             return None;
@@ -106,7 +106,7 @@ impl Builder<'_> {
         (low[1][split.axis], high[0][split.axis]) = (split.plane, split.plane);
         let [below, above] = self.sort_out(&task.references, &split);
         let made = below.len() + above.len();
-        // Bins only estimate: what they promised has to be so.
+        // Bins only estimate, so the actual numbers are checked.
         let stands_still = below.len() >= task.references.len() && above.len() >= task.references.len();
         if stands_still || made > task.references.len() + task.spare {
             return None;
@@ -159,7 +159,7 @@ impl Builder<'_> {
     }
 }
 
-/// Puts a tree behind another.
+/// Appends a tree to another.
 fn append(tree: &mut Tree, other: Tree) {
     let (nodes, references) = (tree.nodes.len(), tree.references.len());
     tree.nodes.extend(other.nodes.into_iter().map(|node| node.behind(nodes, references)));

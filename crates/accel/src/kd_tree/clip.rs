@@ -1,13 +1,13 @@
-//! What part of a cell a triangle really fills.
+//! The part of a cell that a triangle actually occupies.
 
-/// Least and greatest corner.
+/// Minimum and maximum corner.
 pub(super) type Planes = [[f32; 3]; 2];
 
-/// A box around the part of a triangle that lies in `region`; `None` when none does.
+/// The bounding box of the part of a triangle that lies in `region`; `None` if there is none.
 ///
-/// Clips as Sutherland and Hodgman did [Sutherland 1974], in f64, against the region grown by `2⁻⁴⁸` of the
-/// triangle's greatest coordinate. That is more than all roundings together, so that no point of the triangle in
-/// the region itself is ever lost.
+/// Uses Sutherland–Hodgman clipping [Sutherland 1974] in f64, against the region enlarged by `2⁻⁴⁸` of the triangle's
+/// largest coordinate. That exceeds the sum of all roundings, so no point of the triangle in the region itself is
+/// ever lost.
 pub(super) fn clipped_bounds(triangle: &[[f32; 3]; 3], region: &Planes) -> Option<Planes> {
     let reach = triangle.iter().flatten().fold(0f32, |reach, x| reach.max(x.abs()));
     let margin = f64::from(reach) / (1u64 << 48) as f64;
@@ -45,7 +45,7 @@ impl Polygon {
         Polygon { corners, len: 3 }
     }
 
-    /// Keeps what has `sign * coordinate >= least`.
+    /// Keeps the part with `sign * coordinate >= least`.
     fn keep(&mut self, axis: usize, sign: f64, least: f64) {
         let depth = |p: &[f64; 3]| sign * p[axis] - least;
         if self.corners[..self.len].iter().all(|p| depth(p) >= 0.0) {
@@ -68,8 +68,8 @@ impl Polygon {
         }
     }
 
-    /// A plane cuts a convex polygon's outline twice, so there is always room; rounding could at worst make it
-    /// cut more often, and then the crossings left out lie beside those kept.
+    /// A plane crosses the outline of a convex polygon twice, so there is always space; at worst, rounding could
+    /// produce more crossings, and then those left out lie next to those kept.
     fn push(&mut self, p: [f64; 3]) {
         if let Some(corner) = self.corners.get_mut(self.len) {
             *corner = p;

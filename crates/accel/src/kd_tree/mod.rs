@@ -1,4 +1,4 @@
-//! A kd-tree: space cut by planes along the axes, triangles clipped to the cells.
+//! A kd-tree: space divided by axis-aligned planes, triangles clipped to the cells.
 
 mod build;
 mod clip;
@@ -31,12 +31,12 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 #[derive(Clone, Debug)]
 pub struct KdTree {
     tree: Tree,
-    /// What leaves refer to, in the order in which they first do.
+    /// The triangles that leaves refer to, in the order of first reference.
     triangles: Vec<KdTriangle>,
     bounds: Aabb,
 }
 
-/// A triangle beside its index in the mesh.
+/// A triangle next to its index in the mesh.
 #[derive(Clone, Copy, Debug)]
 struct KdTriangle {
     corners: [[f32; 3]; 3],
@@ -44,10 +44,10 @@ struct KdTriangle {
 }
 
 impl KdTree {
-    /// Builds one. The same tree whatever the number of threads.
+    /// Builds a kd-tree. The tree is the same whatever the number of threads.
     ///
     /// # Errors
-    /// When the tree would have more nodes or references than can be numbered.
+    /// Returns an error when the tree would have more nodes or references than can be numbered.
     pub fn new(mesh: &TriangleMesh) -> Result<KdTree, BuildError> {
         let (mut tree, corners) = (build::build(mesh)?, mesh.triangles());
         let (mut triangles, mut places) = (Vec::new(), vec![u32::MAX; mesh.len()]);

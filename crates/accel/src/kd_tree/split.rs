@@ -1,18 +1,18 @@
-//! Where to put the next plane.
+//! Chooses the next plane.
 
 use super::build::Reference;
 use super::clip::Planes;
 
-/// What a visit to a node costs, in triangle tests.
+/// Cost of visiting a node, in triangle tests.
 const NODE_COST: f64 = 0.75;
-/// What cutting off empty space multiplies the cost with.
+/// Factor on the cost of a plane that cuts off empty space.
 const EMPTY_BONUS: f64 = 0.8;
-/// From this many references on, planes are tried between bins, not at every edge of a box.
+/// From this many references on, planes are tried between bins instead of at every face of a box.
 const SWEEP: usize = 48;
-/// Bins an axis.
+/// Bins per axis.
 const BINS: usize = 48;
 
-/// A plane, and what it is expected to cost.
+/// A plane and its expected cost.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Split {
     pub(super) axis: usize,
@@ -22,8 +22,8 @@ pub(super) struct Split {
     cost: f64,
 }
 
-/// The plane that the surface-area heuristic likes best, if any is better than a leaf and makes at most
-/// `spare` more references.
+/// The best plane by the surface-area heuristic, if any is better than a leaf and creates at most `spare` more
+/// references.
 pub(super) fn best_split(references: &[Reference], cell: &Planes, spare: usize) -> Option<Split> {
     let mut search = Search { cell, area: half_area(cell), total: references.len(), spare, best: None };
     for axis in 0..3 {
@@ -41,7 +41,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Weighs a plane with so many references below, in, and above it.
+    /// Evaluates a plane with the given numbers of references below, in, and above it.
     fn consider(&mut self, axis: usize, plane: f32, [below, within, above]: [usize; 3]) {
         let inside = self.cell[0][axis] < plane && plane < self.cell[1][axis];
         if !inside || below + within + above > self.total + self.spare {
@@ -53,14 +53,14 @@ impl Search<'_> {
         for (planar_below, below, above) in [(true, below + within, above), (false, below, above + within)] {
             let bonus = if below == 0 || above == 0 { EMPTY_BONUS } else { 1.0 };
             let cost = bonus * (NODE_COST + low * below as f64 + high * above as f64);
-            // Areas beyond all numbers, or none at all, make costs that are not finite.
+            // Areas that overflow or are zero give costs that are not finite.
             if cost.is_finite() && self.best.is_none_or(|best| cost < best.cost) {
                 self.best = Some(Split { axis, plane, planar_below, cost });
             }
         }
     }
 
-    /// Every edge of every box, in order [Wald 2006].
+    /// Every face of every box, in order [Wald 2006].
     fn sweep(&mut self, references: &[Reference], axis: usize) {
         let mut events = [0u64; 2 * SWEEP];
         let mut len = 0;
@@ -93,7 +93,7 @@ impl Search<'_> {
         }
     }
 
-    /// Between equal steps over what the boxes fill, its ends included.
+    /// Equally spaced planes over the extent of the boxes, both ends included.
     fn bins(&mut self, references: &[Reference], axis: usize) {
         let low = references.iter().fold(f32::INFINITY, |low, r| low.min(r.planes[0][axis]));
         let high = references.iter().fold(f32::NEG_INFINITY, |high, r| high.max(r.planes[1][axis]));
@@ -119,7 +119,7 @@ impl Search<'_> {
     }
 }
 
-/// What happens to a box at a place, in the order in which it has to be looked at.
+/// The events of boxes at a position, in the order in which they must be processed.
 #[derive(Clone, Copy)]
 enum Event {
     End,
@@ -127,7 +127,7 @@ enum Event {
     Start,
 }
 
-/// Bits that are ordered as the numbers are; both zeros are one.
+/// Bits that sort like the numbers; both zeros have the same key.
 fn key(x: f32) -> u64 {
     let bits = (x + 0.0).to_bits();
     u64::from(if bits >> 31 == 1 { !bits } else { bits | 1 << 31 })

@@ -1,4 +1,4 @@
-//! Nodes, and the way of a ray through them.
+//! Nodes, and the traversal of a ray through them.
 
 use crate::accelerator::TreeShape;
 use crate::counters::Count;
@@ -6,26 +6,27 @@ use crate::slab::SlabRay;
 use bilux_math::Aabb;
 use std::ops::ControlFlow;
 
-/// No way from the root to a leaf has more nodes than this.
+/// Maximum number of nodes on a path from the root to a leaf.
 pub(super) const MAX_DEPTH: usize = 64;
 
-/// Most nodes that the links in nodes can tell apart.
+/// Maximum number of nodes that the links in nodes can address.
 pub(super) const MAX_NODES: usize = (u32::MAX >> 2) as usize;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
-    /// The child below the plane stands right behind its parent.
+    /// The child below the plane directly follows its parent.
     pub(super) nodes: Vec<KdNode>,
     /// Triangles of all leaves, leaf by leaf.
     pub(super) references: Vec<u32>,
 }
 
-/// 8 bytes, so that eight of them share a cache line.
+/// 8 bytes, so that eight nodes share a cache line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KdNode {
-    /// Where the plane is, or the first reference of a leaf.
+    /// The position of the plane, or the first reference of a leaf.
     payload: u32,
-    /// In the two lower bits the axis, or 3 for a leaf; above, the child above the plane, or how many references.
+    /// The lower two bits hold the axis, or 3 for a leaf; the other bits hold the child above the plane, or the
+    /// number of references.
     link: u32,
 }
 
@@ -40,7 +41,7 @@ impl KdNode {
         KdNode { payload: plane.to_bits(), link: (above as u32) << 2 | axis as u32 }
     }
 
-    /// The same node in a tree where nodes and references are preceded by others.
+    /// The same node in a tree where other nodes and references come first.
     pub(super) fn behind(self, nodes: usize, references: usize) -> KdNode {
         match self.is_leaf() {
             true => KdNode { payload: self.payload + references as u32, ..self },
@@ -58,7 +59,7 @@ impl KdNode {
     }
 }
 
-/// A cell still to be visited, and the piece of the ray in it.
+/// A cell that is still to be visited, and the ray's interval in it.
 #[derive(Clone, Copy)]
 struct StackEntry {
     node: u32,
@@ -67,12 +68,12 @@ struct StackEntry {
 }
 
 impl Tree {
-    /// Goes through the leaves that the ray meets up to `limit` (an `s` of [`SlabRay`]), front to back.
-    /// `visit` gets a leaf's references and returns the limit from there on, or a break.
+    /// Visits the leaves that the ray hits up to `limit` (an `s` of [`SlabRay`]), front to back. `visit` receives a
+    /// leaf's references and returns the limit that applies from then on, or a break.
     ///
-    /// The pieces of the ray in both cells beside a plane overlap by the pad on both sides of it, so that no
-    /// case needs regard for where exactly the ray meets the plane, or whether it does. [Havran 2000, for what
-    /// cases there are otherwise]
+    /// The ray's intervals in the two cells next to a plane overlap by the pad on both sides of it, so it does not
+    /// matter where exactly the ray crosses the plane, or whether it does. [Havran 2000, for the cases to distinguish
+    /// otherwise]
     #[inline(always)]
     pub(super) fn walk<C: Count>(
         &self,

@@ -5,25 +5,25 @@ use super::{Crossing, Sphere, outwards, wide};
 use crate::ray::Ray;
 use bilux_math::glam::DVec3;
 
-/// All points within a radius of a line segment: a cylinder between two half spheres. Outside is the front. Of a hit,
-/// `u` is the way from the first end to the second, 0..=1.
+/// All points within a radius of a line segment: a cylinder between two hemispheres. The front is outside. In a hit,
+/// `u` is the position along the segment from the first end to the second, 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
-    /// Ends of the segment. Where they are the same, this is a sphere.
+    /// Ends of the segment. Where they coincide, the capsule is a sphere.
     pub ends: [[f32; 3]; 2],
-    /// Of a radius that is not positive nothing is met.
+    /// A capsule whose radius is not positive is never hit.
     pub radius: f32,
 }
 
 impl Capsule {
-    /// Least and greatest corner of the box around it.
+    /// Minimum and maximum corner of the bounding box.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let ([a, b], radius) = (self.ends.map(wide), DVec3::splat(f64::from(self.radius)));
         outwards(a.min(b) - radius, a.max(b) + radius)
     }
 
-    /// Where the line of a ray enters and leaves, in lengths of its direction, whatever part of it the ray is; `None`
-    /// where it passes. The solid is convex, so that there is one way in and one way out. [Ericson 2005, 5.3.7]
+    /// The distances at which the infinite line of a ray enters and leaves, in lengths of the ray's direction; `None`
+    /// where it misses. The solid is convex, so there is one entry and one exit. [Ericson 2005, 5.3.7]
     pub fn chord(&self, ray: &Ray) -> Option<[f64; 2]> {
         let [a, b] = self.ends.map(wide);
         let (radius, height) = (f64::from(self.radius), (b - a).length());
@@ -40,7 +40,7 @@ impl Capsule {
             chord = Some([enter.min(t), leave.max(t)]);
         };
         let (across, drift) = (from - axis * y, direction - axis * dy);
-        // By the distance of the axis from the line, which keeps its digits. [Haines 2019, section 2]
+        // From the distance between the axis and the line, which loses no digits. [Haines 2019, section 2]
         let (aa, h) = (drift.length_squared(), across.dot(drift));
         if aa > 0.0 {
             let beside = across - drift * (h / aa);
@@ -57,11 +57,11 @@ impl Capsule {
         chord
     }
 
-    /// How far along the segment the point nearest to `p` lies, 0..=1.
+    /// The position along the segment of the point nearest to `p`, 0..=1.
     pub fn nearest(&self, p: [f64; 3]) -> f64 {
         let [a, b] = self.ends.map(wide);
         let along = (DVec3::from(p) - a).dot(b - a) / (b - a).length_squared();
-        // Of a segment without a length it is no number.
+        // NaN for a segment without a length.
         if along > 0.0 { along.min(1.0) } else { 0.0 }
     }
 

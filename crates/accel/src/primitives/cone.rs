@@ -1,22 +1,22 @@
-//! Cones, cut off, and cylinders.
+//! Truncated cones and cylinders.
 
 use super::roots::{roots, without_origin};
 use super::{Crossing, outwards, wide};
 use crate::ray::Ray;
 use bilux_math::glam::DVec3;
 
-/// The side of a cone between two circles; with equal radii, a cylinder. Without lids; outside is the front. Of a
-/// hit, `u` is the way from the first circle to the second, 0..=1.
+/// The lateral surface of a cone between two circles; with equal radii, a cylinder. It has no caps; the front is
+/// outside. In a hit, `u` is the position from the first circle to the second, 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    /// Centres of both circles. Nothing is met where they are the same.
+    /// Centres of both circles. Where they coincide, the cone is never hit.
     pub ends: [[f32; 3]; 2],
     /// Their radii, not negative.
     pub radii: [f32; 2],
 }
 
 impl Cone {
-    /// Least and greatest corner of the box around it.
+    /// Minimum and maximum corner of the bounding box.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let [a, b] = self.ends.map(wide);
         let axis = (b - a).normalize_or_zero();
@@ -44,7 +44,7 @@ impl Cone {
         let Some(found) = roots(aa, h, c, h * h - aa * c) else { return };
         for t in if leaves { without_origin(found) } else { found } {
             let along = y + t * dy;
-            // The other half of the double cone, behind the tip, is none of it.
+            // The other half of the double cone, behind the apex, does not belong to it.
             if (0.0..=height).contains(&along) && first + slope * along >= 0.0 {
                 let at = across + drift * t;
                 let back = at.dot(drift) - (radius + t * growth) * growth > 0.0;

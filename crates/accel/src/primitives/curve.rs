@@ -4,25 +4,25 @@ use super::{Crossing, outwards, wide};
 use crate::ray::Ray;
 use bilux_math::glam::DVec3;
 
-/// A piece of a cubic Bézier curve, drawn as a ribbon that turns its face to every ray: right for what is too thin
-/// for its roundness to be seen. Of a hit, `u` is the parameter of the curve and `v` the place across the ribbon,
-/// 0..=1; all is front. A ray that leaves it does not meet the same piece again.
+/// A piece of a cubic Bézier curve, rendered as a ribbon that turns to face every ray: the right model for what is
+/// too thin for its roundness to be visible. In a hit, `u` is the parameter of the curve and `v` the position across
+/// the ribbon, 0..=1; both sides are front. A ray that leaves a piece does not hit the same piece again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Curve {
     /// Control points.
     pub points: [[f32; 3]; 4],
     /// Width of the ribbon at the parameters 0 and 1, not negative, linear in between.
     pub widths: [f32; 2],
-    /// Which piece of the curve: parameters from and to, within 0..=1.
+    /// The piece of the curve: parameters from and to, within 0..=1.
     pub span: [f32; 2],
 }
 
-/// Control points in the space of a ray, which goes from its origin along z.
+/// Control points in the space of a ray, which starts at the origin and runs along z.
 type Controls = [DVec3; 4];
 
-/// A piece is straight enough when it leaves its chord by less than this part of its width.
+/// A piece is straight enough when it deviates from its chord by less than this fraction of its width.
 const FLATNESS: f64 = 0.05;
-/// Pieces are halved at most so often.
+/// Maximum number of halvings of a piece.
 const MAX_HALVINGS: u32 = 10;
 
 impl Curve {
@@ -31,14 +31,15 @@ impl Curve {
         Curve { points, widths, span: [0.0, 1.0] }
     }
 
-    /// The same in some pieces of equal spans: more to hold, but with tighter boxes, hence quicker to ask.
+    /// The same curve as `count` pieces of equal spans: they take more memory, but have tighter boxes and are faster
+    /// to query.
     pub fn pieces(self, count: u32) -> impl Iterator<Item = Curve> {
         let [from, to] = self.span;
         let at = move |i: u32| if i == count { to } else { from + (to - from) * i as f32 / count as f32 };
         (0..count).map(move |i| Curve { span: [at(i), at(i + 1)], ..self })
     }
 
-    /// Least and greatest corner of the box around it.
+    /// Minimum and maximum corner of the bounding box.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let controls = self.controls(|p| p);
         let reach = DVec3::splat(self.width(0.0).max(self.width(1.0)) * 0.5);
@@ -47,7 +48,7 @@ impl Curve {
         outwards(least - reach, greatest + reach)
     }
 
-    /// The width at a place of the piece, 0..=1.
+    /// The width at a position within the piece, 0..=1.
     fn width(&self, place: f64) -> f64 {
         let ([a, b], u) = (self.widths.map(f64::from), self.parameter(place));
         a + (b - a) * u
@@ -87,7 +88,7 @@ impl Curve {
         }
     }
 
-    /// Halves the piece until it is straight, leaving out what the ray passes by. [Nakamaru 2002]
+    /// Halves the piece until it is straight, and skips the halves that the ray misses. [Nakamaru 2002]
     fn search(
         &self,
         controls: &Controls,
@@ -113,7 +114,7 @@ impl Curve {
         self.search(&[middle, b, rs, s], [half, to], halvings - 1, found);
     }
 
-    /// A piece that is nearly straight. Its ends are cut square to the curve, so that neighbours fit together.
+    /// A piece that is nearly straight. Its ends are cut perpendicular to the curve, so that neighbours fit together.
     fn cross(&self, controls: &Controls, [from, to]: [f64; 2], found: &mut impl FnMut(f64, f64, f32)) {
         let [p, q, r, s] = controls.map(|c| c.truncate());
         let (begin, end) = (q - p, s - r);
@@ -136,14 +137,14 @@ impl Curve {
     }
 }
 
-/// A point of a curve, and the direction there.
+/// A point of a curve, and the tangent there.
 fn point([p, q, r, s]: &Controls, w: f64) -> (DVec3, DVec3) {
     let (a, b, c) = (p.lerp(*q, w), q.lerp(*r, w), r.lerp(*s, w));
     let (d, e) = (a.lerp(b, w), b.lerp(c, w));
     (d.lerp(e, w), e - d)
 }
 
-/// How often to halve, by the second differences, of which each halving leaves a quarter. [Wang 1984]
+/// The number of halvings, from the second differences; each halving reduces them to a quarter. [Wang 1984]
 fn halvings([p, q, r, s]: &Controls, width: f64) -> u32 {
     let bend = (*p - *q * 2.0 + *r).length().max((*q - *r * 2.0 + *s).length()) * 0.75;
     let allowed = width * FLATNESS;

@@ -4,19 +4,20 @@ use super::{Crossing, outwards, wide};
 use crate::ray::Ray;
 use bilux_math::glam::DVec3;
 
-/// A flat disc; its front is where the normal points. Of a hit, `u` is the distance from the centre in radii.
+/// A flat disc; its front is the side that the normal points to. In a hit, `u` is the distance from the centre in
+/// radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// The middle.
+    /// The centre.
     pub centre: [f32; 3],
     /// Of any length but zero.
     pub normal: [f32; 3],
-    /// Of a radius that is not positive nothing is met.
+    /// A disc whose radius is not positive is never hit.
     pub radius: f32,
 }
 
 impl Disc {
-    /// Least and greatest corner of the box around it.
+    /// Minimum and maximum corner of the bounding box.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let normal = wide(self.normal).normalize_or_zero();
         let reach = (DVec3::ONE - normal * normal).max(DVec3::ZERO).to_array().map(f64::sqrt);

@@ -1,5 +1,5 @@
-//! What is no triangle: spheres, capsules, discs, cones, quadrics and curves, each met where its formula says, and whatever
-//! else somebody can find the crossings of.
+//! Primitives other than triangles: spheres, capsules, discs, cones, quadrics and curves, each intersected
+//! analytically, and any other shape whose crossings the caller can compute.
 //!
 //! ```
 //! use bilux_accel::primitives::{PrimitiveTree, Shape, Sphere};
@@ -14,13 +14,13 @@
 //! assert_eq!(hits.iter().map(|hit| hit.t).collect::<Vec<_>>(), [3.0, 5.0, 7.0, 11.0]);
 //! ```
 //!
-//! A [`PrimitiveTree`] is an [`crate::Accelerator`] like any other: as an [`crate::Instance`] it stands beside
+//! A [`PrimitiveTree`] is an [`crate::Accelerator`] like any other: as an [`crate::Instance`] it can stand next to
 //! meshes in a [`crate::TwoLevel`].
 //!
 //! # Crossings
-//! All of them are computed in f64 from the f32 numbers given, and rounded once. Of the primitive that a ray leaves
-//! ([`Ray::exclude`]) a curved one leaves out the crossing that is nearest to the ray's origin, which is the origin
-//! itself: so a ray that is sent through a sphere from its surface meets the far side, and never the near one again.
+//! All crossings are computed in f64 from the given f32 numbers, and rounded once. When a ray leaves a curved
+//! primitive ([`Ray::exclude`]), that primitive omits the crossing nearest to the ray's origin, which is the origin
+//! itself: so a ray sent through a sphere from its surface hits the far side, and never the near one again.
 
 mod capsule;
 mod cone;
@@ -44,24 +44,24 @@ use crate::ray::Ray;
 use bilux_math::Aabb;
 use bilux_math::glam::DVec3;
 
-/// Anything numbered whose boxes and crossings are known.
+/// Any indexed primitives with known bounding boxes and crossings.
 pub trait Primitives: Send + Sync {
-    /// How many there are; the first 2³² − 2 are looked at.
+    /// The number of primitives; only the first 2³² − 2 are used.
     fn len(&self) -> usize;
-    /// A box around one, as its least and greatest corner: every crossing lies within it, but for the rounding of
-    /// the distance. Primitives whose box is empty or not finite are never met.
+    /// The bounding box of one primitive, as its minimum and maximum corner: every crossing lies within it, apart
+    /// from the rounding of the distance. Primitives whose box is empty or not finite are never hit.
     fn bounds(&self, index: u32) -> [[f32; 3]; 2];
-    /// Calls `visit` with every crossing of one with the line of a ray, in any order; it looks at the ends of the
-    /// ray itself. The ray is one that makes sense: finite, with a direction. Distances that are not numbers
-    /// are not looked at.
+    /// Calls `visit` with every crossing of one primitive with the infinite line of a ray, in any order; the caller
+    /// checks the ends of the ray itself. The ray is valid: finite, with a non-zero direction. NaN distances are
+    /// ignored.
     fn crossings(&self, index: u32, ray: &Ray, visit: &mut dyn FnMut(Crossing));
-    /// True when there are none.
+    /// True when there are no primitives.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// One of the shapes that are known here.
+/// One of the built-in shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
@@ -80,7 +80,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Least and greatest corner of the box around it.
+    /// Minimum and maximum corner of the bounding box.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         match self {
             Shape::Sphere(sphere) => sphere.bounds(),
@@ -92,8 +92,8 @@ impl Shape {
         }
     }
 
-    /// Calls `visit` with every crossing with the line of a ray, as [`Primitives::crossings`]; `leaves` where the ray leaves this
-    /// shape.
+    /// Calls `visit` with every crossing with the infinite line of a ray, as [`Primitives::crossings`] does; `leaves`
+    /// says whether the ray leaves this shape.
     pub fn crossings(&self, ray: &Ray, leaves: bool, visit: &mut dyn FnMut(Crossing)) {
         match self {
             Shape::Sphere(sphere) => sphere.crossings(ray, leaves, visit),
@@ -121,17 +121,17 @@ impl Primitives for Vec<Shape> {
     }
 }
 
-/// Exactly.
+/// Converts exactly.
 fn wide(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
 
-/// The box around two corners, rounded outwards.
+/// The bounding box of two corners, rounded outwards.
 fn outwards(low: DVec3, high: DVec3) -> [[f32; 3]; 2] {
     [low.to_array().map(|x| (x as f32).next_down()), high.to_array().map(|x| (x as f32).next_up())]
 }
 
-/// The box as the trees have it; empty when a corner is not finite.
+/// The box in the form that the trees use; empty when a corner is not finite.
 fn aabb([low, high]: [[f32; 3]; 2]) -> Aabb {
     if low.iter().chain(&high).all(|x| x.is_finite()) {
         Aabb { min: low.into(), max: high.into() }

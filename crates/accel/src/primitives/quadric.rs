@@ -1,4 +1,4 @@
-//! Surfaces of the second degree, cut to a box.
+//! Second-degree surfaces, clipped to a box.
 
 use super::roots::{roots, without_origin};
 use super::{Crossing, outwards, wide};
@@ -6,16 +6,16 @@ use crate::ray::Ray;
 use bilux_math::glam::DVec3;
 
 /// The points `p` of a box with `p·S p + 2 l·p + k = 0`: ellipsoids, paraboloids, hyperboloids, saddles. The front is
-/// where the left side is positive. Hits have no `u` and `v` (both 0).
+/// where the left-hand side is positive. Hits have no `u` and `v` (both are 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadric {
-    /// Of the symmetric `S`: xx, yy, zz, then xy, xz, yz.
+    /// The symmetric `S`: xx, yy, zz, then xy, xz, yz.
     pub square: [f32; 6],
     /// `l`.
     pub linear: [f32; 3],
     /// `k`.
     pub constant: f32,
-    /// Least and greatest corner of the box; both finite.
+    /// Minimum and maximum corner of the box; both finite.
     pub within: [[f32; 3]; 2],
 }
 

@@ -5,27 +5,27 @@ use super::{Crossing, outwards, wide};
 use crate::ray::Ray;
 use bilux_math::glam::DVec3;
 
-/// A whole sphere; outside is the front. Hits have no `u` and `v` (both 0).
+/// A whole sphere; the front is outside. Hits have no `u` and `v` (both are 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// The middle.
+    /// The centre.
     pub centre: [f32; 3],
-    /// Of a radius that is not positive nothing is met.
+    /// A sphere whose radius is not positive is never hit.
     pub radius: f32,
 }
 
 impl Sphere {
-    /// Least and greatest corner of the box around it.
+    /// Minimum and maximum corner of the bounding box.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let (centre, radius) = (wide(self.centre), DVec3::splat(f64::from(self.radius)));
         outwards(centre - radius, centre + radius)
     }
 
-    /// Where the line of a ray enters and leaves, in lengths of its direction, whatever part of it the ray is; `None`
-    /// where it passes.
+    /// The distances at which the infinite line of a ray enters and leaves, in lengths of the ray's direction; `None`
+    /// where it misses.
     ///
-    /// By the distance of the centre from the line, which keeps its digits however far away the ray starts.
-    /// [Haines 2019, section 2]
+    /// Computed from the distance between the centre and the line, which loses no digits however far away the ray
+    /// starts. [Haines 2019, section 2]
     pub fn chord(&self, ray: &Ray) -> Option<[f64; 2]> {
         let (direction, radius) = (wide(ray.direction), f64::from(self.radius));
         let from = wide(ray.origin) - wide(self.centre);

@@ -1,4 +1,4 @@
-//! A tree of boxes over anything that has boxes and crossings.
+//! A bounding volume hierarchy over anything that has bounding boxes and crossings.
 
 use super::{Crossing, Primitives, aabb};
 use crate::accelerator::{Traverse, TreeShape};
@@ -10,26 +10,26 @@ use crate::triangle::PreparedRay;
 use bilux_math::Aabb;
 use std::ops::ControlFlow;
 
-/// Boxes in boxes, two by two, over [`Primitives`].
+/// A binary bounding volume hierarchy over [`Primitives`].
 ///
-/// The nearest hit counts, of equals that of the lowest index: the same that a loop over all of them finds.
+/// It returns the nearest hit, ties to the lowest index: the same hit that a loop over all primitives finds.
 #[derive(Clone, Debug)]
 pub struct PrimitiveTree<P> {
     primitives: P,
     tree: Tree,
-    /// In the order of the leaves.
+    /// In leaf order.
     order: Vec<u32>,
 }
 
 impl<P: Primitives> PrimitiveTree<P> {
-    /// Builds one. The same tree whatever the number of threads.
+    /// Builds a tree. It is the same whatever the number of threads.
     pub fn new(primitives: P) -> PrimitiveTree<P> {
         let len = primitives.len().min(u32::MAX as usize - 1);
         let (tree, order) = Tree::over(len, |index| aabb(primitives.bounds(index)));
         PrimitiveTree { primitives, tree, order }
     }
 
-    /// What it was built over.
+    /// The primitives that it was built over.
     pub fn primitives(&self) -> &P {
         &self.primitives
     }
@@ -39,7 +39,7 @@ impl<P: Primitives> PrimitiveTree<P> {
         Some(SlabRay::new(ray.origin, ray.direction, ray.t_min, pad))
     }
 
-    /// Crossings that count, as hits.
+    /// The crossings that count, as hits.
     #[inline(always)]
     fn hits(&self, index: u32, ray: &Ray, query: &Query, mut visit: impl FnMut(Hit)) {
         self.primitives.crossings(index, ray, &mut |Crossing { t, u, v, back }| {
@@ -89,7 +89,7 @@ impl<P: Primitives> Traverse for PrimitiveTree<P> {
         self.tree.bounds()
     }
 
-    /// Of the tree; what the primitives take, they know.
+    /// Size of the tree only; the primitives know their own.
     fn memory_bytes(&self) -> usize {
         self.tree.memory_bytes() + size_of_val(self.order.as_slice())
     }

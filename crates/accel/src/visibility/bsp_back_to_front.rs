@@ -1,4 +1,4 @@
-//! A tree of the polygons' own planes, painted from far to near [Fuchs 1980].
+//! A tree of the polygons' own planes, painted back to front [Fuchs 1980].
 
 use super::canvas::Canvas;
 use super::partition::{Start, Stop, Tree, draw_piece};
@@ -37,7 +37,7 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
     canvas.finish(build_seconds)
 }
 
-/// Paints what lies on one plane over everything behind; only hits on the same plane meet on equal terms.
+/// Paints what lies on one plane over everything behind it; depth is compared only between hits on the same plane.
 fn paint(tree: &Tree, node: u32, screen: &Screen, canvas: &mut Canvas) {
     for piece in tree.pieces_on(node) {
         draw_piece(

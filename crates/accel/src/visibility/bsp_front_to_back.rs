@@ -1,4 +1,4 @@
-//! The same tree from near to far: what is seen first stays, and what is covered is not looked at.
+//! The same tree front to back: the first hit in a pixel stays, and what is covered is skipped.
 
 use super::canvas::{Canvas, NOBODY};
 use super::coverage::Coverage;
@@ -56,7 +56,7 @@ struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Whether anything below can still be seen.
+    /// Whether anything below can still be visible.
     fn enter(&self, child: Child, canvas: &mut Canvas) -> bool {
         if self.options.skip_covered && self.is_covered(child) {
             canvas.counts.skipped_subtrees += 1;
@@ -66,7 +66,7 @@ impl Drawing<'_> {
         true
     }
 
-    /// True when the screen's rectangle around a subtree's box has no open pixel.
+    /// True when the screen rectangle of a subtree's bounding box has no open pixel.
     fn is_covered(&self, child: Child) -> bool {
         if self.coverage.is_full() {
             return true;
@@ -106,10 +106,10 @@ impl Drawing<'_> {
     }
 }
 
-/// How far the eye must be from a plane for the side to decide which way a triangle along it faces.
+/// How far the eye must be from a plane before its side decides which way a triangle along the plane faces.
 ///
 /// The ray test takes the sign of the volume between the eye and the triangle, each corner of which may be
-/// `p = stray + radius` away from where the plane has it. That changes a volume (times six) of
+/// `p = stray + radius` away from its position in the plane. That changes a volume (times six) of
 /// `distance · double_area` by at most `p·reach·perimeter + 3p²·reach + p³`.
 fn facing_margin(corners: &[DVec3; 3], double_area: f64, stray: f64, slack: &Slack) -> f64 {
     let p = stray + slack.radius;

@@ -1,4 +1,4 @@
-//! The picture being made: the one place where triangles meet pixels.
+//! The image in progress: the only place where triangles meet pixels.
 
 use super::VisibilityOptions;
 use super::result::{BACKGROUND, VisibilityCounts, VisibilityResult};
@@ -9,10 +9,10 @@ use crate::ray::Culling;
 use crate::triangle::PreparedRay;
 use bilux_math::DVec3;
 
-/// Nobody owns a pixel yet.
+/// Marks a pixel that has no owner yet.
 pub(super) const NOBODY: u32 = u32::MAX;
 
-/// What each pixel holds, and the work so far.
+/// The contents of each pixel, and the work so far.
 #[derive(Debug)]
 pub(super) struct Canvas<'a> {
     pub(super) view: &'a View,
@@ -49,7 +49,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Asks the ray test for a triangle at one pixel.
+    /// Runs the ray test on a triangle at one pixel.
     #[inline]
     pub(super) fn hit(&mut self, pixel: usize, triangle: u32) -> Option<PixelHit> {
         let ray = self.rays[pixel].as_ref()?;
@@ -59,7 +59,7 @@ impl<'a> Canvas<'a> {
         counts.then_some(PixelHit { pixel, triangle, t: crossing.t })
     }
 
-    /// Does something with each pixel of a rectangle.
+    /// Calls `act` for each pixel of a rectangle.
     #[inline]
     pub(super) fn each_pixel(&mut self, rect: Rect, mut act: impl FnMut(&mut Self, usize)) {
         let width = self.view.width();
@@ -70,13 +70,13 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Whoever wrote the pixel last, or [`NOBODY`].
+    /// The owner that wrote the pixel last, or [`NOBODY`].
     #[inline]
     pub(super) fn owner(&self, pixel: usize) -> u32 {
         self.owner[pixel]
     }
 
-    /// Writes a pixel, whatever was there.
+    /// Writes a pixel, whatever it held.
     #[inline]
     pub(super) fn put(&mut self, hit: PixelHit, owner: u32) {
         let PixelHit { pixel, triangle, t } = hit;
@@ -86,7 +86,7 @@ impl<'a> Canvas<'a> {
         self.owner[pixel] = owner;
     }
 
-    /// Writes a pixel if this hit beats what is there by depth, ties to the lowest triangle.
+    /// Writes a pixel if this hit beats the existing one by depth, ties to the lowest triangle.
     #[inline]
     pub(super) fn put_if_nearer(&mut self, hit: PixelHit, owner: u32) {
         self.counts.depth_comparisons += 1;
@@ -102,7 +102,7 @@ impl<'a> Canvas<'a> {
         self.view.direction(pixel)
     }
 
-    /// Writes a pixel if its owner is another, or else if this hit is nearer.
+    /// Writes a pixel if it has another owner, or if this hit is nearer.
     #[inline]
     pub(super) fn put_first_or_nearer(&mut self, hit: PixelHit, owner: u32) {
         if self.owner[hit.pixel] == owner {
@@ -112,7 +112,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Writes a triangle that is known to be seen in a whole rectangle, without asking the ray test.
+    /// Writes a triangle that is known to be visible in a whole rectangle, without the ray test.
     pub(super) fn fill(&mut self, rect: Rect, triangle: u32) {
         self.each_pixel(rect, |canvas, pixel| {
             if canvas.rays[pixel].is_some() {

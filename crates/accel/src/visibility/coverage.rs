@@ -1,4 +1,4 @@
-//! Which pixels are still open, by tiles.
+//! Tracks which pixels are still open, by tiles.
 
 use super::screen::Rect;
 
@@ -46,7 +46,7 @@ impl Coverage {
         }
     }
 
-    /// True when no pixel at all is open.
+    /// True when no pixel is open.
     pub(super) fn is_full(&self) -> bool {
         self.open == 0
     }

@@ -1,9 +1,9 @@
-//! Hidden-surface removal: what the eye sees at every pixel centre, found by each of the ways that were known
-//! before rays were affordable.
+//! Hidden-surface removal: what the eye sees at every pixel centre, computed by each of the algorithms that were
+//! known before rays were affordable.
 //!
-//! All of them answer one question, with one signature: which triangle is nearest along the ray through
-//! the centre of each pixel of a [`View`]. Those in [`VISIBILITY`] that are `exact` give the picture of
-//! [`View::cast`], pixel by pixel, whatever touches, crosses, overlaps in a cycle or coincides.
+//! All of them answer one question, with one signature: which triangle is nearest along the ray through the centre of
+//! each pixel of a [`View`]. Those in [`VISIBILITY`] that are `exact` produce the image of [`View::cast`], pixel by
+//! pixel, even where triangles touch, intersect, overlap in a cycle or coincide.
 //!
 //! ```
 //! use bilux_accel::TriangleMesh;
@@ -21,11 +21,11 @@
 //! ```
 //!
 //! # Why an order of pieces can be exact
-//! Coverage and depth are those of the shared ray test on the original triangles. Pieces never cover a
-//! pixel by themselves: a pixel belongs to the piece in whose cell the *hit point* of the original lies.
-//! Along one ray the distance to a plane is a monotone function of `t`, rounding included, so cells are
-//! met in the order of their hits. Planes have the thickness of the ray test's own error; what falls
-//! inside, and only that, is settled by comparing depths. `docs/adr/0005-visibility.md` has the argument.
+//! Coverage and depth are those of the shared ray test on the original triangles. Pieces never cover a pixel by
+//! themselves: a pixel belongs to the piece in whose cell the *hit point* of the original lies. Along one ray the
+//! distance to a plane is a monotone function of `t`, rounding included, so the ray visits cells in the order of
+//! their hits. Planes have the thickness of the ray test's own error; what falls inside that thickness, and only
+//! that, is settled by comparing depths. `docs/adr/0005-visibility.md` has the argument.
 
 mod bsp_back_to_front;
 mod bsp_front_to_back;
@@ -50,7 +50,7 @@ use crate::mesh::TriangleMesh;
 use crate::ray::Culling;
 use bilux_math::registry::Entry;
 
-/// Every algorithm that there is.
+/// Every available algorithm.
 pub const VISIBILITY: &[VisibilityEntry] = &[
     painter::ENTRY,
     newell::ENTRY,
@@ -66,24 +66,24 @@ pub const VISIBILITY: &[VisibilityEntry] = &[
 pub struct VisibilityEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// True when its picture is that of [`View::cast`] for any triangles.
+    /// True when its image is that of [`View::cast`] for any triangles.
     pub exact: bool,
-    /// Runs it.
+    /// Runs the algorithm.
     pub run: VisibilityFn,
 }
 
-/// How an algorithm is run.
+/// Type of the function that runs an algorithm.
 pub type VisibilityFn = fn(&View, &TriangleMesh, &VisibilityOptions) -> VisibilityResult;
 
-/// What is asked of an algorithm. The switches below `culling` change how much work an answer takes, never
-/// the answer; algorithms without such a step do not look at them.
+/// Options of an algorithm. The switches below `culling` change how much work an answer takes, never the answer;
+/// algorithms without such a step ignore them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct VisibilityOptions {
-    /// Which side of triangles can be seen. Part of the question.
+    /// Which side of triangles is visible. Part of the question.
     pub culling: Culling,
     /// With [`Culling::Back`], reject back faces by the eye's side of their partition plane (on by default).
     pub cull_by_partition: bool,
-    /// Leave out subtrees whose projected bound is covered already (on by default).
+    /// Skip subtrees whose projected bound is already covered (on by default).
     pub skip_covered: bool,
 }
 
@@ -93,7 +93,7 @@ impl Default for VisibilityOptions {
     }
 }
 
-/// No algorithm has this name.
+/// The error when no algorithm has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no visibility algorithm '{0}'")]
 pub struct UnknownAlgorithm(pub String);
@@ -101,7 +101,7 @@ pub struct UnknownAlgorithm(pub String);
 /// Runs the algorithm of this name.
 ///
 /// # Errors
-/// When no algorithm has this name.
+/// Returns an error when no algorithm has this name.
 pub fn visibility(
     name: &str,
     view: &View,

@@ -1,5 +1,5 @@
-//! Painter's algorithm of Newell, Newell and Sancha: before a polygon is painted, every polygon that it might
-//! hide is shown to be behind; what overlaps in a cycle is cut [Newell 1972].
+//! Painter's algorithm of Newell, Newell and Sancha: before a polygon is painted, every polygon that it might hide is
+//! shown to be behind it; polygons that overlap in a cycle are cut [Newell 1972].
 
 use super::canvas::{Canvas, NOBODY};
 use super::polygon::{Plane, clip, corners};
@@ -20,8 +20,8 @@ pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     run,
 };
 
-/// Pairs and pieces for each triangle after which the rest is left to depth: both grow with the square of the
-/// triangles in the worst case.
+/// Comparisons and pieces per triangle after which the rest is left to depth comparison: both grow quadratically with
+/// the number of triangles in the worst case.
 const MAX_COMPARISONS: u64 = 8192;
 const MAX_PIECES: usize = 16;
 
@@ -43,16 +43,16 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
 struct Piece {
     triangle: u32,
     polygon: Vec<DVec3>,
-    /// The triangle's plane, its front towards the eye.
+    /// The triangle's plane, facing the eye.
     plane: Plane,
     /// Half the thickness of the plane: the triangle's hits are nearer to it by a radius.
     half: f64,
     footprint: Footprint,
-    /// The planes that it was cut by, and on which side of each it lies.
+    /// The planes that it was cut by, and the side of each on which it lies.
     cuts: Vec<(Plane, bool)>,
-    /// True once it was brought before one that stood farther back.
+    /// True once it was moved ahead of one that is farther away.
     moved: bool,
-    /// Triangles painted later whose order is right but for the thickness of planes, ascending.
+    /// Triangles painted later whose order is right except for the thickness of planes, ascending.
     touching: Touching,
 }
 
@@ -66,7 +66,7 @@ enum Touching {
 enum Order {
     /// The first hides nothing of the second.
     Clear,
-    /// So it is, but for the thickness of planes: they touch.
+    /// The same except for the thickness of planes: they touch.
     Touching,
     /// The first may hide the second.
     Unknown,
@@ -76,9 +76,9 @@ enum Order {
 struct Painting<'a> {
     screen: &'a Screen<'a>,
     pieces: Vec<Piece>,
-    /// By greatest depth, nearest first, so that the farthest is popped.
+    /// By maximum depth, nearest first, so that the farthest is popped.
     sorted: Vec<u32>,
-    /// Those taken out of the list to be tried next; the last one first.
+    /// Those taken out of the list to be tried next; the last entry is first.
     next: Vec<u32>,
     triangles: usize,
     comparisons: u64,
@@ -127,8 +127,8 @@ impl<'a> Painting<'a> {
         }
     }
 
-    /// Shows that a piece hides none of the others and answers those that it touches; or else changes
-    /// the list so that another attempt gets farther, and answers nothing.
+    /// Shows that a piece hides none of the others and returns those that it touches; or else changes the list so
+    /// that another attempt gets farther, and returns `None`.
     fn try_first(&mut self, first: u32) -> Option<Touching> {
         if self.is_spent() {
             return Some(Touching::All);
@@ -143,7 +143,7 @@ impl<'a> Painting<'a> {
             };
             let piece = &self.pieces[other as usize];
             let triangle = piece.triangle;
-            // The list is sorted by greatest depth: nobody from here on reaches back to this piece.
+            // The list is sorted by maximum depth: no piece from here on reaches back to this one.
             if matches!(slot, Slot::Sorted(_)) && piece.footprint.depth.1 < nearest {
                 break;
             }
@@ -159,7 +159,7 @@ impl<'a> Painting<'a> {
         Some(Touching::These(touching))
     }
 
-    /// The tests of the paper, cheapest first; the last two once more without the thickness of planes.
+    /// The tests of the paper, cheapest first; the last two are repeated without the thickness of planes.
     fn order(&self, first: u32, second: u32) -> Order {
         let (first, second) = (&self.pieces[first as usize], &self.pieces[second as usize]);
         let (far, near) = (&first.footprint, &second.footprint);
@@ -184,8 +184,8 @@ impl<'a> Painting<'a> {
         if behind || in_front { Order::Touching } else { Order::Unknown }
     }
 
-    /// When the first of a pair cannot be painted before the other: try the other first, or cut one of them.
-    /// False when nothing helps, and only depth can tell.
+    /// Called when the first of a pair cannot be painted before the other: tries the other first, or cuts one of
+    /// them. Returns false when nothing helps, and only depth can decide.
     fn resolve(&mut self, first: u32, other: u32, slot: Slot) -> bool {
         if !self.pieces[other as usize].moved {
             self.comparisons += 1;
@@ -226,8 +226,8 @@ impl<'a> Painting<'a> {
         }
     }
 
-    /// Cuts a piece by the plane of another; failing that by its outline, a plane through the eye and an
-    /// edge, for three can overlap in a cycle though no plane of theirs cuts any.
+    /// Cuts a piece by the plane of another; failing that by its outline, a plane through the eye and an edge,
+    /// because three can overlap in a cycle although no plane of theirs cuts any.
     fn cut(&self, piece: u32, by: u32) -> Option<[Option<Piece>; 2]> {
         let (piece, by) = (&self.pieces[piece as usize], &self.pieces[by as usize]);
         let outline = by.outline_planes(self.screen).map(|plane| (plane, 2.0 * self.screen.slack.radius));
@@ -247,7 +247,7 @@ impl<'a> Painting<'a> {
     }
 }
 
-/// Where a waiting piece stands.
+/// The position of a waiting piece.
 #[derive(Clone, Copy, Debug)]
 enum Slot {
     Next(usize),
@@ -271,7 +271,7 @@ impl Piece {
         })
     }
 
-    /// What a plane leaves on one side, as far as it can be seen.
+    /// The part of a piece on one side of a plane, as far as it can be visible.
     fn part(&self, plane: Plane, front: bool, screen: &Screen) -> Option<Piece> {
         let towards = if front { plane } else { plane.flipped() };
         let polygon = clip(&self.polygon, &towards, -screen.slack.radius);
@@ -318,7 +318,7 @@ impl Piece {
     }
 }
 
-/// Paints over everything that is surely behind; where pieces touch, depth decides.
+/// Paints over everything that is certainly behind; where pieces touch, depth decides.
 fn paint(index: u32, pieces: &[Piece], eye: DVec3, canvas: &mut Canvas) {
     let piece = &pieces[index as usize];
     canvas.each_pixel(piece.footprint.rect, |canvas, pixel| {

@@ -1,5 +1,5 @@
-//! Painter's algorithm, plain: far triangles first, near ones over them. Wrong wherever one depth for each
-//! triangle cannot order them: where they are large, cross, or overlap in a cycle.
+//! The plain painter's algorithm: far triangles first, near ones over them. Wrong wherever one depth per triangle
+//! cannot order them: where they are large, intersect, or overlap in a cycle.
 
 use super::canvas::Canvas;
 use super::polygon::corners;

@@ -1,8 +1,8 @@
-//! Trees of planes that put polygons in order, after Fuchs, Kedem and Naylor [Fuchs 1980].
+//! BSP trees that order polygons, after Fuchs, Kedem and Naylor [Fuchs 1980].
 //!
-//! Each plane is as thick as the ray test is uncertain, so space falls into three: in front of it, on it,
-//! behind it. Polygons go, cut, to wherever they may have hits; a hit belongs to one of the three by the
-//! computed distance of its point, and to none else.
+//! Each plane is as thick as the ray test is uncertain, so space falls into three regions: in front of it, on it,
+//! behind it. Polygons are cut and distributed to every region in which they may have hits; a hit belongs to exactly
+//! one of the three, by the computed distance of its point.
 
 use super::canvas::{Canvas, PixelHit};
 use super::polygon::{Plane, clip, corners};
@@ -19,21 +19,21 @@ pub(super) struct Tree {
     pub(super) nodes: Vec<PartitionNode>,
     pieces: Vec<Piece>,
     tests: Vec<Test>,
-    /// Triangles that it was made for.
+    /// Number of triangles that it was built for.
     triangles: usize,
     splits: usize,
     dealt: usize,
 }
 
-/// How much work a triangle may take (and a small scene altogether) before planes get a thickness without
-/// end, so that depth orders the rest: pieces, tests on their outlines, and pieces dealt out. All grow
-/// with the square of the triangles where all cross each other, share a corner, or form a ball.
+/// How much work a triangle may cause (and a small scene altogether) before planes become infinitely thick, so that
+/// depth orders the rest: pieces, tests on their outlines, and pieces distributed. All grow quadratically with the
+/// number of triangles where all triangles intersect each other, share a corner, or form a ball.
 const MAX_PIECES: usize = 16;
 const MAX_TESTS: usize = 128;
 const MAX_DEALT: usize = 1 << 14;
 const ALWAYS: usize = 1 << 19;
 
-/// A thick plane with what lies on it.
+/// A thick plane and the pieces on it.
 #[derive(Debug)]
 pub(super) struct PartitionNode {
     pub(super) plane: Plane,
@@ -43,20 +43,20 @@ pub(super) struct PartitionNode {
     on: std::ops::Range<u32>,
     pub(super) front: Option<Child>,
     pub(super) back: Option<Child>,
-    /// Least and greatest corner of the box around everything from here on.
+    /// Minimum and maximum corner of the bounding box of this node and everything below.
     bounds: [DVec3; 2],
 }
 
-/// What stands below a node.
+/// A child of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Child {
     /// A plane.
     PartitionNode(u32),
-    /// Something of the tree's maker that needs no more planes.
+    /// Something of the caller's that needs no more planes.
     Leaf(u32),
 }
 
-/// Part of a triangle: a hull for its hits in some cell, and the tests that tell whether a hit is there.
+/// Part of a triangle: a hull for its hits in some cell, and the tests that decide whether a hit is there.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) triangle: u32,
@@ -71,10 +71,10 @@ struct Test {
     before: Option<u32>,
 }
 
-/// Where a point is, as a thick plane sees it.
+/// The position of a point relative to a thick plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Region {
-    /// Beyond half the thickness, where the normal points.
+    /// Beyond half the thickness, on the side that the normal points to.
     Front,
     /// Within the thickness.
     On,
@@ -82,10 +82,10 @@ pub(super) enum Region {
     Back,
 }
 
-/// Where one is on a walk through the tree.
+/// A stop on a walk through the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stop {
-    /// About to go below this child; answer false to leave it out.
+    /// About to go below this child; return false to skip it.
     Enter(Child),
     /// At the pieces on a node's plane.
     On(u32),
@@ -93,16 +93,16 @@ pub(super) enum Stop {
     Leaf(u32),
 }
 
-/// Which end of the order a walk begins at.
+/// The end of the order at which a walk begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Start {
-    /// What nothing can hide.
+    /// With what nothing can hide.
     Nearest,
-    /// What can hide nothing.
+    /// With what can hide nothing.
     Farthest,
 }
 
-/// What a plane makes of a set of pieces.
+/// The parts into which a plane splits a set of pieces.
 #[derive(Debug, Default)]
 pub(super) struct Sides {
     pub(super) front: Vec<Piece>,
@@ -112,7 +112,7 @@ pub(super) struct Sides {
 impl PartitionNode {
     #[inline]
     pub(super) fn region(&self, distance: f64) -> Region {
-        // Neither comparison holds for a distance that is no number: everything is on such a plane.
+        // Neither comparison holds for a NaN distance: everything is on such a plane.
         if distance > self.half {
             Region::Front
         } else if distance < -self.half {
@@ -134,7 +134,7 @@ pub(super) fn whole_pieces(mesh: &TriangleMesh) -> Vec<Piece> {
 }
 
 impl Tree {
-    /// Nothing yet.
+    /// An empty tree.
     pub(super) fn new(mesh: &TriangleMesh) -> Tree {
         let (nodes, pieces, tests) = (Vec::new(), Vec::new(), Vec::new());
         Tree { root: None, nodes, pieces, tests, triangles: mesh.len(), splits: 0, dealt: 0 }
@@ -146,7 +146,7 @@ impl Tree {
             || self.dealt > MAX_DEALT * self.triangles + ALWAYS
     }
 
-    /// A tree of the polygons' own planes; of a few candidates, the one that cuts fewest [Fuchs 1983].
+    /// A tree of the polygons' own planes; of a few candidates, the one that cuts the fewest [Fuchs 1983].
     pub(super) fn of_own_planes(mesh: &TriangleMesh, slack: &Slack, counts: &mut VisibilityCounts) -> Tree {
         let mut tree = Tree::new(mesh);
         let mut waiting = vec![(SubtreeSlot::Root, whole_pieces(mesh))];
@@ -166,7 +166,7 @@ impl Tree {
         tree
     }
 
-    /// Hangs a child where it belongs.
+    /// Attaches a child at its slot.
     pub(super) fn attach(&mut self, place: SubtreeSlot, child: Child) {
         match place {
             SubtreeSlot::Root => self.root = Some(child),
@@ -175,8 +175,7 @@ impl Tree {
         }
     }
 
-    /// Adds a node with nothing on it. `thickness` is how far the polygons that the plane was made from
-    /// stray from it.
+    /// Adds a node with nothing on it. `thickness` is how far the polygons that define the plane deviate from it.
     pub(super) fn add(&mut self, place: SubtreeSlot, plane: Plane, thickness: f64, slack: &Slack) -> u32 {
         let index = self.nodes.len() as u32;
         self.attach(place, Child::PartitionNode(index));
@@ -187,7 +186,7 @@ impl Tree {
         index
     }
 
-    /// Deals pieces out to the three regions of the last node.
+    /// Distributes pieces over the three regions of the last node.
     pub(super) fn deal(&mut self, pieces: Vec<Piece>, slack: &Slack, counts: &mut VisibilityCounts) -> Sides {
         let index = self.nodes.len() as u32 - 1;
         let PartitionNode { plane, half, .. } = self.nodes[index as usize];
@@ -227,8 +226,8 @@ impl Tree {
         sides
     }
 
-    /// The chain of tests for a part of `piece`: one more than the piece's own, unless the whole piece is so
-    /// clear of the other regions that its hits are too.
+    /// The chain of tests for a part of `piece`: one more than the piece's own, unless the whole piece is so far from
+    /// the other regions that its hits are too.
     fn test_if_needed(
         &mut self,
         piece: &Piece,
@@ -249,7 +248,7 @@ impl Tree {
         Some(self.tests.len() as u32 - 1)
     }
 
-    /// Computes every node's bound, from below.
+    /// Computes every node's bound, bottom up.
     fn bound(&mut self) {
         for index in (0..self.nodes.len()).rev() {
             let node = &self.nodes[index];
@@ -267,7 +266,7 @@ impl Tree {
         }
     }
 
-    /// The corners of the box around everything below a child; `None` for leaves.
+    /// The corners of the bounding box of everything below a child; `None` for leaves.
     pub(super) fn hull(&self, child: Child) -> Option<[DVec3; 8]> {
         let Child::PartitionNode(node) = child else { return None };
         let bounds = self.nodes[node as usize].bounds;
@@ -275,7 +274,7 @@ impl Tree {
         Some(std::array::from_fn(|i| DVec3::new(pick(i, 0).x, pick(i, 1).y, pick(i, 2).z)))
     }
 
-    /// How many pieces lie on all planes.
+    /// The total number of pieces on planes.
     pub(super) fn pieces_on_planes(&self) -> usize {
         self.pieces.len()
     }
@@ -286,8 +285,8 @@ impl Tree {
         &self.pieces[on.start as usize..on.end as usize]
     }
 
-    /// True when a hit is in the piece's own cell. Along a ray the distance from each plane is monotone in
-    /// `t`, as computed, so that every hit is in exactly one cell, and nearer hits are in nearer cells.
+    /// True when a hit is in the piece's own cell. Along a ray the computed distance from each plane is monotone in
+    /// `t`, so that every hit is in exactly one cell, and nearer hits are in nearer cells.
     #[inline]
     pub(super) fn owns(&self, piece: &Piece, hit: &PixelHit, canvas: &mut Canvas, eye: DVec3) -> bool {
         let mut next = piece.tests;
@@ -307,7 +306,7 @@ impl Tree {
         true
     }
 
-    /// Goes through the tree in the order that the eye gives it.
+    /// Walks through the tree in the order that the eye determines.
     pub(super) fn walk(&self, eye: DVec3, start: Start, mut visit: impl FnMut(Stop) -> bool) {
         let mut waiting: Vec<Stop> = self.root.map(Stop::Enter).into_iter().collect();
         while let Some(stop) = waiting.pop() {
@@ -322,10 +321,10 @@ impl Tree {
                     let mut order = match node.region(node.plane.side(eye)) {
                         Region::Front => [front, on, back],
                         Region::Back => [back, on, front],
-                        // From within the plane, each ray leaves it to one side at most.
+                        // From within the plane, each ray leaves it on at most one side.
                         Region::On => [on, front, back],
                     };
-                    // What is pushed last comes first.
+                    // What is pushed last is popped first.
                     if start == Start::Nearest {
                         order.reverse();
                     }
@@ -338,10 +337,10 @@ impl Tree {
     }
 }
 
-/// Where a subtree hangs.
+/// The slot of a subtree.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SubtreeSlot {
-    /// Nowhere: it is the tree.
+    /// The root: the whole tree.
     Root,
     /// In front of a node.
     Front(u32),
@@ -349,7 +348,7 @@ pub(super) enum SubtreeSlot {
     Back(u32),
 }
 
-/// Draws a piece's hits in its cell, wherever `wants` the pixel.
+/// Draws a piece's hits in its cell, wherever `wants` accepts the pixel.
 #[inline]
 pub(super) fn draw_piece(
     tree: &Tree,

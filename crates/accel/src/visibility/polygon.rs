@@ -10,13 +10,13 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Through a point.
+    /// The plane through a point.
     pub(super) fn through(point: DVec3, normal: DVec3) -> Plane {
         Plane { normal, offset: normal.dot(point) }
     }
 
-    /// The plane of a triangle, whose front is where the corners run counter-clockwise. Some plane through
-    /// it when it has no area.
+    /// The plane of a triangle, whose front is where the corners run counter-clockwise. For a triangle without area,
+    /// some plane through it.
     pub(super) fn of_triangle(corners: &[DVec3; 3]) -> Plane {
         let [a, b, c] = *corners;
         let normal = (b - a).cross(c - a).try_normalize().unwrap_or_else(|| {
@@ -31,7 +31,7 @@ impl Plane {
         Plane::through(a, normal)
     }
 
-    /// Distance of a point, positive in front.
+    /// Signed distance of a point, positive in front.
     #[inline]
     pub(super) fn side(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.offset
@@ -42,7 +42,7 @@ impl Plane {
         Plane { normal: -self.normal, offset: -self.offset }
     }
 
-    /// Least and greatest distance of some points.
+    /// Minimum and maximum distance of some points.
     #[inline]
     pub(super) fn range(&self, points: &[DVec3]) -> (f64, f64) {
         points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &p| {

@@ -1,9 +1,9 @@
-//! Schumacker's clusters: planes between clusters put these in order by the eye's side; within a cluster the
-//! faces have priorities that hold from wherever they can be seen [Schumacker 1969].
+//! Schumacker's clusters: separating planes order the clusters by the eye's side; within a cluster the faces have
+//! priorities that hold from every viewpoint that sees them [Schumacker 1969].
 //!
-//! The groups of the mesh are the first clusters. Clusters that no plane separates are divided, and so
-//! is a cluster of too many faces, or one whose faces can hide each other in a cycle: then by the
-//! plane of a face in the cycle, which also cuts what crosses.
+//! The groups of the mesh are the initial clusters. Clusters that no plane separates are divided, and so is a cluster
+//! with too many faces, or one whose faces can hide each other in a cycle: in that case by the plane of a face in the
+//! cycle, which also cuts what crosses it.
 
 use super::canvas::{Canvas, NOBODY};
 use super::partition::{Child, Piece, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
@@ -28,9 +28,9 @@ pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     run,
 };
 
-/// Most polygons of a cluster: finding priorities takes each pair.
+/// Maximum number of polygons in a cluster: finding priorities compares every pair.
 const LARGEST: usize = 128;
-/// Most clusters of which every pair is tried for a direction to separate along.
+/// Maximum number of clusters for which every pair is tried as a direction of separation.
 const MAX_PAIRED: usize = 16;
 
 fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> VisibilityResult {
@@ -60,9 +60,9 @@ struct Clusters {
 struct Cluster {
     pieces: Vec<Piece>,
     planes: Vec<FacePlane>,
-    /// What can hide others first.
+    /// Faces that can hide others come first.
     priorities: Vec<Face>,
-    /// The first of as many numbers, its pieces', that no node or other cluster has as owner.
+    /// First of a range of owner numbers, one per piece, that no node or other cluster uses.
     first_owner: u32,
 }
 
@@ -118,7 +118,7 @@ impl Clusters {
         scene
     }
 
-    /// Gives each cluster's pieces numbers above the nodes'.
+    /// Assigns each cluster's pieces numbers above those of the nodes.
     fn number_owners(&mut self) {
         let mut next = self.tree.nodes.len() as u32;
         for cluster in &mut self.clusters {
@@ -137,8 +137,8 @@ impl Clusters {
         }
     }
 
-    /// Draws the faces turned to the eye, by priority. Those painted before can only be hidden where planes
-    /// have their thickness.
+    /// Draws the faces turned towards the eye, by priority. Only within the thickness of planes can a face hide those
+    /// painted before it.
     fn draw_cluster(&self, leaf: u32, screen: &Screen, canvas: &mut Canvas) {
         let cluster = &self.clusters[leaf as usize];
         let first = cluster.first_owner;
@@ -167,7 +167,7 @@ impl Clusters {
     }
 }
 
-/// A cluster without priorities: pieces that hide each other in a cycle, or hang on such.
+/// A cluster without valid priorities: pieces that hide each other in a cycle, or depend on such pieces.
 struct Cycle {
     pieces: Vec<Piece>,
     unordered: Vec<usize>,
@@ -208,8 +208,8 @@ impl FacePlane {
     }
 }
 
-/// Both faces of each piece, so that none can hide one that comes before it, from any point that sees both; or
-/// the pieces that cannot be so ordered.
+/// Both faces of each piece, ordered so that none can hide an earlier one from any point that sees both; or the
+/// pieces that cannot be ordered like this.
 fn priorities(pieces: &[Piece], planes: &[FacePlane]) -> Result<Vec<Face>, Vec<usize>> {
     let faces: Vec<Face> =
         (0..pieces.len()).flat_map(|piece| [true, false].map(|front| Face { piece, front })).collect();
@@ -217,7 +217,7 @@ fn priorities(pieces: &[Piece], planes: &[FacePlane]) -> Result<Vec<Face>, Vec<u
         .iter()
         .map(|face| pieces.iter().map(|piece| face.plane.range(&piece.polygon)).collect())
         .collect();
-    // A face can hide another only if it reaches in front of that, and that reaches behind it.
+    // A face can hide another only if it reaches in front of the other, and the other reaches behind it.
     let may_hide = |a: &Face, b: &Face| {
         let (a_from_b, b_from_a) = (ranges[b.piece][a.piece], ranges[a.piece][b.piece]);
         let in_front = if b.front { a_from_b.1 } else { -a_from_b.0 };
@@ -257,8 +257,8 @@ fn by_group(mesh: &TriangleMesh) -> Vec<Vec<Piece>> {
     sets
 }
 
-/// A plane that has some clusters wholly on one side and the others on the other; or else, when there are too many
-/// polygons to be one cluster, one that halves them. `None` when they should be one cluster.
+/// A plane that separates the clusters, each wholly on one side; or else, when there are too many polygons for one
+/// cluster, a plane that halves them. `None` when they should form one cluster.
 fn plane_between(sets: &[Vec<Piece>]) -> Option<Plane> {
     let axes = DVec3::AXES.into_iter();
     let middles: Vec<DVec3> = sets.iter().take(MAX_PAIRED).map(|set| middle(set)).collect();
@@ -280,8 +280,8 @@ fn middle(set: &[Piece]) -> DVec3 {
     sum / count
 }
 
-/// The plane across a direction, in a gap between clusters, that leaves the sides most alike, and the
-/// difference between how many clusters they have.
+/// The plane perpendicular to a direction, in a gap between clusters, that best balances the two sides, and the
+/// difference between their numbers of clusters.
 fn gap_along(direction: DVec3, sets: &[Vec<Piece>]) -> Option<(Plane, usize)> {
     let plane = Plane { normal: direction, offset: 0.0 };
     let mut extents: Vec<(f64, f64)> = sets
@@ -304,8 +304,8 @@ fn gap_along(direction: DVec3, sets: &[Vec<Piece>]) -> Option<(Plane, usize)> {
     best
 }
 
-/// Across the longest side of the box around the polygons' middles, through the median one. `None` when that
-/// would leave as many on one side as there were.
+/// The plane perpendicular to the longest side of the bounding box of the polygons' centres, through the median one.
+/// `None` when that would leave all of them on one side.
 fn halving_plane<'p>(pieces: impl Iterator<Item = &'p Piece> + Clone, count: usize) -> Option<Plane> {
     let middles = pieces.clone().map(|piece| middle(std::slice::from_ref(piece)));
     let bounds = middles

@@ -1,4 +1,4 @@
-//! Where polygons lie on the screen, never too small.
+//! Conservative bounds of polygons on the screen.
 
 use super::polygon::{Plane, clip, corners};
 use super::view::View;
@@ -7,7 +7,7 @@ use crate::ray::Ray;
 use crate::triangle::PreparedRay;
 use bilux_math::DVec3;
 
-/// How far the ray test may be from the triangles that it is given.
+/// How far the ray test may deviate from the triangles that it is given.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slack {
     /// Every hit, and every vertex as the test sees it, lies within a ball of this radius around a point of
@@ -27,7 +27,7 @@ pub(super) struct Screen<'a> {
     frustum: [Plane; 5],
 }
 
-/// Pixels from a first column and row to, without them, an end.
+/// Pixels from a first column and row up to, but not including, an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rect {
     pub(super) x: (usize, usize),
@@ -50,7 +50,7 @@ impl Rect {
         Rect { x: common(self.x, other.x), y: common(self.y, other.y) }
     }
 
-    /// Its four parts, two where it is one pixel wide or high.
+    /// Its four quarters, or two where it is one pixel wide or high.
     pub(super) fn quarters(&self) -> impl Iterator<Item = Rect> {
         let halves = |(first, end): (usize, usize)| {
             let middle = first + (end - first) / 2;
@@ -71,7 +71,7 @@ impl Rect {
 pub(super) struct Footprint {
     /// The pixels whose rays may hit it.
     pub(super) rect: Rect,
-    /// Least and greatest depth along the view's axis, of the part that can be seen.
+    /// Minimum and maximum depth along the view's axis, of the visible part.
     pub(super) depth: (f64, f64),
     /// Its corners on the screen one unit in front of the eye; `None` when it comes too near to the eye.
     pub(super) outline: Option<Outline>,
@@ -104,7 +104,7 @@ impl<'a> Screen<'a> {
         Screen { view, eye, slack: Slack { radius: 2.0 * f64::from(pad), reach }, frustum }
     }
 
-    /// The pixels whose rays may hit a convex polygon; empty when it cannot be seen.
+    /// The pixels whose rays may hit a convex polygon; empty when it cannot be visible.
     pub(super) fn rect(&self, polygon: &[DVec3]) -> Rect {
         match self.visible(polygon) {
             Some(part) => self.rect_of_visible(&part),
@@ -120,7 +120,7 @@ impl<'a> Screen<'a> {
         self.rect_of_visible(points)
     }
 
-    /// All about a convex polygon on the screen; `None` when it cannot be seen.
+    /// The footprint of a convex polygon on the screen; `None` when it cannot be visible.
     pub(super) fn footprint(&self, polygon: &[DVec3]) -> Option<Footprint> {
         let part = self.visible(polygon)?;
         let rect = self.rect_of_visible(&part);
@@ -151,13 +151,13 @@ impl<'a> Screen<'a> {
         (!part.is_empty()).then_some(part)
     }
 
-    /// Least and greatest depth along the view's axis.
+    /// Minimum and maximum depth along the view's axis.
     pub(super) fn depth(&self, polygon: &[DVec3]) -> (f64, f64) {
         self.frustum[4].range(polygon)
     }
 
-    /// Bounds of what balls around the corners cover. The hull of the balls holds every hit, and
-    /// projection keeps hulls, so long as no ball reaches the eye's plane.
+    /// Bounds of the projected balls around the corners. The hull of the balls contains every hit, and projection
+    /// preserves hulls, as long as no ball reaches the eye's plane.
     fn rect_of_visible(&self, part: &[DVec3]) -> Rect {
         let radius = self.slack.radius;
         let mut low = [f64::INFINITY; 2];
@@ -203,7 +203,7 @@ impl<'a> Screen<'a> {
 }
 
 impl Outline {
-    /// True when no ray can hit both: some edge of one has all of the other beyond it.
+    /// True when no ray can hit both: all of one lies beyond some edge of the other.
     pub(super) fn is_apart_from(&self, other: &Outline) -> bool {
         self.has_edge_against(other) || other.has_edge_against(self)
     }

@@ -1,4 +1,4 @@
-//! Which polygon's plane to divide by [Fuchs 1983].
+//! Chooses the polygon whose plane divides the others [Fuchs 1983].
 
 use super::partition::Piece;
 use super::polygon::{Plane, corners};
@@ -6,21 +6,21 @@ use super::screen::Slack;
 use crate::mesh::TriangleMesh;
 use bilux_math::{DVec3, hash};
 
-/// Candidates that a plane is chosen from, and polygons that it is judged by.
+/// Number of candidate planes, and of polygons by which they are judged.
 const CANDIDATES: usize = 5;
 const JUDGES: usize = 64;
-/// What one cut polygon weighs against one polygon of imbalance among the judges.
+/// The cost of one cut polygon, relative to one polygon of imbalance among the judges.
 const SPLIT_WEIGHT: usize = 4;
 
-/// A few of so many pieces, by a hash so that no order of the triangles is the worst one.
+/// A few of the pieces, chosen by a hash so that no order of the triangles is a worst case.
 pub(super) fn candidates(pieces: usize, salt: usize) -> Vec<usize> {
     (0..CANDIDATES.min(pieces))
         .map(|k| (hash::mix64((salt * CANDIDATES + k) as u64) % pieces as u64) as usize)
         .collect()
 }
 
-/// Of the planes of some candidates, the one that cuts fewest pieces and balances the rest, with how far its own
-/// triangle strays from it.
+/// Among the candidates' planes, the one that cuts the fewest pieces and balances the rest, and how far its own
+/// triangle deviates from it.
 pub(super) fn fewest_splits(
     pieces: &[Piece],
     candidates: &[usize],

@@ -18,31 +18,31 @@ pub struct View {
     pub(super) axes: [DVec3; 3],
     pub(super) columns: Lanes,
     pub(super) rows: Lanes,
-    /// The greatest component along `forward` of any direction.
+    /// The maximum component along `forward` of any direction.
     pub(super) deepest: f64,
 }
 
-/// Why a view cannot be made.
+/// Why a view cannot be created.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
-    /// The directions do not fill the rectangle.
+    /// The number of directions is not that of the pixels.
     #[error("a view of {width}×{height} pixels needs {} directions, not {count}", width * height)]
     DirectionCount {
         /// Pixels in a row.
         width: usize,
         /// Rows.
         height: usize,
-        /// How many directions were given.
+        /// The number of directions given.
         count: usize,
     },
-    /// There are no pixels, or more than fit.
+    /// There are no pixels, or too many.
     #[error("a view of {0}×{1} pixels is not possible: it needs at least one and at most 16,777,216")]
     Size(usize, usize),
-    /// The eye is nowhere.
+    /// The eye is not a finite point.
     #[error("the eye of a view must be a finite point, not {0:?}")]
     Eye([f32; 3]),
-    /// The nearest distance makes no sense.
+    /// The minimum distance is negative or not finite.
     #[error("the least distance of a view must be finite and not negative, not {0}")]
     Near(f32),
     /// No plane has all directions in front of it.
@@ -55,16 +55,16 @@ pub enum ViewError {
     Pinhole,
 }
 
-/// Most pixels that a view may have.
+/// Maximum number of pixels in a view.
 const MAX_PIXELS: usize = 1 << 24;
 
 impl View {
-    /// From directions through the pixel centres, row by row from the top; they need not be of unit
-    /// length, and `t_min` (0 or more) counts in their lengths. Pixels whose direction is not finite,
-    /// or zero, see nothing.
+    /// Creates a view from directions through the pixel centres, row by row from the top. They need not have unit
+    /// length; `t_min` (0 or more) is measured in their lengths. Pixels whose direction is not finite, or zero, see
+    /// nothing.
     ///
     /// # Errors
-    /// When sizes do not match or are absurd, or the directions do not lie in one half-space.
+    /// Returns an error when sizes do not match or are out of range, or the directions do not lie in one half-space.
     pub fn new(
         eye: [f32; 3],
         width: usize,
@@ -105,7 +105,7 @@ impl View {
     /// lower edge of the lowermost, and pixels are square.
     ///
     /// # Errors
-    /// As [`View::new`], and when the camera has no direction or no opening.
+    /// As [`View::new`], and when the camera has no direction or a field of view that is not valid.
     pub fn pinhole(
         eye: [f32; 3],
         look_at: [f32; 3],
@@ -134,10 +134,10 @@ impl View {
         View::new(eye, width, height, directions, 0.0)
     }
 
-    /// The same view, blind to what is nearer than `t_min` lengths of each direction.
+    /// The same view, without anything nearer than `t_min` lengths of each direction.
     ///
     /// # Errors
-    /// When `t_min` is negative or not finite.
+    /// Returns an error when `t_min` is negative or not finite.
     pub fn with_t_min(mut self, t_min: f32) -> Result<View, ViewError> {
         if !(t_min >= 0.0 && t_min.is_finite()) {
             return Err(ViewError::Near(t_min));
@@ -146,7 +146,7 @@ impl View {
         Ok(self)
     }
 
-    /// Where the eye is.
+    /// The position of the eye.
     pub fn eye(&self) -> [f32; 3] {
         self.eye
     }
@@ -161,14 +161,14 @@ impl View {
         self.height
     }
 
-    /// The ray through the centre of a pixel, row by row from the top: the one that every algorithm
-    /// means, bit for bit. `None` outside the picture.
+    /// The ray through the centre of a pixel, row by row from the top: the one that every algorithm uses, bit for
+    /// bit. `None` outside the image.
     pub fn ray(&self, pixel: usize) -> Option<Ray> {
         let direction = *self.directions.get(pixel)?;
         Some(Ray { t_min: self.t_min, ..Ray::new(self.eye, direction) })
     }
 
-    /// The picture by rays: what the others are held against.
+    /// The image by ray casting: the reference that the other algorithms are tested against.
     pub fn cast(&self, accelerator: &dyn Accelerator, culling: Culling) -> Vec<u32> {
         let query = Query { culling, ..Query::default() };
         (0..self.directions.len())
@@ -194,12 +194,12 @@ impl View {
     }
 }
 
-/// Cosine of the angle from `forward` that no direction may reach: rays that run along the camera
-/// plane have no place on a screen.
+/// Cosine of the angle to `forward` below which directions are rejected: rays that run along the camera plane have no
+/// position on a screen.
 const MIN_COSINE: f64 = 1.0 / 65536.0;
 
-/// Where the pixels of each column (or row) lie on the screen one unit in front of the eye. Made monotone,
-/// so that a search is conservative however the directions were rounded, or bent.
+/// The positions of the pixels of each column (or row) on the screen one unit in front of the eye. Made monotone, so
+/// that a search is conservative however the directions were rounded, or distorted.
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {
     low: Vec<f64>,
@@ -225,7 +225,7 @@ impl Lanes {
         }
     }
 
-    /// The lanes that may have a pixel centre between two positions; all that may, when they are no numbers.
+    /// The lanes that may have a pixel centre between two positions; all possible lanes, when the positions are NaN.
     pub(super) fn between(&self, low: f64, high: f64) -> (usize, usize) {
         let first = self.high.partition_point(|&h| h < low);
         let end = self.low.partition_point(|&l| l <= high || high.is_nan());
@@ -257,8 +257,8 @@ fn usable(directions: &[[f32; 3]]) -> impl Iterator<Item = (usize, DVec3)> {
     })
 }
 
-/// Right, down and forward of a bundle of directions. Any orthonormal axes would do: bounds on the screen
-/// are merely tight when these follow the rows and columns.
+/// The right, down and forward axes of a bundle of directions. Any orthonormal axes would do: bounds on the screen
+/// are merely tighter when these follow the rows and columns.
 fn axes_of(directions: &[[f32; 3]], width: usize, height: usize) -> [DVec3; 3] {
     let (mut mean, mut across, mut along) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
     for (pixel, direction) in usable(directions) {

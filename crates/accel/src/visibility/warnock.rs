@@ -1,4 +1,4 @@
-//! Warnock's area subdivision: a window in which one triangle decides everything is drawn; any other is
+//! Warnock's area subdivision: a window in which a single triangle decides everything is drawn; any other window is
 //! divided into four, down to single pixels [Warnock 1969].
 
 use super::canvas::Canvas;
@@ -54,27 +54,27 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
     canvas.finish(0.0)
 }
 
-/// What a triangle does to a window.
+/// How a triangle covers a window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cover {
-    /// Perhaps something.
+    /// Possibly some of it.
     Partly,
-    /// It is hit by the ray of every pixel.
+    /// All of it: the ray of every pixel hits the triangle.
     Whole,
 }
 
 /// A triangle as windows see it.
 struct Candidate {
     triangle: u32,
-    /// The part that can be seen, and its pixels.
+    /// The visible part.
     polygon: Vec<DVec3>,
     rect: Rect,
     plane: Plane,
-    /// Half the thickness of the plane: how far the triangle's hits may stray from it.
+    /// Half the thickness of the plane: how far the triangle's hits may deviate from it.
     half: f64,
     /// The edges on the screen; `None` when the eye is so near to the plane that the ray test might see either side.
     edges: Option<[Edge; 3]>,
-    /// True when hits cannot be nearer than the view's least distance.
+    /// True when hits cannot be nearer than the view's minimum distance.
     beyond_near: bool,
     front: bool,
 }
@@ -117,8 +117,8 @@ impl Candidate {
     }
 }
 
-/// The three edges, if the sign of the volume between eye and triangle is beyond doubt. The ray test moves each
-/// corner by at most a radius.
+/// The three edges, if the sign of the volume between eye and triangle is certain. The ray test moves each corner by
+/// at most a radius.
 fn edges(local: &[DVec3; 3], volume: f64, screen: &Screen) -> Option<[Edge; 3]> {
     let radius = screen.slack.radius;
     let [a, b, c] = *local;
@@ -148,7 +148,7 @@ struct Window {
     rect: Rect,
     x: (f64, f64),
     y: (f64, f64),
-    /// Its sides, as planes through the eye that have the window in front.
+    /// Its sides, as planes through the eye with the window in front of them.
     sides: [Plane; 4],
 }
 
@@ -163,7 +163,7 @@ impl Window {
         Window { rect, x, y, sides }
     }
 
-    /// Those of the parent's triangles that may be seen here, and how.
+    /// Those of the parent's triangles that may be visible here, and how they cover the window.
     fn sort_out(&self, parent: &[(u32, Cover)], candidates: &[Candidate]) -> Vec<(u32, Cover)> {
         let look = |&(index, cover): &(u32, Cover)| match cover {
             Cover::Whole => Some((index, cover)),
@@ -188,7 +188,7 @@ impl Window {
         Some(if whole { Cover::Whole } else { Cover::Partly })
     }
 
-    /// Least and greatest value of an edge function in the window: at its corners, for it is linear.
+    /// Minimum and maximum of an edge function in the window: at its corners, since it is linear.
     fn range(&self, edge: &Edge) -> (f64, f64) {
         let ends = |slope: f64, (low, high): (f64, f64)| {
             let (a, b) = (slope * low, slope * high);
@@ -198,7 +198,7 @@ impl Window {
         (edge.offset + x.0 + y.0, edge.offset + x.1 + y.1)
     }
 
-    /// Drops what the nearest triangle that fills the window hides.
+    /// Drops what is hidden by the nearest triangle that fills the window.
     fn drop_hidden(
         &self,
         inside: &mut Vec<(u32, Cover)>,
@@ -217,7 +217,7 @@ impl Window {
         let Some(&(nearest, _)) = whole.max_by(|a, b| nearness(a).total_cmp(&nearness(b))) else { return };
         let candidate = &candidates[nearest as usize];
         let eye = candidate.plane.side(screen.eye);
-        // From within the thickness of a plane nothing is surely behind it.
+        // From within the thickness of a plane, nothing is certainly behind it.
         let is_sided = eye.abs() > candidate.half;
         if !is_sided {
             return;
@@ -229,7 +229,7 @@ impl Window {
         });
     }
 
-    /// True when no hit of a triangle in this window is in front of a plane's thickness, or in it.
+    /// True when no hit of a triangle in this window is in front of a plane, or within its thickness.
     fn hides(&self, plane: &Plane, half: f64, behind: &Candidate, screen: &Screen) -> bool {
         if plane.range(&behind.polygon).1 < -half {
             return true;
@@ -251,7 +251,7 @@ fn draw_one(rect: Rect, candidate: &Candidate, canvas: &mut Canvas) {
     });
 }
 
-/// Where windows cannot be divided any more, depth decides.
+/// Where windows cannot be divided further, depth decides.
 fn draw_pixel(rect: Rect, inside: &[(u32, Cover)], candidates: &[Candidate], canvas: &mut Canvas) {
     canvas.each_pixel(rect, |canvas, pixel| {
         for &(index, _) in inside {

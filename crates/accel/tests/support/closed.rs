@@ -1,14 +1,14 @@
-//! Closed meshes, and origins proven to lie inside them.
+//! Closed meshes, and origins that provably lie inside them.
 //!
-//! Vertices are multiples of 2⁻²⁰ below 2¹⁹, so that the predicates below are exact in integers. A point
-//! is inside when a ray from it crosses the mesh an odd number of times; each edge belongs to an even number of
-//! triangles, so parity is the same in every direction, and hence every ray from there must hit.
+//! Vertices are multiples of 2⁻²⁰ below 2¹⁹, so the predicates below are exact in integers. A point is inside when a
+//! ray from it crosses the mesh an odd number of times. Each edge belongs to an even number of triangles, so the
+//! parity is the same in every direction, and every ray from such a point must hit.
 
 use super::Numbers;
 use bilux_accel::TriangleMesh;
 use std::collections::HashMap;
 
-/// A closed mesh with points inside.
+/// A closed mesh with points inside it.
 pub struct Closed {
     pub name: &'static str,
     pub positions: Vec<[f32; 3]>,
@@ -17,7 +17,7 @@ pub struct Closed {
 }
 
 const GRID: f64 = 1_048_576.0;
-/// Nearly: a power of two, so that scaling rounds nothing.
+/// Approximately: a power of two, so that scaling is exact.
 const MILLION: f32 = 1_048_576.0;
 
 fn on_grid(p: [f64; 3]) -> [f32; 3] {
@@ -29,8 +29,8 @@ fn whole(p: [f32; 3]) -> [i128; 3] {
 }
 
 impl Closed {
-    /// Checks that the surface is closed and keeps those of many random points that are inside and not too
-    /// near to the surface.
+    /// Checks that the surface is closed, and keeps those of many random points that are inside and not too near the
+    /// surface.
     fn new(name: &'static str, positions: Vec<[f64; 3]>, indices: Vec<[u32; 3]>) -> Closed {
         let positions: Vec<[f32; 3]> = positions.into_iter().map(on_grid).collect();
         let mut edges: HashMap<(u32, u32), usize> = HashMap::new();
@@ -43,7 +43,7 @@ impl Closed {
         let mut closed = Closed { name, positions, indices, inside: Vec::new() };
         let bounds = closed.mesh().bounds();
         let mut numbers = Numbers::new(77);
-        // 160 units of f32 rounding of its size: what the triangle test's shear moves a vertex by is below 7.
+        // 160 units of f32 rounding of its size: the triangle test's shear moves a vertex by less than 7.
         let margin = f64::from(bounds.extent().max_element()) * 1e-5;
         let count = closed.positions.len();
         while closed.inside.len() < 24 {
@@ -66,7 +66,7 @@ impl Closed {
         TriangleMesh::new(self.positions.clone(), self.indices.clone()).expect("the indices are sound")
     }
 
-    /// Exact; false also when the ray along +x meets an edge, which proves nothing.
+    /// Exact; also false when the ray along +x hits an edge, which proves nothing.
     fn is_inside(&self, p: [f32; 3]) -> bool {
         let o = whole(p);
         let mut crossings = 0;
@@ -104,7 +104,7 @@ impl Closed {
     }
 }
 
-/// From the origin: the least over the plane, where its foot is inside, and the edges.
+/// From the origin: the minimum of the distance to the plane, if its foot is inside, and to the edges.
 fn distance_to_triangle(a: bilux_math::DVec3, b: bilux_math::DVec3, c: bilux_math::DVec3) -> f64 {
     let to_edge = |p: bilux_math::DVec3, q: bilux_math::DVec3| {
         let d = q - p;
@@ -117,7 +117,7 @@ fn distance_to_triangle(a: bilux_math::DVec3, b: bilux_math::DVec3, c: bilux_mat
     if inside && normal.length() > 0.0 { edges.min((a.dot(normal) / normal.length()).abs()) } else { edges }
 }
 
-/// A cube's faces cut into `n` by `n` cells, each point then moved by `place`.
+/// A cube's faces divided into `n` by `n` cells, each point then moved by `place`.
 fn cube(n: u32, place: impl Fn([f64; 3]) -> [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     let mut known: HashMap<[i32; 3], u32> = HashMap::new();
@@ -163,7 +163,7 @@ fn unit(p: [f64; 3]) -> [f64; 3] {
     p.map(|x| x / length)
 }
 
-/// Turned about an oblique axis, scaled, moved.
+/// Rotated about an oblique axis, scaled, and moved.
 fn posed(p: [f64; 3], scale: [f64; 3], by: [f64; 3]) -> [f64; 3] {
     let q = [
         0.48 * p[0] + 0.64 * p[1] - 0.6 * p[2],
@@ -178,7 +178,7 @@ pub fn all() -> Vec<Closed> {
     let make =
         |name, (positions, indices): (Vec<[f64; 3]>, Vec<[u32; 3]>)| Closed::new(name, positions, indices);
     let far = |p| posed(p, [3.0; 3], [10_000.3, -77_777.7, 12_345.6]);
-    // Cells that are a thousand times as long as wide, bent inwards and outwards.
+    // Cells a thousand times as long as wide, bent inwards and outwards.
     let slivers = |p: [f64; 3]| {
         let q = unit(p);
         let bump = 1.0 + 0.3 * bilux_math::transcendental::sin_f64(9.0 * q[0] + 4.0 * q[1] * q[2]);
@@ -204,7 +204,7 @@ pub fn all() -> Vec<Closed> {
     ]
 }
 
-/// Ray number `index` from inside: at a vertex, at an edge, at a triangle, along an axis, or anywhere.
+/// Ray number `index` from inside: towards a vertex, an edge or a triangle, along an axis, or in any direction.
 pub fn ray(closed: &Closed, seed: u64, index: u64) -> bilux_accel::Ray {
     let mut numbers = Numbers::new(bilux_math::hash::hash_words([seed, index]));
     let origin = closed.inside[numbers.below(closed.inside.len())];

@@ -1,5 +1,5 @@
-//! Any bytes as a mesh and rays, for every structure to agree on.
-#![allow(unreachable_pub)] // Tests and the fuzzer share it.
+//! Arbitrary bytes as a mesh and rays, on which every structure must agree.
+#![allow(unreachable_pub)] // Shared by tests and the fuzzer.
 
 use bilux_accel::registry::Quality;
 use bilux_accel::{
@@ -18,7 +18,7 @@ impl Bytes<'_> {
         Some(first)
     }
 
-    /// On a small lattice, near one of its points, or any bits at all.
+    /// On a small lattice, near one of its points, or arbitrary bits.
     fn number(&mut self) -> Option<f32> {
         let kind = self.next()?;
         let lattice = f32::from(kind & 15) - 8.0;

@@ -1,4 +1,4 @@
-//! Meshes that have hurt ray tracers.
+//! Meshes that have broken ray tracers.
 
 use super::Numbers;
 use bilux_accel::TriangleMesh;
@@ -45,7 +45,7 @@ fn moved(mut corners: Vec<Triangle>, scale: f32, by: [f32; 3]) -> Vec<Triangle> 
     corners
 }
 
-/// Walls of cells: every plane that a tree may choose holds triangles, and lies in others' edges.
+/// Walls of cells: every plane that a tree may choose contains triangles, and lies in the edges of others.
 fn grid(n: usize) -> Vec<Triangle> {
     (0..3).flat_map(|axis| (0..=n).flat_map(move |i| sheet(axis, i as f32 / n as f32, n))).collect()
 }
@@ -85,7 +85,7 @@ fn not_numbers() -> Vec<Triangle> {
     all
 }
 
-/// Each twice the size of the one before: trees over it want to be deep.
+/// Each triangle is twice the size of the one before, which leads to deep trees.
 fn nested() -> Vec<Triangle> {
     (0..100)
         .map(|i| {

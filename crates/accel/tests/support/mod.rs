@@ -1,5 +1,5 @@
-//! What the tests of all structures share: nasty meshes, nasty rays, and the comparison.
-#![allow(dead_code, unreachable_pub)] // Each test uses a part.
+//! Shared by the tests of all structures: nasty meshes, nasty rays, and the comparison.
+#![allow(dead_code, unreachable_pub)] // Each test uses a part of it.
 
 pub mod closed;
 pub mod meshes;
@@ -38,8 +38,8 @@ impl Numbers {
     }
 }
 
-/// Every structure in every way that it can be built, with a name for messages. A structure that joins the
-/// table is tested without a line here; one with options gets a line of its own.
+/// Every structure in every configuration that it can be built in, with a name for messages. A structure that is
+/// added to the table is tested without a line here; one with options gets a line of its own.
 pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
     let plain = BuildOptions::default();
     let mut all = Vec::new();
@@ -72,7 +72,7 @@ pub fn variants() -> Vec<(String, &'static str, BuildOptions)> {
     all
 }
 
-/// Those that the machine has.
+/// The levels that the machine supports.
 fn levels() -> impl Iterator<Item = CpuLevel> {
     CpuLevel::ALL.into_iter().filter(|&level| level <= CpuLevel::detect())
 }
@@ -81,7 +81,7 @@ pub fn build_variant(name: &str, options: &BuildOptions, mesh: &Arc<TriangleMesh
     Arc::from(build(name, Arc::clone(mesh), options).expect("a registered structure builds"))
 }
 
-/// A ray for which two structures do not agree.
+/// A ray on which two structures disagree.
 #[derive(Debug)]
 pub struct Difference {
     pub ray: Ray,
@@ -94,10 +94,10 @@ pub fn bits(hit: Option<Hit>) -> Option<[u32; 5]> {
     hit.map(|h| [h.t.to_bits(), h.u.to_bits(), h.v.to_bits(), h.primitive, h.instance])
 }
 
-/// A filter with holes in triangles, and triangles that are holes.
+/// A filter that cuts holes into triangles, and cuts out whole triangles.
 pub const SIEVE: Filter<'static> = &|hit| hit.primitive % 3 != 1 && hit.u < 0.6;
 
-/// The questions asked for each ray.
+/// The queries made for each ray.
 pub fn queries() -> [Query<'static>; 6] {
     let plain = Query::default();
     [
@@ -110,7 +110,7 @@ pub fn queries() -> [Query<'static>; 6] {
     ]
 }
 
-/// Rays that begin, end, or are blinded exactly where a ray hits.
+/// Rays that start or end exactly at a hit or next to it, or that exclude its primitive.
 fn sharpened(ray: &Ray, hit: &Hit) -> [Ray; 5] {
     [
         Ray { t_max: hit.t, ..*ray },
@@ -121,7 +121,7 @@ fn sharpened(ray: &Ray, hit: &Hit) -> [Ray; 5] {
     ]
 }
 
-/// Answers of the truth, for [`differences`].
+/// The ground-truth answers, for [`differences`].
 pub struct Truth {
     /// Each with the number of its query.
     cases: Vec<(Ray, usize, Option<Hit>)>,
@@ -146,7 +146,7 @@ impl Truth {
         self.cases.iter().filter(|(.., hit)| hit.is_some()).count()
     }
 
-    /// The same questions asked in batches: all that share a query at once, and a few, and none.
+    /// The same queries in batches: all rays that share a query at once, a few, and none.
     fn differences_in_batches(&self, other: &dyn Accelerator) -> Vec<Difference> {
         let mut found = Vec::new();
         for (number, query) in queries().into_iter().enumerate() {
@@ -167,7 +167,7 @@ impl Truth {
         found
     }
 
-    /// Where a structure does not agree: on the nearest hit, on whether there is any, or with counting on.
+    /// The rays on which a structure disagrees: on the closest hit, on whether there is any hit, or with counting on.
     pub fn differences(&self, other: &dyn Accelerator) -> Vec<Difference> {
         let mut found = Vec::new();
         for (ray, number, truth) in &self.cases {

@@ -1,4 +1,4 @@
-//! Rays that have hurt ray tracers.
+//! Rays that have broken ray tracers.
 
 use super::Numbers;
 use bilux_accel::{Ray, TriangleMesh};
@@ -12,7 +12,7 @@ fn mix(a: [f32; 3], b: [f32; 3], x: f32) -> [f32; 3] {
     std::array::from_fn(|k| a[k] * (1.0 - x) + b[k] * x)
 }
 
-/// `count` rays of every kind, for a mesh of any size and place.
+/// `count` rays of every kind, for a mesh of any size and position.
 pub fn nasty(mesh: &TriangleMesh, count: usize, seed: u64) -> Vec<Ray> {
     let mut numbers = Numbers::new(seed);
     let bounds = mesh.bounds();
@@ -68,7 +68,7 @@ fn one(
             ray.origin[axis] = target[axis];
             ray.direction[axis] = 0.0;
         }
-        // From on the surface, or from a corner, anywhere.
+        // From the surface, or from a corner, in any direction.
         3 => ray = Ray::new(target, numbers.vector()),
         4 => ray = Ray::new(a, sub(target, a)),
         // Along an edge, in the plane of the triangle.
@@ -77,7 +77,7 @@ fn one(
             let from = mix(a, b, -1.0);
             ray = Ray::new(from, sub(mix(b, c, numbers.unit()), from));
         }
-        // Directions that are hardly there, or enormous.
+        // Tiny or enormous directions.
         7 => ray.direction = ray.direction.map(|d| d * 1e-30 * 1e-12),
         8 => ray.direction = ray.direction.map(|d| d * 1e30),
         // From far away.
@@ -85,7 +85,7 @@ fn one(
             let origin = around(numbers, 1e4);
             ray = Ray::new(origin, sub(target, origin));
         }
-        // Pieces of rays, backwards ones too.
+        // Ray segments, including reversed ones.
         10 => {
             let (x, y) = (numbers.unit() * 3.0 - 1.0, numbers.unit() * 3.0 - 1.0);
             (ray.t_min, ray.t_max) = (x.min(y), x.max(y));

@@ -1,8 +1,9 @@
-//! From a noisy picture to a smooth one. To add a denoiser: a file with its `ENTRY`, and a line in the table.
+//! Denoising of pictures. To add a denoiser, add a file with its `ENTRY`, and a line in the table.
 //!
-//! All that a denoiser goes by travels in the picture's layers, so that it may as well come from a file: `albedo`, `normal` and
-//! `depth` of what is seen, `variance` of each pixel, and `light`, a part of the picture with `light_variance` of its own: what was brought by paths from the
-//! lights, whose noise is of another kind. Each layer may be missing.
+//! Everything that a denoiser uses is stored in the picture's layers, so the picture may as well come from a file:
+//! `albedo`, `normal` and `depth` of the visible surface, `variance` of each pixel, and `light` with its own
+//! `light_variance`. `light` is the part of the picture that paths from the lights contributed, whose noise is of a
+//! different kind. Each layer may be missing.
 
 mod builtin;
 mod noisy;
@@ -16,7 +17,7 @@ pub use noisy::{Layer, Noisy, Source};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Every denoiser that there is, the best first.
+/// Every available denoiser, best first.
 pub const DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
 
 /// A row of [`DENOISERS`].
@@ -24,86 +25,87 @@ pub const DENOISERS: &[DenoiserEntry] = &[oidn::ENTRY, builtin::ENTRY];
 pub struct DenoiserEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// About how long it takes, where the task leaves it the choice.
+    /// Approximate run time, where the task leaves the choice to the denoiser.
     pub time: fn(&Task) -> Duration,
-    /// It is in a library of others, which is loaded, and looked for in folders of theirs.
+    /// True for an external library, which is searched for in folders outside the project and loaded at run time.
     pub is_library: bool,
-    /// Gets it ready; else says what is missing, and how to get it.
+    /// Prepares the denoiser, or says what is missing and how to get it.
     pub find: fn(&Task) -> Result<Box<dyn Denoiser>, String>,
 }
 
-/// One that is ready.
+/// A denoiser that is ready to run.
 pub trait Denoiser {
-    /// What it is and where it was found, for people.
+    /// Its name and location, for the user.
     fn describe(&self) -> String;
 
-    /// The picture without its noise, row by row. The same for any number of threads.
+    /// The denoised picture, row by row. The result is the same for any number of threads.
     ///
     /// # Errors
-    /// When the machine has no room, or what denoises fails.
+    /// Returns an error when the machine has no memory left, or the denoiser fails.
     fn denoise(&self, source: &dyn Source) -> Result<Vec<Rgb>, PictureError>;
 }
 
-/// A denoiser that was chosen, and what there is to say about the choice.
+/// A chosen denoiser, with its expected time and advice.
 pub struct Chosen {
     /// The denoiser.
     pub denoiser: Box<dyn Denoiser>,
-    /// About how long it takes.
+    /// Approximate run time.
     pub time: Duration,
-    /// How to get a better one, where there is one.
+    /// How to get a better denoiser, if there is one.
     pub advice: Option<String>,
 }
 
-/// What is to be denoised, and how long that may take.
+/// The denoising task, and how long it may take.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Task {
-    /// Pixels across and down, where that is known.
+    /// Width and height in pixels, where known.
     pub size: (usize, usize),
-    /// Threads; 0 for one each core.
+    /// Number of threads; 0 means one per core.
     pub threads: usize,
-    /// What the best denoiser may take at most, if that matters: it does as well as it can within that.
+    /// Maximum time for the best denoiser, if there is a limit: it does as well as it can within that time.
     pub time: Option<Duration>,
-    /// No library of others may be loaded; what [`preload`] has loaded before may be used.
+    /// No external library may be loaded; one that [`preload`] has loaded before may be used.
     pub sandboxed: bool,
 }
 
 impl Task {
-    /// Pixels in all.
+    /// Total number of pixels.
     pub fn pixels(&self) -> u64 {
         self.size.0 as u64 * self.size.1 as u64
     }
 
-    /// Threads, at least 1.
+    /// Number of threads, at least 1.
     pub fn threads_at_work(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         if self.threads == 0 { cores() } else { self.threads }
     }
 }
 
-/// Libraries that are being loaded on a thread of their own.
+/// Libraries that are being loaded on a separate thread.
 pub struct Preload(JoinHandle<()>);
 
-/// Begins to load what the best denoiser needs, for so many threads (0 for one each core), so that it is there when the picture is
-/// rendered. Only what is asked for after this waits for it.
+/// Starts to load what the best denoiser needs, for a number of threads (0 means one per core), so that it is there
+/// when the picture has been rendered. Only later requests wait for it.
 pub fn preload(threads: usize) -> Preload {
     Preload(std::thread::spawn(move || oidn::load(threads)))
 }
 
 impl Preload {
-    /// Waits until all is loaded that can be: from then on [`Task::sandboxed`] holds nothing back.
+    /// Waits until everything that can be loaded is loaded: from then on [`Task::sandboxed`] no longer restricts the
+    /// choice.
     pub fn wait(self) {
-        // That it failed is told when a denoiser is asked for.
+        // A failure is reported when a denoiser is requested.
         let _ = self.0.join();
     }
 }
 
-/// The denoiser of this name, or for `auto` the best that can be had, and has the time.
+/// The denoiser of this name, or for `auto` the best one that is available and fast enough.
 ///
 /// # Errors
-/// When there is no such denoiser, or it is not to be had here.
+/// Returns an error when there is no such denoiser, or it is not available here.
 pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
     let is_auto = name == "auto";
-    // What was asked for by its name takes what it takes.
+    // A denoiser that was requested by name may take as long as it needs.
     let task = &Task { time: task.time.filter(|_| is_auto), ..*task };
     let mut advice = None;
     for (i, row) in DENOISERS.iter().enumerate().filter(|(_, row)| is_auto || name == row.entry.name) {
@@ -131,17 +133,17 @@ pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
     })
 }
 
-/// The picture with its colours denoised; layers and texts stay as they are. Pixels that are not finite stay so.
+/// The picture with its colours denoised; layers and texts stay as they are, and so do pixels that are not finite.
 ///
 /// # Errors
-/// When it has no colours, or as [`Denoiser::denoise`].
+/// Returns an error when the picture has no colours, or as [`Denoiser::denoise`].
 pub fn denoise(picture: &Picture, denoiser: &dyn Denoiser) -> Result<Picture, PictureError> {
     let picture = picture.clone().into_linear();
     let smooth = denoiser.denoise(&picture)?;
     Ok(repainted(picture, &smooth))
 }
 
-/// The picture in other colours, row by row. Pixels that are not finite stay so.
+/// The picture with other colours, row by row. Pixels that are not finite stay as they are.
 pub fn repainted(mut picture: Picture, colours: &[Rgb]) -> Picture {
     let finite: Vec<bool> = match picture.rgb_planes() {
         Some(planes) => {

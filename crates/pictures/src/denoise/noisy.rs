@@ -1,20 +1,20 @@
-//! What a denoiser is given.
+//! The input of a denoiser.
 
 use crate::limits::reserved;
 use crate::{Picture, PictureError};
 use bilux_math::Rgb;
 use std::ops::Range;
 
-/// Where a denoiser gets its picture from, as many rows at a time as it has use for: of a large picture, all that denoisers go
-/// by is several times as large.
+/// Supplies a denoiser with its picture, as many rows at a time as it needs: for a large picture, the complete input
+/// of a denoiser is several times as large.
 pub trait Source: Sync {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     fn size(&self) -> (usize, usize);
 
-    /// Some rows, counted from the top one, as a picture of their own.
+    /// Some rows, counted from the top, as a picture of their own.
     ///
     /// # Errors
-    /// When there are no colours, or the machine has no room.
+    /// Returns an error when there are no colours, or the machine has no memory left.
     fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError>;
 }
 
@@ -29,20 +29,21 @@ impl Source for Picture {
     }
 }
 
-/// A noisy picture and what is known of what it shows; all in rows, the top one first, all linear and finite.
+/// A noisy picture and the known features of what it shows; all in rows from the top, all linear and finite.
 #[derive(Clone, Debug)]
 pub struct Noisy {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: usize,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: usize,
-    /// What adds up to the picture: first what camera paths have brought, then, if there is any, what light paths have left. Each has its own noise.
+    /// The parts whose sum is the picture: first the contribution of camera paths, then, if present, the splats of
+    /// light paths. Each has its own noise.
     pub layers: Vec<Layer>,
-    /// The part of the light that surfaces send on, 0..=1.
+    /// The fraction of light that surfaces reflect, 0..=1.
     pub albedo: Option<Vec<Rgb>>,
-    /// Shading normals, zero where nothing is seen.
+    /// Shading normals, zero where nothing is visible.
     pub normal: Option<Vec<[f32; 3]>>,
-    /// Metres from the camera; infinite where nothing is seen.
+    /// Metres from the camera; infinite where nothing is visible.
     pub depth: Option<Vec<f32>>,
 }
 
@@ -51,18 +52,18 @@ pub struct Noisy {
 pub struct Layer {
     /// Its light.
     pub colour: Vec<Rgb>,
-    /// The variance of each pixel, as far as one estimate of it tells.
+    /// The variance of each pixel, as a single estimate.
     pub variance: Option<Vec<Rgb>>,
 }
 
-/// What it is called in messages.
+/// The name used in messages.
 const NAME: &str = "denoising";
 
 impl Noisy {
-    /// What some rows of a linear picture's layers tell.
+    /// Extracts the input from some rows of a linear picture's layers.
     ///
     /// # Errors
-    /// When it has no colours, or the machine has no room.
+    /// Returns an error when the picture has no colours, or the machine has no memory left.
     pub fn of(picture: &Picture, rows: Range<usize>) -> Result<Noisy, PictureError> {
         let (width, height) = (picture.width(), rows.len());
         let pixels = rows.start * width..rows.end * width;
@@ -77,7 +78,7 @@ impl Noisy {
         let mut colour = joined(planes.map(|plane| &plane[pixels.clone()]))?;
         let mut light = rgb(["light.R", "light.G", "light.B"])?;
         for (i, colour) in colour.iter_mut().enumerate() {
-            // What is infinite is left out, and nothing else with it.
+            // Colours that are not finite become black, without affecting anything else.
             if !colour.is_finite() {
                 *colour = Rgb::BLACK;
                 continue;
@@ -105,7 +106,7 @@ impl Noisy {
         })
     }
 
-    /// Pixels in all.
+    /// Total number of pixels.
     pub fn pixels(&self) -> usize {
         self.width * self.height
     }
@@ -118,7 +119,7 @@ fn joined([r, g, b]: [&[f32]; 3]) -> Result<Vec<Rgb>, PictureError> {
     Ok(all)
 }
 
-/// Without what is not finite.
+/// Replaces colours that are not finite by black.
 fn tamed(mut plane: Vec<Rgb>) -> Vec<Rgb> {
     plane.iter_mut().filter(|c| !c.is_finite()).for_each(|c| *c = Rgb::BLACK);
     plane

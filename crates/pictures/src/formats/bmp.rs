@@ -1,4 +1,4 @@
-//! BMP, read only: textures of older models come in it. [BMP]
+//! BMP, read only: a texture format of older models. [BMP]
 
 use super::PictureFormatEntry;
 use super::guard::guarded;
@@ -26,34 +26,34 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "BMP";
 
-/// Samples, indices, and four planes of ours.
+/// Samples, indices, and our own four planes.
 const BYTES_PER_PIXEL: u64 = 4 + 1 + 4 * 4;
 
-/// What the headers say.
+/// The contents of the headers.
 struct Header {
     width: usize,
     height: usize,
     from_top: bool,
-    /// Bits of a pixel in the file.
+    /// Bits per pixel in the file.
     depth: u16,
     packing: Packing,
     palette: Vec<[u8; 3]>,
-    /// Where the pixels begin.
+    /// Offset of the pixels.
     pixels: usize,
 }
 
 /// How pixels are packed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Packing {
-    /// Indices, each of `depth` bits.
+    /// Indices of `depth` bits each.
     Indices,
-    /// Indices in runs.
+    /// Run-length encoded indices.
     Runs,
     /// Bits of red, green, blue and alpha.
     Masks([Mask; 4]),
 }
 
-/// Bits that stand together.
+/// Contiguous bits.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Mask {
     shift: u32,
@@ -71,7 +71,7 @@ impl Mask {
         Ok(Mask { shift, most })
     }
 
-    /// A number of 0 to 255.
+    /// The value scaled to 0..=255.
     fn of(self, pixel: u32) -> u8 {
         let most = u64::from(self.most);
         let part = u64::from(pixel >> self.shift) & most;
@@ -88,7 +88,7 @@ fn u32_at(bytes: &[u8], at: usize) -> Result<u32, PictureError> {
     Ok(u32::from(u16_at(bytes, at)?) | u32::from(u16_at(bytes, at + 2)?) << 16)
 }
 
-/// The bytes of the file's own header, before that of the picture.
+/// Size in bytes of the file header, which precedes the picture's header.
 const FILE_HEADER: usize = 14;
 
 impl Header {
@@ -98,7 +98,7 @@ impl Header {
             return invalid("it does not begin with BM".to_owned());
         }
         let size = u32_at(bytes, FILE_HEADER)? as usize;
-        // The first version has numbers of 16 bits, and entries of three bytes.
+        // The first version has 16-bit numbers, and palette entries of three bytes.
         let is_first = size == 12;
         if !is_first && !(16..=124).contains(&size) {
             return invalid(format!(
@@ -141,7 +141,7 @@ impl Header {
     }
 }
 
-/// How the pixels are packed, and with what bits.
+/// How the pixels are packed, and the bits of each channel.
 fn packing(bytes: &[u8], compression: u32, depth: u16) -> Result<Packing, PictureError> {
     let masks = |bits: [u32; 4]| {
         let [r, g, b, a] = bits.map(Mask::new);
@@ -153,7 +153,7 @@ fn packing(bytes: &[u8], compression: u32, depth: u16) -> Result<Packing, Pictur
         (0, 16) => masks([0x7c00, 0x03e0, 0x001f, 0]),
         (0, 24 | 32) => masks([0x00ff_0000, 0x0000_ff00, 0x0000_00ff, 0]),
         (3 | 6, 16 | 32) => {
-            // Headers of 40 bytes have the masks behind them, longer ones at the same place within.
+            // Headers of 40 bytes are followed by the masks; longer headers contain them at the same offset.
             let has_alpha = compression == 6 || u32_at(bytes, FILE_HEADER)? >= 56;
             let at = |i: usize| u32_at(bytes, FILE_HEADER + 40 + 4 * i);
             masks([at(0)?, at(1)?, at(2)?, if has_alpha { at(3)? } else { 0 }])
@@ -176,9 +176,10 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let (width, height) = (header.width, header.height);
     let pixels = limits.check(FORMAT, width as u64, height as u64, BYTES_PER_PIXEL)?;
     let data = bytes.get(header.pixels..).ok_or_else(cut)?;
-    // Rows are filled up to four bytes.
+    // Rows are padded to a multiple of four bytes.
     let row = (width * usize::from(header.depth)).div_ceil(32) * 4;
-    // Two bytes say 255 pixels at most; what a file is too short for takes no memory. The last row may end early.
+    // Two bytes encode at most 255 pixels, so no memory is taken for pixels that a file is too short to hold. The
+    // last row may end early.
     let is_whole = match header.packing {
         Packing::Runs => data.len() / 2 * 255 >= pixels,
         _ => data.len() + 3 >= row * height,
@@ -242,13 +243,13 @@ fn colour(header: &Header, index: u8) -> Result<[u8; 3], PictureError> {
     found.ok_or_else(|| PictureError::invalid(FORMAT, format!("its palette has no colour {index}")))
 }
 
-/// Indices, the top row first, of pixels in runs; those that are stepped over are 0.
+/// Indices of run-length encoded pixels, top row first; skipped pixels are 0.
 fn runs(header: &Header, data: &[u8], pixels: usize) -> Result<Vec<u8>, PictureError> {
     let cut = || PictureError::truncated(FORMAT, "the pixels");
     let (width, height) = (header.width, header.height);
     let mut indices = zeroed(FORMAT, pixels)?;
     let (mut x, mut y) = (0, 0);
-    // What goes beyond a row or the picture is left out.
+    // Pixels beyond a row or the picture are dropped.
     let mut put = |x: usize, y: usize, index: u8| {
         if x < width && y < height {
             let y = if header.from_top { y } else { height - 1 - y };
@@ -280,7 +281,7 @@ fn runs(header: &Header, data: &[u8], pixels: usize) -> Result<Vec<u8>, PictureE
                 let size = if nibbles { count.div_ceil(2) } else { count };
                 let plain = rest.get(..size).ok_or_else(cut)?;
                 (0..count).for_each(|i| put(x + i, y, of_byte(plain[if nibbles { i / 2 } else { i }], i)));
-                // Filled up to two bytes.
+                // Padded to a multiple of two bytes.
                 rest = rest.get(size.next_multiple_of(2)..).unwrap_or_default();
                 x += count;
             }

@@ -1,11 +1,11 @@
-//! Files: whole ones in, whole ones out.
+//! Reads and writes whole files.
 
 use crate::{Limits, PictureError};
 use std::fs::{self, File, OpenOptions};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-/// A file's bytes; errors where they are more than the limit, whatever the file says of its length.
+/// The bytes of a file; an error if they exceed the limit, whatever length the file claims to have.
 pub(super) fn read_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, PictureError> {
     let file = File::open(path).map_err(|source| PictureError::Io { action: "open it", source })?;
     let mut bytes = Vec::new();
@@ -19,10 +19,9 @@ pub(super) fn read_within(path: &Path, limits: &Limits) -> Result<Vec<u8>, Pictu
     Ok(bytes)
 }
 
-/// Writes a file in one step: whoever looks sees the old one or the new one, never a half. The bytes go
-/// into a new file beside the target, which is renamed over it once they are on the disk; where that fails
-/// the new file is removed. Links are followed, and what is not a plain file (a pipe, a terminal) is
-/// written to directly.
+/// Writes a file atomically: a reader sees either the old file or the new one, never a partial one. The bytes go into
+/// a new file next to the target, which is renamed over it once they are on the disk; if that fails, the new file is
+/// removed. Links are followed, and anything that is not a regular file (a pipe, a terminal) is written to directly.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
@@ -32,7 +31,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), PictureError> {
         create_beside(&target).map_err(|source| PictureError::Io { action: "write beside it", source })?;
     let written = fill(file, bytes).and_then(|()| fs::rename(&beside, &target));
     written.map_err(|source| {
-        // The first failure is the one to tell; that of cleaning up adds nothing.
+        // The first failure is the one to report; a failed cleanup adds nothing.
         let _ = fs::remove_file(&beside);
         PictureError::Io { action: "write it", source }
     })
@@ -43,7 +42,7 @@ fn fill(mut file: File, bytes: &[u8]) -> std::io::Result<()> {
     file.sync_all()
 }
 
-/// A new file in the target's folder, under a name that nobody has yet.
+/// Creates a new file in the target's folder, under a name that does not exist yet.
 fn create_beside(target: &Path) -> std::io::Result<(PathBuf, File)> {
     let name = target.file_name().unwrap_or_default().to_string_lossy();
     let process = std::process::id();

@@ -1,4 +1,4 @@
-//! OpenEXR: any number of named planes of halves, floats or integers, and texts. [OpenEXR]
+//! OpenEXR: any number of named planes of halves, floats or integers, and text attributes. [OpenEXR]
 
 use super::faults::exr::explain;
 use super::guard::guarded;
@@ -36,12 +36,12 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 pub(super) const FORMAT: &str = "EXR";
 
-/// No renderer makes so many, and every one of them costs time whatever its size.
+/// No renderer writes this many, and each of them costs time whatever its size.
 const MAX_CHANNELS: usize = 4096;
 
-/// The picture is what the display window shows: beyond a part's data window it is zero. Where there are
-/// several parts, their names go in front of their channels', but for the first one with plain colours.
-/// Colours of other primaries are taken to Rec. 709; all other samples stay as they are.
+/// The picture is the content of the display window: outside a part's data window it is zero. If there are several
+/// parts, their names are prefixed to those of their channels, except for the first part with plain colours. Colours
+/// with other primaries are converted to Rec. 709; all other samples stay as they are.
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let header_fault = |error| explain(error, bytes, None);
     let reader = ::exr::block::read(Cursor::new(bytes), false).map_err(header_fault)?;
@@ -62,7 +62,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     frame.into_picture(&meta)
 }
 
-/// Which pixels a block has, in words.
+/// The pixels of a block, in words.
 fn place_of(block: &CompressedBlock) -> String {
     match block {
         CompressedBlock::ScanLine(lines) => {
@@ -76,14 +76,14 @@ fn place_of(block: &CompressedBlock) -> String {
     }
 }
 
-/// The display window, and the planes that fill with what the parts hold.
+/// The display window, and the planes that receive the contents of the parts.
 struct Frame {
     window: IntegerBounds,
     parts: Vec<Part>,
 }
 
 struct Part {
-    /// Top left of the data window.
+    /// Top left corner of the data window.
     origin: Vec2<i32>,
     planes: Vec<Plane>,
     bytes_per_pixel: usize,
@@ -101,7 +101,7 @@ enum Samples {
 }
 
 impl Frame {
-    /// Makes room for all planes, after every size has been checked.
+    /// Allocates all planes, after every size has been checked.
     fn new(meta: &MetaData, limits: &Limits) -> Result<Frame, PictureError> {
         let channels: usize = meta.headers.iter().map(|header| header.channels.list.len()).sum();
         let window = meta
@@ -145,8 +145,8 @@ impl Frame {
         Ok(Frame { window, parts })
     }
 
-    /// Copies what a block shows within the display window. In a block, each row has the samples of the
-    /// first channel, then of the second, and so on.
+    /// Copies the visible part of a block into the display window. In a block, each row has the samples of the first
+    /// channel, then of the second, and so on.
     fn insert(&mut self, block: &UncompressedBlock) -> Result<(), PictureError> {
         let (width, height) = (self.window.size.width() as i64, self.window.size.height() as i64);
         let wrong = || PictureError::invalid(FORMAT, "a block of pixels is not where it should be");
@@ -183,7 +183,7 @@ impl Frame {
     fn into_picture(self, meta: &MetaData) -> Result<Picture, PictureError> {
         let mut picture = Picture::new(self.window.size.width(), self.window.size.height())?;
         let mut planes: Vec<Plane> = self.parts.into_iter().flat_map(|part| part.planes).collect();
-        // The file has them in the order of their names: A, B, G, R.
+        // The file stores them in the order of their names: A, B, G, R.
         planes.sort_by_cached_key(|plane| order(&plane.name));
         let mut taken = HashSet::new();
         for plane in planes {
@@ -219,7 +219,7 @@ impl Samples {
         if matches!(self, Samples::Halves(_)) { 2 } else { 4 }
     }
 
-    /// Copies the samples in `range` of a line to `start` and onward.
+    /// Copies the samples in `range` of a line to `start` and onwards.
     fn copy(&mut self, line: &[u8], range: std::ops::Range<usize>, start: usize) {
         let end = start + range.len();
         match self {
@@ -248,8 +248,8 @@ impl Samples {
     }
 }
 
-/// Refuses what the decoder cannot do, and blocks for which there is no room: they stand in memory
-/// compressed, uncompressed and in the stages between, up to five times as measured with DWAB.
+/// Rejects what the decoder cannot handle, and blocks for which there is not enough memory: they are held compressed,
+/// uncompressed and in the stages in between, up to five times their size as measured with DWAB.
 fn check_header(header: &Header, limits: &Limits) -> Result<(), PictureError> {
     if header.deep {
         return Err(unsupported("deep data".to_owned(), "save a flat picture"));
@@ -276,13 +276,13 @@ fn text(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
 }
 
-/// A channel's name with its part's in front, unless it is there already.
+/// A channel's name prefixed with that of its part, unless it already is.
 fn layered(layer: &str, name: String) -> String {
     let there = name.strip_prefix(layer).is_some_and(|rest| rest.starts_with('.'));
     if there { name } else { crate::picture::qualified(layer, &name) }
 }
 
-/// Layers in the order of their names, the main picture first; in each R, G, B, A, then the others.
+/// Layers in the order of their names, the main picture first; in each, R, G, B, A, then the others.
 fn order(name: &str) -> (String, usize, String) {
     let (layer, component) = name.rsplit_once('.').unwrap_or(("", name));
     let rank = ["R", "G", "B", "Y", "A"].iter().position(|&known| known == component).unwrap_or(usize::MAX);

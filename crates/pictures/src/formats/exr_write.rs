@@ -1,7 +1,7 @@
 //! Writing OpenEXR: one part, rows from the top, 32-bit floats and integers, ZIP. [OpenEXR]
 //!
-//! Header and tables are written here and not by the library, which keeps texts in a hash map: their order
-//! would change from run to run, and one picture has to give the same bytes every time.
+//! The header and tables are written here and not by the library, which keeps texts in a hash map: their order would
+//! change from run to run, and the same picture must always give the same bytes.
 
 use super::WriteOptions;
 use super::exr::FORMAT;
@@ -13,7 +13,7 @@ use ::exr::meta::attribute::{ChannelDescription, IntegerBounds, LineOrder, Sampl
 use ::exr::meta::header::{Header, standard_names};
 use std::borrow::Cow;
 
-/// One plane, whatever its type.
+/// A plane of any type.
 struct Plane<'a> {
     name: &'a str,
     samples: Samples<'a>,
@@ -27,7 +27,7 @@ enum Samples<'a> {
 /// Rows that are compressed together.
 const BLOCK_ROWS: usize = 16;
 
-/// The library's attributes that are texts, and which may hold anybody's.
+/// The library's text attributes, which may hold arbitrary text.
 const STANDARD_TEXTS: [&str; 7] =
     ["owner", "comments", "capDate", "software", "view", "renderingTransform", "lookModTransform"];
 
@@ -57,7 +57,7 @@ pub(super) fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, Pict
     Ok(bytes)
 }
 
-/// All planes in the order of their names, as the format wants them.
+/// All planes in the order of their names, as the format requires.
 fn sorted_planes(picture: &Picture) -> Result<Vec<Plane<'_>>, PictureError> {
     let floats =
         picture.channels().iter().map(|c| Plane { name: &c.name, samples: Samples::Floats(&c.samples) });
@@ -76,7 +76,7 @@ fn sorted_planes(picture: &Picture) -> Result<Vec<Plane<'_>>, PictureError> {
     }
 }
 
-/// What the library's compressor has to know.
+/// The header that the library's compressor needs.
 fn library_header(picture: &Picture, planes: &[Plane]) -> Header {
     let channels = planes
         .iter()
@@ -97,7 +97,7 @@ fn library_header(picture: &Picture, planes: &[Plane]) -> Header {
     )
 }
 
-/// Everything before the table of offsets.
+/// Everything before the offset table.
 fn header_bytes(picture: &Picture, planes: &[Plane]) -> Result<Vec<u8>, PictureError> {
     let right_bottom = [picture.width() as i32 - 1, picture.height() as i32 - 1];
     let window =
@@ -133,7 +133,7 @@ fn channel_list(planes: &[Plane]) -> Vec<u8> {
         let kind = if matches!(plane.samples, Samples::Integers(_)) { 0 } else { 2 };
         bytes.extend_from_slice(plane.name.as_bytes());
         bytes.push(0);
-        // Type; perceptually linear or not and three unused bytes; no subsampling in x and y.
+        // Type; whether perceptually linear, and three unused bytes; no subsampling in x and y.
         [kind, 0, 1, 1].iter().for_each(|field: &i32| bytes.extend_from_slice(&field.to_le_bytes()));
     }
     bytes.push(0);

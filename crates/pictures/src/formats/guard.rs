@@ -1,7 +1,7 @@
-//! The last line of defence around decoders that are not ours.
+//! The last line of defence around external decoders.
 //!
-//! Whatever we know to make them panic is refused beforehand; but a fuzzer found such inputs in decoders
-//! that had been fuzzed for years, so there will be others. A panic in one becomes an error here.
+//! Input that is known to make them panic is rejected beforehand; but a fuzzer found such input for decoders that had
+//! been fuzzed for years, so there will be more. A panic in one of them becomes an error here.
 
 use crate::PictureError;
 use std::cell::Cell;
@@ -11,13 +11,13 @@ thread_local! {
     static DECODING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// True while this thread is inside a guarded decoder, whose panic will become an error: a program's panic
-/// hook may then stay silent.
+/// True while this thread is inside a guarded decoder, whose panic will become an error: a program's panic hook may
+/// then stay silent.
 pub fn is_decoding() -> bool {
     DECODING.get()
 }
 
-/// Runs a decoder that shares nothing with the world but the bytes it reads.
+/// Runs a decoder that shares nothing with the rest of the program except the bytes that it reads.
 pub(super) fn guarded<T>(
     format: &'static str,
     decode: impl FnOnce() -> Result<T, PictureError>,
@@ -26,10 +26,11 @@ pub(super) fn guarded<T>(
     guarded_decoding(decode).unwrap_or_else(|| Err(contradicts()))
 }
 
-/// Runs any decoder that shares nothing with the world but the bytes it reads; none where it panics.
+/// Runs any decoder that shares nothing with the rest of the program except the bytes that it reads; `None` if it
+/// panics.
 pub fn guarded_decoding<T>(decode: impl FnOnce() -> T) -> Option<T> {
     let before = DECODING.replace(true);
-    // Nothing of what the decoder left half done outlives it.
+    // No half-finished state of the decoder outlives it.
     let outcome = catch_unwind(AssertUnwindSafe(decode));
     DECODING.set(before);
     outcome.ok()

@@ -1,7 +1,7 @@
 //! Radiance's RGBE pictures: three 8-bit mantissas under one exponent. [Ward 1991]
 //!
-//! A mantissa m under the exponent byte e means m · 2^(e − 136), as most programs have it (Radiance itself
-//! adds half a step, since it truncates where we round): so whole numbers up to 255 come back as they were.
+//! A mantissa m under the exponent byte e means m · 2^(e − 136), as in most programs (Radiance itself adds half a
+//! step, since it truncates where we round): so integers up to 255 are preserved exactly.
 
 use super::{PictureFormatEntry, WriteOptions, require_colour};
 use crate::limits::{reserved, zeroed};
@@ -29,7 +29,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "HDR";
 
-/// Three planes and the row in hand.
+/// Three planes and the current row.
 const BYTES_PER_PIXEL: u64 = 3 * 4;
 
 fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
@@ -38,7 +38,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let [width, height] = header.size();
     let pixels = limits.check(FORMAT, width as u64, height as u64, BYTES_PER_PIXEL)?;
     let [rows, columns] = header.axes.map(|axis| axis.length);
-    // The shortest row is one pixel and its repeats, so no room is made for rows that are not there.
+    // The shortest row is one pixel and its repeats, so no memory is taken for rows that are not there.
     let repeats = columns.ilog2() as usize / 8;
     if (source.bytes.len() - source.at) / (4 + 4 * repeats.min(1)) < rows {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
@@ -62,7 +62,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
 }
 
 struct Header {
-    /// What every channel is divided by.
+    /// The divisor of every channel.
     exposure: [f32; 3],
     xyz: bool,
     /// From row to row, then from pixel to pixel.
@@ -100,7 +100,7 @@ impl Header {
                         }
                     }
                 }
-                // Both may stand more than once, and multiply. [Ward 1991]
+                // Both may occur more than once, and multiply. [Ward 1991]
                 "EXPOSURE" => exposure = multiply(exposure, [number(key, value)?; 3]),
                 "COLORCORR" => {
                     let mut words = value.split_whitespace();
@@ -120,7 +120,7 @@ impl Header {
         if self.axes[0].vertical { [columns, rows] } else { [rows, columns] }
     }
 
-    /// Where in a plane the sample `j` of row `i` goes.
+    /// The index in a plane of sample `j` of row `i`.
     fn position(&self, i: usize, j: usize, width: usize) -> usize {
         let mut at = 0;
         for (axis, index) in self.axes.iter().zip([i, j]) {
@@ -180,7 +180,7 @@ fn resolution(line: &str) -> Result<[Axis; 2], PictureError> {
     if axes[0].vertical == axes[1].vertical { Err(wrong()) } else { Ok(axes) }
 }
 
-/// The bytes, and how far they have been read.
+/// The bytes, and the current position.
 struct Source<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -209,7 +209,7 @@ impl<'a> Source<'a> {
             }
         })?;
         self.at += end + 1;
-        // A line that is no text can only be a remark.
+        // A line that is not text can only be a comment.
         Ok(std::str::from_utf8(&window[..end]).unwrap_or("?"))
     }
 
@@ -231,7 +231,8 @@ impl<'a> Source<'a> {
         (0..4).try_for_each(|component| self.packed_component(component, row))
     }
 
-    /// Bytes of one component in runs: above 128 a repeated byte, else that many bytes as they are.
+    /// Run-length encoded bytes of one component: a count above 128 repeats a byte, otherwise that many bytes follow
+    /// as they are.
     fn packed_component(&mut self, component: usize, row: &mut [[u8; 4]]) -> Result<(), PictureError> {
         let mut rest = row.iter_mut();
         while rest.len() > 0 {
@@ -251,8 +252,8 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Plain pixels, where mantissas of 1, 1, 1 mean that the pixel before is repeated; repeats in a row
-    /// are the digits of one number, the lowest first, to the base of 256.
+    /// Plain pixels, where mantissas of 1, 1, 1 mean that the previous pixel is repeated; consecutive repeats are the
+    /// digits of one number, lowest first, to the base of 256.
     fn old_row(
         &mut self,
         columns: usize,
@@ -283,7 +284,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Nothing that a header says is longer.
+/// No header line is longer.
 const LONGEST_LINE: usize = 1 << 16;
 
 fn decode([r, g, b, e]: [u8; 4]) -> Rgb {
@@ -294,7 +295,7 @@ fn decode([r, g, b, e]: [u8; 4]) -> Rgb {
     Rgb::new((f64::from(r) * scale) as f32, (f64::from(g) * scale) as f32, (f64::from(b) * scale) as f32)
 }
 
-/// Rounds to the nearest mantissas. Below zero and not a number become 0; infinity the greatest there is.
+/// Rounds to the nearest mantissas. Negative values and NaN become 0; infinity becomes the format's maximum.
 fn encode(colour: Rgb) -> [u8; 4] {
     let colour = colour.map(|c| hold_within(c, GREATEST));
     let brightest = colour.max_channel();
@@ -311,16 +312,16 @@ fn encode(colour: Rgb) -> [u8; 4] {
     [r, g, b, (exponent + 128) as u8]
 }
 
-/// 255 · 2^119, the greatest number of the format.
+/// 255 · 2^119, the largest number of the format.
 const GREATEST: f32 = f32::from_bits(0x7eff_0000);
 
-/// 2 to a power of −1022 to 1023, exactly.
+/// 2 to an integer power from −1022 to 1023, exactly.
 fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// CIE XYZ with white at the equal-energy point, as Radiance has it, taken to linear Rec. 709: the matrix
-/// of the Rec. 709 primaries and D65 with each row scaled so that X = Y = Z is white.
+/// Converts CIE XYZ with white at the equal-energy point, as in Radiance, to linear Rec. 709: the matrix of the Rec.
+/// 709 primaries and D65, with each row scaled so that X = Y = Z is white.
 fn rec709_from_xyz(xyz: Rgb) -> Rgb {
     let [x, y, z] = xyz.to_array();
     Rgb::new(
@@ -349,7 +350,7 @@ fn write(picture: &Picture, _: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     Ok(bytes)
 }
 
-/// Runs of four or more equal bytes are packed; between them bytes stand as they are.
+/// Runs of four or more equal bytes are packed; the bytes between them are stored as they are.
 fn pack_component(row: &[[u8; 4]], component: usize, bytes: &mut Vec<u8>) {
     let value = |i: usize| row[i][component];
     let run = |start: usize| (start..row.len()).take(127).take_while(|i| value(*i) == value(start)).count();

@@ -1,4 +1,4 @@
-//! JPEG: textures come in it, and pictures for the web leave in it. [JPEG]
+//! JPEG: a format for textures, and for pictures on the web. [JPEG]
 
 use super::faults::jpeg::explain;
 use super::guard::guarded;
@@ -42,7 +42,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     decoder.decode_headers().map_err(|error| explain(&error, bytes))?;
     let info = decoder.info().ok_or_else(|| PictureError::invalid(FORMAT, "it has no frame header"))?;
     let pixels = limits.check(FORMAT, info.width.into(), info.height.into(), BYTES_PER_PIXEL)?;
-    // The decoder makes do with whatever pixels there are; we would rather say so.
+    // The decoder accepts whatever pixels there are; we report the missing ones instead.
     if !is_whole(bytes) {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
     }
@@ -57,8 +57,8 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     Ok(Interleaved { width: info.width.into(), height: info.height.into(), samples })
 }
 
-/// True when an end marker follows the first scan. Segments before it are stepped over, since the
-/// thumbnail in one may hold an end marker of its own.
+/// True when an end marker follows the first scan. Segments before it are skipped, since the thumbnail in one of them
+/// may contain an end marker of its own.
 fn is_whole(bytes: &[u8]) -> bool {
     let mut at = 2;
     while let Some([0xff, marker, high, low]) = bytes.get(at..at + 4) {
@@ -74,7 +74,7 @@ fn is_whole(bytes: &[u8]) -> bool {
     bytes.get(at..).is_some_and(|scan| scan.windows(2).any(|pair| pair == [0xff, 0xd9]))
 }
 
-/// Baseline, which everything reads. Colours are as fine as brightness from a quality of 90 on, and half as fine below.
+/// Baseline JPEG, which every program reads. Chroma has full resolution from a quality of 90 on, and half below.
 fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     let unwritable = |error: jpeg_encoder::EncodingError| PictureError::Unwritable {
         format: FORMAT,

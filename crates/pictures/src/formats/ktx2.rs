@@ -1,4 +1,4 @@
-//! KTX2, read only: textures of glTF files come in it, packed by Basis Universal. [KTX 2.0]
+//! KTX2, read only: textures of glTF files, compressed by Basis Universal. [KTX 2.0]
 
 use super::faults::ktx2::explain;
 use super::guard::guarded;
@@ -28,7 +28,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 const FORMAT: &str = "KTX2";
 const MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
 
-/// Pixels by Basis Universal or plain ones, a level unpacked, and four planes of ours.
+/// Basis Universal or plain pixels, an unpacked level, and our own four planes.
 const BYTES_PER_PIXEL: u64 = 4 + 4 + 4 * 4;
 
 /// What is known before anything is unpacked.
@@ -39,11 +39,11 @@ struct Header<'a> {
     pixels: Pixels<'a>,
 }
 
-/// How pixels lie in the file.
+/// How pixels are stored in the file.
 enum Pixels<'a> {
-    /// One to four bytes a pixel.
+    /// One to four bytes per pixel.
     Plain(&'a [u8]),
-    /// Packed by Basis Universal.
+    /// Compressed by Basis Universal.
     Packed { has_alpha: bool },
 }
 
@@ -60,13 +60,13 @@ fn u64_at(bytes: &[u8], at: usize) -> Result<u64, PictureError> {
     Ok(u64::from(u32_at(bytes, at)?) | u64::from(u32_at(bytes, at + 4)?) << 32)
 }
 
-/// True when a table of keys, from this byte of the file on, ends where its last key does, filled up to a multiple of 4 bytes. The
-/// decoder looks beyond where it does not.
+/// True when a key table that starts at this byte of the file ends where its last key does, padded to a multiple of 4
+/// bytes. Otherwise the decoder would read beyond it.
 fn are_whole(keys: &[u8], start: usize) -> bool {
     let mut at = 0;
     while keys.len().saturating_sub(at) > 4 {
         let Ok(length) = u32_at(keys, at) else { return false };
-        // What is too long ends the decoder's search.
+        // A length that is too large ends the decoder's search.
         if length < 2 || length as usize > keys.len() - at - 4 {
             return true;
         }
@@ -75,7 +75,7 @@ fn are_whole(keys: &[u8], start: usize) -> bool {
     at <= keys.len()
 }
 
-/// The bytes that an offset and a length of the file name.
+/// The bytes at an offset and length that the file states.
 fn part<'a>(bytes: &'a [u8], [offset, length]: [u64; 2], what: &str) -> Result<&'a [u8], PictureError> {
     let end = offset.checked_add(length).and_then(|end| usize::try_from(end).ok());
     let start = usize::try_from(offset).ok();
@@ -84,7 +84,7 @@ fn part<'a>(bytes: &'a [u8], [offset, length]: [u64; 2], what: &str) -> Result<&
 }
 
 impl<'a> Header<'a> {
-    /// Checks whatever a decoder will take memory for.
+    /// Checks everything for which a decoder will allocate memory.
     fn read(bytes: &'a [u8], limits: &Limits) -> Result<Header<'a>, PictureError> {
         let invalid = |what: String| Err(PictureError::invalid(FORMAT, what));
         let [kind, width, height, depth, layers, faces, levels, scheme] = {
@@ -114,7 +114,7 @@ impl<'a> Header<'a> {
         for level in 0..levels.max(1) as usize {
             let at = 80 + 24 * level;
             let packed = part(bytes, [u64_at(bytes, at)?, u64_at(bytes, at + 8)?], "a level")?;
-            // A level unpacks to a byte a pixel, in whole blocks of 4 x 4.
+            // A level unpacks to one byte per pixel, in whole blocks of 4 x 4.
             let most = (u64::from(width) + 3) * (u64::from(height) + 3) * 4;
             if u64_at(bytes, at + 16)? > most {
                 return invalid(format!("level {level} has more bytes than its pixels can have"));
@@ -125,7 +125,7 @@ impl<'a> Header<'a> {
         }
         let pixels = match (kind, model) {
             (0, ETC1S | UASTC) if scheme <= 2 => {
-                // Where pixels have an alpha, a second sample says so, or a channel of the only one.
+                // Where pixels have alpha, a second sample says so, or a channel of the only sample.
                 let has_alpha = match model {
                     ETC1S => descriptor.len() > 44,
                     _ => matches!(descriptor.get(31).map(|channel| channel & 15), Some(3 | 5)),
@@ -169,7 +169,7 @@ impl<'a> Header<'a> {
     }
 }
 
-/// Bytes of a pixel of a plain format that is read: R8, R8G8B8 and R8G8B8A8, in numbers and in sRGB. [KTX 2.0]
+/// Bytes per pixel of the supported plain formats: R8, R8G8B8 and R8G8B8A8, linear and sRGB. [KTX 2.0]
 fn channels_of(kind: u32) -> Option<usize> {
     match kind {
         9 | 15 => Some(1),
@@ -179,7 +179,7 @@ fn channels_of(kind: u32) -> Option<usize> {
     }
 }
 
-/// [`super::read_rgba8`]; none where the file says that its colours are linear.
+/// See [`super::read_rgba8`]; `None` if the file says that its colours are linear.
 fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
     let header = Header::read(bytes, limits)?;
     if header.is_srgb { Ok(header.unpacked(bytes)?.rgba8()) } else { Ok(None) }
@@ -199,7 +199,7 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    /// The picture that the seeds were made of, by another program: ramps, and squares of 4 by 4 in blue.
+    /// The picture from which another program made the seeds: ramps, and squares of 4 by 4 in blue.
     fn truth(x: usize, y: usize) -> [f32; 3] {
         let blue = if (x / 4 + y / 4) % 2 == 1 { 200.0 } else { 40.0 };
         [x as f32 / 19.0, y as f32 / 11.0, blue / 255.0]

@@ -1,4 +1,4 @@
-//! Picture files. To add a format: a file with its `ENTRY`, and a line in the table.
+//! Picture files. To add a format, add a file with its `ENTRY`, and a line in the table.
 
 mod bmp;
 mod disk;
@@ -32,7 +32,7 @@ use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 use std::path::Path;
 
-/// Every format that there is.
+/// Every available format.
 pub const PICTURE_FORMATS: &[PictureFormatEntry] = &[
     png::ENTRY,
     exr::ENTRY,
@@ -53,45 +53,45 @@ pub const PICTURE_FORMATS: &[PictureFormatEntry] = &[
 pub struct PictureFormatEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// Lower-case extensions without the dot, the usual one first.
+    /// Lower-case extensions without the dot, the most common one first.
     pub extensions: &'static [&'static str],
     /// True when samples are encoded for a display: exposure and tone map apply when writing.
     pub for_display: bool,
-    /// True when a file of this format may begin with these bytes; never, where a format has no mark of its own.
+    /// True when a file of this format may begin with these bytes; never, if the format has no signature.
     pub sniff: fn(&[u8]) -> bool,
-    /// True when a file can be transparent; other formats hold the picture in front of a colour.
+    /// True when a file can be transparent; other formats store the picture composited over a background colour.
     pub holds_alpha: bool,
     /// Reads a whole file.
     pub read: ReadFn,
-    /// Reads it where it is stored in sRGB bytes, and gives none where it is not; `None` where that would save nothing.
+    /// Reads a file that stores sRGB bytes, and returns none for other files; `None` where that would save nothing.
     pub read_rgba8: Option<ReadRgba8Fn>,
-    /// Writes a whole file; `None` where the format is only read.
+    /// Writes a whole file; `None` if the format is read only.
     pub write: Option<WriteFn>,
 }
 
-/// How a format is read.
+/// Type of the function that reads a format.
 pub type ReadFn = fn(&[u8], &Limits) -> Result<Picture, PictureError>;
-/// How a format is read into four bytes a pixel.
+/// Type of the function that reads a format into four bytes per pixel.
 pub type ReadRgba8Fn = fn(&[u8], &Limits) -> Result<Option<Rgba8>, PictureError>;
-/// How a format is written.
+/// Type of the function that writes a format.
 pub type WriteFn = fn(&Picture, &WriteOptions) -> Result<Vec<u8>, PictureError>;
 
-/// What a writer may be told. Each looks only at what it knows.
+/// Options for writers. Each writer uses only those that it knows.
 #[derive(Clone, Copy, Debug)]
 pub struct WriteOptions {
-    /// How fine the steps of PNG and PPM are.
+    /// Bits per sample of PNG and PPM.
     pub bit_depth: BitDepth,
-    /// Stops by which pictures for a display are brightened; other formats keep the light as it is.
+    /// Exposure in stops, for pictures for a display; other formats keep the light as it is.
     pub exposure: f32,
-    /// The curve for pictures for a display.
+    /// The tone map for pictures for a display.
     pub tone_map: &'static ToneMapEntry,
-    /// What shows through what is transparent, in linear light of a display, in pictures for one.
+    /// Background colour behind transparent pixels, in linear display light, in pictures for a display.
     pub behind: Option<Rgb>,
-    /// Of a JPEG, from 1 to 100: how true it is to the picture, and how large.
+    /// Quality of a JPEG, from 1 to 100: higher is more faithful and larger.
     pub quality: u8,
 }
 
-/// How many steps a sample of a picture for a display has.
+/// Number of steps of a sample in a picture for a display.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BitDepth {
     /// 256 steps.
@@ -101,7 +101,7 @@ pub enum BitDepth {
     Sixteen,
 }
 
-/// The quality of a JPEG unless another is asked for: artefacts that nobody sees, in a sixth of a PNG's bytes.
+/// The default JPEG quality: no visible artefacts, in a sixth of a PNG's bytes.
 pub const DEFAULT_QUALITY: u8 = 92;
 
 impl Default for WriteOptions {
@@ -121,8 +121,8 @@ pub fn read(path: impl AsRef<Path>) -> Result<Picture, PictureError> {
     read_with(path, &Limits::default())
 }
 
-/// Reads a picture file. Its first bytes say what it is; the extension only where they do not.
-/// Samples are kept as they are in the file: see [`Picture::into_linear`].
+/// Reads a picture file. Its first bytes determine its format; the extension is used only if they do not. Samples are
+/// kept as they are in the file: see [`Picture::into_linear`].
 pub fn read_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, PictureError> {
     let path = path.as_ref();
     let bytes = disk::read_within(path, limits).map_err(|error| error.in_file(path))?;
@@ -130,8 +130,8 @@ pub fn read_with(path: impl AsRef<Path>, limits: &Limits) -> Result<Picture, Pic
     read_bytes(&bytes, extension, limits).map_err(|error| error.in_file(path))
 }
 
-/// Reads a picture from memory. `hint`, a format's name or extension, is asked only where the first
-/// bytes do not tell what this is.
+/// Reads a picture from memory. `hint`, a format's name or extension, is used only if the first bytes do not
+/// determine the format.
 pub fn read_bytes(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<Picture, PictureError> {
     (row_of(bytes, hint)?.read)(bytes, limits)
 }
@@ -146,8 +146,8 @@ fn row_of(bytes: &[u8], hint: Option<&str>) -> Result<&'static PictureFormatEntr
     }
 }
 
-/// Writes a picture file in one step: beside the target first, then renamed over it. The extension
-/// chooses the format.
+/// Writes a picture file atomically: first next to the target, then renamed over it. The extension chooses the
+/// format.
 pub fn write(path: impl AsRef<Path>, picture: &Picture, options: &WriteOptions) -> Result<(), PictureError> {
     let path = path.as_ref();
     let row = format_of_path(path)?;
@@ -161,8 +161,8 @@ pub fn write_bytes(format: &str, picture: &Picture, options: &WriteOptions) -> R
     encode(row.ok_or_else(|| unknown(format, "written", |row| row.write.is_some()))?, picture, options)
 }
 
-/// The format that a picture of this name would be written in; so that a command line can be refused
-/// before the work. Errors, with the nearest name, where no format goes by the extension.
+/// The format in which a picture of this name would be written; it lets a command line be rejected before the work.
+/// Returns an error with the closest name if no format has this extension.
 pub fn format_of_path(path: impl AsRef<Path>) -> Result<&'static PictureFormatEntry, PictureError> {
     let path = path.as_ref();
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
@@ -171,7 +171,7 @@ pub fn format_of_path(path: impl AsRef<Path>) -> Result<&'static PictureFormatEn
         .ok_or_else(|| unknown(extension, "written", |row| row.write.is_some()).in_file(path))
 }
 
-/// The format of this name or extension, in any case.
+/// The format with this name or extension, in upper or lower case.
 pub fn format_named(name: &str) -> Option<&'static PictureFormatEntry> {
     let name = name.to_lowercase();
     PICTURE_FORMATS.iter().find(|row| row.entry.name == name || row.extensions.contains(&&name[..]))
@@ -188,7 +188,7 @@ fn encode(
 
 fn unknown(name: &str, verb: &'static str, able: fn(&PictureFormatEntry) -> bool) -> PictureError {
     let names = PICTURE_FORMATS.iter().filter(|row| able(row)).flat_map(|row| row.extensions.iter().copied());
-    // A format that is known, but only read, is not misspelt.
+    // A format that is known, but read only, is not misspelt.
     let suggestion = if format_named(name).is_some() { None } else { nearest(name, names) };
     PictureError::UnknownFormat { name: name.to_owned(), verb, suggestion, known: known(able) }
 }
@@ -198,7 +198,7 @@ fn known(able: fn(&PictureFormatEntry) -> bool) -> String {
     rows.map(|row| row.entry.name).collect::<Vec<_>>().join(", ")
 }
 
-/// The planes that a display format writes, in its order: `R G B` or `Y`, and `A` where there is one.
+/// The planes that a display format writes, in its order: `R G B` or `Y`, and `A` if present.
 pub(crate) struct DisplayPlanes {
     pub(crate) picture: Picture,
     pub(crate) names: Vec<&'static str>,
@@ -223,7 +223,8 @@ fn display_planes(
     Ok(DisplayPlanes { picture, names })
 }
 
-/// The same for a format without alpha: what is transparent shows white, unless the options have another colour.
+/// The same for a format without alpha: transparent pixels are composited over white, unless the options have another
+/// colour.
 fn opaque_planes(
     format: &'static str,
     picture: &Picture,
@@ -235,7 +236,7 @@ fn opaque_planes(
     Ok(planes)
 }
 
-/// Refuses sides that a format has no room for.
+/// Rejects sides that are too long for a format.
 fn check_sides(format: &'static str, picture: &Picture, most: usize) -> Result<[u16; 2], PictureError> {
     let (width, height) = (picture.width(), picture.height());
     match [width, height].map(u16::try_from) {
@@ -263,12 +264,12 @@ fn require_colour(format: &'static str, picture: &Picture) -> Result<(), Picture
 }
 
 impl DisplayPlanes {
-    /// Interleaved samples of 0..=255, rounded half up; what is not a number becomes 0.
+    /// Interleaved samples of 0..=255, rounded half up; NaN becomes 0.
     pub(crate) fn to_u8(&self, names: &[&str]) -> Vec<u8> {
         self.interleave(names, |sample| [quantise(sample, 255.0) as u8])
     }
 
-    /// Interleaved big-endian samples of 0..=65535, rounded half up; what is not a number becomes 0.
+    /// Interleaved big-endian samples of 0..=65535, rounded half up; NaN becomes 0.
     pub(crate) fn to_u16_be(&self, names: &[&str]) -> Vec<u8> {
         self.interleave(names, |sample| (quantise(sample, 65535.0) as u16).to_be_bytes())
     }
@@ -283,7 +284,7 @@ impl DisplayPlanes {
     }
 }
 
-/// A sample of 0..=1 to one of `steps`, rounded half up. In f64, so that every step comes back.
+/// Quantises a sample of 0..=1 to `steps`, rounded half up. In f64, so that every step survives a round trip.
 pub(crate) fn quantise(sample: f32, steps: f64) -> u32 {
     (f64::from(hold_within(sample, 1.0)) * steps + 0.5).floor() as u32
 }

@@ -1,4 +1,4 @@
-//! PFM: 32-bit floats, uncompressed, the bottom row first. [Debevec PFM]
+//! PFM: 32-bit floats, uncompressed, bottom row first. [Debevec PFM]
 
 use super::tokens::Tokens;
 use super::{PictureFormatEntry, WriteOptions, require_colour};

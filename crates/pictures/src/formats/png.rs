@@ -1,4 +1,4 @@
-//! PNG: all that it can hold comes in; 8 or 16 bits, sRGB, go out. [PNG]
+//! PNG: reads everything that the format can hold; writes sRGB with 8 or 16 bits. [PNG]
 
 use super::faults::png::explain;
 use super::guard::guarded;
@@ -29,16 +29,16 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "PNG";
 
-/// The decoder's buffer of at most 8 bytes a pixel, and four planes.
+/// The decoder's buffer of at most 8 bytes per pixel, and four planes.
 const BYTES_PER_PIXEL: u64 = 8 + 4 * 4;
 
-/// Texts longer than this are left out: they are not what a picture is read for.
+/// Texts longer than this are dropped: nobody reads a picture for them.
 const LONGEST_TEXT: usize = 1 << 20;
 
-/// A decoder that has given its pixels, and these.
+/// A decoder that has returned its pixels, and the pixels.
 type Decoded<'b> = (::png::Reader<Cursor<&'b [u8]>>, ::png::OutputInfo, Vec<u8>);
 
-/// The samples as they are stored, palettes and few bits made bytes.
+/// The samples as they are stored; palettes and samples of less than 8 bits are expanded to bytes.
 fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<Decoded<'b>, PictureError> {
     let memory = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), ::png::Limits { bytes: memory });
@@ -47,7 +47,7 @@ fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<
     let (width, height) = (header.width, header.height);
     limits.check(FORMAT, width.into(), height.into(), bytes_per_pixel)?;
     let mut reader = decoder.read_info().map_err(|error| explain(&error, bytes))?;
-    // The decoder takes the length of a palette on trust.
+    // The decoder trusts the length of a palette.
     if reader.info().palette.as_ref().is_some_and(|palette| palette.is_empty() || palette.len() % 3 != 0) {
         return Err(PictureError::invalid(FORMAT, "its palette is not a whole number of colours"));
     }
@@ -61,7 +61,7 @@ fn decode<'b>(bytes: &'b [u8], limits: &Limits, bytes_per_pixel: u64) -> Result<
     Ok((reader, frame, samples))
 }
 
-/// [`super::read_rgba8`].
+/// See [`super::read_rgba8`].
 pub(super) fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
     let (reader, frame, samples) = decode(bytes, limits, 8 + 4)?;
     let is_plain =
@@ -94,14 +94,14 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     for (name, plane) in names.iter().zip(planes) {
         picture.push_channel(*name, plane)?;
     }
-    // Texts may stand after the pixels; what is damaged there does not harm the picture.
+    // Texts may come after the pixels; damage there does not affect the picture.
     let _ = reader.finish();
     read_texts(reader.info(), &mut picture);
     Ok(picture)
 }
 
-/// What the samples mean: sRGB unless a `gAMA` chunk says otherwise. 1/2.2 is how files say sRGB without
-/// the chunk of that name. [PNG, 4.3 and 13.13]
+/// The meaning of the samples: sRGB unless a `gAMA` chunk says otherwise. 1/2.2 is how files say sRGB without the
+/// chunk of that name. [PNG, 4.3 and 13.13]
 fn colour_space(info: &Info) -> ColourSpace {
     let Some(gamma) = info.gama_chunk.filter(|_| info.srgb.is_none()).map(|gamma| gamma.into_value()) else {
         return ColourSpace::Srgb;
@@ -109,7 +109,7 @@ fn colour_space(info: &Info) -> ColourSpace {
     match gamma {
         1.0 => ColourSpace::LinearRec709,
         gamma if (gamma - 1.0 / 2.2).abs() < 0.01 => ColourSpace::Srgb,
-        // Such files exist, and mean nothing: they are shown as if the chunk were missing.
+        // Such files exist, and their value is meaningless: they are shown as if the chunk were missing.
         gamma if !(0.05..=20.0).contains(&gamma) => ColourSpace::Srgb,
         gamma => ColourSpace::Gamma(gamma),
     }
@@ -153,7 +153,7 @@ fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureEr
             planes.to_u16_be(&planes.names)
         }
     };
-    // A fifth larger than the best, in a fifth of its time.
+    // A fifth larger than with the best compression, in a fifth of its time.
     encoder.set_compression(Compression::Fast);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
     for (keyword, text) in &picture.metadata {

@@ -1,4 +1,4 @@
-//! PBM, PGM and PPM, in text and binary: the simplest pictures there are. [Netpbm]
+//! PBM, PGM and PPM, in text and binary: the simplest picture formats. [Netpbm]
 
 use super::tokens::Tokens;
 use super::{BitDepth, PictureFormatEntry, WriteOptions, opaque_planes};
@@ -43,7 +43,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
         return Err(PictureError::invalid(FORMAT, what));
     }
     let pixels = limits.check(FORMAT, width, height, 4 * channels)?;
-    // What the shortest file of this size takes, so that no room is made for pixels that are not there.
+    // The size of the shortest file of these dimensions, so that no memory is taken for pixels that are not there.
     let shortest = match magic {
         "P1" => pixels,
         "P2" | "P3" => pixels.saturating_mul(2 * channels as usize).saturating_sub(1),

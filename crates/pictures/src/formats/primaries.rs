@@ -1,4 +1,4 @@
-//! Linear colours of other primaries (an EXR's `chromaticities`) taken to Rec. 709.
+//! Converts linear colours of other primaries (an EXR's `chromaticities`) to Rec. 709.
 
 use crate::Picture;
 use crate::picture::qualified;
@@ -6,16 +6,16 @@ use crate::picture::qualified;
 /// Chromaticities x, y of red, green, blue and white.
 pub(super) type Primaries = [[f64; 2]; 4];
 
-/// Rec. 709 with D65: what a file without chromaticities means.
+/// Rec. 709 with D65: the default for a file without chromaticities.
 const REC709: Primaries = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
-/// Differences below this are roundings of the same primaries.
+/// Smaller differences are roundings of the same primaries.
 const SAME: f64 = 1e-3;
 
 type Matrix = [[f64; 3]; 3];
 
-/// Converts the colours of the main picture and of all layers. Primaries on one line, which span no
-/// colours, leave the picture as it is.
+/// Converts the colours of the main picture and of all layers. Collinear primaries, which span no gamut, leave the
+/// picture as it is.
 pub(super) fn to_rec709(picture: &mut Picture, from: Primaries) {
     let differs = from.iter().zip(REC709).any(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > SAME);
     let Some(matrix) = matrix_to_rec709(from).filter(|_| differs) else { return };
@@ -39,7 +39,7 @@ fn planes(picture: &Picture, names: &[String; 3]) -> Option<[Vec<f32>; 3]> {
     Some([r?, g?, b?])
 }
 
-/// From linear colours of these primaries to linear Rec. 709, white to white. [Lindbloom RGB]
+/// The matrix from linear colours of these primaries to linear Rec. 709, with white mapped to white. [Lindbloom RGB]
 fn matrix_to_rec709(from: Primaries) -> Option<Matrix> {
     let to_xyz = xyz_from_rgb(from)?;
     let adapted = multiply(&adaptation(from[3], REC709[3])?, &to_xyz);
@@ -51,7 +51,7 @@ fn xyz([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// The columns are the primaries, scaled so that they sum up to white.
+/// The columns are the primaries, scaled so that their sum is white.
 fn xyz_from_rgb(primaries: Primaries) -> Option<Matrix> {
     let [r, g, b, white] = primaries.map(xyz);
     let columns = [0, 1, 2].map(|row: usize| [r[row], g[row], b[row]]);
@@ -59,10 +59,10 @@ fn xyz_from_rgb(primaries: Primaries) -> Option<Matrix> {
     Some(columns.map(|row| [row[0] * scales[0], row[1] * scales[1], row[2] * scales[2]]))
 }
 
-/// Responses of the cones, sharpened: Bradford's matrix. [Lindbloom RGB]
+/// Sharpened cone responses: Bradford's matrix. [Lindbloom RGB]
 const BRADFORD: Matrix = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
 
-/// What XYZ under one white becomes under another.
+/// Chromatic adaptation of XYZ from one white point to another.
 fn adaptation(from: [f64; 2], to: [f64; 2]) -> Option<Matrix> {
     let [from, to] = [from, to].map(|white| apply(&BRADFORD, xyz(white)));
     let scaled = [0, 1, 2].map(|row: usize| BRADFORD[row].map(|m| m * to[row] / from[row]));
@@ -77,7 +77,7 @@ fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| [0, 1, 2].map(|column: usize| (0..3).map(|k| row[k] * b[k][column]).sum()))
 }
 
-/// By cofactors; `None` where there is none.
+/// The inverse by cofactors; `None` if the matrix is singular.
 fn inverse(m: &Matrix) -> Option<Matrix> {
     let cofactor = |row: usize, column: usize| {
         let at = |i: usize, j: usize| m[(row + i) % 3][(column + j) % 3];

@@ -1,21 +1,21 @@
-//! Pictures in bytes: textures take four a pixel, without a detour by planes.
+//! Pictures as bytes: textures take four per pixel, without a detour through planes.
 
 use super::{planes_of, row_of};
 use crate::{Alpha, ColourSpace, Limits, Picture, PictureError};
 
-/// Bytes of an sRGB picture, alpha not multiplied in.
+/// Bytes of an sRGB picture with straight alpha.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rgba8 {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: usize,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: usize,
-    /// In rows, the top one first.
+    /// In rows from the top.
     pub texels: Vec<[u8; 4]>,
 }
 
-/// Decodes what is stored in sRGB bytes. `None` for all else, which [`super::read_bytes`] reads. Where both do, they give the
-/// same, and this in a quarter of the memory.
+/// Decodes a picture that is stored in sRGB bytes. Returns `None` for any other picture, which [`super::read_bytes`]
+/// reads. Where both apply, they give the same result, and this function takes a quarter of the memory.
 ///
 /// # Errors
 /// As [`super::read_bytes`].
@@ -23,8 +23,8 @@ pub fn read_rgba8(bytes: &[u8], hint: Option<&str>, limits: &Limits) -> Result<O
     row_of(bytes, hint)?.read_rgba8.map_or(Ok(None), |read| read(bytes, limits))
 }
 
-/// Interleaved bytes of one to four channels (grey, grey and alpha, colours, colours and alpha), in sRGB, alpha not
-/// multiplied in.
+/// Interleaved bytes of one to four channels (grey, grey and alpha, colour, colour and alpha), in sRGB with straight
+/// alpha.
 pub(super) struct Interleaved {
     pub(super) width: usize,
     pub(super) height: usize,
@@ -68,7 +68,8 @@ impl Interleaved {
         Some(Rgba8 { width: self.width, height: self.height, texels })
     }
 
-    /// Makes all of it opaque where none of it is: writers that know of no alpha leave noughts in its place.
+    /// Makes a picture opaque if its alpha is zero everywhere: writers that do not know alpha leave zeros in its
+    /// place.
     pub(super) fn show_what_is_all_transparent(&mut self) {
         let channels = self.channels();
         let first = channels.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! TGA, read only: textures of older models come in it. [TGA 2.0]
+//! TGA, read only: a texture format of older models. [TGA 2.0]
 
 use super::PictureFormatEntry;
 use super::guard::guarded;
@@ -7,7 +7,7 @@ use crate::limits::zeroed;
 use crate::{Limits, PictureError};
 use bilux_math::registry::Entry;
 
-/// The row of `tga`. Such a file has no mark at its beginning: its name has to say what it is.
+/// The row of `tga`. Such a file has no signature at its beginning: its name has to say what it is.
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "tga",
@@ -26,18 +26,18 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "TGA";
 
-/// Samples, and four planes of ours.
+/// Samples, and our own four planes.
 const BYTES_PER_PIXEL: u64 = 4 + 4 * 4;
 
-/// What the first 18 bytes say.
+/// The contents of the first 18 bytes.
 struct Header {
     width: usize,
     height: usize,
     kind: Kind,
     in_runs: bool,
-    /// Bits of a pixel in the file.
+    /// Bits per pixel in the file.
     depth: u8,
-    /// Bits of a pixel's alpha, as far as the file says so.
+    /// Alpha bits per pixel, as far as the file states them.
     alpha_bits: u8,
     from_right: bool,
     from_top: bool,
@@ -51,7 +51,7 @@ enum Kind {
     Greys,
 }
 
-/// Where the palette lies.
+/// The location of the palette.
 struct Palette {
     at: usize,
     first: usize,
@@ -59,7 +59,7 @@ struct Palette {
     depth: u8,
 }
 
-/// Bytes of a pixel or an entry of this many bits.
+/// Bytes of a pixel or palette entry with this many bits.
 fn bytes_of(depth: u8) -> usize {
     usize::from(depth).div_ceil(8)
 }
@@ -113,7 +113,7 @@ impl Header {
         })
     }
 
-    /// Bits of a colour in the file, and how many channels it becomes.
+    /// Bits of a colour in the file, and the number of channels that it becomes.
     fn colour(&self) -> (u8, usize) {
         let depth = if self.kind == Kind::Indices { self.palette.depth } else { self.depth };
         let channels = match (self.kind, depth) {
@@ -139,7 +139,8 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let each = bytes_of(header.depth);
     let (depth, channels) = header.colour();
     let mut samples = Samples { header: &header, out: Vec::new(), depth, channels, palette };
-    // The shortest packet says most, 128 pixels; what a file is too short for takes no memory.
+    // The shortest packet encodes the most, 128 pixels, so no memory is taken for pixels that a file is too short to
+    // hold.
     let most = if header.in_runs { data.len() / (1 + each) * 128 } else { data.len() / each };
     if most < pixels {
         return Err(PictureError::truncated(FORMAT, "the pixels"));
@@ -159,18 +160,18 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     Ok(whole)
 }
 
-/// Pixels on their way from the file to their places.
+/// Pixels on their way from the file to their positions.
 struct Samples<'a> {
     header: &'a Header,
     palette: &'a [u8],
-    /// Bits of a colour.
+    /// Bits per colour.
     depth: u8,
     channels: usize,
     out: Vec<u8>,
 }
 
 impl Samples<'_> {
-    /// Pixels in packets: runs of one, and sequences as they are. Packets may go on in the next row.
+    /// Unpacks pixels: run-length packets and raw packets. A packet may continue in the next row.
     fn unpack(&mut self, data: &[u8], pixels: usize) -> Result<(), PictureError> {
         let cut = || PictureError::truncated(FORMAT, "the pixels");
         let each = bytes_of(self.header.depth);
@@ -189,7 +190,7 @@ impl Samples<'_> {
         Ok(())
     }
 
-    /// Puts a pixel of the file, counted as it is stored, where it belongs.
+    /// Stores a pixel at its position, given its number in the order of the file.
     fn put(&mut self, number: usize, pixel: &[u8]) -> Result<(), PictureError> {
         let Header { width, height, from_right, from_top, .. } = *self.header;
         let (x, y) = (number % width, number / width);
@@ -206,7 +207,7 @@ impl Samples<'_> {
         Ok(())
     }
 
-    /// A colour of the palette.
+    /// A colour from the palette.
     fn entry(&self, index: &[u8]) -> Result<[u8; 4], PictureError> {
         let index = index.iter().rev().fold(0, |index, &byte| index << 8 | usize::from(byte));
         let each = bytes_of(self.depth);
@@ -217,7 +218,7 @@ impl Samples<'_> {
     }
 }
 
-/// Red, green, blue and alpha of 15, 16, 24 or 32 bits.
+/// Red, green, blue and alpha from 15, 16, 24 or 32 bits.
 fn colour(stored: &[u8], depth: u8) -> [u8; 4] {
     match (stored, depth) {
         (&[b, g, r, a], _) => [r, g, b, a],
@@ -264,7 +265,7 @@ mod tests {
 
     #[test]
     fn runs_palettes_and_few_bits() {
-        // Three as they are, of which the last is in the next row; then a run.
+        // Three raw pixels, the last of which is in the next row; then a run.
         check(&file(10, 24, 32, &[2, 0, 0, 255, 0, 255, 0, 255, 0, 0, 128, 255, 255, 255]));
         check(&file(2, 16, 32, &[0, 0x7c, 0xe0, 0x03, 0x1f, 0, 0xff, 0x7f]));
         let mut palette = file(1, 8, 32, &[]);

@@ -1,4 +1,4 @@
-//! TIFF, read only: scans, maps and textures of films come in it. [TIFF 6.0]
+//! TIFF, read only: a format of scans, maps and film textures. [TIFF 6.0]
 
 use super::faults::tiff::{colours, explain, unsupported};
 use super::guard::guarded;
@@ -32,13 +32,13 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "TIFF";
 
-/// No way of packing makes so many bytes of one: what a file is too short for takes no memory.
+/// Upper bound on the compression ratio: no memory is taken for pixels that a file is too short to hold.
 const MAX_OF_A_BYTE: u64 = 4096;
 
-/// More channels than any picture has, those that are left out among them.
+/// More channels than any picture has, including those that are ignored.
 const MAX_CHANNELS: u16 = 64;
 
-/// What is multiplied into the colours.
+/// Whether the colours are multiplied by alpha.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Opacity {
     None,
@@ -46,25 +46,25 @@ enum Opacity {
     Premultiplied,
 }
 
-/// Samples as they are stored, and how they lie.
+/// Samples as they are stored, and their layout.
 struct Decoded {
     width: usize,
     height: usize,
     samples: DecodingResult,
-    /// Bits of a sample in the file.
+    /// Bits per sample in the file.
     bits: u8,
-    /// Channels there are, and which of them are taken: one or three, and alpha behind them.
+    /// The number of channels, and those that are used: one or three colours, followed by alpha.
     channels: usize,
     colours: usize,
     opacity: Opacity,
-    /// Each channel lies by itself.
+    /// Whether each channel is stored separately.
     in_planes: bool,
-    /// Which corner the first pixel is in, from 1 to 8.
+    /// The corner in which the first pixel is, from 1 to 8.
     orientation: u16,
 }
 
-/// True when no text of the first directory says that it is longer than the file. The decoder takes memory for what it says,
-/// and complains on the terminal. [TIFF 6.0, section 2]
+/// True when no text of the first directory claims to be longer than the file. The decoder allocates memory for the
+/// claimed length, and prints a complaint on the terminal. [TIFF 6.0, section 2]
 fn texts_fit(bytes: &[u8]) -> bool {
     const TEXT: u64 = 2;
     let number = |at: usize, size: usize| -> Option<u64> {
@@ -92,7 +92,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     if !texts_fit(bytes) {
         return Err(PictureError::truncated(FORMAT, "a text"));
     }
-    // What unpacked bytes may become at most is also what a stated length may ask for.
+    // The maximum size of the unpacked bytes also bounds what a stated length may request.
     let most = u64::try_from(bytes.len()).unwrap_or(u64::MAX).saturating_mul(MAX_OF_A_BYTE);
     let memory = usize::try_from(limits.max_bytes.min(most)).unwrap_or(usize::MAX);
     let mut own = tiff::decoder::Limits::default();
@@ -128,9 +128,9 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         ));
     }
     let each = u64::from(channels) * u64::from(bits.div_ceil(8));
-    // Samples as they are stored, again where they are unpacked, and four planes of ours.
+    // Samples as they are stored, once more while they are unpacked, and our own four planes.
     limits.check(FORMAT, width.into(), height.into(), 2 * each + 4 * 4)?;
-    // A tile is unpacked whole, even where little of it is seen.
+    // A tile is unpacked whole, even if only little of it is visible.
     let (across, down) = decoder.chunk_dimensions();
     limits.check(FORMAT, across.into(), down.min(height).into(), each)?;
     let pixel_bits = u64::from(channels) * u64::from(bits);
@@ -156,21 +156,21 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
 }
 
 impl Decoded {
-    /// Makes samples of few bits bytes of 0 to 255.
+    /// Expands samples of fewer than 8 bits to bytes of 0 to 255.
     fn unpack_bits(&mut self) -> Result<(), PictureError> {
         let DecodingResult::U8(packed) = &self.samples else { return Ok(()) };
         let bits = usize::from(self.bits);
         if bits >= 8 {
             return Ok(());
         }
-        // Rows begin with a byte.
+        // Every row starts at a byte boundary.
         let across = if self.in_planes { self.width } else { self.width * self.channels };
         let row = (across * bits).div_ceil(8);
         let most = (1u32 << bits) - 1;
         let mut bytes: Vec<u8> = reserved(FORMAT, self.width * self.height * self.channels)?;
         for row in packed.chunks_exact(row) {
             bytes.extend((0..across).map(|i| {
-                // One by one: three bits of a sample may lie on either side of a border of bytes.
+                // Bit by bit: the bits of a three-bit sample may straddle two bytes.
                 let bit = |at: usize| u32::from(row[at / 8] >> (7 - at % 8) & 1);
                 let sample = (i * bits..(i + 1) * bits).fold(0, |sample, at| sample << 1 | bit(at));
                 (sample * 255 / most) as u8
@@ -180,7 +180,7 @@ impl Decoded {
         Ok(())
     }
 
-    /// The number of a sample among all, from its channel and its pixel.
+    /// The index of a sample, from its channel and its pixel.
     fn place(&self, channel: usize, pixel: usize) -> usize {
         if self.in_planes {
             channel * self.width * self.height + pixel
@@ -189,7 +189,7 @@ impl Decoded {
         }
     }
 
-    /// Which pixel of the file each of the picture is, if they are not the same ones; and the picture's size.
+    /// The picture's size, and which pixel of the file each of its pixels is, if the orientation is not the default.
     fn turned(&self) -> ([usize; 2], impl Fn(usize) -> usize) {
         let (width, height, orientation) = (self.width, self.height, self.orientation);
         let size = if matches!(orientation, 5..=8) { [height, width] } else { [width, height] };
@@ -210,7 +210,7 @@ impl Decoded {
         (size, of)
     }
 
-    /// The channels that are taken.
+    /// The channels that are used.
     fn taken(&self) -> usize {
         self.colours + usize::from(self.opacity != Opacity::None)
     }
@@ -246,7 +246,7 @@ impl Decoded {
     }
 }
 
-/// [`super::read_rgba8`]; none of what has more bits, or alpha in its colours.
+/// See [`super::read_rgba8`]; `None` for samples of more bits, or with premultiplied alpha.
 fn read_rgba8(bytes: &[u8], limits: &Limits) -> Result<Option<Rgba8>, PictureError> {
     let decoded = decode(bytes, limits)?;
     let DecodingResult::U8(all) = &decoded.samples else { return Ok(None) };
@@ -275,7 +275,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     picture.alpha = if is_light && is_multiplied { Alpha::Premultiplied } else { Alpha::Straight };
     let alpha = if decoded.opacity == Opacity::None { None } else { planes.pop() };
     if let Some(alpha) = alpha.as_ref().filter(|_| is_multiplied && !is_light) {
-        // Encoded colours are multiplied as they stand.
+        // Encoded colours are multiplied as they are.
         for (colour, alpha) in planes.iter_mut().flat_map(|plane| plane.iter_mut().zip(alpha)) {
             *colour = if *alpha > 0.0 { (*colour / alpha).min(1.0) } else { *colour };
         }

@@ -2,7 +2,7 @@
 
 use crate::PictureError;
 
-/// Walks over a header's words; `#` begins a comment that lasts to the end of its line.
+/// Iterates over the words of a header; `#` begins a comment that lasts to the end of its line.
 pub(super) struct Tokens<'a> {
     format: &'static str,
     bytes: &'a [u8],
@@ -14,7 +14,7 @@ impl<'a> Tokens<'a> {
         Tokens { format, bytes, at: 0 }
     }
 
-    /// The next word, or an error that says what should have been there.
+    /// The next word, or an error that names what should have been there.
     pub(super) fn word(&mut self, what: &'static str) -> Result<&'a str, PictureError> {
         self.skip_blank();
         let start = self.at;
@@ -36,7 +36,7 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    /// The next word as a whole number.
+    /// The next word as an integer.
     pub(super) fn integer(&mut self, what: &'static str) -> Result<u64, PictureError> {
         let word = self.word(what)?;
         let at = self.at - word.len();
@@ -49,7 +49,7 @@ impl<'a> Tokens<'a> {
         word.parse().map_err(|_| wrong())
     }
 
-    /// The next 0 or 1, which need no blank between them (P1).
+    /// The next 0 or 1, which need no whitespace between them (P1).
     pub(super) fn bit(&mut self) -> Result<bool, PictureError> {
         self.skip_blank();
         let bit = match self.bytes.get(self.at) {
@@ -67,7 +67,7 @@ impl<'a> Tokens<'a> {
         Ok(bit)
     }
 
-    /// The bytes after the single blank that ends a binary file's header.
+    /// The bytes after the single whitespace character that ends a binary file's header.
     pub(super) fn binary(mut self) -> Result<&'a [u8], PictureError> {
         match self.bytes.get(self.at) {
             Some(byte) if byte.is_ascii_whitespace() => {
@@ -96,5 +96,5 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// No number that a header may hold is longer.
+/// No valid header number is longer.
 const LONGEST_WORD: usize = 64;

@@ -1,4 +1,4 @@
-//! WebP: textures come in it, lossy or not; pictures leave in it without loss. [WebP]
+//! WebP: reads lossy and lossless files; writes lossless ones. [WebP]
 
 use super::faults::webp::explain;
 use super::guard::guarded;
@@ -29,10 +29,10 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 
 const FORMAT: &str = "WebP";
 
-/// Decoded bytes, as many in the decoder's own planes, and four planes of ours.
+/// Decoded bytes, as many in the decoder's own planes, and our own four planes.
 const BYTES_PER_PIXEL: u64 = 4 + 8 + 4 * 4;
 
-/// The first picture of one that moves.
+/// Reads the first frame of an animation.
 fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     let mut decoder = WebPDecoder::new(Cursor::new(bytes)).map_err(|error| explain(&error, bytes))?;
     decoder.set_memory_limit(usize::try_from(limits.max_bytes).unwrap_or(usize::MAX));
@@ -48,10 +48,10 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     Ok(Interleaved { width: width as usize, height: height as usize, samples })
 }
 
-/// More have no room in 14 bits.
+/// Longer sides do not fit in 14 bits.
 const LONGEST_SIDE: usize = 1 << 14;
 
-/// Without loss, as the encoder knows no other way.
+/// Lossless, which is all that the encoder supports.
 fn write(picture: &Picture, options: &WriteOptions) -> Result<Vec<u8>, PictureError> {
     let unwritable = |error: image_webp::EncodingError| PictureError::Unwritable {
         format: FORMAT,

@@ -1,4 +1,4 @@
-//! Convolution with a separable kernel; beyond the edges the nearest pixel counts.
+//! Convolution with a separable kernel; pixels beyond the edges repeat the nearest one.
 
 /// A plane of samples in rows.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ fn add(sums: &mut [f64], samples: &[f64], weight: f64) {
     sums.iter_mut().zip(samples).for_each(|(sum, sample)| *sum += weight * sample);
 }
 
-/// `f` at −radius ..= radius.
+/// Samples `f` at −radius ..= radius.
 pub(super) fn kernel(radius: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..=2 * radius).map(|i| f(i as f64 - radius as f64)).collect()
 }

@@ -1,6 +1,7 @@
-//! LDR-FLIP: the difference that one sees when two pictures are shown in turns. [Andersson 2020]
+//! LDR-FLIP: the difference that a viewer sees when flipping between two pictures. [Andersson 2020]
 //!
-//! Seen at 0.7 m on a display of 3840 pixels on 0.7 m, as in the paper: about 67 pixels a degree.
+//! The viewing distance is 0.7 m from a display of 3840 pixels over 0.7 m, as in the paper: about 67 pixels per
+//! degree.
 
 use super::convolution::{Plane, kernel, normalised};
 use super::{MetricEntry, Pair};
@@ -25,19 +26,19 @@ pub(super) const ENTRY: MetricEntry = MetricEntry {
     },
 };
 
-/// Pixels a degree of the visual field.
+/// Pixels per degree of the visual field.
 const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * (PI / 180.0);
 
-/// Sums of Gaussians for the contrast sensitivity to light, red-green and blue-yellow: pairs of weight a
-/// and width b. [Andersson 2020, table 1]
+/// Sums of Gaussians for the contrast sensitivity to luminance, red-green and blue-yellow: pairs of weight a and
+/// width b. [Andersson 2020, table 1]
 const SENSITIVITIES: [&[[f64; 2]]; 3] = [&[[1.0, 0.0047]], &[[1.0, 0.0053]], &[[34.1, 0.04], [13.5, 0.025]]];
-/// The widest of them, which decides how far the filters reach.
+/// The widest of them, which determines the radius of the filters.
 const WIDEST: f64 = 0.04;
 
 /// Exponents of the colour and of the feature difference. [Andersson 2020, section 4.3]
 const COLOUR_EXPONENT: f64 = 0.7;
 const FEATURE_EXPONENT: f64 = 0.5;
-/// The share of the greatest colour difference that is mapped to the share `REACHED` of the error.
+/// The fraction of the maximum colour difference that is mapped to the fraction `REACHED` of the error.
 const KNEE: f64 = 0.4;
 const REACHED: f64 = 0.95;
 /// The width of the feature detector, in degrees.
@@ -57,7 +58,7 @@ pub(super) fn map(pair: &Pair) -> Vec<f32> {
     (0..pair.width * pair.height).map(error).collect()
 }
 
-/// Rec. 709 primaries and D65, (0.31271, 0.32902), as rows that give X, Y and Z.
+/// Rec. 709 primaries and D65, (0.31271, 0.32902), as rows for X, Y and Z.
 const XYZ_FROM_RGB: [[f64; 3]; 3] = [
     [0.412_386_563_253, 0.357_591_490_921, 0.180_450_491_204],
     [0.212_636_821_677, 0.715_182_981_841, 0.072_180_196_481],
@@ -81,7 +82,7 @@ fn relative_xyz(rgb: [f64; 3]) -> [f64; 3] {
     [xyz[0] / white[0], xyz[1] / white[1], xyz[2] / white[2]]
 }
 
-/// Light, red-green and blue-yellow: CIELAB without its cube roots. [Andersson 2020, eq. 1]
+/// Achromatic, red-green and blue-yellow channels: CIELAB without its cube roots. [Andersson 2020, eq. 1]
 fn opponent(side: &[Rgb], width: usize) -> [Plane; 3] {
     let mut planes = [(); 3].map(|()| Plane { width, samples: Vec::with_capacity(side.len()) });
     for colour in side {
@@ -92,7 +93,7 @@ fn opponent(side: &[Rgb], width: usize) -> [Plane; 3] {
     planes
 }
 
-/// What the eye resolves of the colours at that distance, in CIELAB with Hunt's effect.
+/// The colours as the eye resolves them at that distance, in CIELAB with the Hunt effect.
 fn filtered_lab(side: &[Plane; 3]) -> Vec<[f64; 3]> {
     let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as usize;
     let planes: Vec<Plane> =
@@ -108,7 +109,7 @@ fn filtered_lab(side: &[Plane; 3]) -> Vec<[f64; 3]> {
     (0..side[0].samples.len()).map(lab).collect()
 }
 
-/// A weighted sum of Gaussians, whose weights sum up to 1. [Andersson 2020, eq. 4]
+/// A weighted sum of Gaussians, whose weights sum to 1. [Andersson 2020, eq. 4]
 fn blurred(plane: &Plane, gaussians: &[[f64; 2]], radius: usize) -> Plane {
     let kernels = gaussians.iter().map(|&[a, b]| {
         let degrees = |x: f64| x / PIXELS_PER_DEGREE;
@@ -126,7 +127,7 @@ fn blurred(plane: &Plane, gaussians: &[[f64; 2]], radius: usize) -> Plane {
     Plane { width: plane.width, samples }
 }
 
-/// CIELAB of linear Rec. 709, with chroma the smaller the darker it is. [Andersson 2020, eq. 5]
+/// CIELAB of linear Rec. 709, with chroma reduced at low luminance. [Andersson 2020, eq. 5]
 fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
     const DELTA: f64 = 6.0 / 29.0;
     let root = |t: f64| {
@@ -141,13 +142,13 @@ fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
     [l, 0.01 * l * 500.0 * (x - y), 0.01 * l * 200.0 * (y - z)]
 }
 
-/// The distance for large differences: lightness and chroma apart. [Andersson 2020, eq. 6]
+/// The HyAB distance for large differences: lightness and chroma separately. [Andersson 2020, eq. 6]
 fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [l, red_green, blue_yellow] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     l.abs() + (red_green * red_green + blue_yellow * blue_yellow).sqrt()
 }
 
-/// A colour difference mapped to 0..=1, the rare great ones compressed. [Andersson 2020, section 4.1.3]
+/// Maps a colour difference to 0..=1 and compresses the rare large ones. [Andersson 2020, section 4.1.3]
 fn redistributed(difference: f64, most: f64) -> f64 {
     let knee = KNEE * most;
     if difference < knee {
@@ -157,7 +158,7 @@ fn redistributed(difference: f64, most: f64) -> f64 {
     }
 }
 
-/// How strongly each pixel looks like an edge, and like a point. [Andersson 2020, section 4.2]
+/// How strongly each pixel resembles an edge, and a point. [Andersson 2020, section 4.2]
 struct Features {
     edges: Vec<f64>,
     points: Vec<f64>,
@@ -189,7 +190,7 @@ impl Features {
     }
 }
 
-/// Positive weights scaled to the sum of 1, negative ones to −1.
+/// Scales positive weights to a sum of 1, and negative ones to −1.
 fn balanced(kernel: Vec<f64>) -> Vec<f64> {
     let positive: f64 = kernel.iter().filter(|w| **w > 0.0).sum();
     let negative: f64 = -kernel.iter().filter(|w| **w < 0.0).sum::<f64>();

@@ -1,16 +1,16 @@
-//! Where two pictures differ, as a picture.
+//! Visualises where two pictures differ.
 
 use super::{Pair, flip};
 use crate::{ColourSpace, Picture, PictureError};
 use bilux_math::Rgb;
 
-/// What a heat map shows.
+/// The error that a heat map shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeatMap {
     /// The FLIP error, 0..=1.
     #[default]
     Flip,
-    /// The greatest absolute difference of the channels of light, relative to that of the whole picture.
+    /// The maximum absolute difference of the channels of light, relative to that of the whole picture.
     Absolute,
 }
 
@@ -26,7 +26,7 @@ pub fn heat_map(pair: &Pair, kind: HeatMap) -> Result<Picture, PictureError> {
     Ok(picture)
 }
 
-/// What is not a number is an error as great as there is.
+/// A NaN is the maximum error.
 fn absolute(pair: &Pair) -> Vec<f32> {
     let [a, b] = &pair.light;
     let differences = a.iter().zip(b).map(|(a, b)| (*a - *b).map(f32::abs));
@@ -37,7 +37,8 @@ fn absolute(pair: &Pair) -> Vec<f32> {
     errors.into_iter().map(relative).collect()
 }
 
-/// Black through violet, red and orange to pale yellow, ever lighter: sRGB-encoded, for an error of 0..=1.
+/// Black through violet, red and orange to pale yellow, with increasing lightness: sRGB-encoded, for an error of
+/// 0..=1.
 pub fn ramp(error: f32) -> Rgb {
     const STOPS: [[u8; 3]; 9] = [
         [0, 0, 4],

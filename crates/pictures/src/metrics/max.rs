@@ -1,4 +1,4 @@
-//! The greatest difference anywhere.
+//! The maximum difference.
 
 use super::{MetricEntry, Pair};
 use bilux_math::registry::Entry;
@@ -20,6 +20,6 @@ fn max(pair: &Pair) -> f64 {
     let colours = a.iter().zip(b).flat_map(|(a, b)| a.to_array().into_iter().zip(b.to_array()));
     let alphas = pair.alpha[0].iter().copied().zip(pair.alpha[1].iter().copied());
     let differences = colours.chain(alphas).map(|(a, b)| (f64::from(a) - f64::from(b)).abs());
-    // `f64::max` would skip what is not a number.
+    // `f64::max` would skip NaN.
     differences.fold(0.0, |most, d| if d > most || d.is_nan() { d } else { most })
 }

@@ -1,8 +1,7 @@
-//! How far a picture is from its reference. To add a metric: a file with its `ENTRY`, and a line in the
-//! table.
+//! How far a picture is from its reference. To add a metric, add a file with its `ENTRY`, and a line in the table.
 //!
-//! `rmse`, `relmse` and `max` compare light: linear Rec. 709, alpha multiplied in. `psnr`, `ssim` and
-//! `flip` compare what is seen: encoded for a display, after exposure and tone map.
+//! `rmse`, `relmse` and `max` compare light: linear Rec. 709 with premultiplied alpha. `psnr`, `ssim` and `flip`
+//! compare what is visible: encoded for a display, after exposure and tone map.
 
 mod convolution;
 mod flip;
@@ -20,7 +19,7 @@ use crate::{Picture, PictureError};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 
-/// Every metric that there is.
+/// Every available metric.
 pub const METRICS: &[MetricEntry] =
     &[rmse::ENTRY, relmse::ENTRY, max::ENTRY, psnr::ENTRY, ssim::ENTRY, flip::ENTRY];
 
@@ -29,21 +28,21 @@ pub const METRICS: &[MetricEntry] =
 pub struct MetricEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// True where more is better.
+    /// True if a higher value is better.
     pub higher_is_better: bool,
-    /// One number for the whole picture: infinite where the pictures are equal and the metric knows no
-    /// greatest value, NaN where a sample that it needs is not a number.
+    /// One number for the whole picture: infinite if the pictures are equal and the metric has no maximum, NaN if a
+    /// sample that it needs is NaN.
     pub evaluate: fn(&Pair) -> f64,
 }
 
-/// A picture and its reference, made ready once for all metrics.
+/// A picture and its reference, prepared once for all metrics.
 #[derive(Clone, Debug)]
 pub struct Pair {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: usize,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: usize,
-    /// Linear Rec. 709, alpha multiplied in: the picture, then the reference.
+    /// Linear Rec. 709 with premultiplied alpha: the picture, then the reference.
     pub light: [Vec<Rgb>; 2],
     /// The same for a display: sRGB-encoded, each channel 0..=1.
     pub shown: [Vec<Rgb>; 2],
@@ -51,31 +50,31 @@ pub struct Pair {
     pub alpha: [Vec<f32>; 2],
 }
 
-/// What [`compare`] found.
+/// The result of [`compare`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// Every metric's name and value, in the order of the table.
     pub values: Vec<(&'static str, f64)>,
-    /// Samples of the picture, then of the reference, that are infinite or not a number.
+    /// Number of samples that are infinite or NaN, in the picture, then in the reference.
     pub non_finite: [u64; 2],
 }
 
 impl Report {
-    /// The value of this metric; `None` where it is infinite (a `psnr` of equal pictures), not a number, or
-    /// there is no such metric: what JSON writes as `null`.
+    /// The value of this metric; `None` if it is infinite (a `psnr` of equal pictures) or NaN, or there is no such
+    /// metric: the cases that JSON writes as `null`.
     pub fn finite(&self, name: &str) -> Option<f64> {
         self.value(name).filter(|value| value.is_finite())
     }
 
-    /// The value of this metric, whatever it is. Compare as `value <= bound` or `value >= bound`, never the
-    /// other way round: then what is not a number fails.
+    /// The value of this metric, whatever it is. Compare as `value <= bound` or `value >= bound`, never the other way
+    /// round: then NaN fails.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.values.iter().find(|(metric, _)| *metric == name).map(|&(_, value)| value)
     }
 }
 
-/// Every metric of a picture against its reference, shown as they are. Errors where their sizes differ or
-/// one has no colour.
+/// Computes every metric of a picture against its reference, shown as they are. Returns an error if their sizes
+/// differ or one has no colour.
 pub fn compare(picture: &Picture, reference: &Picture) -> Result<Report, PictureError> {
     let pair = Pair::new(picture, reference, 0.0, &TONEMAPS[0])?;
     let values = METRICS.iter().map(|row| (row.entry.name, (row.evaluate)(&pair))).collect();
@@ -83,7 +82,7 @@ pub fn compare(picture: &Picture, reference: &Picture) -> Result<Report, Picture
 }
 
 impl Pair {
-    /// Makes two pictures ready. Exposure, in stops, and tone map apply to what is shown.
+    /// Prepares two pictures. Exposure, in stops, and tone map apply to what is shown.
     pub fn new(
         picture: &Picture,
         reference: &Picture,
@@ -96,7 +95,7 @@ impl Pair {
         }
         let shown = |side: &Picture| {
             let shown = to_display(side, exposure, tone_map)?;
-            // What shines through is black on both sides.
+            // Both sides are composited over black.
             let colours = shown.to_rgb().unwrap_or_default().into_iter().enumerate();
             let colours = colours.map(|(i, c)| shown.channel("A").map_or(c, |a| c * a[i]));
             Ok::<_, PictureError>(colours.map(|c| c.clamp(0.0, 1.0)).collect())

@@ -1,4 +1,4 @@
-//! Mean squared error relative to the reference's square, so that dark parts count as much as bright ones.
+//! Mean squared error relative to the squared reference, so that dark parts count as much as bright ones.
 
 use super::{MetricEntry, Pair};
 use bilux_math::registry::Entry;

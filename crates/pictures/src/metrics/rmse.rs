@@ -1,4 +1,4 @@
-//! Root of the mean squared error.
+//! Root mean squared error.
 
 use super::{MetricEntry, Pair};
 use bilux_math::registry::Entry;

@@ -18,14 +18,14 @@ pub(super) const ENTRY: MetricEntry = MetricEntry {
     evaluate: ssim,
 };
 
-/// The window reaches so far to each side.
+/// Radius of the window.
 const RADIUS: usize = 5;
 /// Its standard deviation in pixels.
 const DEVIATION: f64 = 1.5;
-/// What keeps quotients of nearly nothing stable. [Wang 2004, eq. 13]
+/// Stabilisers for quotients of very small numbers. [Wang 2004, eq. 13]
 const STABILISERS: [f64; 2] = [0.01 * 0.01, 0.03 * 0.03];
 
-/// The mean over all windows that lie in the picture; over all pixels where none does.
+/// The mean over all windows that lie within the picture, or over all pixels if none does.
 fn ssim(pair: &Pair) -> f64 {
     let window = normalised(kernel(RADIUS, |x| exp_f64(-x * x / (2.0 * DEVIATION * DEVIATION))));
     let [a, b] = pair.shown.each_ref().map(|side| side.iter().map(luma).collect::<Vec<f64>>());

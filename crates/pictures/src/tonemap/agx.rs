@@ -1,5 +1,5 @@
-//! AgX: a curve over the logarithm of light, in a space of less saturated primaries, so that bright colours pale as film does
-//! and none turns to another hue.
+//! AgX: a curve over the logarithm of light, in a space of less saturated primaries, so that bright colours
+//! desaturate as on film and keep their hue.
 
 use super::ToneMapEntry;
 use bilux_math::Rgb;
@@ -17,7 +17,7 @@ pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     map: agx,
 };
 
-/// From linear Rec. 709 to the inset primaries, row by row, before rows are made to sum to 1. [Wrensch 2023]
+/// From linear Rec. 709 to the inset primaries, row by row, before rows are normalised to a sum of 1. [Wrensch 2023]
 const INSET: [[f64; 3]; 3] = [
     [0.842_479_062_253_094, 0.078_433_599_999_999_2, 0.079_223_745_147_764_3],
     [0.042_328_242_261_012_3, 0.878_468_636_469_772, 0.079_166_127_460_543_4],
@@ -27,11 +27,11 @@ const INSET: [[f64; 3]; 3] = [
 const TO_INSET: [[f64; 3]; 3] = [even(INSET[0]), even(INSET[1]), even(INSET[2])];
 const FROM_INSET: [[f64; 3]; 3] = inverse(TO_INSET);
 
-/// Binary logarithms of the darkest and the brightest light that is told apart: 10 stops below middle grey, 6.5 above.
+/// Binary logarithms of the darkest and the brightest distinguishable light: 10 stops below middle grey, 6.5 above.
 const DARKEST: f32 = -12.473_93;
 const BRIGHTEST: f32 = 4.026_069;
 
-/// The curve from the logarithm, 0..=1, to what is shown, as a polynomial. [Wrensch 2023]
+/// The curve from the logarithm, 0..=1, to the displayed value, as a polynomial. [Wrensch 2023]
 const CURVE: [f64; 7] = [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5];
 
 fn agx(colour: Rgb) -> Rgb {
@@ -41,7 +41,7 @@ fn agx(colour: Rgb) -> Rgb {
     };
     let colour = colour.to_array().map(f64::from);
     let shown = times(&FROM_INSET, times(&TO_INSET, colour).map(light));
-    // What the curve gives is for a display of gamma 2.2.
+    // The curve's output is for a display of gamma 2.2.
     Rgb::from_array(shown.map(|c| powf((c as f32).clamp(0.0, 1.0), 2.2)))
 }
 
@@ -54,7 +54,7 @@ const fn even(row: [f64; 3]) -> [f64; 3] {
     [row[0] / sum, row[1] / sum, row[2] / sum]
 }
 
-/// By cofactors.
+/// The inverse by cofactors.
 const fn inverse(m: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let mut adjugate = [[0.0; 3]; 3];
     let mut row = 0;

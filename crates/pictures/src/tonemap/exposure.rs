@@ -1,18 +1,20 @@
-//! How much light is enough.
+//! Automatic exposure.
 
 use crate::Picture;
 use bilux_math::transcendental::log2;
 
-/// What a picture shows on average, as a part of white: the grey of the photographers' card.
+/// The average brightness of a picture, as a fraction of white: the grey of a photographer's grey card.
 const MIDDLE_GREY: f32 = 0.18;
-/// Pixels that are darker or brighter than all but so many are left out: neither a black backdrop nor the sun decides.
+/// Fractions of the darkest and of the brightest pixels that are ignored, so that neither a black backdrop nor the
+/// sun decides.
 const SHARE_OF_DARK: f64 = 0.05;
 const SHARE_OF_BRIGHT: f64 = 0.05;
-/// And what is so much brighter than the middle need not come down to white.
+/// Maximum exposure, in stops, in either direction.
 const MAX_STOPS: f32 = 20.0;
 
-/// The stops by which a linear picture becomes as bright as a photograph: the mean of the logarithms of its luminances, without
-/// the darkest and the brightest, becomes that of middle grey. [Reinhard 2002, eq. 1 and 2] 0 for a black one.
+/// The exposure in stops that makes a linear picture as bright as a photograph: it brings the mean of the logarithms
+/// of its luminances, without the darkest and the brightest, to that of middle grey. [Reinhard 2002, eq. 1 and 2] 0
+/// for a black picture.
 pub fn auto_exposure(picture: &Picture) -> f32 {
     let colours = picture.clone().into_linear().to_rgb().unwrap_or_default();
     let alpha = picture.channel("A");
@@ -26,7 +28,7 @@ pub fn auto_exposure(picture: &Picture) -> f32 {
         return 0.0;
     }
     let mean = kept.iter().map(|&l| f64::from(log2(l))).sum::<f64>() / kept.len() as f64;
-    // In steps that nobody sees, so that noise does not move it.
+    // Rounded to invisible steps, so that noise does not change it.
     let stops = (log2(MIDDLE_GREY) - mean as f32).clamp(-MAX_STOPS, MAX_STOPS);
     (stops * 16.0).round() / 16.0
 }

@@ -1,5 +1,5 @@
-//! From the light of a scene to what a display can show. To add a curve: a file with its `ENTRY`, and a
-//! line in the table.
+//! Tone mapping: from the light of a scene to what a display can show. To add a curve, add a file with its `ENTRY`,
+//! and a line in the table.
 
 mod aces;
 mod agx;
@@ -16,7 +16,7 @@ use crate::picture::{Picture, hold_within};
 use bilux_math::Rgb;
 use bilux_math::registry::Entry;
 
-/// Every curve that there is; the first is the one that does nothing.
+/// Every available curve; the first does nothing.
 pub const TONEMAPS: &[ToneMapEntry] =
     &[none::ENTRY, agx::ENTRY, neutral::ENTRY, aces::ENTRY, reinhard::ENTRY];
 
@@ -25,7 +25,8 @@ pub const TONEMAPS: &[ToneMapEntry] =
 pub struct ToneMapEntry {
     /// Name, summary, source and parameters.
     pub entry: Entry,
-    /// Linear Rec. 709 in, linear Rec. 709 to be shown out: finite and not negative in, 0..=1 out.
+    /// From linear Rec. 709 light to linear Rec. 709 for the display: the input is finite and not negative, the
+    /// output 0..=1.
     pub map: fn(Rgb) -> Rgb,
 }
 
@@ -39,9 +40,9 @@ pub fn tone_map(name: &str) -> Result<&'static ToneMapEntry, PictureError> {
     })
 }
 
-/// The main picture ready for a display: exposed by `exposure` stops, tone mapped, sRGB-encoded, alpha
-/// not multiplied in. Layers are left out. A picture that is encoded already, and is neither to be
-/// exposed nor mapped, stays as it is. Errors where the picture has no colour.
+/// The main picture prepared for a display: exposed by `exposure` stops, tone mapped, sRGB-encoded, with straight
+/// alpha. Layers are dropped. A picture that is already encoded, and needs neither exposure nor a tone map, stays as
+/// it is. Returns an error if the picture has no colour.
 pub fn to_display(picture: &Picture, exposure: f32, curve: &ToneMapEntry) -> Result<Picture, PictureError> {
     if picture.rgb_planes().is_none() {
         let what =
@@ -58,7 +59,7 @@ pub fn to_display(picture: &Picture, exposure: f32, curve: &ToneMapEntry) -> Res
     Ok(shown.into_srgb())
 }
 
-/// Maps the main picture's colours; alpha is divided out before and multiplied in after.
+/// Maps the main picture's colours; alpha is divided out before and multiplied in afterwards.
 fn apply(picture: &mut Picture, map: impl Fn(Rgb) -> Rgb) {
     let Some(colours) = picture.to_rgb() else { return };
     let alpha = picture.channel("A").map(<[f32]>::to_vec);

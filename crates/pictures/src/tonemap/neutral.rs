@@ -1,5 +1,5 @@
-//! Khronos PBR Neutral: colours of products as they were painted, up to where highlights begin; those are compressed, and
-//! pale.
+//! Khronos PBR Neutral: shows the base colours of products unchanged up to where highlights begin; highlights are
+//! compressed and desaturated.
 
 use super::ToneMapEntry;
 use bilux_math::Rgb;
@@ -16,11 +16,11 @@ pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     map: neutral,
 };
 
-/// What glossy surfaces reflect of everything straight on, and is taken off again.
+/// The fraction that glossy surfaces reflect at normal incidence, which the curve subtracts.
 const F90: f32 = 0.04;
-/// Where compression begins, after that was taken off.
+/// Where compression begins, after that subtraction.
 const START: f32 = 0.8 - F90;
-/// How fast highlights pale.
+/// How fast highlights desaturate.
 const DESATURATION: f32 = 0.15;
 
 fn neutral(colour: Rgb) -> Rgb {

@@ -1,4 +1,4 @@
-//! No curve: what is brighter than white is white.
+//! No curve: values brighter than white are clipped to white.
 
 use super::ToneMapEntry;
 use bilux_math::Rgb;

@@ -15,7 +15,7 @@ pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     map: reinhard,
 };
 
-/// The least luminance shown as white.
+/// The lowest luminance that is shown as white.
 const WHITE: f32 = 4.0;
 
 /// Scales the colour so that its luminance becomes L (1 + L / white²) / (1 + L). [Reinhard 2002, eq. 4]

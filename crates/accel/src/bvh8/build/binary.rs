@@ -1,7 +1,7 @@
-//! The binary tree that the wide one is made of.
+//! The binary tree from which the wide one is made.
 //!
-//! No step depends on the number of threads: boxes are joined by minima and maxima and items are counted
-//! in whole numbers, so that the order in which pieces are done does not matter.
+//! No step depends on the number of threads: boxes are merged by minima and maxima and items are counted in integers,
+//! so the order in which chunks finish does not matter.
 
 use super::collapse::{Costs, costs_of_inner, costs_of_leaf};
 use super::item::{Bounds, Item};
@@ -10,14 +10,14 @@ use super::split::{Halves, around, best_split, halve, partition};
 use crate::bvh8::layout::{LANES, Planes};
 use std::ops::Range;
 
-/// No way from the root to a leaf has more nodes than this.
+/// Maximum number of nodes on a path from the root to a leaf.
 pub(in crate::bvh8) const MAX_DEPTH: usize = 64;
 /// Below this many items a subtree is built on one thread.
 pub(super) const PARALLEL: usize = 4096;
 
-/// A box, what is in it, and what it costs: the planes, the first item, how many there are, one more than
-/// the number of the pair of children (0 for a leaf), and [`Costs`]. A plain array of numbers, so that room
-/// for many takes no memory until it is used.
+/// A bounding box, its contents and its cost: the planes, the first item, the number of items, one more than the
+/// number of the pair of children (0 for a leaf), and [`Costs`]. It is a plain array of numbers, so that space for
+/// many nodes takes no memory until it is used.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BinaryNode(pub(super) [f32; 16]);
 
@@ -30,7 +30,7 @@ impl BinaryNode {
         BinaryNode([a, b, c, d, e, f, first, count, pair, p, q, r, s, t, u, v])
     }
 
-    /// Least and greatest corner.
+    /// Minimum and maximum corner.
     pub(super) fn planes(&self) -> Planes {
         let [a, b, c, d, e, f, ..] = self.0;
         [[a, b, c], [d, e, f]]
@@ -66,21 +66,21 @@ impl BinaryNode {
     }
 }
 
-/// Boxes in boxes, two by two.
+/// A binary hierarchy of boxes.
 pub(super) struct Binary {
     pub(super) root: BinaryNode,
-    /// Siblings side by side: the pair of number `i` at `2i` and `2i + 1`. Not all are in use.
+    /// Siblings are adjacent: pair `i` is at `2i` and `2i + 1`. Not all are in use.
     pub(super) nodes: Vec<[f32; 16]>,
-    /// Whether some triangle stands in it more than once.
+    /// Whether some triangle occurs in it more than once.
     pub(super) has_pieces: bool,
-    /// Whether the items below any node stand side by side.
+    /// Whether the items below any node are contiguous.
     pub(super) in_order: bool,
 }
 
 impl Binary {
-    /// Sorts items into a tree whose leaves hold one block at most, each a range of the new order. Those that are
-    /// below a node that is none need not stand side by side. With a cutter, triangles may be cut, and there
-    /// may be `room` more items at last.
+    /// Sorts items into a tree whose leaves hold at most one block, each a range of the new order. Only the items of
+    /// a leaf need be contiguous, not those below an inner node. With a cutter, triangles may be cut, and there may
+    /// be up to `room` more items in the end.
     pub(super) fn over(items: &mut Vec<Item>, cutter: Option<(&Cutter<'_>, usize)>) -> Binary {
         let (bounds, centres, count) = (Bounds::of(items), around(items), items.len());
         if let Some((_, room)) = cutter {
@@ -104,7 +104,7 @@ impl Binary {
     }
 }
 
-/// Items to put under one node, and room behind them for more.
+/// Items to put under one node, and space behind them for more.
 struct Task<'a> {
     items: &'a mut [Item],
     count: usize,
@@ -112,14 +112,14 @@ struct Task<'a> {
     depth: usize,
 }
 
-/// Room for pairs of nodes: one less than there may be items.
+/// Space for pairs of nodes: one fewer than there may be items.
 pub(super) struct Room<'a> {
     pub(super) nodes: &'a mut [[f32; 16]],
     pub(super) first_pair: u32,
 }
 
 impl<'a> Room<'a> {
-    /// The first so many pairs, and the rest.
+    /// The first `pairs` pairs, and the rest.
     pub(super) fn split(self, pairs: usize) -> (Room<'a>, Room<'a>) {
         let (front, back) = self.nodes.split_at_mut(2 * pairs);
         let first_pair = self.first_pair;
@@ -132,12 +132,13 @@ impl<'a> Room<'a> {
 }
 
 impl<'a> Task<'a> {
-    /// Two tasks, the second from item `middle` on, with shares of the room by their numbers of items.
+    /// Two tasks, the second from item `middle` on; each gets a share of the spare space in proportion to its number
+    /// of items.
     fn in_two(self, middle: usize) -> [Task<'a>; 2] {
         let Task { items, count, first_item, depth } = self;
         let spare = items.len() - count;
         let share = (spare as u64 * middle as u64 / count as u64) as usize;
-        // As many of the second as are in the way of the first's share go behind the others.
+        // Items of the second task that are in the way of the first's share move behind the others.
         let moved = share.min(count - middle);
         items.copy_within(middle..middle + moved, count + share - moved);
         let place = middle + share;
@@ -152,7 +153,8 @@ impl<'a> Task<'a> {
     fn halve(&mut self, bounds: &Bounds, centres: &Bounds, cutter: Option<&Cutter<'_>>) -> Halves {
         let (items, depth) = (&self.items[..self.count], self.depth);
         let split = best_split(items, centres).filter(|split| depth_allows(depth, split.counts));
-        // What has one centre, as copies of a triangle have, is halved: it would be cut again and again.
+        // Items that share one centre, as copies of a triangle do, are halved: otherwise they would be cut again and
+        // again.
         if let (Some(cutter), Some(split)) = (cutter, &split) {
             let room = self.items.len() - self.count;
             let cut = cutter.best(items, bounds, (&split.bounds, split.cost), room);
@@ -170,7 +172,7 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Gives the node, and how many pairs of the room were used, from its front on.
+/// Returns the node, and how many pairs of the space were used, counted from its front.
 fn subtree(
     mut task: Task<'_>,
     room: Room<'_>,
@@ -195,19 +197,19 @@ fn subtree(
         );
         (a.0, b.0, used)
     } else {
-        // Side by side, so that no more memory is touched than is used.
+        // Adjacent, so that no more memory is touched than is used.
         let (a, used) = subtree(left, rest.lend(), &halves[0], &centres[0], cutter);
         let (b, more) = subtree(right, rest.split(used).1, &halves[1], &centres[1], cutter);
         (a, b, used + more)
     };
     (pair.nodes[0], pair.nodes[1]) = (a.0, b.0);
-    // Cuts below may have made more.
+    // Cuts further down may have added items.
     let count = a.count() + b.count();
     let costs = costs_of_inner(bounds, count, &a.costs(), &b.costs());
     (BinaryNode::new(bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
 }
 
-/// True when both children of a node at this depth can still be halved down to single items in time.
+/// True when both children of a node at this depth can still be halved down to single items before the depth limit.
 pub(super) fn depth_allows(depth: usize, counts: [usize; 2]) -> bool {
     let levels = |count: usize| count.next_power_of_two().ilog2() as usize;
     counts.iter().all(|&count| depth + 1 + levels(count) <= MAX_DEPTH)

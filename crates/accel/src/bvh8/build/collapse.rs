@@ -1,31 +1,32 @@
-//! From two children a node to eight, at the least cost that the binary tree allows [Ylitie 2017, section 3.1].
+//! Collapses nodes of two children into nodes of eight, at the lowest cost that the binary tree allows [Ylitie 2017,
+//! section 3.1].
 //!
-//! A visit to a node costs [`NODE_COST`], one to a leaf a test for each of its blocks, each weighed by the area of
-//! the box. From below, every subtree learns the least cost of showing it as at most so many wide subtrees.
+//! Visiting a node costs [`NODE_COST`], visiting a leaf one test per block, each weighted by the area of the box.
+//! From the bottom up, every subtree computes the lowest cost of representing it by at most so many wide subtrees.
 
 use super::binary::{Binary, BinaryNode};
 use super::item::Bounds;
 use super::split::blocks;
 use crate::bvh8::layout::{LANES, MAX_BLOCKS, WIDTH};
 
-/// What a visit to a node costs, in tests of a block.
+/// Cost of visiting a node, in tests of a block.
 const NODE_COST: f32 = 1.2;
 /// Larger leaves are not considered.
 const LARGEST_LEAF: usize = 4 * LANES;
 const _: () = assert!(LARGEST_LEAF <= MAX_BLOCKS * LANES);
 
-/// `costs[i]`: the least cost of a subtree as at most `i + 1` wide ones.
+/// `costs[i]`: the lowest cost of a subtree as at most `i + 1` wide ones.
 pub(super) type Costs = [f32; WIDTH - 1];
 
-/// Of one block.
+/// The costs of a leaf of one block.
 pub(super) fn costs_of_leaf(bounds: &Bounds) -> Costs {
     [bounds.half_area(); WIDTH - 1]
 }
 
-/// Of a node with some items below, from what its children cost.
+/// The costs of a node with some items below it, from the costs of its children.
 #[inline(always)]
 pub(super) fn costs_of_inner(bounds: &Bounds, count: usize, left: &Costs, right: &Costs) -> Costs {
-    // Of one place less than the number to a node's whole width; written so that vectors do it.
+    // For one slot fewer than the index up to a node's full width; written so that it vectorises.
     let mut shifted = [f32::INFINITY; 2 * WIDTH];
     shifted[WIDTH..2 * WIDTH - 1].copy_from_slice(right);
     let mut shared = [f32::INFINITY; WIDTH];
@@ -49,13 +50,13 @@ fn as_leaf(half_area: f32, count: usize) -> f32 {
     if count <= LARGEST_LEAF { half_area * blocks(count as u32) } else { f32::INFINITY }
 }
 
-/// How many of `places` go to the left at best, and the cost of that.
+/// How many of `places` slots to give the left child for the lowest cost, and that cost.
 #[inline(always)]
 fn share(places: usize, left: &Costs, right: &Costs) -> (usize, f32) {
     let (mut best, mut least) = (1, left[0] + right[places - 2]);
     for k in 2..places {
         let cost = left[k - 1] + right[places - k - 1];
-        // Nobody can foretell this: no branch.
+        // No branch predictor can guess this: no branch.
         let better = cost < least;
         best = if better { k } else { best };
         least = if better { cost } else { least };
@@ -80,7 +81,7 @@ pub(super) fn children_of(binary: &Binary, node: &BinaryNode, children: &mut Vec
     collect(binary, first + 1, WIDTH - k, children);
 }
 
-/// The wide subtrees that show a subtree at the least cost, at most so many.
+/// The wide subtrees, at most so many, that represent a subtree at the lowest cost.
 fn collect(binary: &Binary, number: u32, places: usize, children: &mut Vec<u32>) {
     let node = binary.node(number);
     let costs = node.costs();

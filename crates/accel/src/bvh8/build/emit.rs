@@ -1,4 +1,4 @@
-//! Writes the wide tree, each subtree to its own stretch of memory, so that threads do not meet.
+//! Writes the wide tree, each subtree to its own range of memory, so that threads do not interfere.
 
 use super::binary::{Binary, BinaryNode};
 use super::collapse::children_of;
@@ -13,8 +13,8 @@ use rayon::prelude::*;
 /// From this many items on, a subtree is measured and written by many threads.
 const PARALLEL: usize = 1 << 14;
 
-/// How many units a wide subtree takes; of large ones, its children and their plans; of others, for each node in
-/// the order of writing how many children it has (none for a leaf), and all children.
+/// How many units a wide subtree takes. For a large one, its children and their plans; for others, the number of
+/// children of each node in the order of writing (0 for a leaf), and all children.
 struct Plan {
     units: usize,
     parts: Vec<(BinaryNode, Plan)>,
@@ -26,7 +26,7 @@ fn leaf_units(triangles: usize) -> usize {
     triangles.div_ceil(LANES) * BLOCK_UNITS
 }
 
-/// The tree in its final form, and the root.
+/// Writes the tree in its final form, and returns it with its root.
 pub(super) fn emit(
     binary: &Binary,
     items: &[Item],
@@ -37,7 +37,7 @@ pub(super) fn emit(
     if plan.units > MAX_UNITS {
         return Err(BuildError::TooManyNodes);
     }
-    // By all threads, since memory costs most where it is touched first.
+    // On all threads, because the first touch of memory is the expensive one.
     let mut units: Vec<Unit> =
         (0..plan.units).into_par_iter().with_min_len(1 << 14).map(|_| Unit::default()).collect();
     let (_, root) = writer.write(&binary.root, &plan, &mut units, 0);
@@ -82,8 +82,8 @@ impl Writer<'_> {
             + below.map(|k| self.measure(&self.binary.node(plan.children[k]), plan, scratch)).sum::<usize>()
     }
 
-    /// How many triangles a leaf made of a binary subtree has, and which, in ascending order; each once, whatever pieces
-    /// there are.
+    /// The number of triangles of a leaf made from a binary subtree, and which they are, in ascending order; each
+    /// once, however many pieces it was cut into.
     fn triangles_below(&self, node: &BinaryNode, primitives: &mut Vec<u32>) -> usize {
         primitives.clear();
         self.collect(node, primitives);
@@ -102,7 +102,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes a wide subtree into the whole of `units`, the first of which has the number `at`.
+    /// Writes a wide subtree into all of `units`, whose first unit has the number `at`.
     fn write(&self, node: &BinaryNode, plan: &Plan, units: &mut [Unit], at: usize) -> (Planes, Ref) {
         if plan.parts.is_empty() {
             let mut writing =
@@ -125,7 +125,7 @@ impl Writer<'_> {
         (node.planes(), Ref::node(at))
     }
 
-    /// Writes a wide subtree to the front of `units` and says how many it took.
+    /// Writes a wide subtree to the front of `units` and returns how many units it took.
     fn write_small(
         &self,
         node: &BinaryNode,
@@ -156,7 +156,7 @@ impl Writer<'_> {
     }
 }
 
-/// What is left of a plan.
+/// The rest of a plan, not yet written.
 struct Writing<'a> {
     counts: std::slice::Iter<'a, u8>,
     children: &'a [u32],

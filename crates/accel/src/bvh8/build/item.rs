@@ -1,4 +1,4 @@
-//! What is put into the tree: boxes of triangles, four numbers at a time.
+//! The items of the builder: bounding boxes of triangles, as vectors of four.
 
 use crate::bvh8::layout::Planes;
 use crate::mesh::TriangleMesh;
@@ -6,8 +6,8 @@ use bilux_math::Vec3;
 use bilux_math::glam::Vec4;
 use rayon::prelude::*;
 
-/// The box of a triangle. The fourth numbers hold the two halves of its index, as whole numbers: bits of an index
-/// would be denormal numbers, which are slow.
+/// The bounding box of a triangle. The fourth components hold the two halves of its index, as integer-valued floats:
+/// the raw bits of an index would be denormal numbers, which are slow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) low: Vec4,
@@ -24,13 +24,13 @@ impl Item {
         self.low.w as u32 | (self.high.w as u32) << 16
     }
 
-    /// What of it lies in a box.
+    /// The part of it that lies in a box.
     pub(super) fn within(&self, bounds: &Bounds) -> Item {
         let (low, high) = (self.low.max(bounds.low), self.high.min(bounds.high));
         Item { low: low.truncate().extend(self.low.w), high: high.truncate().extend(self.high.w) }
     }
 
-    /// True when nothing is in its box.
+    /// True when its box is empty.
     pub(super) fn is_nothing(&self) -> bool {
         (0..3).any(|k| self.low[k] > self.high[k])
     }
@@ -41,10 +41,10 @@ impl Item {
     }
 }
 
-/// Items that one thread looks at.
+/// Number of items that one thread processes.
 const MANY: usize = 1 << 14;
 
-/// A box that grows; the fourth numbers mean nothing.
+/// A bounding box that grows; the fourth components have no meaning.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     pub(super) low: Vec4,
@@ -82,7 +82,7 @@ impl Bounds {
         e.x * (e.y + e.z) + e.y * e.z
     }
 
-    /// Of what two boxes share.
+    /// The half area of the overlap of two boxes.
     pub(super) fn shared_half_area(&self, other: &Bounds) -> f32 {
         let (low, high) = (self.low.max(other.low), self.high.min(other.high));
         if (0..3).all(|k| low[k] <= high[k]) { Bounds { low, high }.half_area() } else { 0.0 }
@@ -93,7 +93,7 @@ impl Bounds {
     }
 }
 
-/// One for each triangle that is finite, in their order.
+/// One item for each finite triangle, in their order.
 pub(super) fn items_of(mesh: &TriangleMesh) -> Vec<Item> {
     let item = |(index, corners): (usize, &[[f32; 3]; 3])| {
         let [a, b, c] = corners.map(Vec3::from);

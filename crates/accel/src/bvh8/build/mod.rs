@@ -1,6 +1,6 @@
-//! Building: a binary tree, from it the wide one of least cost, from that the units. The binary tree comes from a
-//! curve through space (fast), from the surface-area heuristic (balanced), or from that with triangles cut and
-//! subtrees moved afterwards (best). What was tried stands in `docs/adr/0009-builders.md`.
+//! Building: a binary tree, from it the wide tree of lowest cost, from that the units. The binary tree comes from a
+//! space-filling curve (fast), from the surface-area heuristic (balanced), or from the latter with triangles cut and
+//! subtrees reinserted afterwards (best). `docs/adr/0009-builders.md` records what was tried.
 
 pub(super) mod binary;
 mod collapse;
@@ -25,7 +25,7 @@ pub(super) struct Built {
     pub(super) planes: Planes,
 }
 
-/// Builds a tree over the triangles that are finite. The same tree whatever the number of threads.
+/// Builds a tree over the finite triangles. The tree is the same whatever the number of threads.
 pub(super) fn build(mesh: &TriangleMesh, quality: Quality) -> Result<Built, BuildError> {
     let mut items = item::items_of(mesh);
     if items.is_empty() {
@@ -40,7 +40,7 @@ pub(super) fn build(mesh: &TriangleMesh, quality: Quality) -> Result<Built, Buil
         Quality::Balanced => Binary::over(&mut items, None),
         Quality::Best => {
             let cutter = Cutter::new(mesh.triangles(), &Bounds::of(&items));
-            // Cuts may make them twice as many; few scenes come halfway.
+            // Cuts may double the number of items; few scenes come halfway.
             let room = items.len();
             reinsert::improve(Binary::over(&mut items, Some((&cutter, room))))
         }

@@ -1,4 +1,4 @@
-//! Soon ready: items in the order of a curve through space, cut where its highest bits change [Lauterbach 2009].
+//! The fast builder: items in space-filling-curve order, split where the highest bits change [Lauterbach 2009].
 
 use super::binary::{Binary, BinaryNode, PARALLEL, Room, depth_allows};
 use super::collapse::{costs_of_inner, costs_of_leaf};
@@ -8,16 +8,17 @@ use crate::bvh8::layout::LANES;
 use bilux_math::glam::Vec4;
 use rayon::prelude::*;
 
-/// Bits an axis: cells a millionth as wide as everything, so that small things in large scenes are told apart.
+/// Bits per axis: cells are a millionth of the whole extent wide, so that small things in large scenes are
+/// distinguished.
 const BITS: u32 = 20;
 
-/// Up to this many items are cut between blocks.
+/// Up to this many items are split at block boundaries.
 const FEW: usize = 4 * LANES;
 
-/// Where a centre lies on the curve, and its item.
+/// The position of a centre on the curve, and its item.
 type UnitStorage = (u64, u32);
 
-/// Sorts items into a tree whose leaves hold one block at most, each a range of the new order.
+/// Sorts items into a tree whose leaves hold at most one block, each a range of the new order.
 pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
     let centres = around(items);
     let extent = centres.high * 0.5 - centres.low * 0.5;
@@ -38,7 +39,7 @@ pub(super) fn along_a_curve(items: &mut Vec<Item>) -> Binary {
     Binary { root, nodes, has_pieces: false, in_order: true }
 }
 
-/// Puts two zeros before each of the bits.
+/// Puts two zeros before each bit.
 fn spread(x: u32) -> u64 {
     let mut x = u64::from(x);
     for (shift, mask) in [
@@ -53,7 +54,7 @@ fn spread(x: u32) -> u64 {
     x
 }
 
-/// Gives the box, the node, and how many pairs of the room were used, from its front on.
+/// Returns the box, the node, and how many pairs of the space were used, counted from its front.
 fn subtree(
     items: &[Item],
     places: &[UnitStorage],
@@ -96,7 +97,8 @@ fn subtree(
     (bounds, BinaryNode::new(&bounds, first..first + count as u32, Some(first_pair), costs), 1 + used)
 }
 
-/// Where the highest bit changes that is not the same in all; by number where none does, or the tree grew too deep.
+/// Where the highest bit that is not the same in all of them changes; by count if none does, or if the tree is too
+/// deep.
 fn middle_of(places: &[UnitStorage], depth: usize) -> usize {
     let count = places.len();
     let (low, high) = (places[0].0, places[count - 1].0);
@@ -105,7 +107,7 @@ fn middle_of(places: &[UnitStorage], depth: usize) -> usize {
     }
     let bit = 1u64 << (63 - (low ^ high).leading_zeros());
     let middle = places.partition_point(|place| place.0 & bit == 0);
-    // Blocks that are full are worth more than the best place.
+    // Full blocks are worth more than the best split position.
     let whole = |n: usize| n / LANES * LANES;
     let middle = if count <= FEW { whole(middle + LANES / 2).clamp(LANES, whole(count - 1)) } else { middle };
     if depth_allows(depth, [middle, count - middle]) { middle } else { count / 2 }

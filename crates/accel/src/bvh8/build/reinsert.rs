@@ -1,8 +1,7 @@
-//! A better tree out of one that there is: subtrees are taken out and put in again where they enlarge least
-//! [Meister 2018].
+//! Improves an existing tree: subtrees are removed and reinserted where they increase the area least [Meister 2018].
 //!
-//! Searches of a round run side by side in a tree that stands still; what they found is then done one after the
-//! other, the greatest gain first, so that the outcome does not depend on the number of threads.
+//! The searches of a round run in parallel on an unchanging tree; their results are then applied one after the other,
+//! largest gain first, so that the outcome does not depend on the number of threads.
 
 use super::binary::{Binary, BinaryNode, MAX_DEPTH};
 use super::collapse::{Costs, costs_of_inner, costs_of_leaf};
@@ -10,26 +9,27 @@ use super::item::Bounds;
 use bilux_math::glam::Vec4;
 use rayon::prelude::*;
 
-/// How often, and which part of all subtrees is tried: those with the largest boxes, where most is to be gained.
+/// Number of rounds, and the fraction of all subtrees that are tried: those with the largest boxes, which have the
+/// most to gain.
 const ROUNDS: usize = 3;
 const TRIED: usize = 5;
-/// A search looks at no more nodes than this.
+/// A search visits at most this many nodes.
 const MAX_STEPS: usize = 256;
 /// No children below.
 const LEAF: u32 = 0;
 
-/// Boxes with the way up and down. Siblings stand side by side, the first at an even place; the root at place 0.
+/// Boxes with links up and down. Siblings are adjacent, the first at an even index; the root is at index 0.
 struct Tree {
     bounds: Vec<Bounds>,
-    /// The place of the first child, or [`LEAF`].
+    /// The index of the first child, or [`LEAF`].
     below: Vec<u32>,
-    /// For each pair of siblings, the place of their parent.
+    /// For each pair of siblings, the index of their parent.
     above: Vec<u32>,
-    /// The first item of a leaf, and how many it has.
+    /// The first item of a leaf, and its number of items.
     items: Vec<[u32; 2]>,
 }
 
-/// A subtree, where to put it, and by how much areas shrink.
+/// A subtree, where to put it, and by how much the areas shrink.
 #[derive(Clone, Copy)]
 struct Move {
     from: u32,
@@ -37,7 +37,7 @@ struct Move {
     gain: f32,
 }
 
-/// Moves subtrees of a tree until it is better. A tree that would become too deep stays as it is.
+/// Moves subtrees of a tree until it is better. If the tree would become too deep, it stays as it is.
 pub(super) fn improve(binary: Binary) -> Binary {
     let mut tree = Tree::of(&binary);
     for _ in 0..ROUNDS {
@@ -95,7 +95,7 @@ impl Tree {
         self.bounds[place as usize].half_area()
     }
 
-    /// The places of the largest boxes, but for the root's.
+    /// The indices of the largest boxes, except for the root's.
     fn largest(&self, count: usize) -> Vec<u32> {
         let mut places: Vec<(f32, u32)> =
             (2..self.below.len() as u32).map(|place| (self.half_area(place), place)).collect();
@@ -107,13 +107,13 @@ impl Tree {
         places.into_iter().map(|(_, place)| place).collect()
     }
 
-    /// Where a subtree is put best: from its parent up to the root, down into each sibling on the way, as long as
-    /// that can still win.
+    /// The best position for a subtree: searches from its parent up to the root, and down into each sibling on the
+    /// way, as long as that can still win.
     fn search(&self, from: u32, stack: &mut Vec<(f32, u32)>) -> Option<Move> {
         let (own, own_area) = (self.bounds[from as usize], self.half_area(from));
         let parent = self.parent(from);
         let mut best = Move { from, to: 0, gain: 0.0 };
-        // What is gained as far as the common ancestor, without what the new parent costs.
+        // The gain up to the common ancestor, without the cost of the new parent.
         let mut gained = self.half_area(parent);
         let (mut pivot, mut sibling) = (parent, from ^ 1);
         let mut shrunk = self.bounds[sibling as usize];
@@ -142,7 +142,7 @@ impl Tree {
             if pivot == 0 || steps > MAX_STEPS {
                 break;
             }
-            // The pivot without the subtree is smaller; so may be what is above it.
+            // The pivot without the subtree is smaller; so may be its ancestors.
             if pivot != parent {
                 shrunk = shrunk.union(self.bounds[sibling as usize]);
                 gained += self.half_area(pivot) - shrunk.half_area();
@@ -153,7 +153,7 @@ impl Tree {
         (best.gain > 0.0 && best.to != parent).then_some(best)
     }
 
-    /// Does what a search found, unless something near has moved since.
+    /// Applies the result of a search, unless something nearby has moved since.
     fn apply(&mut self, step: &Move, touched: &mut [bool]) {
         let Move { from, to, .. } = *step;
         let (sibling, parent) = (from ^ 1, self.parent(from));
@@ -162,7 +162,7 @@ impl Tree {
             return;
         }
         near.iter().for_each(|&place| touched[place as usize] = true);
-        // The sibling takes the parent's place; the pair is free.
+        // The sibling takes the parent's slot, and the pair becomes free.
         let moving = self.take(from);
         let staying = self.take(sibling);
         self.put(parent, staying);
@@ -191,7 +191,7 @@ impl Tree {
         }
     }
 
-    /// Whether a place is a subtree's root or below it.
+    /// Whether a node is a subtree's root or below it.
     fn is_within(&self, mut place: u32, subtree: u32) -> bool {
         while place != 0 && place != subtree {
             place = self.parent(place);
@@ -199,7 +199,7 @@ impl Tree {
         place == subtree
     }
 
-    /// Boxes anew, from a place that is no leaf up.
+    /// Recomputes the boxes, from an inner node upwards.
     fn fit_from(&mut self, mut place: u32) {
         loop {
             let below = self.below[place as usize] as usize;
@@ -212,7 +212,7 @@ impl Tree {
     }
 
     fn finish(&self, before: Binary) -> Binary {
-        // Parents before their children, with the number of nodes on the way.
+        // Parents before their children, each with the number of nodes on the path to it.
         let mut order = vec![(0u32, 1)];
         let mut next = 0;
         while let Some(&(place, depth)) = order.get(next) {

@@ -1,27 +1,28 @@
-//! Cuts through triangles: one that reaches far beyond its neighbours stands on both sides of a plane, on each
-//! with the box of what it has there [Stich 2009].
+//! Spatial splits: a triangle that reaches far beyond its neighbours is put on both sides of a plane, each time with
+//! the box of its part on that side [Stich 2009].
 //!
-//! The boxes of all pieces of a triangle together hold every point of it: where an edge meets a plane is computed
-//! in f64 and widened, so that no rounding leaves a gap. Hits are therefore those of the tree without cuts.
+//! The boxes of all pieces of a triangle together contain every point of it: the intersection of an edge with a plane
+//! is computed in f64 and widened, so that no rounding leaves a gap. The hits are therefore those of the tree without
+//! cuts.
 
 use super::item::{Bounds, Item};
 use super::split::{Halves, around, blocks};
 use bilux_math::glam::Vec4;
 use rayon::prelude::*;
 
-/// Bins an axis.
+/// Bins per axis.
 const BINS: usize = 16;
-/// From this many items on, a pass over them is shared by threads.
+/// From this many items on, threads share a pass over them.
 const PARALLEL_PASS: usize = 1 << 15;
-/// Items that a thread takes of such a pass.
+/// Number of items that a thread takes in such a pass.
 const CHUNK: usize = 1 << 13;
-/// Cuts are looked for where the halves share more than this part of the whole tree's area: with less, builds take
-/// twice as long and rays gain a twentieth.
+/// The builder looks for cuts where the halves overlap by more than this fraction of the whole tree's area: with a
+/// smaller threshold, builds take twice as long and rays gain a twentieth.
 const MIN_OVERLAP: f32 = 1e-3;
-/// What a cut may cost, of what the halves do: each makes triangles more.
+/// Maximum cost of a cut, relative to that of the halves: each cut adds triangles.
 const MAX_COST: f32 = 0.95;
 
-/// What is cut.
+/// The triangles to cut.
 pub(super) struct Cutter<'a> {
     triangles: &'a [[[f32; 3]; 3]],
     least_overlap: f32,
@@ -61,7 +62,7 @@ impl Grid {
         }
     }
 
-    /// The bins that an item begins and ends in, on each axis.
+    /// The bins in which an item begins and ends, on each axis.
     #[inline(always)]
     fn bins_of(&self, item: &Item) -> [[usize; 2]; 3] {
         let [first, last] = [item.low, item.high].map(|p| (p - self.low) * self.inverse);
@@ -79,13 +80,13 @@ impl Grid {
         self.whole((x - self.low[axis]) * self.inverse[axis])
     }
 
-    /// The plane before a bin.
+    /// The plane in front of a bin.
     fn plane(&self, axis: usize, bin: usize) -> f32 {
         self.low[axis] + self.width[axis] * bin as f32
     }
 }
 
-/// What lies in a bin, and how many items begin and end there.
+/// The contents of a bin, and how many items begin and end there.
 type Bin = (Bounds, [u32; 2]);
 const NO_ITEMS: Bin = (Bounds::EMPTY, [0; 2]);
 type Bins = [[Bin; BINS]; 3];
@@ -95,7 +96,7 @@ impl<'a> Cutter<'a> {
         Cutter { triangles, least_overlap: MIN_OVERLAP * bounds.half_area() }
     }
 
-    /// The cheapest cut, if it beats halves of a cost and adds no more than `room` items.
+    /// The cheapest cut, if it beats halves of a given cost and adds no more than `room` items.
     pub(super) fn best(
         &self,
         items: &[Item],
@@ -140,7 +141,7 @@ impl<'a> Cutter<'a> {
         bins
     }
 
-    /// Adds what an item has in each of its bins along an axis; nearly, since this is only to choose by.
+    /// Adds the part of an item in each of its bins along an axis; approximately, since this only guides the choice.
     fn slice(&self, item: &Item, grid: &Grid, axis: usize, bins: &mut [Bin; BINS]) {
         let [first, last] = grid.bins_of(item)[axis];
         let mut slices = [Bounds::EMPTY; BINS];
@@ -174,7 +175,7 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// What an item has on both sides of a plane; nothing is a box whose corners have changed places.
+    /// The parts of an item on both sides of a plane; an empty part is a box whose corners have swapped.
     fn pieces(&self, item: &Item, axis: usize, plane: f32) -> [Item; 2] {
         let corners = &self.triangles[item.index() as usize];
         let mut sides = [Bounds::EMPTY; 2];
@@ -197,8 +198,8 @@ impl<'a> Cutter<'a> {
         sides.map(|side| item.within(&side))
     }
 
-    /// Moves the left side to the front and the pieces that are new behind the `count` items that there were. A
-    /// triangle is left whole where that costs less. `None`, and nothing is lost, if all goes to one side.
+    /// Moves the left side to the front and the new pieces behind the `count` existing items. A triangle is left
+    /// whole where that costs less. Returns `None`, and loses nothing, if all items go to one side.
     pub(super) fn apply(&self, items: &mut [Item], count: usize, cut: &Cut) -> Option<(Halves, usize)> {
         let plane = cut.grid.plane(cut.axis, cut.bin);
         let (mut bounds, mut counts) = (cut.bounds, cut.counts.map(|n| n as f32));
@@ -243,7 +244,7 @@ impl<'a> Cutter<'a> {
     }
 }
 
-/// The side that takes a triangle whole, if that is cheaper than to cut it or the other side has nothing of it.
+/// The side that takes a whole triangle, if that is cheaper than cutting it or the other side has no part of it.
 fn side_of(item: &Item, left: &Item, right: &Item, bounds: &[Bounds; 2], counts: &[f32; 2]) -> Option<usize> {
     match (left.is_nothing(), right.is_nothing()) {
         (false, true) => return Some(0),
@@ -259,7 +260,7 @@ fn side_of(item: &Item, left: &Item, right: &Item, bounds: &[Bounds; 2], counts:
     if only_left.min(only_right) >= cut { None } else { Some(usize::from(only_right < only_left)) }
 }
 
-/// The box around where an edge meets a plane between its ends.
+/// The bounding box of the point where an edge crosses a plane between its ends.
 fn crossing(a: &[f32; 3], b: &[f32; 3], axis: usize, plane: f32) -> Bounds {
     let [x, y, s] = [a[axis], b[axis], plane].map(f64::from);
     let part = (s - x) / (y - x);
@@ -267,7 +268,7 @@ fn crossing(a: &[f32; 3], b: &[f32; 3], axis: usize, plane: f32) -> Bounds {
     for k in 0..3 {
         let (p, q) = (f64::from(a[k]), f64::from(b[k]));
         let at = p + (q - p) * part;
-        // Some hundred times what the four roundings come to.
+        // A few hundred times the error of the four roundings.
         let slack = (p.abs() + q.abs()) * (256.0 * f64::EPSILON);
         found.low[k] = ((at - slack) as f32).next_down();
         found.high[k] = ((at + slack) as f32).next_up();

@@ -1,20 +1,20 @@
-//! Where to cut a set of items: the surface-area heuristic over bins [Wald 2007], in blocks of triangles.
+//! Where to split a set of items: the binned surface-area heuristic [Wald 2007], counted in blocks of triangles.
 
 use super::item::{Bounds, Item};
 use crate::bvh8::layout::LANES;
 use bilux_math::glam::Vec4;
 use rayon::prelude::*;
 
-/// Bins an axis, for many items.
+/// Bins per axis, for many items.
 pub(super) const BINS: usize = 16;
 /// And for few.
 const FEW: usize = 8;
-/// From this many items on, one pass over them is shared by threads.
+/// From this many items on, threads share a pass over them.
 const PARALLEL_PASS: usize = 1 << 16;
-/// Items that a thread takes of such a pass.
+/// Number of items that a thread takes in such a pass.
 const CHUNK: usize = 1 << 14;
 
-/// A cut between two bins.
+/// A split between two bins.
 pub(super) struct Split {
     grid: Grid,
     axis: usize,
@@ -33,14 +33,14 @@ struct Grid {
     bins: usize,
 }
 
-/// 1.5 · 2²³: floats around this have no fraction, and their low bits are a whole number.
+/// 1.5 · 2²³: floats around this value have no fraction, and their low bits are an integer.
 const WHOLE: f32 = 12_582_912.0;
 
 impl Grid {
     fn new(centres: &Bounds, len: usize) -> Grid {
         let bins = (4 + len / 8).min(BINS);
         let extent = centres.high - centres.low;
-        // A little less, so that the greatest centre falls into the last bin.
+        // Slightly less, so that the largest centre falls into the last bin.
         let scale = Vec4::splat(bins as f32 * 0.9999) / extent;
         let sound = |x: f32| if x.is_finite() { x } else { 0.0 };
         Grid {
@@ -50,7 +50,7 @@ impl Grid {
         }
     }
 
-    /// The bin on each axis, by rounding to whole numbers.
+    /// The bin on each axis, by rounding to integers.
     #[inline(always)]
     fn bins_of(&self, item: &Item) -> [usize; 3] {
         let place = (item.centre() - self.least) * self.scale - Vec4::splat(0.5) + Vec4::splat(WHOLE);
@@ -74,7 +74,7 @@ type Bins<const N: usize> = [[(Bounds, u32); N]; 3];
 
 const NO_ITEMS: (Bounds, u32) = (Bounds::EMPTY, 0);
 
-/// The cheapest cut; `None` when there is nothing to choose, as when all centres are one.
+/// The cheapest split; `None` when there is nothing to choose, as when all centres coincide.
 pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
     let grid = Grid::new(centres, items.len());
     if grid.scale == Vec4::ZERO {
@@ -84,7 +84,7 @@ pub(super) fn best_split(items: &[Item], centres: &Bounds) -> Option<Split> {
         let parts = items.par_chunks(CHUNK).map(|items| Box::new(fill::<BINS>(items, &grid)));
         cheapest(&parts.reduce(|| Box::new([[NO_ITEMS; BINS]; 3]), merge), grid)
     } else if grid.bins <= FEW {
-        // Most nodes are small, and to make ready many bins would take more time than to fill them.
+        // Most nodes are small, and initialising many bins would take more time than filling them.
         cheapest(&fill::<FEW>(items, &grid), grid)
     } else {
         cheapest(&fill::<BINS>(items, &grid), grid)
@@ -112,7 +112,7 @@ fn merge(mut a: Box<Bins<BINS>>, b: Box<Bins<BINS>>) -> Box<Bins<BINS>> {
     a
 }
 
-/// Blocks that so many triangles fill.
+/// The number of blocks that this many triangles fill.
 #[inline(always)]
 pub(super) fn blocks(count: u32) -> f32 {
     count.div_ceil(LANES as u32) as f32
@@ -138,7 +138,7 @@ fn sweep<const N: usize>(bins: &[(Bounds, u32); N], grid: Grid, axis: usize, bes
         (bounds, count) = (bounds.union(bins[bin - 1].0), count + bins[bin - 1].1);
         let (right_bounds, right_count, right_cost) = right[bin];
         let cost = bounds.half_area() * blocks(count) + right_cost;
-        // Costs beyond all numbers say nothing; empty sides make such too.
+        // Infinite costs carry no information; empty sides produce them too.
         let usable = count > 0 && right_count > 0 && cost < f32::INFINITY;
         if usable && best.as_ref().is_none_or(|best| cost < best.cost) {
             let counts = [count as usize, right_count as usize];
@@ -147,16 +147,16 @@ fn sweep<const N: usize>(bins: &[(Bounds, u32); N], grid: Grid, axis: usize, bes
     }
 }
 
-/// What lies on both sides of a cut.
+/// The two sides of a split.
 pub(super) struct Halves {
-    /// Items of the left side.
+    /// Number of items on the left side.
     pub(super) middle: usize,
     pub(super) bounds: [Bounds; 2],
-    /// Around the centres.
+    /// Bounds of the centres.
     pub(super) centres: [Bounds; 2],
 }
 
-/// Moves the items of the left side to the front. Without a branch on the side, which nobody can foretell.
+/// Moves the items of the left side to the front. It does not branch on the side, which no predictor can guess.
 pub(super) fn partition(items: &mut [Item], split: &Split) -> Halves {
     let mut middle = 0;
     for i in 0..items.len() {
@@ -168,7 +168,7 @@ pub(super) fn partition(items: &mut [Item], split: &Split) -> Halves {
     Halves { middle, bounds: split.bounds, centres: [around(left), around(right)] }
 }
 
-/// Cuts by number, along the axis on which centres are furthest apart.
+/// Splits into halves by count, along the axis on which the centres spread furthest.
 pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
     let middle = items.len() / 2;
     let spread = centres.high * 0.5 - centres.low * 0.5;
@@ -182,7 +182,7 @@ pub(super) fn halve(items: &mut [Item], centres: &Bounds) -> Halves {
     Halves { middle, bounds: [Bounds::of(left), Bounds::of(right)], centres: [around(left), around(right)] }
 }
 
-/// Around the centres of items.
+/// The bounds of the centres of items.
 pub(super) fn around(items: &[Item]) -> Bounds {
     if items.len() >= PARALLEL_PASS {
         return items.par_chunks(CHUNK).map(around).reduce(|| Bounds::EMPTY, Bounds::union);

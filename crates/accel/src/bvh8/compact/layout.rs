@@ -1,14 +1,15 @@
-//! How a compact tree lies in memory: the same 32-byte units, and of them nodes, leaves, and pools of corners.
+//! The memory layout of a compact tree: the same 32-byte units, and made of them nodes, leaves, and pools of corners.
 //!
-//! - A *node* is 3 units. The lowest corner of its children, three numbers. A word that holds, byte by byte, the
-//!   exponents of three steps, one an axis, and a bit for each child that there is. The lower and the upper planes of
-//!   eight children, axis by axis, each a byte: so many steps from the lowest corner. Eight references.
-//! - A *block* is one unit: for each corner of four triangles a byte that says which of a pool it is, how many units
-//!   further on the pool begins, and the primitives of the four. A leaf is one to `MAX_BLOCKS` of them.
-//! - A *pool* holds up to [`POOL`] corners, each once, for as many blocks before it as it suffices for.
+//! - A *node* is 3 units. It holds the lowest corner of its children, three numbers; a word with the exponents of
+//!   three steps, one byte per axis, and a bit for each child that is present; the lower and upper planes of eight
+//!   children, axis by axis, one byte each: the number of steps from the lowest corner; and eight references.
+//! - A *block* is one unit. It holds, for each corner of four triangles, a byte with the corner's index in a pool;
+//!   how many units further on the pool begins; and the primitives of the four triangles. A leaf is one to
+//!   `MAX_BLOCKS` blocks.
+//! - A *pool* holds up to [`POOL`] corners, each once, for as many of the preceding blocks as it suffices for.
 //!
-//! A step is a power of two, so that steps times their number is exact and only the sum is rounded, alike in every
-//! kernel, fused or not. A box is the least such that holds the true one *as it is read*. [Ylitie 2017]
+//! A step is a power of two, so that a multiple of it is exact and only the sum is rounded, equally in every kernel,
+//! fused or not. A box is the smallest whose *decoded* planes contain the true box. [Ylitie 2017]
 
 use crate::bvh::tree::union;
 use crate::bvh8::layout::{EMPTY, LANES, Planes, Ref, Unit, WIDTH};
@@ -17,27 +18,27 @@ use crate::bvh8::layout::{EMPTY, LANES, Planes, Ref, Unit, WIDTH};
 pub(in crate::bvh8) const NODE_UNITS: usize = 3;
 /// Units of a block.
 pub(in crate::bvh8) const BLOCK_UNITS: usize = 1;
-/// Corners of the largest pool: as many as a byte can tell apart.
+/// Corners of the largest pool: as many as a byte can distinguish.
 pub(in crate::bvh8) const POOL: usize = 256;
-/// Bytes from the front of a node to the first planes.
+/// Bytes from the start of a node to the first planes.
 pub(in crate::bvh8) const PLANES: usize = 16;
-/// Bytes from the front of a node to the references.
+/// Bytes from the start of a node to the references.
 pub(in crate::bvh8) const REFERENCES: usize = 64;
-/// Bytes from the front of a block to the primitives.
+/// Bytes from the start of a block to the primitives.
 pub(in crate::bvh8) const PRIMITIVES: usize = 16;
-/// Words of a corner.
+/// Words per corner.
 pub(super) const CORNER_WORDS: usize = 3;
 
-/// Places along an axis that a byte can name.
+/// The positions along an axis that a byte can represent.
 #[derive(Clone, Copy)]
 struct Steps {
     low: f32,
-    /// As a float holds it; 0 for steps of no length.
+    /// The exponent as a float stores it; 0 for steps of no length.
     exponent: u8,
 }
 
 impl Steps {
-    /// The least steps that lead from one place to the other.
+    /// The smallest steps that reach from one position to the other.
     fn between(low: f32, high: f32) -> Steps {
         let mut steps = Steps { low, exponent: 0 };
         if high > low {
@@ -55,13 +56,13 @@ impl Steps {
         f32::from_bits(u32::from(self.exponent) << 23)
     }
 
-    /// What every kernel reads.
+    /// The decoding that every kernel performs.
     #[inline(always)]
     fn at(&self, number: u8) -> f32 {
         self.low + f32::from(number) * self.length()
     }
 
-    /// The last place, or nearly, that is not above a plane.
+    /// The last position, or nearly, that is not above a plane.
     fn below(&self, plane: f32) -> u8 {
         let mut number = ((plane - self.low) / self.length()) as u8;
         while number > 0 && self.at(number) > plane {
@@ -70,7 +71,7 @@ impl Steps {
         number
     }
 
-    /// The first place, or nearly, that is not below a plane.
+    /// The first position, or nearly, that is not below a plane.
     fn above(&self, plane: f32) -> u8 {
         let mut number = ((plane - self.low) / self.length()).ceil() as u8;
         while number < u8::MAX && self.at(number) < plane {
@@ -103,7 +104,7 @@ pub(super) fn write_node(units: &mut [Unit], children: &[(Planes, Ref)]) {
     }
 }
 
-/// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is none.
+/// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is no child.
 #[inline(always)]
 pub(in crate::bvh8) fn child(node: &[Unit], child: usize) -> (Planes, Ref) {
     let node: &[Unit; NODE_UNITS] = match node.first_chunk() {
@@ -127,14 +128,14 @@ pub(super) fn children(node: &[Unit]) -> impl Iterator<Item = (Planes, Ref)> + '
     (0..WIDTH).map(|k| child(node, k)).filter(|(_, reference)| *reference != Ref::EMPTY)
 }
 
-/// A block whose pool is not yet known: which corners of it its triangles have, and their primitives.
+/// A block whose pool is not yet known: the pool indices of its triangles' corners, and their primitives.
 pub(super) fn block(corners: [[u8; 3]; LANES], primitives: [u32; LANES]) -> Unit {
     let corner = |k: usize| u32::from_le_bytes(corners.map(|triangle| triangle[k]));
     let [a, b, c, d] = primitives;
     Unit([corner(0), corner(1), corner(2), 0, a, b, c, d])
 }
 
-/// Tells a block where its pool is.
+/// Stores in a block where its pool is.
 pub(super) fn link(units: &mut [Unit], block: usize, pool: usize) {
     units[block].0[3] = (pool - block) as u32;
 }

@@ -1,7 +1,8 @@
-//! The wide tree in fewer bytes: boxes in steps of their node, each a byte a plane, and corners that triangles share.
+//! The wide tree in fewer bytes: box planes quantised to a byte each, in steps of their node, and shared triangle
+//! corners.
 //!
-//! Less than half of what [`Bvh8`] takes where triangles share their corners, and slower rays; the same hits, to the bit.
-//! What was tried stands in `docs/adr/0008-bvh8.md`.
+//! It takes less than half the memory of [`Bvh8`] where triangles share their corners, and rays are slower; the hits
+//! are the same, to the bit. `docs/adr/0008-bvh8.md` records what was tried.
 
 pub(super) mod layout;
 mod pack;
@@ -31,8 +32,8 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     build: |mesh, options| Ok(Box::new(CompactBvh8::new(&mesh, options)?)),
 };
 
-/// Boxes around boxes around triangles, eight by eight, in few bytes. It answers rays; what else a tree can be
-/// asked, [`Bvh8`] can. The mesh need not be kept.
+/// A wide bounding volume hierarchy, eight children per node, in few bytes. It answers ray queries; for everything
+/// else that a tree can do, use [`Bvh8`]. The mesh need not be kept.
 #[derive(Clone, Debug)]
 pub struct CompactBvh8 {
     units: Vec<Unit>,
@@ -41,18 +42,18 @@ pub struct CompactBvh8 {
 }
 
 impl CompactBvh8 {
-    /// Builds one. The same tree whatever the number of threads.
+    /// Builds a compact tree. The tree is the same whatever the number of threads.
     ///
     /// # Errors
-    /// When it, or the wide tree that it is made from, would take more than 8 GiB.
+    /// Returns an error when it, or the wide tree that it is made from, would take more than 8 GiB.
     pub fn new(mesh: &TriangleMesh, options: &BuildOptions) -> Result<CompactBvh8, BuildError> {
         CompactBvh8::pack(&Bvh8::new(mesh, options)?)
     }
 
-    /// The same tree, packed.
+    /// Packs an existing wide tree.
     ///
     /// # Errors
-    /// When it would take more than 8 GiB.
+    /// Returns an error when it would take more than 8 GiB.
     pub fn pack(wide: &Bvh8) -> Result<CompactBvh8, BuildError> {
         let (units, root) = pack::pack(&wide.units, wide.outline.root)?;
         Ok(CompactBvh8 { units, outline: TreeSummary { root, ..wide.outline }, level: wide.level })

@@ -1,4 +1,4 @@
-//! A compact tree from a wide one: the same nodes and leaves, in the same order, with pools between them.
+//! A compact tree from a wide one: the same nodes and leaves, in the same order, with pools in between.
 
 use super::layout::{CORNER_WORDS, NODE_UNITS, POOL, block, link, put, write_node};
 use crate::bvh8::layout::{self, LANES, MAX_UNITS, NO_TRIANGLE, Planes, Ref, Unit, WIDTH};
@@ -6,12 +6,12 @@ use crate::registry::BuildError;
 
 /// The units, and the root among them.
 pub(super) fn pack(wide: &[Unit], root: Ref) -> Result<(Vec<Unit>, Ref), BuildError> {
-    // Half of what the wide tree takes; what is left over is given back.
+    // Half the size of the wide tree; unused capacity is released.
     let units = Vec::with_capacity(wide.len() / 2);
     let mut packer = Packer { wide, units, pool: Pool::default(), blocks: Vec::new() };
     let root = if wide.is_empty() { root } else { packer.subtree(root) };
     packer.close();
-    // References to more would have been cut off, and are not used.
+    // References to more units would have been truncated, and are not used.
     if packer.units.len() > MAX_UNITS {
         return Err(BuildError::TooManyNodes);
     }
@@ -22,14 +22,14 @@ pub(super) fn pack(wide: &[Unit], root: Ref) -> Result<(Vec<Unit>, Ref), BuildEr
 struct Packer<'a> {
     wide: &'a [Unit],
     units: Vec<Unit>,
-    /// Corners that are still to be written.
+    /// Corners that are not yet written.
     pool: Pool,
-    /// The blocks that have them.
+    /// The blocks that refer to them.
     blocks: Vec<usize>,
 }
 
 impl Packer<'_> {
-    /// Writes what a reference leads to, and gives the new reference. No way down is longer than `MAX_DEPTH`.
+    /// Writes the subtree of a reference, and returns the new reference. No path down is longer than `MAX_DEPTH`.
     fn subtree(&mut self, reference: Ref) -> Ref {
         if !reference.is_node() {
             return self.leaf(&self.wide[reference.leaf_units()]);
@@ -65,19 +65,19 @@ impl Packer<'_> {
         Ref::leaf(at, self.units.len() - at)
     }
 
-    /// How many corners of a leaf the pool does not have; those that the leaf has twice count twice.
+    /// How many corners of a leaf the pool lacks; a corner that occurs twice in the leaf counts twice.
     fn new_corners(&self, leaf: &[Unit]) -> usize {
         let corners = leaf.chunks_exact(layout::BLOCK_UNITS).flat_map(layout::triangles);
         corners.flat_map(|(corners, _)| corners).filter(|corner| self.pool.find(corner).is_err()).count()
     }
 
-    /// Writes the pool behind all that there is, and begins a new one.
+    /// Writes the pool after all existing units, and starts a new one.
     fn close(&mut self) {
         let pool = self.units.len();
         for block in self.blocks.drain(..) {
             link(&mut self.units, block, pool);
         }
-        // Corners are read four numbers at a time: one more behind the last.
+        // Corners are read four numbers at a time, so one more number follows the last.
         let words = self.pool.corners.len() * CORNER_WORDS + 1;
         if words > 1 {
             self.units.resize(pool + words.div_ceil(8), Unit::default());
@@ -89,10 +89,10 @@ impl Packer<'_> {
     }
 }
 
-/// Corners by their bits, each once, in the order in which they came.
+/// Corners by their bits, each once, in order of first occurrence.
 struct Pool {
     corners: Vec<[u32; 3]>,
-    /// One more than the number of a corner, at the first free place from its hash on; 0 where there is none.
+    /// One more than the number of a corner, at the first free slot from its hash on; 0 in empty slots.
     places: [u16; 4 * POOL],
 }
 
@@ -103,7 +103,7 @@ impl Default for Pool {
 }
 
 impl Pool {
-    /// The number of a corner, or the place where it would be.
+    /// The number of a corner, or the slot where it would be.
     fn find(&self, corner: &[f32; 3]) -> Result<usize, usize> {
         let bits = corner.map(f32::to_bits);
         let mixed =
@@ -118,7 +118,7 @@ impl Pool {
         }
     }
 
-    /// The number of a corner, that gets one if it has none. There must be room.
+    /// The number of a corner, which is added if it is new. There must be space.
     fn number(&mut self, corner: &[f32; 3]) -> u8 {
         let number = self.find(corner).unwrap_or_else(|place| {
             self.corners.push(corner.map(f32::to_bits));

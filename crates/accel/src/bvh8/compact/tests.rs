@@ -1,4 +1,4 @@
-//! What is packed is what was there: boxes hold theirs, triangles are the same to the bit.
+//! What is packed matches the original: boxes contain the originals, and triangles are the same to the bit.
 
 use super::layout::{self, BLOCK_UNITS, NODE_UNITS};
 use super::{Bvh8, CompactBvh8};
@@ -6,7 +6,7 @@ use crate::bvh8::layout::{self as wide, LANES, NO_TRIANGLE, Planes, Ref, Unit};
 use crate::{Accelerator, BuildOptions, TriangleMesh};
 use bilux_math::hash::{hash_words, unit_f32};
 
-/// Small triangles at random places of a cube of this size.
+/// Small triangles at random positions in a cube of this size.
 fn scattered(count: u64, size: f32, at: f32) -> TriangleMesh {
     let number = |words: [u64; 4]| unit_f32(hash_words(words) as u32);
     let triangle = |i: u64| {
@@ -18,7 +18,7 @@ fn scattered(count: u64, size: f32, at: f32) -> TriangleMesh {
     TriangleMesh::from_corners((0..count).map(triangle).collect()).expect("few triangles")
 }
 
-/// A net over a square, whose corners six triangles share.
+/// A grid over a square, in which six triangles share each corner.
 fn net(side: usize) -> TriangleMesh {
     let at = |i: usize, j: usize| [i as f32, (i * j % 7) as f32 * 0.2, j as f32];
     let cell = |cell: usize| {
@@ -39,8 +39,8 @@ fn holds(outer: &Planes, inner: &Planes) -> bool {
     (0..3).all(|k| outer[0][k] <= inner[0][k] && outer[1][k] >= inner[1][k])
 }
 
-/// Walks through both trees side by side and gives how much larger the boxes have become, at most, in extents of
-/// their node's children together.
+/// Walks through both trees in parallel and returns the maximum growth of a box, relative to the common extent of its
+/// node's children.
 fn compare(tree: &Bvh8, compact: &CompactBvh8) -> f32 {
     let mut stack = vec![(tree.outline.root, compact.outline.root)];
     let mut worst = 0f32;
@@ -80,7 +80,7 @@ fn compare(tree: &Bvh8, compact: &CompactBvh8) -> f32 {
 fn boxes_hold_theirs_and_triangles_are_the_same() {
     for (size, at) in [(1.0, 0.0), (1e30, 0.0), (1e-30, 0.0), (1.0, -3e4), (1e-3, 1e3)] {
         let (tree, compact) = both(&scattered(3000, size, at));
-        // A step, which is a power of two, is less than two of 255; far from the origin numbers are coarser.
+        // A step, which is a power of two, is less than two 255ths; far from the origin, floats are coarser.
         let more = compare(&tree, &compact);
         assert!(more < if at == 0.0 { 0.0085 } else { 0.2 }, "{size} {at}: {more}");
     }
@@ -121,7 +121,7 @@ fn shared_corners_make_it_less_than_half() {
     let (tree, compact) = both(&mesh);
     let bytes = |tree: &dyn Accelerator| tree.memory_bytes() as f64 / mesh.len() as f64;
     assert!(bytes(&compact) < 0.45 * bytes(&tree), "{} {}", bytes(&compact), bytes(&tree));
-    // Triangles that share nothing take what they took, and no more.
+    // Triangles that share nothing take the same space as before, and no more.
     let mesh = scattered(20_000, 1.0, 0.0);
     let (tree, compact) = both(&mesh);
     assert!(compact.memory_bytes() < tree.memory_bytes());

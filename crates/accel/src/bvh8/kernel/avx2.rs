@@ -1,4 +1,4 @@
-//! AVX2 and FMA on eight lanes.
+//! The AVX2 and FMA kernels on eight lanes.
 
 use super::level::{BatchLevel, Level, lanes};
 use super::stack::Stack;

@@ -1,4 +1,4 @@
-//! AVX-512 on eight lanes: masks, and compression for more than two children.
+//! The AVX-512 kernels on eight lanes: masks, and compression for more than two children.
 
 use super::level::{BatchLevel, Level};
 use super::node_format::NodeFormat;
@@ -59,7 +59,7 @@ impl BatchLevel for Avx512 {
         }
     }
 
-    // SAFETY: the trait says what is asked for.
+    // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack) {
         // SAFETY: as the trait demands.
@@ -72,7 +72,7 @@ impl BatchLevel for Avx512 {
     }
 }
 
-/// The distances of a mask with their lane in the last three bits; those that do not count come last.
+/// The distances of a mask with their lane in the last three bits; those outside the mask come last.
 #[inline(always)]
 unsafe fn compressed(mask: u32, enter: __m256i) -> __m256i {
     // SAFETY: as the caller promises.
@@ -84,7 +84,7 @@ unsafe fn compressed(mask: u32, enter: __m256i) -> __m256i {
     }
 }
 
-/// The same in descending order, by a network of three stages or six.
+/// The same in descending order, by a sorting network of three stages or six.
 #[inline(always)]
 unsafe fn sorted(mask: u32, enter: __m256i) -> __m256i {
     // SAFETY: as the caller promises.
@@ -94,7 +94,7 @@ unsafe fn sorted(mask: u32, enter: __m256i) -> __m256i {
     }
 }
 
-/// One stage of a network: each lane meets its partner, and those of the mask keep the lesser.
+/// One stage of a sorting network: each lane is compared with its partner, and those of the mask keep the smaller.
 macro_rules! stage {
     ($keys:expr, $lesser:expr, $partner:expr) => {{
         let partner = $partner;
@@ -106,7 +106,7 @@ macro_rules! stage {
 /// The first four, in descending order.
 ///
 /// # Safety
-/// The machine must have AVX-512, as for all that follows.
+/// The machine must have AVX-512, as for everything below.
 #[inline(always)]
 unsafe fn sort4(keys: __m256i) -> __m256i {
     // SAFETY: as the caller promises.

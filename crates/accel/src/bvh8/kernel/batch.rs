@@ -1,4 +1,5 @@
-//! Many rays at once: made ready in vectors, then together where they run side by side, else each on a way of its own.
+//! Many rays at once: prepared in vectors, then traced as a packet where they are coherent, else each on its own
+//! path.
 
 use super::level::BatchLevel;
 use super::node_format::Wide;
@@ -7,13 +8,13 @@ use super::{TreeView, body, plain, stream};
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
 
-/// Fewer rays than these are sooner asked one by one.
+/// Batches of fewer rays than this are traced one by one, which is faster.
 const FEW: usize = 8;
 
-/// What any hit is said to be.
+/// The placeholder that stands for any hit.
 pub(super) const SOMETHING: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
 
-/// Answers each ray by its number: with its nearest hit or, where `ANY`, with whichever is found first.
+/// Answers each ray by its index: with its nearest hit or, where `ANY`, with whichever hit is found first.
 ///
 /// # Safety
 /// The machine must have the level, and the view must be sound.
@@ -65,7 +66,7 @@ unsafe fn one<L: BatchLevel, const ANY: bool>(view: TreeView<'_>, ray: &Ray, que
     }
 }
 
-/// Answers the rays of a mask, which are not tame.
+/// Answers those rays of a mask that are not tame.
 #[inline(always)]
 fn wild<const ANY: bool>(
     view: TreeView<'_>,

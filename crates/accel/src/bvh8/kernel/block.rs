@@ -15,7 +15,7 @@ use std::arch::x86_64::*;
 #[derive(Clone, Copy)]
 pub(super) struct BlockRay {
     axes: &'static Axes,
-    /// Less the origin.
+    /// The negated origin.
     back: [__m128; 3],
     shear: [__m128; 2],
     /// The direction along the third axis.
@@ -25,9 +25,9 @@ pub(super) struct BlockRay {
 /// Corners in sheared space: `[axis][corner]`.
 pub(super) type Sheared = [[__m128; 3]; 3];
 
-/// Triangles that are hit between the ends that count.
+/// Triangles that are hit within the part of the ray that counts.
 pub(super) struct Crossings {
-    /// The sign bit of each.
+    /// The sign bit of each lane.
     within: __m128,
     t: __m128,
     v: __m128,
@@ -46,7 +46,7 @@ impl BlockRay {
             let pairs = _mm_max_ps(sizes, _mm_shuffle_ps::<0b10_11_00_01>(sizes, sizes));
             let greatest = _mm_max_ps(pairs, _mm_shuffle_ps::<0b01_00_11_10>(pairs, pairs));
             let steepest = _mm_movemask_ps(_mm_cmpeq_ps(sizes, greatest));
-            // Without branches, as nobody could foresee them.
+            // Without branches, as they would be unpredictable.
             let axes = &AXES[steepest as usize & 7];
             let direction = L::reorder(direction, axes);
             let back = _mm_xor_ps(L::reorder(origin, axes), _mm_set1_ps(-0.0));
@@ -88,7 +88,7 @@ impl BlockRay {
             let (x, y) = (lean(0), lean(1));
             let edge = |p: usize, q: usize| _mm_sub_ps(_mm_mul_ps(x[p], y[q]), _mm_mul_ps(y[p], x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
-            // What is not a number may drop out here, and reject less.
+            // A NaN may drop out here; then fewer triangles are rejected.
             let (least, greatest) = (_mm_min_ps(_mm_min_ps(u, v), w), _mm_max_ps(_mm_max_ps(u, v), w));
             let zero = _mm_setzero_ps();
             let one_side = _mm_or_ps(_mm_cmpnlt_ps(least, zero), _mm_cmpngt_ps(greatest, zero));
@@ -96,7 +96,8 @@ impl BlockRay {
         }
     }
 
-    /// The exact stage, and all that decides whether a hit counts. What the signs rejected is rejected here too.
+    /// The exact stage, and everything else that decides whether a hit counts. What the signs rejected is rejected
+    /// here too.
     ///
     /// # Safety
     /// The machine must have the level of the doubles, and `block` must point to a block.
@@ -118,7 +119,7 @@ impl BlockRay {
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
             let zero = D::splat(0.0);
             let (least, greatest) = (u.min(v).min(w), u.max(v).max(w));
-            // What is not a number makes the determinant none, and is refused there.
+            // A NaN makes the determinant NaN, which is rejected there.
             let one_side = least.ge(zero).or(greatest.le(zero));
             let det = u.add(v).add(w);
             let size = det.and_not(D::splat(-0.0));
@@ -132,7 +133,7 @@ impl BlockRay {
             let primitives = _mm_load_si128(block.add(F::PRIMITIVES).cast());
             let excluded = _mm_cmpeq_epi32(primitives, _mm_set1_epi32(ray.exclude.index as i32));
             let within = _mm_andnot_ps(_mm_castsi128_ps(excluded), within);
-            // No mesh has so many; places without a triangle do.
+            // No mesh has indices this large; empty lanes do.
             let within = _mm_andnot_ps(_mm_castsi128_ps(primitives), within);
             let mut good = one_side.and(sound);
             if culling == Culling::Back {
@@ -145,10 +146,10 @@ impl BlockRay {
 }
 
 impl Crossings {
-    /// A bit for each.
+    /// A mask with a bit for each hit.
     ///
     /// # Safety
-    /// Asks for SSE, which every machine of this kind has.
+    /// Requires SSE, which every machine of this kind has.
     #[inline(always)]
     pub(super) unsafe fn mask(&self) -> u32 {
         // SAFETY: as the caller promises.
@@ -170,19 +171,19 @@ impl Crossings {
     }
 }
 
-/// Of three corners along one axis.
+/// Bytes of a row of three corners along one axis.
 const ROW_BYTES: usize = 3 * LANES * 4;
 
-/// Which axes of space are x, y and z of sheared space, and bytes from the front of a block to the rows of each.
+/// Which axes of space are x, y and z of sheared space, and the byte offsets of their rows from the start of a block.
 #[repr(C, align(16))]
 pub(in crate::bvh8) struct Axes {
     pub(super) order: [u32; 4],
-    /// The same, byte by byte.
+    /// The same, as a byte shuffle.
     pub(super) bytes: [u8; 16],
     pub(super) rows: [usize; 3],
 }
 
-/// By which components are the greatest, a bit for each: the last of them becomes z.
+/// Indexed by which components are the maximum, one bit each: the last of them becomes z.
 static AXES: [Axes; 8] = [axes(2), axes(0), axes(1), axes(1), axes(2), axes(2), axes(2), axes(2)];
 
 const fn axes(z: usize) -> Axes {

@@ -19,7 +19,7 @@ pub(super) unsafe fn reference<F: NodeFormat>(node: *const u8, child: usize) -> 
     unsafe { Ref(*node.add(F::REFERENCES + child * 4).cast::<u32>()) }
 }
 
-/// Asks for the lines of a node, or of the first block of a leaf, so that they are there when their turn comes.
+/// Prefetches the cache lines of a node, or of the first block of a leaf, so that they are there when needed.
 #[inline(always)]
 pub(super) fn prefetch<F: NodeFormat>(base: *const u8, reference: Ref) {
     let place = base.wrapping_add(reference.byte()).cast::<i8>();
@@ -29,7 +29,7 @@ pub(super) fn prefetch<F: NodeFormat>(base: *const u8, reference: Ref) {
     }
 }
 
-/// The nearest of the children of a mask that is not zero; the others go to the stack, the nearer on top.
+/// The nearest of the children of a non-zero mask; the others go onto the stack, nearer ones on top.
 #[inline(always)]
 pub(super) unsafe fn choose<L: Level, F: NodeFormat>(
     base: *const u8,
@@ -59,7 +59,7 @@ pub(super) unsafe fn choose<L: Level, F: NodeFormat>(
         }
         L::push_sorted::<F>(node, mask, enter, stack);
         let nearest = stack.take_reference();
-        // Of those that wait, the next only: how many wait nobody can foresee.
+        // Of those that wait, only the next: how many wait is unpredictable.
         prefetch::<F>(base, Ref(*stack.references().sub(1)));
         nearest
     }
@@ -85,8 +85,8 @@ pub(super) unsafe fn closest<L: Level, F: NodeFormat, C: Count, const PLAIN: boo
     }
 }
 
-/// The nearest hit of a ray that is ready for boxes. `met` says which children of the root it meets; 0 that nobody
-/// has looked.
+/// The nearest hit of a ray that is prepared for boxes. `met` says which children of the root it hits; 0 means that
+/// this is unknown.
 ///
 /// # Safety
 /// As for [`closest`]; the ray must be tame.
@@ -140,23 +140,23 @@ pub(super) unsafe fn search<L: Level, F: NodeFormat, C: Count, const PLAIN: bool
     }
 }
 
-/// Where a search begins: at the root, or at the only child that is met.
+/// Where a search begins: at the root, or at the only child that the ray hits.
 ///
 /// # Safety
-/// The root must be one.
+/// `root` must be a root.
 #[inline(always)]
 pub(super) unsafe fn start<F: NodeFormat>(base: *const u8, root: Ref, met: u32) -> Ref {
     if met != 0 && met & (met - 1) == 0 {
-        // SAFETY: only of nodes is it known what is met.
+        // SAFETY: hits are known only for nodes.
         return unsafe { reference::<F>(base.add(root.byte()), met.trailing_zeros() as usize) };
     }
     root
 }
 
-/// The same where any order will do.
+/// The same where the order does not matter.
 ///
 /// # Safety
-/// The machine must have the level, and the root must be one.
+/// The machine must have the level, and `root` must be a root.
 #[inline(always)]
 pub(super) unsafe fn start_any<L: Level, F: NodeFormat>(
     base: *const u8,
@@ -194,7 +194,7 @@ pub(super) unsafe fn any<L: Level, F: NodeFormat, C: Count, const PLAIN: bool>(
     }
 }
 
-/// Whether a ray that is ready for boxes hits anything; `met` as of [`search`].
+/// Whether a ray that is prepared for boxes hits anything; `met` is as in [`search`].
 ///
 /// # Safety
 /// As for [`search`].
@@ -236,7 +236,7 @@ pub(super) unsafe fn search_any<L: Level, F: NodeFormat, C: Count, const PLAIN: 
     }
 }
 
-/// Subtrees left out because a hit is nearer, where anybody wants to know.
+/// Counts the subtrees that are skipped because a hit is nearer, if the caller counts at all.
 ///
 /// # Safety
 /// As for [`closest`].

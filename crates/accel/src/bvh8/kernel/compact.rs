@@ -1,4 +1,4 @@
-//! How the compact layout is read: bytes become planes, and corners are gathered from the pool.
+//! Reads the compact layout: bytes become planes, and corners are gathered from the pool.
 
 use super::node_format::NodeFormat;
 use crate::bvh8::compact::layout;
@@ -22,21 +22,21 @@ pub(in crate::bvh8) struct Frame<V> {
     step: [V; 3],
 }
 
-/// The steps of a node, one after the other; the fourth means nothing.
+/// The steps of a node, contiguous; the fourth lane has no meaning.
 ///
 /// # Safety
 /// The machine must have SSE4.2, and `node` must point to a node.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 unsafe fn steps(node: *const u8) -> __m128 {
-    // SAFETY: a node holds its three exponents behind three numbers.
+    // SAFETY: a node stores its three exponents after three numbers.
     unsafe {
         let exponents = _mm_cvtsi32_si128(node.add(12).cast::<i32>().read());
         _mm_castsi128_ps(_mm_slli_epi32::<23>(_mm_cvtepu8_epi32(exponents)))
     }
 }
 
-/// Bytes from the front of a node to the planes of a row; a wide one has four bytes a plane.
+/// Byte offset of a row of planes from the start of a node; a wide node has four bytes per plane.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn place(row: usize) -> usize {
@@ -70,7 +70,7 @@ impl NodeFormat for Compact {
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     unsafe fn occupied(node: *const u8) -> u32 {
-        // SAFETY: the byte behind the exponents.
+        // SAFETY: the byte after the exponents.
         unsafe { u32::from(*node.add(15)) }
     }
 
@@ -135,7 +135,7 @@ impl NodeFormat for Compact {
         unsafe {
             let bytes = node.add(place(row) + from).cast::<i32>().read();
             let numbers = _mm_cvtepi32_ps(_mm_cvtepu8_epi32(_mm_cvtsi32_si128(bytes)));
-            // The product is exact, so that this is what a fused operation gives.
+            // The product is exact, so the result is that of a fused operation.
             _mm_add_ps(_mm_mul_ps(numbers, frame.step[axis]), frame.low[axis])
         }
     }
@@ -144,8 +144,8 @@ impl NodeFormat for Compact {
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3] {
-        // SAFETY: a block tells how many units further on its pool begins, which has all corners that the bytes of
-        // the block name, and at least one number behind the last.
+        // SAFETY: a block says how many units further on its pool begins; the pool has all corners that the bytes of
+        // the block name, and at least one number after the last.
         unsafe {
             let pool =
                 block.add(block.cast::<u32>().add(3).read() as usize * size_of::<Unit>()).cast::<f32>();
@@ -159,10 +159,10 @@ impl NodeFormat for Compact {
     }
 }
 
-/// Four corners of a pool, axis by axis, that four bytes name.
+/// Four corners of a pool, axis by axis, that four bytes index.
 ///
 /// # Safety
-/// The machine must have the level, the pool must have the corners, and a number behind the last.
+/// The machine must have the level, and the pool must have the corners and a number after the last.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 unsafe fn four<L: Level>(pool: *const f32, numbers: *const u8, axes: &Axes) -> [__m128; 3] {
@@ -176,7 +176,7 @@ unsafe fn four<L: Level>(pool: *const f32, numbers: *const u8, axes: &Axes) -> [
     }
 }
 
-/// A corner in the order of sheared space.
+/// A corner, with its axes in the order of sheared space.
 ///
 /// # Safety
 /// As for [`four`].

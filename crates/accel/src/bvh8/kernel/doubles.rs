@@ -3,10 +3,10 @@
 use super::packet::{declare, define};
 use std::arch::x86_64::*;
 
-/// Four doubles. What comparisons give has all bits of a lane, or none; with what is not a number, none.
+/// Four doubles. A comparison sets all bits of a lane, or none; with a NaN, none.
 ///
 /// # Safety
-/// All functions want a machine that has the level.
+/// All functions require a machine that has the level.
 pub(in crate::bvh8) trait Doubles: Copy {
     declare! {
         splat(x: f64) -> Self;
@@ -16,18 +16,18 @@ pub(in crate::bvh8) trait Doubles: Copy {
         sub(self, other: Self) -> Self;
         mul(self, other: Self) -> Self;
         div(self, other: Self) -> Self;
-        // The second, where one is not a number.
+        // Returns the second if either is NaN.
         min(self, other: Self) -> Self;
         max(self, other: Self) -> Self;
         and(self, other: Self) -> Self;
         or(self, other: Self) -> Self;
-        // Without the bits of the other.
+        // Clears the bits that are set in the other.
         and_not(self, other: Self) -> Self;
         lt(self, other: Self) -> Self;
         le(self, other: Self) -> Self;
         gt(self, other: Self) -> Self;
         ge(self, other: Self) -> Self;
-        // Of what a comparison gave.
+        // Takes the result of a comparison.
         narrow_mask(self) -> __m128;
     }
 }
@@ -58,7 +58,7 @@ impl Doubles for __m256d {
     }
 }
 
-/// Two by two.
+/// Two vectors of two.
 #[derive(Clone, Copy)]
 pub(super) struct Halves(__m128d, __m128d);
 

@@ -1,17 +1,18 @@
-//! A ray as the wide kernels want it, made in a few dozen instructions.
+//! A ray in the form that the wide kernels use, prepared in a few dozen instructions.
 //!
 //! # Boxes
-//! Where [`crate::slab`] takes a plane's distance as `(plane − origin) · inverse`, this takes it as the fused
-//! `plane · inverse + bias` with `bias = −origin · inverse ∓ pad · |inverse|`, rounded twice a ray. That displaces
-//! all planes of an axis by at most `2 · 2⁻²⁴ · |origin|`: the pad of the lemma is therefore grown by twice that. It
-//! is taken from how far the origin is from the centre of the tree; see `docs/adr/0008-bvh8.md`.
+//! Where [`crate::slab`] computes the distance to a plane as `(plane − origin) · inverse`, this computes the fused
+//! `plane · inverse + bias` with `bias = −origin · inverse ∓ pad · |inverse|`, which is rounded twice per ray. That
+//! displaces all planes of an axis by at most `2 · 2⁻²⁴ · |origin|`, so the pad of the lemma is increased by twice
+//! that amount. The pad is computed from the distance of the origin from the centre of the tree; see
+//! `docs/adr/0008-bvh8.md`.
 //!
-//! Distances are `t`, so that no step waits for the length of the direction: what a ray has to know before its
-//! first node should take as few steps, one after the other, as can be.
+//! Distances are measured in `t`, so that no step waits for the length of the direction: the chain of dependent steps
+//! before a ray's first node should be as short as possible.
 //!
 //! # Tame rays
-//! Of a tame ray all of this is finite and no distance that counts is negative. So no NaN can come up, and
-//! distances compare like the whole numbers of the same bits, which takes a quarter of the time.
+//! For a tame ray, all of this is finite and no distance that counts is negative. So no NaN can occur, and distances
+//! compare like integers of the same bits, which takes a quarter of the time.
 
 use super::TreeView;
 use super::level::Boxes;
@@ -25,11 +26,11 @@ use std::mem::offset_of;
 /// A ray with a lane for each child of a node. Distances are `t`.
 #[derive(Clone, Copy)]
 pub(super) struct LaneRay {
-    /// Bytes from the front of a node to the planes where the ray comes in, and goes out.
+    /// Bytes from the start of a node to the planes where the ray enters, and where it leaves.
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
     inverse: [__m256; 3],
-    /// Less where the origin is, in units of distance, and the pad.
+    /// The negated origin, in units of distance, and the pad.
     enter_bias: [__m256; 3],
     leave_bias: [__m256; 3],
     nearest: __m256i,
@@ -38,13 +39,13 @@ pub(super) struct LaneRay {
 /// Directions shorter than this are left to the plain kernel.
 pub(super) const SHORTEST: f32 = 1.0 / STEEPEST;
 
-/// Components less than this are taken to be this: of a direction that is long enough, a tilt as of [`STEEPEST`].
+/// Smaller components are clamped to this: in a direction that is long enough, that is a tilt as in [`STEEPEST`].
 pub(super) const LEVEL: f32 = SHORTEST * SHORTEST;
 
-/// What makes up for underflow in distances: a normal number, since others are slow.
+/// Compensates for underflow in distances: a normal number, because denormals are slow.
 pub(super) const MIN: f32 = 4.0 * f32::MIN_POSITIVE;
 
-/// Keeps the sizes of three numbers, and makes the fourth zero; twice.
+/// Keeps the magnitudes of three numbers, and zeroes the fourth; twice.
 pub(super) const SIZES: [u32; 8] =
     [0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0, 0x7fff_ffff, 0x7fff_ffff, 0x7fff_ffff, 0];
 
@@ -64,7 +65,7 @@ impl LaneRay {
             let sizes = _mm256_and_ps(both, _mm256_loadu_ps(SIZES.as_ptr().cast()));
             let pairs = _mm256_max_ps(sizes, _mm256_permute_ps::<0b10_11_00_01>(sizes));
             let greatest = _mm256_max_ps(pairs, _mm256_permute_ps::<0b01_00_11_10>(pairs));
-            // What is not a number drops out of no more than half of the lanes, so that one of them fails.
+            // A NaN is dropped in at most half of the lanes, so at least one lane fails.
             let within = _mm256_cmp_ps::<_CMP_LE_OQ>(greatest, _mm256_loadu_ps(outline.reach.as_ptr()));
             let (far, pace) = (_mm256_castps256_ps128(greatest), _mm256_extractf128_ps::<1>(greatest));
             let long_enough = _mm_cvtss_f32(pace) >= SHORTEST;
@@ -76,7 +77,7 @@ impl LaneRay {
             let tilted = _mm_or_ps(tilted, _mm_and_ps(direction, minus));
             let inverse = _mm_div_ps(_mm_set1_ps(1.0), tilted);
             let pad = _mm_fmadd_ps(far, _mm_set1_ps(FAR_PAD), _mm_set1_ps(outline.pad));
-            // Rays come in where planes are farther, and go out where they are nearer.
+            // The pad makes rays enter earlier and leave later.
             let (bias, steep) =
                 (_mm_mul_ps(_mm_xor_ps(origin, minus), inverse), _mm_andnot_ps(minus, inverse));
             let (enter, leave) = (_mm_fnmadd_ps(pad, steep, bias), _mm_fmadd_ps(pad, steep, bias));
@@ -99,7 +100,7 @@ impl LaneRay {
     }
 }
 
-/// What a level is that has eight lanes, four doubles, and FMA.
+/// The parts common to the levels with eight lanes, four doubles, and FMA.
 macro_rules! of_eight {
     () => {
         type Eight = __m256i;
@@ -128,19 +129,19 @@ macro_rules! of_eight {
 }
 pub(super) use of_eight;
 
-/// The origin and the direction of a ray, and what stands behind each of them.
+/// The origin and the direction of a ray, each with the number that follows it in memory.
 ///
 /// # Safety
-/// Asks for SSE, which every machine of this kind has.
+/// Requires SSE, which every machine of this kind has.
 #[inline(always)]
 pub(super) unsafe fn halves(ray: &Ray) -> (__m128, __m128) {
     const { assert!(offset_of!(Ray, direction) == 12 && offset_of!(Ray, t_min) == 24) }
     let numbers = std::ptr::from_ref(ray).cast::<f32>();
-    // SAFETY: a ray begins with its origin, its direction and its least `t`.
+    // SAFETY: a ray begins with its origin, its direction and its minimum `t`.
     unsafe { (_mm_loadu_ps(numbers), _mm_loadu_ps(numbers.add(3))) }
 }
 
-/// Bytes from the front of a node to the planes where a ray comes in, and goes out, by the signs of its direction.
+/// Bytes from the start of a node to the planes where a ray enters, and leaves, by the signs of its direction.
 pub(super) const ROWS: [[[usize; 3]; 2]; 8] = {
     let mut rows = [[[0; 3]; 2]; 8];
     let mut place = 0;
@@ -155,7 +156,7 @@ pub(super) const ROWS: [[[usize; 3]; 2]; 8] = {
 impl Boxes for LaneRay {
     type Eight = __m256i;
 
-    // SAFETY: the trait says what is asked for.
+    // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn span<F: NodeFormat>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
         // SAFETY: as the trait demands.
@@ -167,7 +168,7 @@ impl Boxes for LaneRay {
 
     #[inline(always)]
     fn limit_bits(&self, t: f32) -> u32 {
-        // SAFETY: who has a tame ray has FMA.
+        // SAFETY: a tame ray exists only where there is FMA.
         unsafe {
             let t = _mm_fmadd_ss(_mm_set_ss(t), _mm_set_ss(1.0 + 2.0 * SLACK), _mm_set_ss(MIN));
             _mm_extract_ps::<0>(t) as u32
@@ -177,8 +178,8 @@ impl Boxes for LaneRay {
 
 /// See [`Boxes::span`].
 ///
-/// Minima and maxima of whole numbers are right because what decides is not negative: a negative entry never
-/// beats `nearest`, and a negative exit is below it.
+/// Integer minima and maxima are correct because the value that decides is not negative: a negative entry never beats
+/// `nearest`, and a negative exit is below it.
 ///
 /// # Safety
 /// As for [`Boxes::span`].

@@ -1,7 +1,7 @@
 //! A ray at a leaf.
 //!
-//! What triangles want of a ray is made ready here, each time: many rays see no leaf, and most see one. The black box
-//! keeps the compiler from doing it before it is known.
+//! The ray is prepared for triangles here, each time: many rays reach no leaf, and most reach one. The black box
+//! keeps the compiler from hoisting that work to before it is known to be needed.
 
 use super::block::{BlockRay, Crossings};
 use super::level::Level;
@@ -17,10 +17,11 @@ pub(super) const fn block_bytes<F: NodeFormat>() -> usize {
     F::BLOCK_UNITS * size_of::<Unit>()
 }
 
-/// Keeps the nearest hit, of equals that of the lowest primitive. No mesh has a primitive as high as that of no hit.
+/// Keeps the nearest hit, ties to the lowest primitive. No mesh has a primitive as high as the one that stands for no
+/// hit.
 ///
 /// # Safety
-/// The machine must have the level, the ray be tame, and the leaf be one.
+/// The machine must have the level, the ray must be tame, and the leaf must be one.
 #[inline(always)]
 pub(super) unsafe fn closest<L: Level, F: NodeFormat, const PLAIN: bool>(
     ray: &Ray,

@@ -1,4 +1,4 @@
-//! What a level of instructions does with a node.
+//! The operations on a node that a level of instructions provides.
 
 use super::block::Axes;
 use super::doubles::Doubles;
@@ -10,29 +10,29 @@ use crate::bvh8::layout::{Ref, WIDTH};
 use crate::ray::Ray;
 use std::arch::x86_64::{__m128, __m256i};
 
-/// A level, as the search of one ray needs it. Distances are the bits of floats that are not negative.
+/// A level, as the traversal by a single ray needs it. Distances are the bits of non-negative floats.
 ///
 /// # Safety
-/// Functions must be called only on machines that have the level, with pointers to whole nodes and stacks
-/// with room for [`WIDTH`] more.
+/// Functions must be called only on machines that have the level, with pointers to whole nodes and with stacks that
+/// have space for [`WIDTH`] more entries.
 pub(in crate::bvh8) trait Level {
     /// A distance for each child.
     type Eight: Copy;
-    /// A ray that is ready for boxes.
+    /// A ray that is prepared for boxes.
     type LaneRay: Boxes<Eight = Self::Eight>;
     /// A number for each triangle of a block, for the exact stage.
     type Doubles: Doubles;
     // SAFETY: as the trait says.
     /// `None` for rays that are not tame, or can hit nothing.
     unsafe fn tame(ray: &Ray, view: &TreeView<'_>) -> Option<Self::LaneRay>;
-    /// The same distance for all.
+    /// The same distance in all lanes.
     unsafe fn splat(bits: u32) -> Self::Eight;
-    /// A bit for each lane where the first is not greater.
+    /// A bit for each lane where the first is less than or equal to the second.
     unsafe fn at_most(enter: Self::Eight, leave: Self::Eight) -> u32;
     // SAFETY: as the trait says.
-    /// Numbers of space in the order of sheared space.
+    /// Permutes coordinates of world space into the order of sheared space.
     unsafe fn reorder(numbers: __m128, axes: &Axes) -> __m128;
-    /// A bit for each child whose box the ray meets up to the limit, and where it enters them.
+    /// A bit for each child whose box the ray hits up to the limit, and the distances at which it enters them.
     #[inline(always)]
     unsafe fn meet<F: NodeFormat, B: Boxes<Eight = Self::Eight>>(
         ray: &B,
@@ -47,7 +47,7 @@ pub(in crate::bvh8) trait Level {
     }
     /// Puts the children of the mask on the stack, the nearest on top.
     ///
-    /// Sorted in, one after the other.
+    /// By insertion sort.
     // SAFETY: as the trait demands.
     #[inline(always)]
     unsafe fn push_sorted<F: NodeFormat>(node: *const u8, mask: u32, enter: Self::Eight, stack: &mut Stack) {
@@ -86,33 +86,34 @@ pub(in crate::bvh8) trait Level {
     }
 }
 
-/// A level, as batches need it.
+/// A level, as batches of rays need it.
 ///
 /// # Safety
 /// As for [`Level`].
 pub(super) trait BatchLevel: Level<Eight = __m256i> {
-    /// What holds a group of rays.
+    /// The vector type that holds a group of rays.
     type Wide: Wide;
     /// One bit of each of eight masks.
     unsafe fn column(masks: &[u64; WIDTH], bit: usize) -> u32;
     // SAFETY: as the trait says.
-    /// Puts the node on the stack once for each child of the mask, the nearest on top; the last three bits of the
+    /// Pushes the node onto the stack once for each child of the mask, the nearest on top; the last three bits of the
     /// distance say which child.
     unsafe fn push_children(node: Ref, mask: u32, enter: __m256i, stack: &mut Stack);
 }
 
-/// A ray that can be held against boxes.
+/// A ray that can be tested against boxes.
 pub(in crate::bvh8) trait Boxes {
     /// A distance for each child.
     type Eight;
 
-    /// Where the ray enters the children of a node, and where it leaves them or reaches the limit.
+    /// The distances at which the ray enters the children of a node, and at which it leaves them or reaches the
+    /// limit.
     ///
     /// # Safety
-    /// The machine must have the level that the ray was made ready for, and `node` must point to a node.
+    /// The machine must have the level that the ray was prepared for, and `node` must point to a node.
     unsafe fn span<F: NodeFormat>(&self, node: *const u8, limit: Self::Eight) -> (Self::Eight, Self::Eight);
 
-    /// The bits of the least distance, as of [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
+    /// The bits of the smallest distance, as in [`Boxes::span`], that no hit at `t` or before can exceed; `t` is not
     /// negative, or nothing can be hit.
     fn limit_bits(&self, t: f32) -> u32;
 }
@@ -121,6 +122,6 @@ pub(in crate::bvh8) trait Boxes {
 #[inline(always)]
 pub(super) fn lanes<L: Level + ?Sized>(distances: L::Eight) -> [u32; WIDTH] {
     const { assert!(size_of::<L::Eight>() == size_of::<[u32; WIDTH]>()) }
-    // SAFETY: both are 32 bytes, and all bits are whole numbers.
+    // SAFETY: both are 32 bytes, and every bit pattern is an integer.
     unsafe { std::mem::transmute_copy(&distances) }
 }

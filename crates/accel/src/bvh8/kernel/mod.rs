@@ -1,17 +1,17 @@
-//! Walking through the tree: one body, written over what a level of instructions can do.
+//! Tree traversal: one body, written over what a level of instructions provides.
 //!
-//! Each wide level has one function for each query that is compiled for its instructions, so that all of the body
-//! comes out in them. Who calls has made sure that the machine has them.
+//! Each wide level has one function per query that is compiled for its instructions, and all of the body is inlined
+//! into it. The caller has checked that the machine supports them.
 #![allow(unsafe_code)] // Loads by pointer and instructions of a level; each block says why it is sound.
 
-/// What a level answers: each query compiled for its features, with all of the body in it.
+/// The queries of a level, each compiled for its features with all of the body inlined.
 #[cfg(target_arch = "x86_64")]
 macro_rules! entries {
     ($level:ty, $features:literal) => {
         /// See [`super::closest`]; for [`crate::Query::PLAIN`].
         ///
         /// # Safety
-        /// The machine must have the level, and the view must be sound; as for all that follow.
+        /// The machine must have the level, and the view must be sound; this applies to all that follow.
         #[target_feature(enable = $features)]
         pub(super) unsafe fn closest<F: super::NodeFormat, C: $crate::counters::Count>(
             units: &[super::Unit],
@@ -68,7 +68,7 @@ macro_rules! entries {
 #[cfg(target_arch = "x86_64")]
 use entries;
 
-/// The same for batches, at levels that have them.
+/// The same for batches, at levels that support them.
 #[cfg(target_arch = "x86_64")]
 macro_rules! batch_entries {
     ($level:ty, $features:literal) => {
@@ -144,7 +144,7 @@ use crate::ray::{Hit, Query, Ray};
 pub(super) use compact::Compact;
 pub(super) use node_format::{NodeFormat, Wide};
 
-/// What is walked through. The root is a node or a leaf of `units`, and so is all that it refers to.
+/// The tree to traverse. The root is a node or a leaf of `units`, and so is everything that it refers to.
 #[derive(Clone, Copy)]
 pub(super) struct TreeView<'a> {
     pub(super) units: &'a [Unit],
@@ -152,14 +152,14 @@ pub(super) struct TreeView<'a> {
 }
 
 impl<'a> TreeView<'a> {
-    /// `None` of a tree without triangles.
+    /// `None` for a tree without triangles.
     #[inline(always)]
     pub(super) fn of(units: &'a [Unit], outline: &'a TreeSummary) -> Option<TreeView<'a>> {
         (!units.is_empty()).then_some(TreeView { units, outline })
     }
 }
 
-/// One query by a level: by the kernel for [`Query::PLAIN`], or by that for all others.
+/// One query at a level: by the kernel for [`Query::PLAIN`], or by the one for all other queries.
 #[cfg(target_arch = "x86_64")]
 macro_rules! ask {
     ($level:ident, $plain:ident, $other:ident, $view:expr, $ray:expr, $query:expr, $count:expr) => {
@@ -192,7 +192,7 @@ pub(super) fn closest<F: NodeFormat, C: Count>(
     }
 }
 
-/// [`closest`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
+/// [`closest`] for the lower levels. Separate, so that the choice between the others stays two comparisons.
 #[inline(never)]
 fn lesser_closest<F: NodeFormat, C: Count>(
     level: CpuLevel,
@@ -226,7 +226,7 @@ pub(super) fn any<F: NodeFormat, C: Count>(
     }
 }
 
-/// [`any`] for the levels below. Apart from it, so that the choice between the others stays two comparisons.
+/// [`any`] for the lower levels. Separate, so that the choice between the others stays two comparisons.
 #[inline(never)]
 fn lesser_any<F: NodeFormat, C: Count>(
     level: CpuLevel,

@@ -1,4 +1,4 @@
-//! How nodes and blocks are read: what the two layouts of a tree differ in.
+//! How nodes and blocks are read: the difference between the two layouts of a tree.
 
 use crate::bvh8::layout::{self, Planes, Ref, Unit};
 
@@ -14,52 +14,52 @@ use std::arch::x86_64::*;
 /// A layout, as kernels read it.
 ///
 /// # Safety
-/// Functions that take pointers must be given those of whole nodes or blocks of the layout, on machines that have the
-/// instructions that each names.
+/// Functions that take pointers must be given pointers to whole nodes or blocks of the layout, on machines that have
+/// the instructions that each function names.
 pub(in crate::bvh8) trait NodeFormat {
     /// Units of a block.
     const BLOCK_UNITS: usize;
-    /// Bytes from the front of a node to the references.
+    /// Bytes from the start of a node to the references.
     #[cfg(target_arch = "x86_64")]
     const REFERENCES: usize;
-    /// Bytes from the front of a block to the primitives.
+    /// Bytes from the start of a block to the primitives.
     #[cfg(target_arch = "x86_64")]
     const PRIMITIVES: usize;
-    /// Cache lines of a node, or that a leaf begins with.
+    /// Cache lines of a node, or of the start of a leaf.
     #[cfg(target_arch = "x86_64")]
     const LINES: usize;
-    /// What all planes of a node are read with, in vectors of eight and of four.
+    /// What is needed to decode all planes of a node, in vectors of eight and of four.
     #[cfg(target_arch = "x86_64")]
     type Frame8: Copy;
     #[cfg(target_arch = "x86_64")]
     type Frame4: Copy;
 
-    /// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is none.
+    /// The box of a child and the reference to it, which is [`Ref::EMPTY`] where there is no child.
     fn child(node: &[Unit], child: usize) -> (Planes, Ref);
-    /// What stands in one place of the block that begins at a unit.
+    /// The triangle in one lane of the block that begins at a unit.
     fn triangle(units: &[Unit], block: usize, lane: usize) -> ([[f32; 3]; 3], u32);
     // SAFETY: as the trait says.
-    /// A bit for each child that there is; more where boxes of others cannot be met.
+    /// A bit for each child that is present; extra bits are allowed where empty boxes cannot be hit.
     #[cfg(target_arch = "x86_64")]
     unsafe fn occupied(node: *const u8) -> u32;
     // SAFETY: as the trait says.
-    /// With AVX2 and FMA.
+    /// Requires AVX2 and FMA.
     #[cfg(target_arch = "x86_64")]
     unsafe fn frame8(node: *const u8) -> Self::Frame8;
     // SAFETY: as the trait says.
-    /// The planes of eight children along an axis; `row` as of [`super::lane_ray::ROWS`]. With AVX2 and FMA.
+    /// The planes of eight children along an axis; `row` is as in [`super::lane_ray::ROWS`]. Requires AVX2 and FMA.
     #[cfg(target_arch = "x86_64")]
     unsafe fn planes8(node: *const u8, row: usize, axis: usize, frame: &Self::Frame8) -> __m256;
     // SAFETY: as the trait says.
-    /// With SSE4.2.
+    /// Requires SSE4.2.
     #[cfg(target_arch = "x86_64")]
     unsafe fn frame4(node: *const u8) -> Self::Frame4;
     // SAFETY: as the trait says.
-    /// The planes of four children, from the child `from` on. With SSE4.2.
+    /// The planes of four children, starting at the child `from`. Requires SSE4.2.
     #[cfg(target_arch = "x86_64")]
     unsafe fn planes4(node: *const u8, row: usize, from: usize, axis: usize, frame: &Self::Frame4) -> __m128;
     // SAFETY: as the trait says.
-    /// The corners of four triangles: `[axis][corner]`, axes in the order of sheared space. With the level.
+    /// The corners of four triangles: `[axis][corner]`, axes in the order of sheared space. Requires the level.
     #[cfg(target_arch = "x86_64")]
     unsafe fn corners<L: Level>(block: *const u8, axes: &Axes) -> [[__m128; 3]; 3];
 }
@@ -96,7 +96,7 @@ impl NodeFormat for Wide {
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     unsafe fn occupied(_: *const u8) -> u32 {
-        // Empty boxes are met by no tame ray.
+        // No tame ray hits an empty box.
         u32::MAX
     }
 

@@ -1,5 +1,5 @@
-//! The twin that the wide kernels are held against, for every machine and every ray: the box tests of
-//! [`SlabRay`], the triangle test as it is.
+//! The reference that the wide kernels are tested against, for every machine and every ray: the box tests of
+//! [`SlabRay`] and the triangle test itself.
 
 use super::TreeView;
 use super::node_format::NodeFormat;
@@ -72,20 +72,20 @@ fn prepare(view: &TreeView<'_>, ray: &Ray) -> Option<(PreparedRay, SlabRay)> {
     Some((prepared, SlabRay::new(ray.origin, ray.direction, ray.t_min, pad)))
 }
 
-/// The first units of the blocks of a leaf, each with the places in it.
+/// The first unit of each block of a leaf, with each lane of the block.
 fn places<F: NodeFormat>(leaf: Ref) -> impl Iterator<Item = (usize, usize)> {
     let blocks = (0..leaf.blocks()).map(move |block| leaf.unit() + block * F::BLOCK_UNITS);
     blocks.flat_map(|block| (0..LANES).map(move |lane| (block, lane)))
 }
 
-/// A subtree still to be visited, and where the ray enters it.
+/// A subtree that is still to be visited, and the distance at which the ray enters it.
 #[derive(Clone, Copy)]
 struct StackEntry {
     reference: Ref,
     enter: f32,
 }
 
-/// Goes through the leaves that the ray meets up to `limit`, roughly the nearer first.
+/// Visits the leaves that the ray hits up to `limit`, roughly nearest first.
 #[inline(always)]
 fn walk<F: NodeFormat, C: Count>(
     view: TreeView<'_>,
@@ -100,7 +100,7 @@ fn walk<F: NodeFormat, C: Count>(
     while height > 0 {
         height -= 1;
         let StackEntry { reference, enter } = stack[height];
-        // Comparisons are such that what is not a number, as overflow makes it, leaves nothing out.
+        // The comparisons are written so that a NaN, which overflow may produce, excludes nothing.
         if enter > limit {
             count.early_out();
             continue;
@@ -125,7 +125,7 @@ fn walk<F: NodeFormat, C: Count>(
                 count.early_out();
                 continue;
             }
-            // Sorted in, so that the nearest comes out first.
+            // Insertion sort, so that the nearest is popped first.
             let mut place = height;
             while place > base && stack[place - 1].enter < enter {
                 stack[place] = stack[place - 1];

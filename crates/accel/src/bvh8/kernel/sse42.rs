@@ -1,8 +1,8 @@
 //! SSE4.2: eight lanes as two halves of four.
 //!
-//! Nothing is fused here, so a plane's distance is taken as in [`crate::slab`]: `(plane − origin) · inverse`, with the
-//! origin moved by the pad. Each step is rounded in proportion to the distance, and the moved origin once: less than
-//! what the pad has grown by for the fused levels. See `docs/adr/0008-bvh8.md`.
+//! Nothing is fused here, so the distance to a plane is computed as in [`crate::slab`]: `(plane − origin) · inverse`,
+//! with the origin moved by the pad. Each step is rounded in proportion to the distance, and the moved origin once:
+//! less than the increase of the pad for the fused levels. See `docs/adr/0008-bvh8.md`.
 
 use super::TreeView;
 use super::block::Axes;
@@ -25,7 +25,7 @@ struct LaneRay {
     enter_rows: [usize; 3],
     leave_rows: [usize; 3],
     inverse: [__m128; 3],
-    /// Where the ray begins for planes where it comes in, and for those where it goes out.
+    /// The padded origin for the planes where the ray enters, and for those where it leaves.
     enter: [__m128; 3],
     leave: [__m128; 3],
     nearest: __m128i,
@@ -88,7 +88,7 @@ impl LaneRay {
             };
             let far = greatest(_mm_sub_ps(origin, _mm_loadu_ps(outline.centre.as_ptr())));
             let pace = greatest(direction);
-            // What is not a number drops out of no more than half of the lanes, so that one of them fails.
+            // A NaN is dropped in at most half of the lanes, so at least one lane fails.
             let within = |numbers: __m128, from: usize| {
                 _mm_cmple_ps(numbers, _mm_loadu_ps(outline.reach.as_ptr().add(from)))
             };
@@ -101,7 +101,7 @@ impl LaneRay {
             let tilted = _mm_max_ps(_mm_andnot_ps(minus, direction), _mm_set1_ps(LEVEL));
             let inverse = _mm_div_ps(_mm_set1_ps(1.0), _mm_or_ps(tilted, down));
             let pad = _mm_add_ps(_mm_mul_ps(far, _mm_set1_ps(FAR_PAD)), _mm_set1_ps(outline.pad));
-            // Rays come in where planes are farther, and go out where they are nearer.
+            // The pad makes rays enter earlier and leave later.
             let pad = _mm_or_ps(pad, down);
             let (enter, leave) = (_mm_add_ps(origin, pad), _mm_sub_ps(origin, pad));
             let nearest = (ray.t_min * (1.0 - SLACK) - MIN).max(0.0);
@@ -126,7 +126,8 @@ impl LaneRay {
 }
 
 impl LaneRay {
-    /// See [`Boxes::span`]; of four children. Functions, as closures would be compiled without the instructions.
+    /// See [`Boxes::span`]; for four children. These are functions, as closures would be compiled without the
+    /// instructions.
     ///
     /// # Safety
     /// As for [`Boxes::span`].
@@ -181,7 +182,7 @@ impl LaneRay {
 impl Boxes for LaneRay {
     type Eight = [__m128i; 2];
 
-    // SAFETY: the trait says what is asked for.
+    // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn span<F: NodeFormat>(
         &self,

@@ -1,17 +1,17 @@
-//! What waits to be visited.
+//! The traversal stack.
 
 use crate::bvh8::build::binary::MAX_DEPTH;
 use crate::bvh8::layout::{Ref, WIDTH};
 use std::mem::MaybeUninit;
 
-/// Every node on the way down leaves at most seven others behind; a whole vector is written at the top.
+/// Every node on the way down leaves at most seven others on the stack; a whole vector is written at the top.
 const ROOM: usize = MAX_DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
-/// Where a stack lies: first the references, then where the ray enters each. Not written before it is used: to clear
-/// it would take as long as a short ray.
+/// Memory of a stack: first the references, then the distances at which the ray enters each. It is not initialised,
+/// because clearing it would take as long as a short ray.
 pub(super) type Room = MaybeUninit<[u32; 2 * ROOM]>;
 
-/// What is still to be visited, and the bits of where the ray enters it, the last three of no meaning.
+/// References still to be visited, and the bits of the entry distances, whose last three bits have no meaning.
 #[derive(Clone, Copy)]
 pub(in crate::bvh8) struct Stack {
     base: *mut u32,
@@ -19,7 +19,7 @@ pub(in crate::bvh8) struct Stack {
 }
 
 impl Stack {
-    /// An empty one, that must not be used longer than its room.
+    /// An empty stack, which must not outlive its memory.
     #[inline(always)]
     pub(super) fn new(room: &mut Room) -> Stack {
         let base = room.as_mut_ptr().cast();
@@ -31,13 +31,13 @@ impl Stack {
         self.top == self.base
     }
 
-    /// The same without anything on it.
+    /// The same stack without entries.
     #[inline(always)]
     pub(super) fn cleared(&self) -> Stack {
         Stack { base: self.base, top: self.base }
     }
 
-    /// Where the next reference goes, and those behind it.
+    /// Where the next reference goes, followed by those after it.
     #[inline(always)]
     pub(super) fn references(&self) -> *mut u32 {
         self.top
@@ -49,13 +49,13 @@ impl Stack {
         self.top.wrapping_add(ROOM)
     }
 
-    /// What was written behind the top belongs to the stack.
+    /// Takes what was written above the top into the stack.
     ///
     /// # Safety
-    /// It must have been written, and there must be room for [`WIDTH`] more.
+    /// It must have been written, and there must be space for [`WIDTH`] more.
     #[inline(always)]
     pub(super) unsafe fn grow(&mut self, by: usize) {
-        // SAFETY: the tree is not deeper than there is room for.
+        // SAFETY: the tree is not deeper than the stack allows.
         self.top = unsafe { self.top.add(by) };
     }
 

@@ -1,7 +1,8 @@
-//! Rays that have nothing to do with each other, each on a way of its own.
+//! Incoherent rays, each on its own path.
 //!
-//! Where the tree is larger than the near caches, several are on their way at once: a step takes a ray through one
-//! node or leaf, asks for what comes next, and hands over to the next ray, which goes on while the first would wait.
+//! Where the tree is larger than the near caches, several rays are traversed at once: a step takes a ray through one
+//! node or leaf, prefetches what comes next, and hands over to the next ray, which proceeds while the first would
+//! wait.
 
 use super::batch::SOMETHING;
 use super::body::{self, choose, prefetch, start, start_any};
@@ -14,16 +15,16 @@ use crate::bvh8::layout::{Ref, WIDTH};
 use crate::counters::NoCounters;
 use crate::ray::{Hit, Query, Ray};
 
-/// Rays on the way at once.
+/// Rays in traversal at once.
 const WAYS: usize = 8;
 
-/// Units of a tree that the near caches hold: a megabyte and a half.
+/// Units of a tree that fit into the near caches: a megabyte and a half.
 const NEAR_UNITS: usize = 3 << 14;
 
 /// Answers the rays of a packet that are tame.
 ///
 /// # Safety
-/// The machine must have the level, the view must be sound, and the packet must be ready.
+/// The machine must have the level, the view must be sound, and the packet must be prepared.
 #[inline(always)]
 pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     view: TreeView<'_>,
@@ -38,7 +39,7 @@ pub(super) unsafe fn each<L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     // SAFETY: as the caller promises.
     unsafe {
         if view.outline.root.is_node() {
-            // The root by all of them at once.
+            // The root, with all of them at once.
             children = packet.meet_children::<L::Wide>(base.add(view.outline.root.byte()), ready);
             let [a, b, c, d, e, f, g, h] = children;
             let mut misses = left & !(a | b | c | d | e | f | g | h);
@@ -121,12 +122,12 @@ unsafe fn interleaved<'r, L: BatchLevel, const ANY: bool, const PLAIN: bool>(
     }
 }
 
-/// A ray's number, itself, ready for boxes, and which children of the root it meets.
+/// A ray's index, the ray itself, the ray prepared for boxes, and the children of the root that it hits.
 type Next<'r> = (usize, &'r Ray, (Lane<'r>, u32));
 
-/// A ray on its way.
+/// A ray in traversal.
 struct Walk<'r> {
-    /// Its number.
+    /// Its index.
     index: usize,
     ray: &'r Ray,
     lane: Lane<'r>,
@@ -159,7 +160,7 @@ impl<'r> Walk<'r> {
         Walk { index, ray, lane, nearest, limit_bits, current, stack }
     }
 
-    /// One node or leaf; false when there is none left.
+    /// One node or leaf; false when none is left.
     ///
     /// # Safety
     /// As for [`each`].
@@ -218,14 +219,14 @@ impl<'r> Walk<'r> {
         false
     }
 
-    /// Goes on with what waits on the stack; false when nothing does.
+    /// Continues with the next entry of the stack; false when it is empty.
     ///
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
     unsafe fn next<const ANY: bool>(&mut self, base: *const u8) -> bool {
         while !self.stack.is_empty() {
-            // SAFETY: something is there; what any hit puts there has no distance.
+            // SAFETY: the stack is not empty; the entries of an any-hit search have no distance.
             unsafe {
                 let (reference, enter) =
                     if ANY { (self.stack.take_reference(), 0) } else { self.stack.take() };

@@ -1,36 +1,39 @@
-//! Pixels on edges of geometry and of textures. No neighbour shows the same mixture of surfaces, so that averages leave them as noisy as they
-//! were, and edges look jagged. But their albedo, normal and depth are known with far less noise than their light, and light is nearly
-//! linear in these within a few pixels: a first-order fit to the smooth pixels around tells what light belongs to the mixture.
-//! [Moon 2014; Bitterli 2016, eq. 4]
+//! Reconstructs pixels on edges of geometry and textures. No neighbour of such a pixel shows the same mixture of
+//! surfaces, so averaging leaves it as noisy as before, and edges look jagged. But its albedo, normal and depth have
+//! far less noise than its light, and light is nearly linear in these features within a few pixels. A first-order fit
+//! to the denoised pixels around it predicts the light of the mixture. [Moon 2014; Bitterli 2016, eq. 4]
 
 use super::guides::{ALBEDO, Guides, INVERSE, NORMAL, WITHIN};
 use super::planes::Planes;
 use bilux_math::Rgb;
 use rayon::prelude::*;
 
-/// How far the pixels of a fit are from its middle.
+/// Radius of a fit, in pixels.
 pub(super) const RADIUS: usize = 2;
 const SIDE: usize = 2 * RADIUS + 1;
 
-/// Weights of pixels by how far they are away along each axis: a bell of standard deviation 1.4.
+/// Weights of pixels by their distance along each axis: a Gaussian of standard deviation 1.4.
 const NEAR: [f32; SIDE] = [0.36, 0.775, 1.0, 0.775, 0.36];
 
-/// From this difference on, in the square, surfaces of neighbours are apart.
+/// Squared difference from which on neighbours show different surfaces.
 const APART: f32 = 0.01;
-/// What differences of normals and of inverse depths count beside those of albedo, in the square.
+/// Weight of squared differences of normals, and of inverse depths, relative to those of albedo.
 const OF_NORMALS: f32 = 0.25;
 const OF_DEPTHS: f32 = 9.0;
 
-/// By this part of the weights slopes are held down, so that a fit is well-defined where there is but one surface.
+/// Ridge regularisation of the slopes, as a fraction of the weights, so that a fit is well-defined where there is
+/// only one surface.
 const RIDGE: f32 = 3e-3;
 
-/// Of the square by which a fit misses the light around, so much is taken to be its own fault: the rest is noise of that light.
+/// Fraction of a fit's squared residual that counts as error of the fit itself; the rest is noise of the light around
+/// it.
 const OF_MISSED: f32 = 0.2;
 
 /// Columns of a fit: albedo, normal, inverse depth, and 1.
 const COLUMNS: usize = 8;
 
-/// The picture with the pixels on edges rebuilt. `colours` has three planes, and the variance of each pixel in a fourth.
+/// The picture with its edge pixels reconstructed. `colours` has three planes, and the variance of each pixel in a
+/// fourth.
 pub(super) fn rebuilt(colours: &Planes, guides: &Guides) -> Vec<Rgb> {
     let (width, height) = (colours.width, colours.height);
     let is_edge = edges(guides);
@@ -45,7 +48,8 @@ pub(super) fn rebuilt(colours: &Planes, guides: &Guides) -> Vec<Rgb> {
     (0..height).into_par_iter().flat_map_iter(row).collect()
 }
 
-/// Which pixels have a neighbour that shows another surface; with the margin around the picture, where none has.
+/// Marks the pixels that have a neighbour with another surface; the result includes the margin around the picture,
+/// where no pixel is marked.
 fn edges(guides: &Guides) -> Vec<bool> {
     let planes = &guides.planes;
     let (stride, width) = (planes.stride(), planes.width);
@@ -62,7 +66,7 @@ fn edges(guides: &Guides) -> Vec<bool> {
     edges
 }
 
-/// Marks those of a row of pixels from `p` on whose surface is apart from that of the pixels from `q` on.
+/// In a row of pixels that starts at `p`, marks those whose surface differs from that of the pixels starting at `q`.
 fn apart(guides: &Guides, p: usize, q: usize, row: &mut [bool]) {
     let pair = |plane: usize| {
         let plane = &guides.planes.planes[plane];
@@ -76,21 +80,22 @@ fn apart(guides: &Guides, p: usize, q: usize, row: &mut [bool]) {
         let albedo = square(ar) + square(ag) + square(ab);
         let normal = square(nx) + square(ny) + square(nz);
         let greater = if z.0[x] > z.1[x] { z.0[x] } else { z.1[x] };
-        // Differences of depth as a part of it, without a division.
+        // The relative difference of depth, without a division.
         let differs =
             albedo + OF_NORMALS * normal > APART || OF_DEPTHS * square(z) > APART * greater * greater;
         *is_edge |= differs;
     }
 }
 
-/// The normal equations of a weighted fit around one pixel, with the pixel's own features as the origin: the constant is its light.
+/// The normal equations of a weighted fit around one pixel. The pixel's own features are the origin, so the constant
+/// term is its light.
 struct Fit {
     matrix: [[f32; COLUMNS]; COLUMNS],
     /// By column, for R, G and B.
     light: [[f32; 4]; COLUMNS],
     /// Sum of weight · light².
     squares: f32,
-    /// Between what lies the light that was fitted.
+    /// The minimum and maximum of the fitted light.
     bounds: [Rgb; 2],
 }
 
@@ -143,7 +148,7 @@ impl Fit {
         self.bounds = [each(self.bounds[0], light, f32::min), each(self.bounds[1], light, f32::max)];
     }
 
-    /// The pixel's light by the fit, and the mean square by which the fit misses the light around, over all channels.
+    /// The light of the pixel according to the fit, and the fit's mean squared residual, summed over all channels.
     fn solved(mut self) -> (Rgb, f32) {
         let weights = self.matrix[COLUMNS - 1][COLUMNS - 1];
         let mut missed = self.squares;
@@ -171,14 +176,14 @@ impl Fit {
         (Rgb::BLACK, 0.0)
     }
 
-    /// The fit's light and the pixel's own, each by how far off it may be.
+    /// Blends the light of the fit with the pixel's own, weighted by their expected errors.
     fn blended(self, own: Rgb, variance: f32) -> Rgb {
         let [low, high] = self.bounds;
         let (light, missed) = self.solved();
         if !light.is_finite() {
             return own;
         }
-        // The light of a mixture lies between that of its parts.
+        // The light of a mixture lies between the light of its parts.
         let light = each(each(light, low, f32::max), high, f32::min);
         let trust = variance / (variance + OF_MISSED * missed + f32::MIN_POSITIVE);
         own + (light - own) * trust

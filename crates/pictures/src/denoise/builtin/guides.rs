@@ -1,16 +1,16 @@
-//! What tells surfaces apart, whatever light is on them.
+//! Guide features that distinguish surfaces, whatever light falls on them.
 
 use super::planes::Planes;
 use crate::PictureError;
 use crate::denoise::Noisy;
 
-/// Planes: 1 within the picture and 0 beyond; albedo, normals; depth, how it changes from column to column and from row to row, and one
-/// over what it may differ by from pixel to pixel; and one over depth, 0 where nothing is seen.
+/// The planes: 1 within the picture and 0 beyond; albedo; normals; depth, its slope across columns and down rows, and
+/// the reciprocal of the expected depth difference between neighbours; and inverse depth, 0 where nothing is visible.
 pub(super) struct Guides {
     pub(super) planes: Planes,
 }
 
-/// Where each guide's planes begin.
+/// Index of each guide's first plane.
 pub(super) const WITHIN: usize = 0;
 pub(super) const ALBEDO: usize = 1;
 pub(super) const NORMAL: usize = 4;
@@ -20,11 +20,11 @@ pub(super) const TIGHTNESS: usize = 10;
 pub(super) const INVERSE: usize = 11;
 const COUNT: usize = 12;
 
-/// Surfaces this near to each other, as a part of their distance, may be one.
+/// Surfaces closer to each other than this, relative to their distance, may be the same.
 const NEAR: f32 = 0.005;
 
 impl Guides {
-    /// What is not told is the same everywhere.
+    /// Missing layers are constant.
     pub(super) fn of(noisy: &Noisy) -> Result<Guides, PictureError> {
         let (width, height) = (noisy.width, noisy.height);
         let depth = |i: usize| {
@@ -59,7 +59,7 @@ impl Guides {
     }
 }
 
-/// Of two slopes the one that is nearer to none: the other may lead over an edge.
+/// The gentler of two slopes: the other may cross an edge.
 fn gentler(a: Option<f32>, b: Option<f32>) -> f32 {
     match (a, b) {
         (Some(a), Some(b)) => {

@@ -1,7 +1,7 @@
-//! `builtin`: a filter of our own, for where there is no other. Light is told from the surface that sends it on by dividing by
-//! albedo, so that textures stay sharp; what is left is averaged over neighbours that show the same surface and, as far as
-//! the noise lets one tell, the same light: small patches are compared, against the variance that is known of both.
-//! Over wider and wider distances, with holes. [Dammertz 2010; Rousselle 2012; Schied 2017]
+//! `builtin`: our own filter, for when no other denoiser is available. It divides light by albedo, so that textures
+//! stay sharp, and averages the result over neighbours that show the same surface and, as far as the noise allows a
+//! decision, the same light: it compares small patches, relative to the variance of both. The passes cover increasing
+//! distances, with gaps (à-trous). [Dammertz 2010; Rousselle 2012; Schied 2017]
 
 mod edges;
 mod guides;
@@ -35,17 +35,17 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
     },
 };
 
-/// Pixels between neighbours, pass by pass.
+/// Distance between neighbours in pixels, pass by pass.
 const STEPS: [usize; 4] = [1, 2, 4, 8];
 
-/// No pass looks farther than this: two steps and half a patch.
+/// The maximum reach of a pass: two steps and half a patch.
 const MARGIN: usize = 2 * 8 + 1;
 
-/// Rows that are filtered at a time: memory for so many is all that a picture takes, however high it is.
+/// Rows that are filtered at a time: a picture of any height takes no more memory than this many rows.
 const MAX_ROWS: usize = 512;
 
-/// How far away a row may be that shows in another: what the passes look at, and means of variances, outliers and guesses before
-/// them, and edges after them.
+/// The distance over which one row can affect another: the reach of all passes, of the means of variances, outliers
+/// and guesses before them, and of the edges after them.
 const REACH: usize = 34 + 2 + 2 + 1 + edges::RADIUS;
 
 pub(super) struct Builtin {
@@ -81,7 +81,7 @@ impl Denoiser for Builtin {
     }
 }
 
-/// The sum of the layers, each without its noise.
+/// The sum of the denoised layers.
 fn smoothed(noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     let guides = Guides::of(&noisy)?;
     let Noisy { width, height, layers, albedo, .. } = noisy;
@@ -104,7 +104,7 @@ fn smoothed(noisy: Noisy) -> Result<Vec<Rgb>, PictureError> {
     Ok(edges::rebuilt(&colours, &guides))
 }
 
-/// A layer's light without its noise, and without the surfaces' own colours.
+/// The denoised light of a layer, with the albedo divided out.
 fn smooth_light(
     size: (usize, usize),
     layer: Layer,
@@ -120,7 +120,7 @@ mod tests {
     use crate::Picture;
     use bilux_math::hash::{hash_words, unit_f32};
 
-    /// A picture with every layer, all noise, and guides that keep few pixels apart.
+    /// A picture with every layer, all noise, and with guides that separate few pixels.
     fn noise(width: usize, height: usize) -> Picture {
         let mut picture = Picture::new(width, height).unwrap();
         let layers = ["", "albedo", "normal", "depth", "variance", "light", "light_variance"];
@@ -140,14 +140,14 @@ mod tests {
         picture
     }
 
-    /// What strips are cut from shows nowhere: each sees as far as its passes look.
+    /// Strips leave no visible seam: each includes all rows that its passes reach.
     #[test]
     fn strips_are_the_whole_to_the_bit() {
         let picture = noise(37, MAX_ROWS + 83);
         let whole = smoothed(picture.rows(0..picture.height()).unwrap()).unwrap();
         let strips = Builtin::new(2).unwrap().denoise(&picture).unwrap();
         assert!(whole == strips);
-        // And no farther: from a row less it would show.
+        // And no more rows than needed: with one row less, there would be a difference.
         let rows = picture.height() / 2;
         let with = |reach: usize| smoothed(picture.rows(0..rows + reach).unwrap()).unwrap();
         assert!(whole[..rows * 37] == with(REACH)[..rows * 37]);

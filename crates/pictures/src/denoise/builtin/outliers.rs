@@ -1,17 +1,18 @@
-//! Single pixels that a rare path has made far brighter than all around them. To average them with their neighbours makes blots of
-//! them; so they are brought down to the brightest of the others. Highlights stay: their brightness is the same in all samples.
+//! Removes fireflies: single pixels that a rare path has made far brighter than all pixels around them. Averaging
+//! them with their neighbours would turn them into blotches, so they are scaled down to the brightest of the other
+//! pixels. Highlights stay: their brightness is the same in all samples.
 
 use bilux_math::Rgb;
 use rayon::prelude::*;
 
-/// So many of the pixels around may be as bright, themselves by chance.
+/// Number of pixels around a firefly that may be as bright by chance.
 const BRIGHT: usize = 3;
-/// So much brighter than these is too bright.
+/// Ratio to the brightest other pixels from which on a pixel is too bright.
 const TOO_BRIGHT: f32 = 2.0;
-/// And by so much of it at least the noise has to account.
+/// The noise must account for at least this fraction of the difference.
 const NOISE: f32 = 0.4;
 
-/// Pixels without outliers, and their variances, each taken from the brightest that counts.
+/// The pixels without fireflies, and their variances; both come from the brightest neighbour that counts.
 pub(super) fn without((width, height): (usize, usize), pixels: &[(Rgb, f32)]) -> Vec<(Rgb, f32)> {
     let lights: Vec<f32> = pixels.iter().map(|(colour, _)| colour.luminance()).collect();
     let row = |y: usize| {
@@ -29,8 +30,8 @@ pub(super) fn without((width, height): (usize, usize), pixels: &[(Rgb, f32)]) ->
     (0..height).into_par_iter().flat_map_iter(row).collect()
 }
 
-/// The brightest pixel around that counts, beside a pixel that is far brighter than it. Most are not, which the first few
-/// around tell.
+/// The brightest neighbour that counts, for a pixel that is far brighter than it. Most pixels are not, which the
+/// first few neighbours decide.
 fn brightest((width, height): (usize, usize), lights: &[f32], x: usize, y: usize) -> Option<usize> {
     let light = lights[y * width + x];
     let mut brightest = [(0.0, usize::MAX); BRIGHT];

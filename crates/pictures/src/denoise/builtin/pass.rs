@@ -1,4 +1,4 @@
-//! One pass over all pixels: each becomes a weighted mean of 5 × 5 pixels that stand some steps apart.
+//! One à-trous pass over all pixels: each becomes a weighted mean of 5 × 5 pixels that are `step` pixels apart.
 
 use super::MARGIN;
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
@@ -6,26 +6,27 @@ use super::planes::{Light, Planes};
 use crate::PictureError;
 use rayon::prelude::*;
 
-/// Rows that one thread works on at a time.
+/// Rows that one thread processes at a time.
 const BAND: usize = 16;
 
-/// Weights of neighbours by how many steps away they are, along each axis.
+/// Weights of neighbours by their distance in steps, along each axis.
 const NEAR: [f32; 5] = [0.7, 0.9, 1.0, 0.9, 0.7];
-/// Standard deviations of the noise by which light may be apart.
+/// Tolerance for differences in light, in standard deviations of the noise.
 const LIGHT: f32 = 1.0;
-/// By what albedo and normals may be apart.
+/// Tolerances for differences in albedo and in normals.
 const ALBEDO_APART: f32 = 0.05;
 const NORMAL_APART: f32 = 0.2;
-/// Light that differs by this part of it, in the square, is the same where there is no noise at all.
+/// Squared relative difference below which light counts as the same where there is no noise at all.
 const SAME: f32 = 1e-5;
 
-/// A pixel itself that is apart by more than this many variances does not belong to the patch around it: so edges of shadows stay.
+/// A pixel that differs by more than this many variances does not belong to the patch around it; this preserves
+/// shadow edges.
 const BEYOND: f32 = 3.0;
 
-/// What a pass makes of light.
+/// Applies one pass to the light.
 ///
 /// # Errors
-/// When the machine has no room.
+/// Returns an error when the machine has no memory left.
 pub(super) fn pass(light: &Light, guides: &Guides, step: usize) -> Result<Light, PictureError> {
     let (width, height) = (light.planes.width, light.planes.height);
     let mut smooth = Planes::new(width, height, 4)?;
@@ -51,7 +52,7 @@ pub(super) fn pass(light: &Light, guides: &Guides, step: usize) -> Result<Light,
     Ok(Light { planes: smooth })
 }
 
-/// Some rows while neighbours are added.
+/// Some rows while neighbours are being added.
 struct Band<'a> {
     light: &'a Planes,
     guides: &'a Planes,
@@ -59,7 +60,7 @@ struct Band<'a> {
     rows: std::ops::Range<usize>,
     /// Sums of weight · light, for R, G and B, of weight² · variance, and of weights.
     sums: [Vec<f32>; 5],
-    /// How far pixels are apart in their light, a row and a column more on each side.
+    /// How much pixels differ in their light, with one more row and column on each side.
     apart: Vec<f32>,
     weights: Vec<f32>,
 }
@@ -92,7 +93,7 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// The pixels themselves, with a weight of 1.
+    /// Adds the pixels themselves, with a weight of 1.
     fn take_itself(&mut self) {
         let width = self.light.width;
         for (row, y) in self.rows.clone().enumerate() {
@@ -105,8 +106,8 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// How far pixels are apart from those at an offset, less what noise alone makes of it, in units of what it may make.
-    /// [Rousselle 2012, eq. 3]
+    /// Measures how much pixels differ from those at an offset, minus the difference expected from noise alone, in
+    /// units of the tolerance. [Rousselle 2012, eq. 3]
     fn compare(&mut self, dx: isize, dy: isize) {
         let (width, stride) = (self.light.width + 2, self.light.stride());
         let offset = dy * stride as isize + dx;
@@ -165,7 +166,7 @@ impl<'a> Band<'a> {
                     + albedo * by_albedo
                     + normal * by_normal
                     + beside * beside * by_depth;
-                // About e to the minus `apart`, and nothing from 4 on.
+                // Approximates e to the minus `apart`, and is zero from 4 on.
                 let near = 1.0 - 0.25 * apart;
                 let near = if near > 0.0 { near } else { 0.0 };
                 weights[x] = share * within[x] * (near * near) * (near * near);

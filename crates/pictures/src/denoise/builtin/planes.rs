@@ -1,4 +1,4 @@
-//! Planes with a margin around them, so that no neighbour has to be looked for beyond the edge.
+//! Planes with a margin around them, so that neighbours beyond the edge need no special case.
 
 use super::{MARGIN, outliers};
 use crate::PictureError;
@@ -16,14 +16,14 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// Zeros.
+    /// Planes of zeros.
     pub(super) fn new(width: usize, height: usize, count: usize) -> Result<Planes, PictureError> {
         let size = (width + 2 * MARGIN).saturating_mul(height + 2 * MARGIN);
         let planes = (0..count).map(|_| zeroed("denoising", size)).collect::<Result<_, _>>()?;
         Ok(Planes { width, height, planes })
     }
 
-    /// Each plane's samples by pixel.
+    /// Fills each plane with its samples, pixel by pixel.
     pub(super) fn filled<const N: usize>(
         (width, height): (usize, usize),
         at: impl Fn(usize) -> [f32; N],
@@ -41,12 +41,12 @@ impl Planes {
         Ok(all)
     }
 
-    /// From one row to the next.
+    /// The distance from one row to the next.
     pub(super) fn stride(&self) -> usize {
         self.width + 2 * MARGIN
     }
 
-    /// Where a pixel's sample is.
+    /// The index of a pixel's sample.
     pub(super) fn index(&self, x: usize, y: usize) -> usize {
         (y + MARGIN) * self.stride() + x + MARGIN
     }
@@ -75,17 +75,17 @@ impl Planes {
     }
 }
 
-/// Light without the surfaces' own colours, and its variance: planes R, G, B and V, the mean over the channels.
+/// Light with the albedo divided out, and its variance: planes R, G, B and V, the mean over the channels.
 pub(super) struct Light {
     pub(super) planes: Planes,
 }
 
-/// So much albedo is taken to be there at least: what is darker shows no noise.
+/// Minimum albedo that is divided out: on darker surfaces noise is not visible.
 const MIN_ALBEDO: f32 = 0.02;
 
-/// What light is divided by.
+/// The divisor of the light.
 pub(super) fn divisor(albedo: Rgb) -> Rgb {
-    // A surface that sends on next to nothing of one colour may show a reflection that has it.
+    // A surface that reflects almost nothing of one colour may still show a reflection of that colour.
     let least = MIN_ALBEDO.max(0.1 * albedo.max_channel());
     albedo.map(|c| c.max(least))
 }
@@ -110,7 +110,7 @@ impl Light {
         let pixels: Vec<(Rgb, f32)> = (0..size.0 * size.1).map(|i| (colour(i), told(i))).collect();
         drop((layer, guessed));
         let pixels = outliers::without(size, &pixels);
-        // One estimate of a pixel tells little: those around it are asked too.
+        // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
         let raw: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();
         let blurred = blur(&blur(&raw, width), width);
         let planes = Planes::filled(size, |i| {
@@ -125,17 +125,18 @@ pub(super) fn mean(c: Rgb) -> f32 {
     (c.r + c.g + c.b) / 3.0
 }
 
-/// By what a guess is raised: noise that is far from even looks less than it is where no rare sample fell.
+/// Factor on a guessed variance: strongly non-uniform noise looks weaker than it is wherever no rare sample fell.
 const UNSURE: f32 = 3.0;
 
-/// Where nobody tells the variance: by how much pixels differ from the mean of those around, which counts edges as noise.
+/// Guesses a missing variance: from how much pixels differ from the mean of their neighbours, which counts edges as
+/// noise.
 fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec<f32> {
     let at = |x: usize, y: usize| colour(y.min(height - 1) * width + x.min(width - 1));
     let one = |i: usize| {
         let (x, y) = (i % width, i / width);
         let around = at(x.saturating_sub(1), y) + at(x + 1, y) + at(x, y.saturating_sub(1)) + at(x, y + 1);
         let apart = colour(i) - around * 0.25;
-        // Of the squares, a fifth is the noise of those around.
+        // A fifth of the squared difference is the noise of the neighbours.
         mean(apart * apart) * (0.8 * UNSURE)
     };
     (0..width * height).map(one).collect()

@@ -1,26 +1,26 @@
-//! How much work is put into a picture, by the time that there is.
+//! How much work to spend on a picture, depending on the available time.
 
 use super::library::{Purpose, Quality};
 use std::time::Duration;
 
-/// From the best to the fastest.
+/// Ordered from best to fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// Albedo and normals are denoised first; then the best network.
+    /// Denoises albedo and normals first; then uses the best network.
     Best,
-    /// The same with a network half as large.
+    /// The same with a network of half the size.
     Balanced,
-    /// The smallest network, and albedo and normals as they come.
+    /// The smallest network, with albedo and normals as they are.
     Least,
 }
 
-/// What is to be made ready before any number of pixels, about.
+/// Approximate setup time, whatever the number of pixels.
 const BEGIN: Duration = Duration::from_millis(20);
 
 impl Effort {
     const ALL: [Effort; 3] = [Effort::Best, Effort::Balanced, Effort::Least];
 
-    /// The best that fits into a time, and how long it takes for so many pixels on so many threads, about.
+    /// The best effort that fits into a time limit, and its approximate time for this many pixels and threads.
     pub(super) fn within(limit: Option<Duration>, pixels: u64, threads: usize) -> (Effort, Duration) {
         let timed = Effort::ALL.map(|effort| (effort, effort.time(pixels, threads)));
         let fits = |&(_, time): &(Effort, Duration)| limit.is_none_or(|limit| time <= limit);
@@ -28,7 +28,7 @@ impl Effort {
     }
 
     fn time(self, pixels: u64, threads: usize) -> Duration {
-        // Of a pixel on one thread, as measured with 512 x 512.
+        // Per pixel on one thread, as measured with 512 x 512.
         let nanoseconds = match self {
             Effort::Best => 8000,
             Effort::Balanced => 5000,
@@ -37,7 +37,7 @@ impl Effort {
         BEGIN + Duration::from_nanos(pixels.saturating_mul(nanoseconds) / threads.max(1) as u64)
     }
 
-    /// True where albedo and normals are denoised before they help.
+    /// True if albedo and normals are denoised before they are used as features.
     pub(super) fn cleans(self) -> bool {
         self != Effort::Least
     }
@@ -52,7 +52,8 @@ impl Effort {
         Purpose { inputs, hdr: true, clean: self.cleans() && inputs.len() > 1, quality }
     }
 
-    /// The filter for albedo or normals. They have so little noise that the smallest network gives the same picture in the end.
+    /// The filter for albedo or normals. They have so little noise that the smallest network leads to the same final
+    /// picture.
     pub(super) fn for_feature(input: &'static [&'static str]) -> Purpose {
         Purpose { inputs: input, hdr: false, clean: false, quality: Quality::Fast }
     }

@@ -1,4 +1,4 @@
-//! The library itself. Its C interface is declared here as its public documentation has it.
+//! The library itself. Its C interface is declared here according to its public documentation.
 #![allow(unsafe_code, reason = "a C library is loaded and called")]
 
 use crate::PictureError;
@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 type Pointer = *mut c_void;
 
-/// Declares the functions that are used, and finds them by name.
+/// Declares the functions that are used, and looks them up by name.
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
         /// # Safety
-        /// Each is to be called as the library's documentation says.
+        /// Each must be called as the library's documentation says.
         #[allow(non_snake_case, reason = "as the library calls them")]
         struct Functions { $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)* }
 
@@ -46,29 +46,29 @@ functions! {
     oidnReleaseFilter: fn(Pointer);
 }
 
-/// Processors, not graphics cards, whose pictures differ from one to the next.
+/// The CPU device; results on graphics cards differ from one card to the next.
 const DEVICE_CPU: c_int = 1;
 const FORMAT_FLOAT3: c_int = 3;
 
-/// The library with a device on it.
+/// The library with a device.
 pub(super) struct Device {
     functions: Functions,
     device: Pointer,
     version: [c_int; 3],
     place: PathBuf,
-    /// Never closed: its threads outlive the device.
+    /// Never unloaded: its threads outlive the device.
     _library: ManuallyDrop<Library>,
 }
 
 impl Device {
-    /// Opens the library at a place. Its threads are as many as asked for, 0 for one each core.
+    /// Opens the library at a path. `threads` is the number of its threads, 0 for one per core.
     pub(super) fn open(place: &Path, threads: usize) -> Result<Device, String> {
-        // SAFETY: the library comes from where the user, or the system, keeps libraries, and is trusted as these are.
+        // SAFETY: the library comes from where the user, or the system, keeps libraries, and is trusted like those.
         let library = unsafe { Library::new(place) }.map_err(|why| format!("{}: {why}", place.display()))?;
         let library = ManuallyDrop::new(library);
         let functions =
             Functions::find(&library).map_err(|why| format!("{} is no version 2: {why}", place.display()))?;
-        // SAFETY: no argument but a number of the documentation.
+        // SAFETY: the only argument is a constant from the documentation.
         let device = unsafe { (functions.oidnNewDevice)(DEVICE_CPU) };
         if device.is_null() {
             return Err(format!("{} gives no device for this processor", place.display()));
@@ -81,7 +81,7 @@ impl Device {
 
     fn commit(&mut self, threads: usize) -> Result<(), String> {
         let f = &self.functions;
-        // SAFETY: the device is one of this library's and not released; texts end with a zero.
+        // SAFETY: the device belongs to this library and is not released; strings are zero-terminated.
         unsafe {
             if let Some(threads) = c_int::try_from(threads).ok().filter(|&threads| threads > 0) {
                 (f.oidnSetDeviceInt)(self.device, c"numThreads".as_ptr(), threads);
@@ -99,10 +99,11 @@ impl Device {
         format!("Open Image Denoise {major}.{minor}.{patch} ({})", self.place.display())
     }
 
-    /// What has gone wrong since the last time.
+    /// Returns the error that has occurred since the last call, if any.
     fn check(&self) -> Result<(), String> {
         let mut message = null();
-        // SAFETY: the device is one of this library's; the text it gives ends with a zero, and lives until the next error.
+        // SAFETY: the device belongs to this library; the string that it returns is zero-terminated, and lives until
+        // the next error.
         unsafe {
             match (self.functions.oidnGetDeviceError)(self.device, &mut message) {
                 0 => Ok(()),
@@ -115,17 +116,17 @@ impl Device {
 
 impl Drop for Device {
     fn drop(&mut self) {
-        // SAFETY: the device is one of this library's, and nobody asks it after this.
+        // SAFETY: the device belongs to this library, and is not used after this.
         unsafe { (self.functions.oidnReleaseDevice)(self.device) }
     }
 }
 
-// SAFETY: the library's documentation allows calls from any thread, also for one device from several at a time.
+// SAFETY: the library's documentation allows calls from any thread, and concurrent calls for one device.
 unsafe impl Send for Device {}
 // SAFETY: as above.
 unsafe impl Sync for Device {}
 
-/// How much work the network is: the more, the better.
+/// The size of the network: larger is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quality {
     Fast,
@@ -134,7 +135,7 @@ pub(super) enum Quality {
 }
 
 impl Quality {
-    /// As the library numbers them. Versions before 2.3 have no `Fast`.
+    /// The library's number for it. Versions before 2.3 have no `Fast`.
     fn number(self, version: [c_int; 3]) -> c_int {
         match self {
             Quality::Fast if version >= [2, 3, 0] => 4,
@@ -144,22 +145,22 @@ impl Quality {
     }
 }
 
-/// What a filter is for.
+/// The purpose of a filter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Purpose {
-    /// The first is filtered; the others, if there are any, help.
+    /// The first input is filtered; the others, if any, are auxiliary features.
     pub(super) inputs: &'static [&'static str],
-    /// Light, which has no upper end.
+    /// Light, which has no upper bound.
     pub(super) hdr: bool,
-    /// What helps has no noise.
+    /// The auxiliary features are noise-free.
     pub(super) clean: bool,
     pub(super) quality: Quality,
 }
 
-/// Three floats a pixel, row by row.
+/// Three floats per pixel, row by row.
 type Pixels = Vec<[f32; 3]>;
 
-/// A network made ready for pictures of one size, with room for them.
+/// A network prepared for pictures of one size, with memory for them.
 pub(super) struct Filter {
     device: Arc<Device>,
     filter: Pointer,
@@ -168,11 +169,11 @@ pub(super) struct Filter {
     output: Pixels,
 }
 
-// SAFETY: as for the device; the filter is used by whoever owns this alone.
+// SAFETY: as for the device; the filter is used only by the owner of this value.
 unsafe impl Send for Filter {}
 
 impl Filter {
-    /// Makes it ready, which compiles kernels.
+    /// Prepares the filter, which compiles kernels.
     pub(super) fn new(
         device: &Arc<Device>,
         size: (usize, usize),
@@ -186,14 +187,14 @@ impl Filter {
         let inputs = purpose.inputs.iter().map(|&name| Ok((name, black()?)));
         let inputs = inputs.collect::<Result<_, PictureError>>().map_err(|why| why.to_string())?;
         let output = black().map_err(|why| why.to_string())?;
-        // SAFETY: the device is one of this library's and not released; texts end with a zero.
+        // SAFETY: the device belongs to this library and is not released; strings are zero-terminated.
         let filter = unsafe { (device.functions.oidnNewFilter)(device.device, c"RT".as_ptr()) };
         if filter.is_null() {
             return device.check().and(Err("no filter".to_owned()));
         }
         let mut ready = Filter { device: device.clone(), filter, size, inputs, output };
         let f = &device.functions;
-        // SAFETY: the filter is one of this library's and not released; texts end with a zero.
+        // SAFETY: the filter belongs to this library and is not released; strings are zero-terminated.
         unsafe {
             (f.oidnSetFilterBool)(filter, c"hdr".as_ptr(), purpose.hdr);
             (f.oidnSetFilterBool)(filter, c"cleanAux".as_ptr(), purpose.clean);
@@ -204,19 +205,19 @@ impl Filter {
         Ok(ready)
     }
 
-    /// Where an input's pixels go.
+    /// The buffer for an input's pixels.
     pub(super) fn input(&mut self, name: &str) -> Option<&mut [[f32; 3]]> {
         self.inputs.iter_mut().find(|(of, _)| *of == name).map(|(_, pixels)| pixels.as_mut_slice())
     }
 
-    /// Tells where the pixels are. Where nothing but that has changed, nothing is compiled again.
+    /// Passes the addresses of the pixels to the library. If nothing else has changed, nothing is recompiled.
     fn commit(&mut self) {
         let ((width, height), filter, f) = (self.size, self.filter, &self.device.functions);
         let set = |name: &str, pixels: &mut Pixels| {
             let name = CString::new(name).unwrap_or_default();
             let pixels = pixels.as_mut_ptr().cast();
-            // SAFETY: the filter is one of this library's and not released. Images live as long as it, have as many pixels of
-            // three floats as is said, and only the output is written.
+            // SAFETY: the filter belongs to this library and is not released. Images live as long as the filter, have
+            // the stated number of pixels of three floats, and only the output is written.
             unsafe {
                 (f.oidnSetSharedFilterImage)(
                     filter,
@@ -233,14 +234,15 @@ impl Filter {
         };
         self.inputs.iter_mut().for_each(|(name, pixels)| set(name, pixels));
         set("output", &mut self.output);
-        // SAFETY: the filter is one of this library's and not released.
+        // SAFETY: the filter belongs to this library and is not released.
         unsafe { (f.oidnCommitFilter)(filter) }
     }
 
-    /// The first input, filtered.
+    /// Runs the filter on the first input.
     pub(super) fn run(&mut self) -> Result<&[[f32; 3]], String> {
         self.commit();
-        // SAFETY: the filter is one of this library's and not released; its images are those of this value, which nobody else uses.
+        // SAFETY: the filter belongs to this library and is not released; its images are those of this value, which
+        // nothing else uses.
         unsafe { (self.device.functions.oidnExecuteFilter)(self.filter) }
         self.device.check()?;
         Ok(&self.output)
@@ -249,7 +251,7 @@ impl Filter {
 
 impl Drop for Filter {
     fn drop(&mut self) {
-        // SAFETY: the filter is one of this library's, and nobody asks it after this.
+        // SAFETY: the filter belongs to this library, and is not used after this.
         unsafe { (self.device.functions.oidnReleaseFilter)(self.filter) }
     }
 }

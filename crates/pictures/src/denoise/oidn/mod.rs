@@ -1,5 +1,5 @@
-//! `oidn`: Open Image Denoise, where its library is found; nothing of it is linked. Albedo and normals are denoised first, by
-//! themselves, and then taken as clean, where there is time. [Áfra 2025]
+//! `oidn`: Open Image Denoise, loaded at run time if its library is found; nothing is linked. Where there is time,
+//! albedo and normals are denoised first by themselves, and then passed as clean features. [Áfra 2025]
 
 mod effort;
 mod library;
@@ -30,7 +30,7 @@ pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
     find,
 };
 
-/// Loads the library, if that is not done already. Whether it was found is said when it is asked for.
+/// Loads the library, unless it is already loaded. Whether it was found is reported when it is requested.
 pub(super) fn load(threads: usize) {
     let _ = shared::device(threads, true);
 }
@@ -46,7 +46,7 @@ fn find(task: &Task) -> Result<Box<dyn Denoiser>, String> {
     }))
 }
 
-/// Of smaller pictures the network makes another brightness.
+/// On smaller pictures the network changes the brightness.
 const MIN_SIDE: usize = 16;
 
 struct Oidn {
@@ -56,7 +56,7 @@ struct Oidn {
     ahead: Ahead,
 }
 
-/// The filters of a picture: for albedo and for normals, where they are denoised, and for light.
+/// The filters for a picture: for albedo and normals, where they are denoised, and for light.
 struct Filters {
     albedo: Option<Filter>,
     normal: Option<Filter>,
@@ -75,7 +75,7 @@ impl Filters {
         let inputs: &[&str] = match (albedo, normal) {
             (true, true) => &["color", "albedo", "normal"],
             (true, false) => &["color", "albedo"],
-            // Normals help only beside albedo.
+            // Normals help only together with albedo.
             (false, _) => &["color"],
         };
         Ok(Filters {
@@ -85,7 +85,7 @@ impl Filters {
         })
     }
 
-    /// Takes a feature as what helps the light, denoised first where there is a filter for that.
+    /// Sets a feature as an auxiliary input of the light filter, denoised first if there is a filter for that.
     fn take_feature(&mut self, name: &str, pixels: &mut dyn Iterator<Item = [f32; 3]>) -> Result<(), String> {
         let filter = if name == "albedo" { &mut self.albedo } else { &mut self.normal };
         let Some(to) = self.light.input(name) else { return Ok(()) };
@@ -100,7 +100,7 @@ impl Filters {
     }
 }
 
-/// Filters that are made ready on a thread of their own, while the picture is rendered; none where its size is not known.
+/// Filters that are prepared on a separate thread while the picture is rendered; `None` where its size is not known.
 struct Ahead(std::sync::Mutex<Option<JoinHandle<Option<Filters>>>>, (usize, usize));
 
 impl Ahead {
@@ -111,7 +111,7 @@ impl Ahead {
         Ahead(std::sync::Mutex::new(worth_it.then(begin)), size)
     }
 
-    /// The filters, once, if they are for such a picture.
+    /// The filters, if they suit this picture; they can be taken only once.
     fn take(&self, size: (usize, usize), features: [bool; 2]) -> Option<Filters> {
         let thread = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take()?;
         let filters = thread.join().ok().flatten()?;
@@ -143,7 +143,7 @@ impl Denoiser for Oidn {
     }
 }
 
-/// Adds each layer, without its noise.
+/// Adds each layer after denoising it.
 fn add_layers(filters: &mut Filters, noisy: &Noisy, sum: &mut [Rgb]) -> Result<(), String> {
     if let Some(albedo) = &noisy.albedo {
         filters.take_feature("albedo", &mut albedo.iter().map(|c| c.to_array()))?;

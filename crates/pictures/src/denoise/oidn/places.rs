@@ -1,10 +1,10 @@
-//! Where the library may be.
+//! Where the library may be found.
 
 use super::python;
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Its file's name.
+/// Name of the library's file.
 pub(super) const FILE: &str = if cfg!(target_os = "windows") {
     "OpenImageDenoise.dll"
 } else if cfg!(target_os = "macos") {
@@ -13,14 +13,15 @@ pub(super) const FILE: &str = if cfg!(target_os = "windows") {
     "libOpenImageDenoise.so.2"
 };
 
-/// What the environment variable `OIDN_LIB` names: the library, or the folder that it is in.
+/// The library, or the folder that contains it, as named by the environment variable `OIDN_LIB`.
 pub(super) fn named() -> Option<PathBuf> {
     let named = PathBuf::from(env::var_os("OIDN_LIB").filter(|named| !named.is_empty())?);
     Some(if named.is_dir() { named.join(FILE) } else { named })
 }
 
-/// Every file that may be the library, the likeliest first, each looked for only when those before it were of no use: beside this
-/// program, where Python keeps packages, and where `python3` itself says, which takes some hundredths of a second.
+/// Every file that may be the library, most likely first. Each is searched for only if those before it were of no
+/// use: next to this program, where Python keeps packages, and where `python3` itself says, which takes some
+/// hundredths of a second.
 pub(super) fn files() -> impl Iterator<Item = PathBuf> {
     let beside = env::current_exe().ok().and_then(|program| program.parent().map(Path::to_owned));
     let beside = beside.into_iter().flat_map(|folder| [folder.join(FILE), folder.join("../lib").join(FILE)]);
@@ -29,7 +30,7 @@ pub(super) fn files() -> impl Iterator<Item = PathBuf> {
     beside.chain(in_packages).chain(asked).filter(|file| file.is_file())
 }
 
-/// Where the library is in the package pyoidn.
+/// Paths of the library within the package pyoidn.
 fn in_package(package: &Path) -> [PathBuf; 3] {
     let folder = if cfg!(target_os = "windows") { "bin" } else { "lib" };
     [package.join("oidn").join(folder).join(FILE), package.join(folder).join(FILE), package.join(FILE)]

@@ -1,4 +1,4 @@
-//! Where Python keeps the package pyoidn, which brings the library.
+//! Finds the Python package pyoidn, which contains the library.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -8,12 +8,12 @@ use std::time::{Duration, Instant};
 
 const NAME: &str = "pyoidn";
 
-/// Interpreters by the names that they have on the path.
+/// Interpreters by their names on the path.
 const INTERPRETERS: &[&str] =
     if cfg!(target_os = "windows") { &["python3.exe", "python.exe"] } else { &["python3"] };
 
-/// Folders that are the package, found by where Pythons are installed: the active environment, the interpreters on the path, the
-/// user's own packages. Nothing is executed.
+/// Folders of the package, derived from where Python is installed: the active environment, the interpreters on the
+/// path, the user's own packages. Nothing is executed.
 pub(super) fn packages() -> Vec<PathBuf> {
     let mut found = Vec::new();
     for prefix in prefixes() {
@@ -33,7 +33,8 @@ fn prefixes() -> Vec<PathBuf> {
         .flat_map(|bin| INTERPRETERS.iter().map(move |name| bin.join(name)))
         .filter(|interpreter| interpreter.exists())
         .flat_map(|interpreter| {
-            // A virtual environment's interpreter is a link to the one that it was made from: packages may be with either.
+            // A virtual environment's interpreter is a link to the one it was created from: packages may be next to
+            // either.
             let resolved = interpreter.canonicalize().ok();
             [Some(interpreter), resolved].into_iter().flatten()
         })
@@ -43,7 +44,7 @@ fn prefixes() -> Vec<PathBuf> {
     named.chain(on_path).chain(own).collect()
 }
 
-/// The package in all that a prefix has of `lib/python3.x/site-packages`, in order of names.
+/// The package in every `lib/python3.x/site-packages` of a prefix, in order of names.
 fn in_prefix(prefix: &Path) -> Vec<PathBuf> {
     let mut folders = vec![prefix.join("Lib/site-packages")];
     for lib in ["lib", "lib64", "local/lib"] {
@@ -60,15 +61,15 @@ fn in_prefix(prefix: &Path) -> Vec<PathBuf> {
     folders.into_iter().map(|folder| folder.join(NAME)).collect()
 }
 
-/// Prints where `import pyoidn` would find the package. The working directory, which Python looks in first, is left out: a library
-/// is not loaded because a folder of this name happens to be there.
+/// Prints where `import pyoidn` would find the package. The working directory, where Python looks first, is excluded:
+/// a library must not be loaded merely because a folder of this name happens to be there.
 const QUESTION: &str = "import sys; sys.path = [p for p in sys.path if p]; import importlib.util as u; \
     s = u.find_spec('pyoidn'); print(*(s.submodule_search_locations if s else []), sep='\\n')";
 
-/// An interpreter that has not answered after this time is left alone.
+/// An interpreter that has not answered after this time is abandoned.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// What `python3` itself says: it knows of pyenv's versions and of environments that no folder tells of.
+/// The answer of `python3` itself, which knows pyenv's versions and environments that no folder reveals.
 pub(super) fn asked() -> Vec<PathBuf> {
     let answer = |name: &&str| {
         let child = Command::new(name)
@@ -83,12 +84,12 @@ pub(super) fn asked() -> Vec<PathBuf> {
     text.lines().filter(|line| !line.trim().is_empty()).map(PathBuf::from).collect()
 }
 
-/// What a process printed, if it ended well and in time.
+/// The output of a process, if it ended successfully and in time.
 fn finished(mut child: Child) -> Option<String> {
     let begun = Instant::now();
     while child.try_wait().ok()?.is_none() {
         if begun.elapsed() > PATIENCE {
-            // Whether it could still be stopped changes nothing.
+            // Whether the process could be killed makes no difference.
             let _ = child.kill();
             let _ = child.wait();
             return None;

@@ -39,7 +39,7 @@ const PHRASES: &[super::Phrase] = &[
     ("size", "a size in its header is wrong"),
 ];
 
-/// Why the decoder refuses these bytes; `rows` says which pixels it was at, where it was at any.
+/// Why the decoder rejects these bytes; `rows` names the pixels that it was decoding, if any.
 pub(in super::super) fn explain(error: Error, bytes: &[u8], rows: Option<&str>) -> PictureError {
     let part = rows.unwrap_or("the header or the pixels").to_owned();
     match error {
@@ -77,7 +77,7 @@ fn unsupported(report: &str) -> &'static str {
     if found == CONTRADICTION { "its compression" } else { found }
 }
 
-/// The attribute that a report names, with its place in the file where it is there.
+/// The attribute that a report names, with its position in the file if it is found there.
 fn attribute_in(report: &str, bytes: &[u8]) -> Option<String> {
     let name = report.strip_prefix("missing or invalid ")?.strip_suffix(" attribute")?;
     let mut at = 8;
@@ -94,7 +94,7 @@ fn attribute_in(report: &str, bytes: &[u8]) -> Option<String> {
     }
 }
 
-/// A text that a zero ends, and where what follows begins.
+/// A zero-terminated text, and the offset of what follows it.
 fn text_at(bytes: &[u8], at: usize) -> Option<(&str, usize)> {
     let rest = bytes.get(at..)?;
     let length = rest.iter().take(256).position(|byte| *byte == 0)?;

@@ -1,4 +1,4 @@
-//! JPEG: segments, each begun by a marker. [JPEG]
+//! JPEG: segments, each of which starts with a marker. [JPEG]
 
 use super::meaning;
 use crate::PictureError;
@@ -27,7 +27,7 @@ const PHRASES: &[super::Phrase] = &[
     ("corrupt", "its compressed pixels cannot be unpacked"),
 ];
 
-/// Why the decoder refuses these bytes.
+/// Why the decoder rejects these bytes.
 pub(in super::super) fn explain(error: &DecodeErrors, bytes: &[u8]) -> PictureError {
     if let Some(part) = cut_segment(bytes) {
         return PictureError::truncated(FORMAT, part);
@@ -45,7 +45,7 @@ pub(in super::super) fn explain(error: &DecodeErrors, bytes: &[u8]) -> PictureEr
     }
 }
 
-/// The segment in which the file ends, unless that is the pixels.
+/// The segment in which the file ends, unless it ends within the pixels.
 fn cut_segment(bytes: &[u8]) -> Option<String> {
     let mut at = 2;
     while let Some([0xff, marker]) = bytes.get(at..at + 2) {

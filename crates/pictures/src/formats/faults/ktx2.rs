@@ -1,11 +1,11 @@
-//! KTX2: what its unpacker says. [KTX 2.0]
+//! KTX2: the errors of its unpacker. [KTX 2.0]
 
 use crate::PictureError;
 use basisu::Error;
 
 const FORMAT: &str = "KTX2";
 
-/// Why the unpacker refuses a file.
+/// Why the unpacker rejects a file.
 pub(in super::super) fn explain(error: Error) -> PictureError {
     let unsupported = |what: &str| PictureError::Unsupported {
         format: FORMAT,

@@ -1,5 +1,6 @@
-//! What is wrong with a file that a decoder refuses, in plain words and with its place. Decoders of others report in the
-//! names of their own types; here their reports are looked up, and the file is gone through once more for where.
+//! Explains what is wrong with a file that a decoder rejects, in plain words and with the position. External decoders
+//! report errors in terms of their own types; this module translates their reports, and scans the file again to find
+//! the position.
 
 pub(super) mod exr;
 pub(super) mod jpeg;
@@ -9,19 +10,19 @@ pub(super) mod png;
 pub(super) mod tiff;
 pub(super) mod webp;
 
-/// Part of a decoder's report, and what it means.
+/// Part of a decoder's report, and its meaning.
 type Phrase = (&'static str, &'static str);
 
-/// What is said of reports that no table has.
+/// The explanation of reports that no table contains.
 const CONTRADICTION: &str = "its contents contradict each other";
 
-/// The meaning of a report: that of the first phrase that is in it.
+/// The meaning of a report: that of the first phrase that it contains.
 fn meaning(report: &str, phrases: &[Phrase]) -> &'static str {
     let report = report.to_lowercase();
     phrases.iter().find(|(part, _)| report.contains(part)).map_or(CONTRADICTION, |(_, meaning)| meaning)
 }
 
-/// Four bytes that name a part of a file, where they are letters.
+/// A part's four-byte name, if it consists of letters.
 fn letters(name: &[u8]) -> Option<&str> {
     std::str::from_utf8(name).ok().filter(|name| name.chars().all(|c| c.is_ascii_alphanumeric() || c == ' '))
 }

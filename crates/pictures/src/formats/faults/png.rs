@@ -31,7 +31,7 @@ const PHRASES: &[super::Phrase] = &[
     ("frame", "one of its frames is wrong"),
 ];
 
-/// Why the decoder refuses these bytes.
+/// Why the decoder rejects these bytes.
 pub(in super::super) fn explain(error: &DecodingError, bytes: &[u8]) -> PictureError {
     if matches!(error, DecodingError::LimitsExceeded) {
         return PictureError::Unsupported {
@@ -56,7 +56,7 @@ pub(in super::super) fn explain(error: &DecodingError, bytes: &[u8]) -> PictureE
     }
 }
 
-/// Where the first chunk of a name begins.
+/// The offset of the first chunk with a name.
 fn first(bytes: &[u8], name: &[u8; 4]) -> Option<usize> {
     Chunks { bytes, at: SIGNATURE.len() }.find(|chunk| chunk.name == name).map(|chunk| chunk.at)
 }
@@ -64,7 +64,7 @@ fn first(bytes: &[u8], name: &[u8; 4]) -> Option<usize> {
 struct Chunk<'a> {
     at: usize,
     name: &'a [u8],
-    /// The name, the data and the checksum, as far as they are there.
+    /// The name, the data and the checksum, as far as they are present.
     rest: &'a [u8],
     length: usize,
 }
@@ -88,7 +88,7 @@ impl<'a> Iterator for Chunks<'a> {
     }
 }
 
-/// The first chunk that is broken in itself.
+/// The first chunk that is malformed in itself.
 fn structure(bytes: &[u8]) -> Option<PictureError> {
     let invalid = |what: String| Some(PictureError::invalid(FORMAT, what));
     if !bytes.starts_with(SIGNATURE) {

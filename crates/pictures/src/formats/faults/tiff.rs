@@ -8,7 +8,7 @@ use tiff::{ColorType, TiffError, TiffFormatError, TiffUnsupportedError};
 
 const FORMAT: &str = "TIFF";
 
-/// Why the decoder refuses these bytes.
+/// Why the decoder rejects these bytes.
 pub(in super::super) fn explain(error: TiffError, bytes: &[u8]) -> PictureError {
     let invalid = |what: String| PictureError::invalid(FORMAT, what);
     match error {
@@ -28,13 +28,13 @@ pub(in super::super) fn explain(error: TiffError, bytes: &[u8]) -> PictureError 
     }
 }
 
-/// Refuses what a file may hold, and this program does not read.
+/// Rejects a valid feature that this program does not read.
 pub(in super::super) fn unsupported(what: String) -> PictureError {
     let advice = "save it as grey or RGB, packed by Deflate or not at all";
     PictureError::Unsupported { format: FORMAT, what, advice }
 }
 
-/// A kind of colours in words.
+/// A kind of colour, in words.
 pub(in super::super) fn colours(kind: ColorType) -> &'static str {
     match kind {
         ColorType::Gray(_) | ColorType::GrayA(_) => "grey",
@@ -47,16 +47,16 @@ pub(in super::super) fn colours(kind: ColorType) -> &'static str {
     }
 }
 
-/// ` in the directory at byte 8`, where the file says where that is.
+/// ` in the directory at byte 8`, if the file says where that is.
 fn directory(bytes: &[u8]) -> String {
     let is_big_endian = bytes.starts_with(b"MM");
-    // Files larger than 4 GiB have their numbers elsewhere.
+    // Files larger than 4 GiB store their numbers elsewhere.
     let is_small = bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*");
     let at = u32_at(bytes, 4, is_big_endian).filter(|at| is_small && (*at as usize) < bytes.len());
     at.map_or_else(String::new, |at| format!(" in the directory at byte {at}"))
 }
 
-/// Names of tags are those of the specification; others have numbers.
+/// The name of a tag from the specification; other tags have numbers.
 fn tag(tag: Tag) -> String {
     match tag {
         Tag::Unknown(number) => format!("tag {number}"),

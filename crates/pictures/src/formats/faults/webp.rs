@@ -30,7 +30,7 @@ const PHRASES: &[super::Phrase] = &[
     ("partition", "its compressed pixels cannot be unpacked"),
 ];
 
-/// Why the decoder refuses these bytes.
+/// Why the decoder rejects these bytes.
 pub(in super::super) fn explain(error: &DecodingError, bytes: &[u8]) -> PictureError {
     let mut at = 12;
     let mut pixels = None;
@@ -46,7 +46,7 @@ pub(in super::super) fn explain(error: &DecodingError, bytes: &[u8]) -> PictureE
         if matches!(name, "VP8 " | "VP8L") {
             pixels.get_or_insert(at);
         }
-        // Chunks begin at even bytes.
+        // Chunks begin at even offsets.
         at = end + end % 2;
     }
     if matches!(error, DecodingError::IoError(_)) {

@@ -1,5 +1,5 @@
-//! What bounds all rays of a packet, and whether they are near enough to each other for that to be of use.
-#![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
+//! The frustum that bounds all rays of a packet, and whether the rays are coherent enough for it to be useful.
+#![allow(clippy::needless_range_loop)] // Iterator adaptors would not be compiled for the level.
 
 use super::super::TreeView;
 use super::super::level::BatchLevel;
@@ -9,16 +9,16 @@ use super::wide::Wide;
 use crate::ray::Ray;
 use std::arch::x86_64::*;
 
-/// The least and the greatest of what rays have that go the same way on every axis, a lane for each child of a node.
+/// The minimum and maximum of each quantity over rays with the same direction signs, a lane for each child of a node.
 pub(super) struct Frustum {
-    /// Bytes from the front of a node to the planes where rays come in, and go out.
+    /// Bytes from the start of a node to the planes where rays enter, and where they leave.
     pub(super) enter_rows: [usize; 3],
     pub(super) leave_rows: [usize; 3],
     /// Which axes of space are x, y and z of sheared space.
     pub(super) axes: [usize; 3],
     /// Axes along which the rays run downwards.
     pub(super) down: [bool; 3],
-    /// How far the ray looks that looks farthest.
+    /// The maximum distance to which any ray still searches.
     pub(super) limit: f32,
     enter: [__m256; 3],
     leave: [__m256; 3],
@@ -26,10 +26,10 @@ pub(super) struct Frustum {
     nearest: __m256,
 }
 
-/// A frustum may become as wide as this part of the scene.
+/// Maximum width of a frustum, as a fraction of the scene.
 const WIDEST: f32 = 0.1;
 
-/// Which way a ray runs along each axis, and its steepest axis, the last of equals.
+/// The signs of a ray's direction, and its steepest axis, the last one of a tie.
 #[inline(always)]
 fn way(ray: &Ray) -> ([bool; 3], usize) {
     let [x, y, z] = ray.direction.map(f32::abs);
@@ -37,14 +37,14 @@ fn way(ray: &Ray) -> ([bool; 3], usize) {
     (ray.direction.map(f32::is_sign_negative), steep)
 }
 
-/// A first look, at three of the rays.
+/// A quick check of three of the rays.
 #[inline(always)]
 pub(super) fn alike(rays: &[Ray]) -> bool {
     let first = way(&rays[0]);
     way(&rays[rays.len() - 1]) == first && way(&rays[rays.len() / 2]) == first
 }
 
-/// What is gathered over the groups of a packet.
+/// The quantities gathered over the groups of a packet.
 #[derive(Clone, Copy)]
 struct Extremes<W> {
     enter: [W; 3],
@@ -56,10 +56,10 @@ struct Extremes<W> {
 }
 
 impl Frustum {
-    /// `None` where one ray is not tame, does not go the way of the first, or is too far from the others.
+    /// `None` where some ray is not tame, differs from the first in direction signs, or is too far from the others.
     ///
     /// # Safety
-    /// The machine must have the level, and the packet must be ready.
+    /// The machine must have the level, and the packet must be prepared.
     #[inline(always)]
     pub(super) unsafe fn new<W: Wide>(
         packet: &mut Packet,
@@ -105,10 +105,10 @@ impl Frustum {
         }
     }
 
-    /// A bit for each child that some ray may meet, and where the first may enter it.
+    /// A bit for each child that some ray may hit, and the smallest distance at which a ray may enter it.
     ///
-    /// Distances are `(plane − origin) · inverse` as in [`crate::slab`]; with the extreme origin, and the least over both
-    /// extreme inverses, they are bounds to those of every ray, since rounding is monotone.
+    /// Distances are `(plane − origin) · inverse` as in [`crate::slab`]; with the extreme origin, and the minimum
+    /// over both extreme inverses, they bound those of every ray, since rounding is monotone.
     ///
     /// # Safety
     /// The machine must have the level, and `node` must point to a node.
@@ -158,7 +158,7 @@ impl<W: Wide> Extremes<W> {
         }
     }
 
-    /// Whether the rays stay close to each other all through the scene.
+    /// Whether the rays stay close to each other throughout the scene.
     ///
     /// # Safety
     /// The machine must have the level.
@@ -173,13 +173,13 @@ impl<W: Wide> Extremes<W> {
             for i in 0..2 {
                 let k = axes[i];
                 let slopes = self.shear[i][1].greatest_lane() - self.shear[i][0].least_lane();
-                // Origins, give or take their pads: the greatest where rays come in, the least where they go out.
+                // Origins, including their pads: the maximum where rays enter, the minimum where they leave.
                 let origins = if down[k] {
                     self.leave[k].greatest_lane() - self.enter[k].least_lane()
                 } else {
                     self.enter[k].greatest_lane() - self.leave[k].least_lane()
                 };
-                // Not a number is not near.
+                // A NaN does not count as near.
                 near &= origins + slopes * reach <= WIDEST * size;
             }
         }
@@ -187,7 +187,7 @@ impl<W: Wide> Extremes<W> {
     }
 }
 
-/// The greatest lane or the least, in all lanes.
+/// The maximum lane or the minimum, in all lanes.
 ///
 /// # Safety
 /// The machine must have the level.
@@ -197,7 +197,7 @@ unsafe fn bound<W: Wide>(x: W, greatest: bool) -> __m256 {
     unsafe { _mm256_set1_ps(if greatest { x.greatest_lane() } else { x.least_lane() }) }
 }
 
-/// The least lane of the first and the greatest of the second.
+/// The minimum lane of the first and the maximum lane of the second.
 ///
 /// # Safety
 /// The machine must have the level.
@@ -207,7 +207,7 @@ unsafe fn ends<W: Wide>([low, high]: [W; 2]) -> [__m256; 2] {
     unsafe { [bound(low, false), bound(high, true)] }
 }
 
-/// What a group has. `None` where one ray has another steepest axis.
+/// The extremes of a group. `None` where some ray has another steepest axis.
 ///
 /// # Safety
 /// As for [`Frustum::new`].

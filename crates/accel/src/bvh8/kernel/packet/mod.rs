@@ -1,12 +1,12 @@
-//! Rays that run side by side, as from a camera or to a lamp: up to 64 of them on one way through the tree.
+//! Coherent rays, as from a camera or towards a light: up to 64 of them on one path through the tree.
 //!
-//! At a node, all boxes are held against the *frustum*, the least and greatest of what the rays have on each axis: eight
-//! boxes at once, whatever the number of rays. A child is held against the rays themselves only when its turn comes, by
-//! then often behind what they have hit; of a node, one group of rays that meets it is enough. Triangles are tested one
-//! by one, by a group of rays at a time [Wald 2001], [Overbeck 2008].
+//! At a node, all boxes are tested against the *frustum*, the minimum and maximum of the rays' quantities on each
+//! axis: eight boxes at once, whatever the number of rays. A child is tested against the rays themselves only when
+//! its turn comes, by which time it is often behind what they have hit; for a node, one group of rays that hits it is
+//! enough. Triangles are tested one by one, by a group of rays at a time [Wald 2001], [Overbeck 2008].
 //!
-//! All of this only leaves out what [`super::body`] would leave out too, or less; the triangle test is the same
-//! operation by operation. So the hits are.
+//! All of this skips only what [`super::body`] would skip too, or less; the triangle test is the same, operation by
+//! operation. So the hits are the same.
 
 mod frustum;
 mod rays;
@@ -30,21 +30,21 @@ use crate::ray::{Hit, Query, Ray};
 use frustum::Frustum;
 use triangle::Group;
 
-/// A packet on its way.
+/// A packet in traversal.
 struct Walk<'p> {
     packet: &'p mut Packet,
     frustum: Frustum,
     query: &'p Query<'p>,
     /// Lanes in use, a whole number of groups.
     lanes: usize,
-    /// A bit for each ray that has nothing more to find.
+    /// A bit for each ray whose search is finished.
     done: u64,
 }
 
-/// Answers some rays, at most [`RAYS`], if they run side by side; else does nothing and returns false.
+/// Answers up to [`RAYS`] rays if they are coherent; otherwise does nothing and returns false.
 ///
 /// # Safety
-/// The machine must have the level, the view must be sound, and the packet ready.
+/// The machine must have the level, the view must be sound, and the packet must be prepared.
 #[inline(always)]
 pub(super) unsafe fn each<L: BatchLevel, const ANY: bool>(
     view: TreeView<'_>,
@@ -126,7 +126,7 @@ impl Walk<'_> {
         }
     }
 
-    /// How far the ray looks that looks farthest.
+    /// The maximum distance to which any ray still searches.
     ///
     /// # Safety
     /// As for [`each`].
@@ -142,7 +142,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The rays of a group that still look for something.
+    /// The rays of a group that are still searching.
     #[inline(always)]
     fn looking<W: Wide>(&self, from: usize) -> u32 {
         (!self.done >> from) as u32 & ((1 << W::LANES) - 1)
@@ -164,7 +164,7 @@ impl Walk<'_> {
         false
     }
 
-    /// Tests a leaf by the groups that meet it; true when a limit has changed.
+    /// Tests a leaf with the groups that hit it; true when a limit has changed.
     ///
     /// # Safety
     /// As for [`each`].

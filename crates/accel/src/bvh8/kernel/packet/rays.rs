@@ -1,4 +1,4 @@
-//! Up to 64 rays, number by number.
+//! Up to 64 rays, as a structure of arrays.
 
 use super::frustum::Frustum;
 use super::wide::Wide;
@@ -7,10 +7,10 @@ use crate::slab::SLACK;
 use std::arch::x86_64::*;
 use std::mem::{MaybeUninit, offset_of};
 
-/// The most rays of a packet.
+/// Maximum number of rays in a packet.
 pub(in crate::bvh8::kernel) const RAYS: usize = 64;
 
-/// A number for each ray; written before it is read.
+/// A number for each ray; it is written before it is read.
 #[repr(C, align(64))]
 pub(super) struct Row<T>(MaybeUninit<[T; RAYS]>);
 
@@ -34,13 +34,13 @@ pub(in crate::bvh8::kernel) struct Packet {
     /// The end of the ray, then its nearest hit.
     pub(super) t: Row<f32>,
     pub(super) exclude: Row<u32>,
-    /// As of [`super::super::lane_ray::LaneRay`].
+    /// As in [`super::super::lane_ray::LaneRay`].
     pub(super) pace: Row<f32>,
     pub(super) inverse: [Row<f32>; 3],
-    /// Origins as planes see them where the ray comes in, and goes out.
+    /// Padded origins for the planes where the ray enters, and for those where it leaves.
     pub(super) enter: [Row<f32>; 3],
     pub(super) leave: [Row<f32>; 3],
-    /// Less those, in units of distance.
+    /// The same, negated, in units of distance.
     pub(super) enter_bias: [Row<f32>; 3],
     pub(super) leave_bias: [Row<f32>; 3],
     pub(super) nearest: Row<f32>,
@@ -52,14 +52,14 @@ pub(in crate::bvh8::kernel) struct Packet {
 }
 
 impl Packet {
-    /// Without rays.
+    /// A packet without rays.
     #[inline(always)]
     pub(in crate::bvh8::kernel) fn new() -> Packet {
-        // SAFETY: every part may be without a value. Built part by part it would be copied part by part.
+        // SAFETY: every part may be uninitialised. Building it part by part would copy it part by part.
         unsafe { MaybeUninit::uninit().assume_init() }
     }
 
-    /// Takes rays over, `lanes` being a multiple of eight; the last ray fills the lanes that are left.
+    /// Loads rays into `lanes` lanes, a multiple of eight; the last ray fills the remaining lanes.
     ///
     /// # Safety
     /// The machine must have AVX2.
@@ -68,7 +68,7 @@ impl Packet {
         for number in 0..lanes / 8 {
             let from = number * 8;
             let ray = |k: usize| &rays[(from + k).min(rays.len() - 1)];
-            // SAFETY: there is a place for each of the lanes, whose number is at most `RAYS`.
+            // SAFETY: there is a slot for each of the lanes, whose number is at most `RAYS`.
             unsafe {
                 let [x, y, z, dx, dy, dz, t_min, t_max] = transposed([
                     numbers(ray(0)),
@@ -94,7 +94,7 @@ impl Packet {
         }
     }
 
-    /// Where the rays of a group meet the box of a child up to their limits: a bit for each.
+    /// A bit for each ray of a group that hits the box of a child up to its limit.
     ///
     /// # Safety
     /// The machine must have the level; the group must have been prepared, and `node` must point to a node.
@@ -123,7 +123,7 @@ impl Packet {
         }
     }
 
-    /// After hits: how far the rays of a group still look.
+    /// After hits: how far the rays of a group still search.
     ///
     /// # Safety
     /// As for [`Packet::meet`].
@@ -140,7 +140,7 @@ impl Packet {
     }
 }
 
-/// Origin, direction and ends of a ray.
+/// The origin, direction, `t_min` and `t_max` of a ray.
 ///
 /// # Safety
 /// The machine must have AVX2.
@@ -150,7 +150,7 @@ unsafe fn numbers(ray: &Ray) -> __m256 {
     const IN_ORDER: bool = offset_of!(Ray, direction) == FIRST + 12
         && offset_of!(Ray, t_min) == FIRST + 24
         && offset_of!(Ray, t_max) == FIRST + 28;
-    // SAFETY: where they stand in order, all eight belong to the ray.
+    // SAFETY: if the fields are in order, all eight numbers belong to the ray.
     unsafe {
         if IN_ORDER {
             return _mm256_loadu_ps(std::ptr::from_ref(ray).cast::<u8>().add(FIRST).cast());
@@ -160,7 +160,7 @@ unsafe fn numbers(ray: &Ray) -> __m256 {
     }
 }
 
-/// Rows for columns.
+/// Transposes eight rows of eight numbers.
 ///
 /// # Safety
 /// The machine must have AVX2.

@@ -1,5 +1,5 @@
-//! Rays made ready for boxes, a group at a time.
-#![allow(clippy::needless_range_loop)] // What iterators are made of is not compiled for the level.
+//! Prepares rays for boxes, a group at a time.
+#![allow(clippy::needless_range_loop)] // Iterator adaptors would not be compiled for the level.
 
 use super::super::TreeView;
 use super::super::lane_ray::{ROWS, span};
@@ -14,18 +14,18 @@ use crate::slab::{SLACK, STEEPEST, least_of, limit_of};
 use crate::triangle::PAD;
 use std::arch::x86_64::*;
 
-/// What is known of the rays of a packet; masks have a bit for each.
+/// Facts about the rays of a packet; masks have a bit for each ray.
 pub(in crate::bvh8::kernel) struct Ready {
     /// Lanes in use, a whole number of groups.
     pub(super) lanes: usize,
     /// The same as a mask.
     pub(super) used: u64,
-    /// Those that are answered.
+    /// Those that get an answer.
     pub(in crate::bvh8::kernel) asked: u64,
     pub(in crate::bvh8::kernel) tame: u64,
     /// Those that are not tame.
     pub(in crate::bvh8::kernel) wild: u64,
-    /// Those that run downwards along each axis.
+    /// Those whose direction is negative along each axis.
     pub(super) down: [u64; 3],
 }
 
@@ -38,7 +38,7 @@ pub(in crate::bvh8::kernel) struct Lane<'p> {
 }
 
 impl Packet {
-    /// Takes rays over, and makes them ready as [`super::super::lane_ray::LaneRay::new`] does.
+    /// Loads rays and prepares them as [`super::super::lane_ray::LaneRay::new`] does.
     ///
     /// # Safety
     /// The machine must have the level; there must be at least one ray, and at most [`super::RAYS`].
@@ -62,10 +62,10 @@ impl Packet {
         ready
     }
 
-    /// For each child of a node, a bit for each ray that meets its box.
+    /// For each child of a node, a bit for each ray that hits its box.
     ///
     /// # Safety
-    /// The machine must have the level, the packet must be ready, and `node` must point to a node.
+    /// The machine must have the level, the packet must be prepared, and `node` must point to a node.
     #[inline(always)]
     pub(in crate::bvh8::kernel) unsafe fn meet_children<W: Wide>(
         &self,
@@ -111,10 +111,10 @@ impl Packet {
 impl Boxes for Lane<'_> {
     type Eight = __m256i;
 
-    // SAFETY: the trait says what is asked for.
+    // SAFETY: the trait states the requirements.
     #[inline(always)]
     unsafe fn span<F: NodeFormat>(&self, node: *const u8, limit: __m256i) -> (__m256i, __m256i) {
-        // SAFETY: as the trait demands; the packet is ready.
+        // SAFETY: as the trait demands; the packet is prepared.
         unsafe {
             let all = |row: &Row<f32>| _mm256_set1_ps(*row.at(self.lane));
             let three = |rows: &[Row<f32>; 3]| [all(&rows[0]), all(&rows[1]), all(&rows[2])];
@@ -128,7 +128,7 @@ impl Boxes for Lane<'_> {
 
     #[inline(always)]
     fn limit_bits(&self, t: f32) -> u32 {
-        // SAFETY: the packet is ready.
+        // SAFETY: the packet is prepared.
         let pace = unsafe { *self.packet.pace.at(self.lane) };
         limit_of(t, pace, least_of(pace)).to_bits()
     }
@@ -156,7 +156,7 @@ unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &TreeView<'_>, 
         let zero = W::splat(0.0);
         let mut good = zero.le(t_min) & t_min.le(t_max) & zero.lt(pace);
         for k in 0..3 {
-            // Rays come in where planes are farther, and go out where they are nearer.
+            // The pad makes rays enter earlier and leave later.
             let pad = pad.add(origin[k].abs().mul(W::splat(BIAS_PAD))).copy_sign(direction[k]);
             let (enter, leave) = (origin[k].add(pad), origin[k].sub(pad));
             let inverse = pace.div(direction[k]).max(W::splat(-STEEPEST)).min(W::splat(STEEPEST));
@@ -174,7 +174,7 @@ unsafe fn group<W: Wide>(packet: &mut Packet, from: usize, view: &TreeView<'_>, 
         pace.store(packet.pace.at_mut(from));
         let s = t_min.mul(pace);
         let least = pace.max(W::splat(1.0)).mul(W::splat(f32::MIN_POSITIVE));
-        // What is not a number comes from infinities only.
+        // Only infinities can produce a NaN here.
         let nearest = s.sub(s.mul(W::splat(SLACK))).sub(least).max(zero);
         nearest.store(packet.nearest.at_mut(from));
         packet.set_limits::<W>(from);

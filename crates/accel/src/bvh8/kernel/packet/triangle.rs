@@ -6,7 +6,7 @@ use super::wide::{Half, Narrow, Wide};
 use crate::bvh8::layout::LANES;
 use crate::ray::{Culling, Hit, Query};
 
-/// A group of rays at a leaf. How near its hits are stays in registers from triangle to triangle.
+/// A group of rays at a leaf. Its nearest hit distances stay in registers from triangle to triangle.
 pub(super) struct Group<'p, W: Wide> {
     packet: &'p mut Packet,
     frustum: &'p Frustum,
@@ -41,8 +41,8 @@ impl<'p, W: Wide> Group<'p, W> {
         }
     }
 
-    /// Tests a triangle of a block by the rays of a mask; returns which hit it. The nearer hits are kept, but where
-    /// any will do.
+    /// Tests a triangle of a block with the rays of a mask; returns those that hit it. The nearer hits are kept,
+    /// except where any hit will do.
     ///
     /// # Safety
     /// As for [`Group::new`]; `block` must point to a block.
@@ -54,9 +54,10 @@ impl<'p, W: Wide> Group<'p, W> {
             let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
             let zero = W::splat(0.0);
-            // Where one of the three is not a number, this rejects less; what is left is looked at again.
+            // If one of the three is NaN, this rejects less; the exact stage tests the rest again.
             let mixed = u.min(v).min(w).lt(zero) & zero.lt(u.max(v).max(w));
-            // What lies wholly behind what a ray has hit: the exact distance is a mean of those of the corners.
+            // Rejects triangles wholly behind the ray's nearest hit: the exact distance is a mean of those of the
+            // corners.
             let near = if self.frustum.down[self.frustum.axes[2]] {
                 zero.sub(z[0].max(z[1]).max(z[2]))
             } else {
@@ -100,7 +101,7 @@ impl<'p, W: Wide> Group<'p, W> {
         }
     }
 
-    /// The exact stage by half the group, and all that decides whether a hit counts.
+    /// The exact stage on half of the group, and everything else that decides whether a hit counts.
     ///
     /// # Safety
     /// As for [`Group::test`].
@@ -113,7 +114,7 @@ impl<'p, W: Wide> Group<'p, W> {
         mask: u32,
     ) -> u32 {
         let from = self.from + HALF * W::LANES / 2;
-        // SAFETY: as the caller promises; a block holds its primitives behind nine rows of four numbers.
+        // SAFETY: as the caller promises; a block stores its primitives after nine rows of four numbers.
         unsafe {
             let edge = |p: usize, q: usize| x[p].mul(y[q]).sub(y[p].mul(x[q]));
             let (u, v, w) = (edge(2, 1), edge(0, 2), edge(1, 0));
@@ -122,7 +123,7 @@ impl<'p, W: Wide> Group<'p, W> {
             let det = u.add(v).add(w);
             let infinity = W::Half::splat(f64::INFINITY);
             let (below, above) = (det.lt(zero), zero.lt(det));
-            // Neither zero nor infinite, and a number.
+            // Not zero, not infinite and not NaN.
             let sound = (below & zero.sub(infinity).lt(det)) | (above & det.lt(infinity));
             let along = u.mul(z[0]).add(v.mul(z[1])).add(w.mul(z[2]));
             let steep = self.frustum.axes[2];
@@ -158,7 +159,7 @@ impl<'p, W: Wide> Group<'p, W> {
         }
     }
 
-    /// Those of a mask whose hits the filter lets count.
+    /// Those rays of a mask whose hits the filter accepts.
     ///
     /// # Safety
     /// As for [`Group::test`].
@@ -179,7 +180,7 @@ impl<'p, W: Wide> Group<'p, W> {
             .fold(0, |kept, ray| kept | 1 << ray)
     }
 
-    /// Gives what it has found back to the packet.
+    /// Writes the results back to the packet.
     ///
     /// # Safety
     /// As for [`Group::new`].

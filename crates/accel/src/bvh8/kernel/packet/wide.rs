@@ -1,15 +1,15 @@
-//! Vectors with a lane for each of several rays, whichever level they belong to.
+//! Vectors with a lane for each of several rays, at any level.
 
 use std::arch::x86_64::*;
 
-/// Unsafe functions without a body.
+/// Declares unsafe functions without a body.
 macro_rules! declare {
     ($($name:ident($($argument:tt)*) -> $result:ty;)*) => {
-        // SAFETY: as the trait that they are declared in demands.
+        // SAFETY: as the trait that declares them demands.
         $(unsafe fn $name($($argument)*) -> $result;)*
     };
 }
-/// Functions of one expression, all of which want nothing but their level and good pointers.
+/// Defines functions of one expression, all of which require only their level and valid pointers.
 macro_rules! define {
     ($($name:ident($($argument:tt)*) -> $result:ty = $body:expr;)*) => {
         // SAFETY: as the trait that they belong to demands.
@@ -21,11 +21,11 @@ pub(in crate::bvh8::kernel) use {declare, define};
 /// Floats, one for each ray of a group. Masks have a bit for each lane.
 ///
 /// # Safety
-/// All functions want a machine that has the level; pointers must lead to as many numbers as there are lanes.
+/// All functions require a machine that has the level; pointers must lead to as many numbers as there are lanes.
 pub(in crate::bvh8::kernel) trait Wide: Copy {
     /// Lanes of a vector.
     const LANES: usize;
-    /// Half of the lanes, twice as exact.
+    /// A vector of half the lanes, in double precision.
     type Half: Half;
 
     declare! {
@@ -38,14 +38,14 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
         div(self, other: Self) -> Self;
         min(self, other: Self) -> Self;
         max(self, other: Self) -> Self;
-        // The product and the third, rounded once.
+        // The product plus the third, rounded once.
         fmadd(self, by: Self, more: Self) -> Self;
         abs(self) -> Self;
         // With the sign of the other, if its own is positive.
         copy_sign(self, of: Self) -> Self;
         // The second where this is negative, else the first.
         by_sign(self, plus: Self, minus: Self) -> Self;
-        // Where the sign bit is set.
+        // A bit for each lane with a set sign bit.
         signs(self) -> u32;
         lt(self, other: Self) -> u32;
         le(self, other: Self) -> u32;
@@ -61,7 +61,7 @@ pub(in crate::bvh8::kernel) trait Wide: Copy {
 /// # Safety
 /// As for [`Wide`].
 pub(in crate::bvh8::kernel) trait Half: Copy {
-    /// As many floats.
+    /// The same number of floats.
     type Narrow: Narrow;
 
     declare! {
@@ -76,7 +76,7 @@ pub(in crate::bvh8::kernel) trait Half: Copy {
     }
 }
 
-/// Floats, and whole numbers beside them.
+/// Floats, with integers next to them.
 ///
 /// # Safety
 /// As for [`Wide`].
@@ -88,11 +88,11 @@ pub(in crate::bvh8::kernel) trait Narrow: Copy {
         store_some(self, mask: u32, to: *mut f32) -> ();
         le(self, other: Self) -> u32;
         eq(self, other: Self) -> u32;
-        // The other where the mask has a bit.
+        // Takes the other where the mask has a bit.
         blend(self, mask: u32, other: Self) -> Self;
-        // Where a whole number is.
+        // A bit for each lane in which the integer occurs.
         places(x: u32, of: *const u32) -> u32;
-        // Writes a whole number into the lanes of the mask.
+        // Writes an integer into the lanes of the mask.
         put(x: u32, mask: u32, to: *mut u32) -> ();
     }
 }
@@ -221,7 +221,7 @@ impl Narrow for __m128 {
     }
 }
 
-/// A mask of four bits as a vector.
+/// Spreads a mask of four bits into a vector.
 ///
 /// # Safety
 /// As for [`Wide`].
