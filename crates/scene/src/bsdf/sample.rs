@@ -1,4 +1,4 @@
-//! What sampling gives.
+//! The result of sampling a BSDF.
 
 use bilux_math::{Rgb, Vec3};
 
@@ -11,7 +11,7 @@ pub struct BsdfSample {
     pub weight: Rgb,
     /// Density in solid angle; for a delta lobe the probability of having chosen it.
     pub pdf_solid_angle: f32,
-    /// True for a lobe without width: `eval` and `pdf` know nothing of it.
+    /// True for a delta lobe, which `eval` and `pdf` leave out.
     pub is_delta: bool,
     /// True when `wi` is on the other side of the surface.
     pub transmits: bool,
