@@ -43,7 +43,7 @@ pub enum SceneError {
     /// Any other error, described in full.
     #[error("{at}: {message}")]
     Invalid {
-        /// What is wrong and what to do.
+        /// What is wrong, and what to do.
         message: String,
         /// Where it was written.
         at: Span,

@@ -119,9 +119,9 @@ impl Geometry {
         TwoLevel::new(&self.instances, shutter, top)
     }
 
-    /// The closest hit among the only tree of triangles, which is in world space, and the spheres.
+    /// The closest hit in the only tree of triangles, which is in world space, and the spheres.
     ///
-    /// The result is the same as that of the top level, but faster.
+    /// The result equals that of the top level, but it is faster.
     #[inline]
     pub(crate) fn closest_hit(&self, triangles: &dyn Accelerator, ray: &Ray, query: &Query) -> Option<Hit> {
         if self.spheres.all().is_empty() {
@@ -281,9 +281,7 @@ impl Geometry {
         }
     }
 
-    /// Along the normal of a triangle's front, from which its corners are counter-clockwise, at a time.
-    ///
-    /// `None` for other primitives.
+    /// Along the normal of a triangle's front (corners counter-clockwise) at a time; `None` for other primitives.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
         if primitive == Primitive::NONE || !self.is_triangle(primitive) {
             return None;

@@ -24,7 +24,7 @@ type Entry = [f32; INDICES + 1];
 
 struct Table {
     at: [[Entry; COSINES]; ROUGHNESSES],
-    /// Over the hemisphere, weighted by the cosine.
+    /// Cosine-weighted means over the hemisphere.
     mean: [Entry; ROUGHNESSES],
     /// Mean loss of opaque microfacets between two neighbouring cosines; `left_before` is its running integral.
     left: [[f32; COSINES - 1]; ROUGHNESSES],

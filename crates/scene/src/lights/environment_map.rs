@@ -167,7 +167,7 @@ impl EnvironmentMap {
 }
 
 impl Chances {
-    /// Probabilities in proportion to the cells' values; empty where they are nearly zero.
+    /// Probabilities in proportion to the cells' values; empty if all of them are zero.
     fn new(cells: &[f64], columns: usize) -> Chances {
         let mut chances = Chances::default();
         let mut row_sum = 0.0;

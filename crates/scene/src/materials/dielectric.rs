@@ -1,4 +1,4 @@
-//! `dielectric`: smooth glass, water, diamond.
+//! `dielectric`: glass, water, diamond, smooth or rough.
 
 use super::glasses::{NAMES, glass_indices};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};

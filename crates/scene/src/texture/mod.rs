@@ -158,7 +158,7 @@ impl Texture {
     /// The texel of a column and a row, counted from the upper left, fully processed.
     ///
     /// # Panics
-    /// When there is none.
+    /// When there is no such texel.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> Rgb {
         self.finished(self.raw(&self.image, x, y))
