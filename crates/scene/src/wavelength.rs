@@ -86,8 +86,8 @@ static SPECTRUM: LazyLock<Spectrum> = LazyLock::new(|| {
     Spectrum { weights: seen.iter().map(weight).collect(), before }
 });
 
-/// The sensitivity of the Rec. 709 channels to a wavelength in nm, unnormalised: the standard observer's curves [Wyman
-/// 2013, eq. 4] times the primaries' matrix. Negative where a colour is out of gamut.
+/// The sensitivity of the Rec. 709 channels to a wavelength in nm, unnormalised: the standard observer's curves
+/// [Wyman 2013, eq. 4] times the primaries' matrix. Negative where a colour is out of gamut.
 pub(crate) fn sensitivity(nm: f32) -> Rgb {
     let bell = |middle: f32, below: f32, above: f32| {
         let t = (nm - middle) / if nm < middle { below } else { above };
