@@ -1,4 +1,4 @@
-//! A scene while it is put together: plain data, as files describe it.
+//! A scene under construction: plain data, as files describe it.
 
 use crate::cameras::{self, CameraSpec};
 use crate::error::{SceneError, Warning};
@@ -19,73 +19,74 @@ use bilux_math::motion::Motion;
 use bilux_math::{DVec3, Rgb, Transform, Vec3};
 use std::sync::Arc;
 
-/// A mesh somewhere in the scene.
+/// A mesh placed in the scene.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// What the user calls it; may be empty.
+    /// The user's name for it; may be empty.
     pub name: String,
     /// Its triangles.
     pub mesh: Arc<Mesh>,
     /// Index into [`SceneBuilder::materials`].
     pub material: usize,
-    /// Where it is, and when.
+    /// Its position and motion.
     pub motion: Motion,
-    /// Keep one copy of the mesh's tree however often it stands in the scene. Without this, and for what does
-    /// not move, triangles are put into one tree of the whole scene.
+    /// Keep one copy of the mesh's tree, however many instances the scene has.
+    ///
+    /// Otherwise, and for objects that do not move, triangles go into one tree of the whole scene.
     pub instanced: bool,
 }
 
 impl Object {
-    /// A mesh where it was modelled, with the material of this index.
+    /// A mesh in its original position, with the material of this index.
     pub fn new(name: &str, mesh: Arc<Mesh>, material: usize) -> Object {
         Object { name: name.to_owned(), mesh, material, motion: Motion::REST, instanced: false }
     }
 
-    /// The same, moved.
+    /// The same object, transformed.
     pub fn placed(self, transform: Transform) -> Object {
         Object { motion: Motion::still(transform), ..self }
     }
 }
 
-/// A scene while it is put together. All fields are plain data; [`SceneBuilder::build`] checks them.
+/// A scene under construction. All fields are plain data; [`SceneBuilder::build`] checks them.
 #[derive(Clone, Debug, Default)]
 pub struct SceneBuilder {
-    /// Pictures on surfaces.
+    /// Textures on surfaces.
     pub textures: Vec<Arc<Texture>>,
-    /// What surfaces are made of.
+    /// The materials of surfaces.
     pub materials: Vec<Spec>,
-    /// What there is to see.
+    /// The visible objects.
     pub objects: Vec<Object>,
-    /// What gives light, emissive materials apart.
+    /// Light sources, other than emissive materials.
     pub lights: Vec<Spec>,
-    /// Where it can be seen from; the first is the default.
+    /// The cameras; the first is the default.
     pub cameras: Vec<CameraSpec>,
-    /// The file's format knows lamps, and has no word for what is around a scene.
+    /// The file's format has light sources, but cannot describe the environment around a scene.
     pub surroundings_unsaid: bool,
-    /// Which way is up, as far as the file or its format says.
+    /// The up axis, as far as the file or its format states it.
     pub up: UpHint,
-    /// Metres in a unit of length of the file; 0 for one, as in all scenes that say nothing of it.
+    /// Metres per unit of length of the file; 0 means one metre, as in scenes that state no unit.
     pub unit: f64,
-    /// What all positions of the file have in common and is left out of ours, so that 32-bit floats hold the rest.
+    /// A common offset of all positions in the file, left out of ours so that 32-bit floats hold the rest.
     pub origin: DVec3,
-    /// How wide points and lines are.
+    /// The widths of points and lines.
     pub stroke_widths: StrokeWidths,
-    /// Settings of the render that the file wishes for, not looked at here.
+    /// Render settings that the file asks for; this crate does not interpret them.
     pub settings: Parameters,
-    /// What was odd while reading.
+    /// Problems found while reading.
     pub warnings: Vec<Warning>,
-    /// What else could be chosen from the file.
+    /// Other choices that the file offers.
     pub inventory: Inventory,
 }
 
-/// Which structure answers the rays.
+/// The acceleration structure that traces the rays.
 #[derive(Clone, Debug)]
 pub struct AccelChoice {
     /// Its name in [`bilux_accel::ACCELERATORS`], or `auto`.
     pub name: String,
     /// How it is built.
     pub options: BuildOptions,
-    /// How it is asked.
+    /// How it is traversed.
     pub query: Query<'static>,
 }
 
@@ -112,17 +113,17 @@ impl SceneBuilder {
         self.warnings.push(Warning { message: message.into(), at });
     }
 
-    /// The box around all objects at a time in seconds, lights left out.
+    /// The bounding box of all objects at a time in seconds, without lights.
     pub fn bounds(&self, time: f32) -> bilux_math::Aabb {
         let moved = |o: &Object| o.motion.at(time).bounds(&o.mesh.bounds());
         self.objects.iter().map(moved).fold(bilux_math::Aabb::EMPTY, bilux_math::Aabb::union)
     }
 
-    /// Checks everything and builds the trees. `shutter` is when light is let in, in seconds; `aspect` the
-    /// film's width over its height.
+    /// Checks everything and builds the trees. `shutter` is the exposure interval in seconds; `aspect` is the film's
+    /// width over its height.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its place.
+    /// The first problem found, with its location.
     pub fn build(&self, accel: &AccelChoice, shutter: [f32; 2], aspect: f32) -> Result<Scene, SceneError> {
         let mut materials: Vec<Arc<dyn Material>> = self
             .materials
@@ -157,7 +158,7 @@ impl SceneBuilder {
         Ok(Scene::new(Arc::new(parts), accel, shutter))
     }
 
-    /// Lights without a surface; those with one become objects or spheres.
+    /// Builds lights without a surface; lights with one become objects or spheres.
     fn build_lights(&self, materials: &mut Vec<Arc<dyn Material>>) -> Result<BuiltLights, SceneError> {
         let mut built = BuiltLights::default();
         let mut glowing = |emission: Rgb, sides: Sides| -> Result<usize, SceneError> {
@@ -190,21 +191,21 @@ impl SceneBuilder {
     }
 }
 
-/// What the lights of a builder have become.
+/// The result of building the lights.
 #[derive(Default)]
 struct BuiltLights {
-    /// Those without a surface.
+    /// Lights without a surface.
     lights: Vec<SceneLight>,
-    /// Those with one, which come after the objects.
+    /// Lights with a surface, placed after the objects.
     surfaces: Vec<Object>,
-    /// For objects that came from lights and are given one, their colour in the classic modes.
+    /// The classic colours of objects that came from lights, if given.
     panels: Vec<(usize, Rgb)>,
     spheres: Vec<PlacedSphere>,
-    /// For each sphere its name, and its colour in the classic modes where it is given.
+    /// The name of each sphere, and its classic colour if given.
     lamps: Vec<(String, Option<Rgb>)>,
 }
 
-/// Attributes must be as many as positions, and indices must name them.
+/// Checks that a mesh has as many attributes as positions, and that its indices are in range.
 fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
     let mesh = &*object.mesh;
     let name = if object.name.is_empty() { &mesh.name } else { &object.name };
@@ -239,7 +240,7 @@ fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// A shading normal that is usable: unit, and never zero.
+/// A usable shading normal: unit length, never zero.
 pub(crate) fn unit_or(n: Vec3, fallback: Vec3) -> Vec3 {
     n.try_normalize().unwrap_or(fallback)
 }

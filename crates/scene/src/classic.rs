@@ -1,5 +1,5 @@
-//! What the classic modes (`cast`, `whitted`, `cook`) see: Equations 1 and 2 of the paper are not BSDFs, so
-//! materials and lights say of themselves what they are in that older model.
+//! Shading in the classic modes (`cast`, `whitted`, `cook`). Equations 1 and 2 of the paper are not BSDFs, so materials
+//! and lights describe themselves in terms of that older model too.
 
 use bilux_math::{Rgb, Vec3};
 
@@ -22,13 +22,13 @@ pub struct ClassicMaterial {
     pub eta: f32,
     /// Absorption per metre inside, by Beer's law.
     pub sigma_a: Rgb,
-    /// True for a wall without thickness, where refraction goes straight on.
+    /// True for a thin wall, through which light goes straight on.
     pub thin: bool,
-    /// Spread of reflected rays in `cook`: the greatest angle, in radians.
+    /// Spread of reflected rays in `cook`: the maximum angle, in radians.
     pub gloss: f32,
-    /// Spread of refracted rays in `cook`: the greatest angle, in radians.
+    /// Spread of refracted rays in `cook`: the maximum angle, in radians.
     pub translucency: f32,
-    /// True where Fresnel's law shares the light between S and T, or strengthens S towards grazing.
+    /// True where Fresnel's equations divide the light between S and T, or strengthen S towards grazing.
     pub fresnel: bool,
 }
 
@@ -51,12 +51,12 @@ impl Default for ClassicMaterial {
     }
 }
 
-/// A light under Equations 1 and 2, as one shading point sees it: without falloff.
+/// A light under Equations 1 and 2, as seen from one shading point: without falloff.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassicLight {
     /// Unit direction towards it.
     pub wi: Vec3,
-    /// Where it is; `None` when infinitely far.
+    /// Its position; `None` when infinitely far.
     pub position: Option<Vec3>,
     /// Factor on the light's colour, 0..=1: a spot's cone.
     pub strength: f32,

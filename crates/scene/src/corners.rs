@@ -1,21 +1,21 @@
-//! Corners of triangles: where they are, their texture coordinates, and the directions that follow from these.
+//! Corners of triangles: positions, texture coordinates, and the tangents derived from them.
 
 use crate::mesh::Mesh;
 use crate::surface::gamma;
 use crate::texture::UvPair;
 use bilux_math::{Transform, Vec2, Vec3};
 
-/// The texture coordinates of a triangle's corners: where a mesh has none, the weights of the second and the third.
+/// The texture coordinates of a triangle's corners; without any in the mesh, barycentric coordinates.
 pub(crate) fn triangle_uvs(mesh: &Mesh, triangle: [u32; 3]) -> [Vec2; 3] {
     if mesh.uvs.is_empty() { [Vec2::ZERO, Vec2::X, Vec2::Y] } else { triangle.map(|i| mesh.uvs[i as usize]) }
 }
 
-/// Where textures are looked up at every triangle's corners.
+/// The texture coordinate pairs of every triangle's corners.
 pub(crate) fn corner_uvs(mesh: &Mesh) -> Vec<[UvPair; 3]> {
     mesh.triangles.iter().map(|t| uv_pairs(mesh, *t)).collect()
 }
 
-/// Where they are looked up at the corners of one.
+/// The texture coordinate pairs of one triangle's corners.
 #[inline]
 pub(crate) fn uv_pairs(mesh: &Mesh, triangle: [u32; 3]) -> [UvPair; 3] {
     let first = triangle_uvs(mesh, triangle);
@@ -23,8 +23,8 @@ pub(crate) fn uv_pairs(mesh: &Mesh, triangle: [u32; 3]) -> [UvPair; 3] {
     std::array::from_fn(|i| UvPair([first[i], second[i]]))
 }
 
-/// Along a triangle as its first texture coordinate grows, a unit vector, and as its second does; `None` where they say
-/// nothing of it. [pbrt 2023, 6.5.2]
+/// The unit tangent along the first texture coordinate, and the tangent along the second; `None` where the coordinates
+/// do not define them. [pbrt 2023, 6.5.2]
 pub(crate) fn tangents([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<(Vec3, Vec3)> {
     let [uv_a, uv_b, uv_c] = [uvs[0]?, uvs[1]?, uvs[2]?];
     let (b_side, c_side) = (uv_b - uv_a, uv_c - uv_a);
@@ -35,7 +35,7 @@ pub(crate) fn tangents([a, b, c]: [Vec3; 3], uvs: [Option<Vec2>; 3]) -> Option<(
     along_u.try_normalize().filter(|_| determinant != 0.0).map(|u| (u, along_v))
 }
 
-/// The corners of all triangles, moved.
+/// The corners of all triangles, transformed to world space.
 pub(crate) fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<Item = [[f32; 3]; 3]> {
     let still = to_world.is_identity();
     mesh.triangles.iter().map(move |t| {
@@ -46,7 +46,7 @@ pub(crate) fn world_corners(mesh: &Mesh, to_world: &Transform) -> impl Iterator<
     })
 }
 
-/// A point moved, with the bound on its error moved too. [pbrt 2023, 6.8.5]
+/// A transformed point, with the bound on its error. [pbrt 2023, 6.8.5]
 pub(crate) fn transform_with_error(to_world: &Transform, p: Vec3, error: Vec3) -> (Vec3, Vec3) {
     let m = to_world.matrix();
     let abs = |v: Vec3| {

@@ -1,15 +1,15 @@
-//! What can be wrong with a scene.
+//! Errors and warnings of a scene.
 
 use crate::parameters::Span;
 
-/// Why a scene cannot be built. Every message says what, where and what to do.
+/// Why a scene cannot be built. Every message says what is wrong, where, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A name that no table holds.
+    /// A name that is in no table.
     #[error("{at}: there is no {}{}", named(.what, .name), suggestion(.nearest, .known))]
     Unknown {
-        /// What kind of name.
+        /// The kind of name.
         what: String,
         /// The name.
         name: String,
@@ -25,14 +25,14 @@ pub enum SceneError {
     BadValue {
         /// Which parameter.
         what: String,
-        /// What it has to be.
+        /// The expected value.
         wanted: String,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// Where.
+        /// Where it was written.
         at: Span,
     },
-    /// Something has to be given and is not.
+    /// A required value is missing.
     #[error("{at}: {what} is missing: add it")]
     Missing {
         /// What is missing.
@@ -40,12 +40,12 @@ pub enum SceneError {
         /// Where it belongs.
         at: Span,
     },
-    /// Anything else, said in full.
+    /// Any other error, described in full.
     #[error("{at}: {message}")]
     Invalid {
-        /// What is wrong and what to do.
+        /// What is wrong, and what to do.
         message: String,
-        /// Where.
+        /// Where it was written.
         at: Span,
     },
 }
@@ -68,7 +68,7 @@ impl SceneError {
         }
     }
 
-    /// Where the fault was written.
+    /// Where the error was written.
     pub fn at(&self) -> &Span {
         match self {
             SceneError::Unknown { at, .. }
@@ -78,14 +78,14 @@ impl SceneError {
         }
     }
 
-    /// Anything else.
+    /// Any other error.
     pub fn invalid(message: impl Into<String>, at: &Span) -> SceneError {
         SceneError::Invalid { message: message.into(), at: at.clone() }
     }
 }
 
-/// Names of glTF, Blender and other renderers, and what they are called here. Where a material has no such name, the next
-/// of the row counts.
+/// Names from glTF, Blender and other renderers, and their equivalents here. If a material lacks a name, the next one
+/// in the row applies.
 const SYNONYMS: &[(&str, &[&str])] = &[
     ("albedo", &["base_color", "reflectance", "kd"]),
     ("base_color_factor", &["base_color", "reflectance", "kd"]),
@@ -132,8 +132,8 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("double_sided", &["visible_sides"]),
 ];
 
-/// The known name that another one most likely means: one that it abbreviates or is elsewhere called by, or one that is
-/// spelt much like it.
+/// The known name most likely meant by another one: a name that it abbreviates, a synonym, or one with a similar
+/// spelling.
 pub fn nearest_name(name: &str, known: &[String]) -> Option<String> {
     let plain = snake_case(name);
     let row = SYNONYMS.iter().find(|(other, _)| *other == plain);
@@ -146,12 +146,12 @@ pub fn nearest_name(name: &str, known: &[String]) -> Option<String> {
     if distance(best) <= 1 + name.chars().count() / 3 {
         return Some(best.clone());
     }
-    // `transmission` may be the beginning of `transmission_weight`.
+    // `transmission` may abbreviate `transmission_weight`.
     let longer = |k: &&String| k.strip_prefix(&plain).is_some_and(|rest| rest.starts_with('_'));
     known.iter().filter(longer).min_by_key(|k| k.len()).cloned()
 }
 
-/// `baseColorFactor` as `base_color_factor`.
+/// Converts `baseColorFactor` to `base_color_factor`.
 fn snake_case(name: &str) -> String {
     let mut snake = String::with_capacity(name.len() + 4);
     for letter in name.chars() {
@@ -163,7 +163,7 @@ fn snake_case(name: &str) -> String {
     snake
 }
 
-/// The name behind its kind, before what it would belong to: "key 'fow' of a camera".
+/// The name inserted after its kind and before its owner: "key 'fow' of a camera".
 fn named(what: &str, name: &str) -> String {
     match what.split_once(" of ") {
         Some((what, whole)) => format!("{what} '{name}' of {whole}"),
@@ -179,12 +179,12 @@ fn suggestion(nearest: &Option<String>, known: &[String]) -> String {
     }
 }
 
-/// Something worth saying that does not stop the work.
+/// A problem worth reporting that does not stop the work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
-    /// What, and what was done about it.
+    /// What is wrong, and what was done about it.
     pub message: String,
-    /// Where.
+    /// Where it was found.
     pub at: Span,
 }
 

@@ -1,7 +1,7 @@
-//! What of a surface one pixel of the picture sees, so that textures are as coarse there as does not show.
+//! The footprint of a pixel on a surface, by which textures are filtered.
 //!
-//! It is that of the camera that sees the point straight, whichever way light comes to it: a function of the point, the camera
-//! and the picture's size, never of a path. So a surface is the same from both ends of any path.
+//! It is the footprint for a camera that sees the point directly, however light reaches it: a function of the point,
+//! the camera and the image's size, never of a path. So a surface looks the same from both ends of any path.
 
 use crate::cameras::Camera;
 use crate::corners::triangle_uvs;
@@ -13,7 +13,7 @@ use crate::texture::{Texture, levels};
 use bilux_math::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// Who looks, and at how many rows of pixels.
+/// The camera, and the number of pixel rows.
 #[derive(Clone)]
 pub(crate) struct FootprintView {
     pub(crate) camera: Arc<dyn Camera>,
@@ -21,7 +21,7 @@ pub(crate) struct FootprintView {
 }
 
 impl FootprintView {
-    /// Tells a surface, which is of the geometry, how much of its textures a pixel sees.
+    /// Sets the texture footprint of a pixel on a surface of the geometry.
     #[inline(never)]
     pub(crate) fn put_on(&self, surface: &mut Surface, geometry: &Geometry) {
         let object = geometry.objects().get(surface.object as usize);
@@ -35,13 +35,14 @@ impl FootprintView {
         surface.uv_width = rates.map(|rate| rate * pixel);
     }
 
-    /// How wide a pixel is where a point is, in metres.
+    /// The width of a pixel at a point, in metres.
     fn pixel_at(&self, p: Vec3, time: f32) -> f32 {
         self.camera.height_at(p, time) / self.rows
     }
 
-    /// Which of each material's textures any pixel sees from so far that coarser levels are of use. Where looking would take as
-    /// long as making them, and where anything may move, all of them.
+    /// The textures of each material that some pixel sees from far enough away to use coarser levels.
+    ///
+    /// Returns all of them where the test would take as long as making the levels, and where anything may move.
     pub(crate) fn needed<'a>(
         &self,
         geometry: &Geometry,
@@ -62,7 +63,7 @@ impl FootprintView {
             let to_world = object.motion.at(opens);
             for triangle in &mesh.triangles {
                 let corners = triangle.map(|i| to_world.point(mesh.positions[i as usize]));
-                // Between the corners a pixel is not wider than at all of them.
+                // Inside the triangle a pixel is never wider than at the widest corner.
                 let pixel = corners.map(|p| self.pixel_at(p, opens)).into_iter().fold(0.0, f32::max);
                 let rates = uv_rates(mesh, *triangle, corners);
                 *widest = std::array::from_fn(|set| widest[set].max(rates[set] * pixel));
@@ -79,8 +80,8 @@ fn uv_rates(mesh: &Mesh, triangle: [u32; 3], corners: [Vec3; 3]) -> [Vec2; 2] {
     [first, if mesh.uvs2.is_empty() { first } else { second() }]
 }
 
-/// How much either texture coordinate changes over a metre of a triangle, at most: the lengths of their gradients, along
-/// which a pixel is never narrower than it is across the camera's axis. None where the corners are on a line.
+/// The maximum change of each texture coordinate per metre of a triangle: the lengths of their gradients. Along these a
+/// pixel is never narrower than perpendicular to the camera's axis. Zero where the corners are collinear.
 fn rates([a, b, c]: [Vec3; 3], [uv_a, uv_b, uv_c]: [Vec2; 3]) -> Vec2 {
     let (b_side, c_side) = (b - a, c - a);
     let area = b_side.cross(c_side).length();
@@ -89,12 +90,13 @@ fn rates([a, b, c]: [Vec3; 3], [uv_a, uv_b, uv_c]: [Vec2; 3]) -> Vec2 {
     if area > 0.0 { Vec2::new(rate(b.x, c.x), rate(b.y, c.y)) } else { Vec2::ZERO }
 }
 
-/// What is looked up at points: light and holes, which whoever samples lights has to find where rays do, and normals, whose mean
-/// would be that of a smoother surface.
+/// Textures looked up at points: emission and opacity, for which light sampling has to find the same values as rays do,
+/// and normals, whose mean would be that of a smoother surface.
 const AT_POINTS: [&str; 4] = ["emission", "opacity", "normal", "coat_normal"];
 
-/// The textures of a material, one of the scene's `materials`, that are filtered: none of one with holes in a picture, which
-/// colours have to agree with, texel by texel.
+/// The filtered textures of a material, which is one of the scene's `materials`.
+///
+/// A material with an opacity mask has none, as its colours have to match the mask texel by texel.
 pub(crate) fn filtered(material: &Spec, materials: &[Spec], textures: &[Arc<Texture>]) -> Vec<Arc<Texture>> {
     if let Some((Value::Texture(_), _)) = material.parameters.find("opacity") {
         return Vec::new();

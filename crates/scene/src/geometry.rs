@@ -1,5 +1,5 @@
-//! The surfaces of a scene: triangles that stand still in one tree of the whole scene, those that move or repeat in
-//! trees of their own, points and lines in trees beside them, and spheres in a last one.
+//! The surfaces of a scene: static triangles in one tree of the whole scene, moving or instanced ones in trees of their
+//! own, points and lines in separate trees, and spheres in a last one.
 
 use crate::builder::{AccelChoice, unit_or};
 use crate::corners::{tangents, transform_with_error, triangle_uvs, uv_pairs, world_corners};
@@ -20,29 +20,31 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// All triangles, and the trees over them.
+/// All surfaces, and the trees over them.
 pub struct Geometry {
     objects: Vec<Placed>,
-    /// What stands still, in world space, in one mesh: the first instance.
+    /// All static triangles, in world space, in one mesh: the first instance.
     still: Option<Arc<TriangleMesh>>,
-    /// Index in `still` of each still object's first triangle, with the object; rising.
+    /// The index in `still` of each static object's first triangle, with the object; ascending.
     still_objects: Vec<(u32, u32)>,
-    /// The object of each instance; that of `still` is not looked at.
+    /// The object of each instance; the entry of `still` is unused.
     instance_objects: Vec<u32>,
     instances: Vec<Instance>,
-    /// The trees of points and lines, which are the instances behind those of triangles, and whether each is in the world as it
-    /// is.
+    /// The trees of points and lines, whose instances come after those of triangles, and whether each is in world
+    /// space.
     strokes: Vec<(Arc<PrimitiveTree<Strokes>>, bool)>,
-    /// Whether each object is mirrored, where it does not move.
+    /// Whether each object is mirrored, if it does not move.
     mirrored: Vec<bool>,
     /// Numbered after the objects.
     spheres: Spheres,
 }
 
 impl Geometry {
-    /// Builds every tree. What stands still is moved into the world and put into one tree; what moves or is
-    /// instanced keeps its own, one for each mesh; spheres have one together, and the points and lines of each object one, whose
-    /// widths in the world are given.
+    /// Builds every tree.
+    ///
+    /// Static objects are transformed to world space and share one tree. Moving or instanced objects keep trees of
+    /// their own, one per mesh. All spheres share one tree. The points and lines of each object have one, with the
+    /// given widths in world space.
     ///
     /// # Errors
     /// When there are too many triangles, or no accelerator has the name.
@@ -111,14 +113,15 @@ impl Geometry {
         })
     }
 
-    /// The top level for a time: cheap, since every tree is shared.
+    /// The top level for a shutter interval: cheap, since all trees are shared.
     pub fn top_level(&self, accel: &AccelChoice, shutter: [f32; 2]) -> TwoLevel {
         let top = if accel.name.starts_with("brute") { TopLevel::List } else { TopLevel::Bvh };
         TwoLevel::new(&self.instances, shutter, top)
     }
 
-    /// What a ray meets first of the only tree of triangles, which stands in the world as it is, and of the spheres: what
-    /// the level above would answer, sooner.
+    /// The closest hit in the only tree of triangles, which is in world space, and the spheres.
+    ///
+    /// The result equals that of the top level, but it is faster.
     #[inline]
     pub(crate) fn closest_hit(&self, triangles: &dyn Accelerator, ray: &Ray, query: &Query) -> Option<Hit> {
         if self.spheres.all().is_empty() {
@@ -126,14 +129,14 @@ impl Geometry {
         }
         let hit = triangles.closest_hit(&Spheres::aside(ray), query);
         let t_max = hit.map_or(ray.t_max, |hit| hit.t);
-        // Of equals the triangle is first.
+        // The triangle wins a tie.
         self.spheres
             .closest_hit(ray, t_max, query)
             .filter(|sphere| hit.is_none_or(|hit| sphere.t < hit.t))
             .or(hit)
     }
 
-    /// Whether it meets any.
+    /// Whether the ray hits any of them.
     #[inline]
     pub(crate) fn any_hit(&self, triangles: &dyn Accelerator, ray: &Ray, query: &Query) -> bool {
         if self.spheres.all().is_empty() {
@@ -152,18 +155,18 @@ impl Geometry {
         self.spheres.all()
     }
 
-    /// The number of a sphere among the objects; `None` for what is made of triangles.
+    /// The index of an object's sphere; `None` for an object of triangles.
     #[inline]
     pub fn sphere_of(&self, object: u32) -> Option<u32> {
         object.checked_sub(self.objects.len() as u32)
     }
 
-    /// A sphere, as rays number it.
+    /// The primitive of a sphere, as in a [`Hit`].
     pub fn sphere_primitive(&self, sphere: u32) -> Primitive {
         self.spheres.primitive(sphere)
     }
 
-    /// Index of an object's material.
+    /// The index of an object's material.
     #[inline]
     pub fn material_of(&self, object: u32) -> u32 {
         match self.objects.get(object as usize) {
@@ -172,39 +175,39 @@ impl Geometry {
         }
     }
 
-    /// The trees of triangles, each with where it stands.
+    /// The trees of triangles, each with its transform.
     pub(crate) fn triangle_instances(&self) -> &[Instance] {
         &self.instances[..self.first_strokes()]
     }
 
-    /// The instance that the first tree of points and lines is.
+    /// The first instance of the trees of points and lines.
     fn first_strokes(&self) -> usize {
         self.instance_objects.len() - self.strokes.len()
     }
 
-    /// True when some of it is points or lines.
+    /// True when the scene has points or lines.
     pub(crate) fn has_strokes(&self) -> bool {
         !self.strokes.is_empty()
     }
 
-    /// The points and lines that an instance is, and whether they stand in the world as they are.
+    /// The points and lines of an instance, and whether they are in world space.
     fn strokes_of(&self, instance: u32) -> Option<(&Strokes, bool)> {
         let (tree, is_baked) = self.strokes.get((instance as usize).checked_sub(self.first_strokes())?)?;
         Some((tree.primitives(), *is_baked))
     }
 
-    /// True for what is a triangle.
+    /// True for a triangle.
     #[inline]
     pub(crate) fn is_triangle(&self, primitive: Primitive) -> bool {
         (primitive.instance as usize) < self.first_strokes()
     }
 
-    /// The trees, each with where it stands.
+    /// The trees, each with its transform.
     pub fn instances(&self) -> &[Instance] {
         &self.instances
     }
 
-    /// The first triangle of an object, as rays number them.
+    /// The first triangle of an object, as in a [`Hit`].
     pub fn first_primitive(&self, object: u32) -> Primitive {
         if let Some((first, _)) = self.still_objects.iter().find(|(_, o)| *o == object) {
             return Primitive { instance: 0, index: *first };
@@ -214,8 +217,9 @@ impl Geometry {
         instance.map_or(Primitive::NONE, |i| Primitive { instance: i as u32, index: 0 })
     }
 
-    /// An object's triangles: in world space when it stands still in the common tree, else in its own, with the
-    /// motion that takes them to the world.
+    /// An object's triangles and its motion to world space.
+    ///
+    /// The triangles of a static object in the common tree are in world space already.
     pub fn object_triangles(&self, object: u32) -> (Vec<[Vec3; 3]>, Motion) {
         let placed = &self.objects[object as usize];
         let is_still = self.still_objects.iter().any(|(_, o)| *o == object);
@@ -225,12 +229,12 @@ impl Geometry {
         (triangles, motion)
     }
 
-    /// Which object a hit belongs to.
+    /// The object of a hit.
     pub fn object_of(&self, hit: &Hit) -> u32 {
         self.object_of_primitive(hit.primitive())
     }
 
-    /// Which object a triangle or sphere belongs to, as rays number it.
+    /// The object of a triangle or sphere.
     pub(crate) fn object_of_primitive(&self, primitive: Primitive) -> u32 {
         self.locate(primitive).0
     }
@@ -248,7 +252,7 @@ impl Geometry {
         }
     }
 
-    /// The material that a hit belongs to, and the texture coordinates there; those of spheres are not told.
+    /// The material of a hit, and its texture coordinates; spheres have none here.
     pub(crate) fn material_and_uv(&self, hit: &Hit) -> (u32, UvPair) {
         let (object, triangle) = self.locate(hit.primitive());
         let material = self.material_of(object);
@@ -264,7 +268,7 @@ impl Geometry {
         }
     }
 
-    /// Where an object stands at a time, and whether it is mirrored there.
+    /// An object's transform at a time, and whether it mirrors.
     #[inline]
     fn place(&self, object: u32, time: f32) -> (Cow<'_, Transform>, bool) {
         let motion = &self.objects[object as usize].motion;
@@ -277,8 +281,7 @@ impl Geometry {
         }
     }
 
-    /// Along the normal of a triangle's front, where its corners are seen counter-clockwise, at a time; `None` for what
-    /// is no triangle.
+    /// Along the normal of a triangle's front (corners counter-clockwise) at a time; `None` for other primitives.
     pub(crate) fn front(&self, primitive: Primitive, time: f32) -> Option<Vec3> {
         if primitive == Primitive::NONE || !self.is_triangle(primitive) {
             return None;
@@ -287,7 +290,7 @@ impl Geometry {
         Some((b - a).cross(c - a) * if mirrors { -1.0 } else { 1.0 })
     }
 
-    /// A triangle's number in its mesh, its corners in the world at a time, and whether it is mirrored there.
+    /// A triangle's index in its mesh, its world-space corners at a time, and whether it is mirrored.
     pub(crate) fn in_world(&self, primitive: Primitive, time: f32) -> (u32, [Vec3; 3], bool) {
         let (object, triangle) = self.locate(primitive);
         let mesh = &*self.objects[object as usize].mesh;
@@ -299,7 +302,7 @@ impl Geometry {
         (triangle, corners, mirrors)
     }
 
-    /// All that shading needs to know of a hit, footprints apart.
+    /// All that shading needs about a hit, except for the texture footprint.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         if self.is_triangle(hit.primitive()) {

@@ -1,10 +1,10 @@
-//! What is in the picture: meshes, textures, materials, lights and cameras.
+//! The contents of a scene: meshes, textures, materials, lights and cameras.
 //!
-//! Formats fill a [`SceneBuilder`] with plain data ([`Spec`]s: a kind and its parameters, each with the place
-//! in the file that it came from). [`SceneBuilder::build`] checks all of it against the tables
-//! ([`MATERIALS`], [`LIGHTS`], [`CAMERAS`]) and gives an immutable [`Scene`], which integrators ask.
+//! Formats fill a [`SceneBuilder`] with plain data ([`Spec`]s: a kind and its parameters, each with its location in the
+//! file). [`SceneBuilder::build`] checks all of it against the tables ([`MATERIALS`], [`LIGHTS`], [`CAMERAS`]) and
+//! returns an immutable [`Scene`] for the integrators.
 //!
-//! Nothing here draws a random number: callers pass them in.
+//! Nothing here generates random numbers: callers pass them in.
 
 pub mod bsdf;
 pub mod builder;

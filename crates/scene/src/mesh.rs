@@ -1,17 +1,17 @@
-//! Triangles, points and lines with what shading needs of them.
+//! Triangles, points and lines, with the attributes for shading.
 
 use bilux_math::glam::Vec4;
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 
-/// More bands of a sphere than anybody sees: 67 million triangles.
+/// The maximum number of bands of a sphere, more than anybody can see: 67 million triangles.
 const MAX_RINGS: u32 = 4096;
 
-/// Triangles, points and lines in their own space. Attributes are per vertex and either absent (empty) or as many as
+/// Triangles, points and lines in object space. Attributes are per vertex, and either absent (empty) or as many as
 /// positions; [`crate::SceneBuilder::build`] checks that.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// What the file calls it; may be empty.
+    /// Its name in the file; may be empty.
     pub name: String,
     /// Vertices.
     pub positions: Vec<Vec3>,
@@ -19,10 +19,10 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, v upwards.
     pub uvs: Vec<Vec2>,
-    /// A second set of these, for textures that ask for it.
+    /// A second set of texture coordinates, for textures that use it.
     pub uvs2: Vec<Vec2>,
-    /// Along the surface as u grows, with 1 where v grows along normal × tangent and -1 where it grows the other way;
-    /// where there are none, they follow from the texture coordinates of each triangle.
+    /// Tangents in the direction of increasing u; w is 1 where v increases along normal × tangent, and -1 where it
+    /// decreases. Without them, tangents follow from the texture coordinates of each triangle.
     pub tangents: Vec<Vec4>,
     /// Diffuse reflectance per vertex (the paper's Kd).
     pub vertex_kd: Vec<Rgb>,
@@ -30,15 +30,16 @@ pub struct Mesh {
     pub vertex_ks: Vec<Rgb>,
     /// Triples of vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// Vertices that are points: balls of the scene's width of points.
+    /// Vertices that are points: spheres with the scene's point width.
     pub points: Vec<u32>,
-    /// Pairs of vertices that lines join: tubes of the scene's width of lines.
+    /// Pairs of vertices connected by lines: tubes with the scene's line width.
     pub lines: Vec<[u32; 2]>,
 }
 
 impl Mesh {
-    /// A flat quadrilateral from its corner along two edges. Its front is where `edge_u × edge_v` points; texture
-    /// coordinates go from 0 at the corner to 1 along each edge.
+    /// A flat quadrilateral from its corner along two edges.
+    ///
+    /// Its front is where `edge_u × edge_v` points; texture coordinates go from 0 at the corner to 1 along each edge.
     pub fn quad(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Mesh {
         let normal = edge_u.cross(edge_v).normalize_or_zero();
         Mesh {
@@ -50,15 +51,17 @@ impl Mesh {
         }
     }
 
-    /// A sphere with smooth normals, of `rings` bands from pole to pole (2..=4096) and twice as many around; its poles
-    /// are on the y axis. u goes around, from 0 to 1, and v up.
+    /// A sphere with smooth normals, whose poles are on the y axis.
+    ///
+    /// It has `rings` bands from pole to pole (2..=4096) and twice as many around. u goes around, from 0 to 1, and v
+    /// up.
     pub fn sphere(centre: Vec3, radius: f32, rings: u32) -> Mesh {
         let rings = rings.clamp(2, MAX_RINGS);
         let columns = 2 * rings;
         let mut mesh = Mesh::default();
         for row in 0..=rings {
             let v = row as f32 / rings as f32;
-            // At the poles the sine is no exact zero.
+            // At the poles the sine is not exactly zero.
             let (sin_theta, cos_theta) = match row {
                 0 => (0.0, 1.0),
                 _ if row == rings => (0.0, -1.0),
@@ -66,7 +69,7 @@ impl Mesh {
             };
             for column in 0..=columns {
                 let u = column as f32 / columns as f32;
-                // The first meridian again, to the bit, so that nothing shows between.
+                // The first meridian again, bit for bit, so that there is no gap.
                 let (sin_phi, cos_phi) =
                     sin_cos(std::f32::consts::TAU * (column % columns) as f32 / columns as f32);
                 let normal = Vec3::new(sin_theta * cos_phi, cos_theta, -sin_theta * sin_phi);
@@ -90,7 +93,7 @@ impl Mesh {
         mesh
     }
 
-    /// Bytes that it holds.
+    /// The size in bytes.
     pub fn size(&self) -> u64 {
         let triples = self.positions.len() + self.normals.len() + self.triangles.len();
         let colours = self.vertex_kd.len() + self.vertex_ks.len();
@@ -99,29 +102,30 @@ impl Mesh {
         4 * (3 * (triples + colours) + 2 * uvs + 4 * self.tangents.len() + strokes) as u64
     }
 
-    /// How many points and lines there are.
+    /// The number of points and lines.
     pub fn stroke_count(&self) -> usize {
         self.points.len() + self.lines.len()
     }
 
-    /// True when there is nothing to draw.
+    /// True when there is nothing to render.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.stroke_count() == 0
     }
 
-    /// The vertices that triangles, points and lines name, as often as they do.
+    /// The vertices referenced by triangles, points and lines, with repetitions.
     pub fn named_vertices(&self) -> impl Iterator<Item = u32> {
         let strokes = self.points.iter().chain(self.lines.iter().flatten());
         self.triangles.iter().flatten().chain(strokes).copied()
     }
 
-    /// The box around all vertices that are named by a triangle, a point or a line, without the width of these.
+    /// The bounding box of all vertices that triangles, points and lines reference, without the width of the latter
+    /// two.
     pub fn bounds(&self) -> Aabb {
         let named = self.named_vertices().filter_map(|i| self.positions.get(i as usize));
         Aabb::of_points(named.copied().filter(|p| p.is_finite()))
     }
 
-    /// Area-weighted vertex normals from the triangles, for meshes that bring none.
+    /// Area-weighted vertex normals from the triangles, for meshes without normals.
     pub fn smooth_normals(&self) -> Vec<Vec3> {
         let mut normals = vec![Vec3::ZERO; self.positions.len()];
         for &[a, b, c] in &self.triangles {

@@ -1,4 +1,4 @@
-//! Parameters as scene files write them, and how a row of a table reads them.
+//! Parameters as written in scene files, and how a row of a table reads them.
 
 use crate::error::{SceneError, nearest_name};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -6,10 +6,10 @@ use bilux_math::{Rgb, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// Where something was written; lines and columns count from 1, and 0 means that it is not known.
+/// A location in a file; lines and columns count from 1, and 0 means unknown.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// The file, as the user named it; empty when made by the program.
+    /// The file, as the user named it; empty for values that the program made.
     pub file: Arc<str>,
     /// Line.
     pub line: u32,
@@ -41,9 +41,9 @@ pub enum Value {
     Text(String),
     /// A list.
     List(Vec<Value>),
-    /// An index into [`crate::SceneBuilder::textures`]; readers put it in place of a file's name.
+    /// An index into [`crate::SceneBuilder::textures`], with which readers replace a file name.
     Texture(usize),
-    /// An index into [`crate::SceneBuilder::materials`]; readers put it in place of a material's name.
+    /// An index into [`crate::SceneBuilder::materials`], with which readers replace a material's name.
     Material(usize),
 }
 
@@ -108,12 +108,12 @@ impl Parameters {
         self.0.iter().find(|(k, ..)| k == key).map(|(_, v, s)| (v, s))
     }
 
-    /// Sets a key, in place of an older value.
+    /// Sets a key, replacing an older value.
     pub fn set(&mut self, key: &str, value: impl Into<Value>) {
         self.set_at(key, value.into(), Span::default());
     }
 
-    /// Sets a key that was written somewhere.
+    /// Sets a key that was written at a location.
     pub fn set_at(&mut self, key: &str, value: Value, span: Span) {
         match self.0.iter_mut().find(|(k, ..)| k == key) {
             Some(row) => (row.1, row.2) = (value, span),
@@ -122,10 +122,10 @@ impl Parameters {
     }
 }
 
-/// Something to be made from a table: which row, and its parameters.
+/// An entry to build from a table: the row's name, and its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spec {
-    /// What the user calls it; may be empty.
+    /// The user's name for it; may be empty.
     pub name: String,
     /// The row's name, such as `dielectric`.
     pub kind: String,
@@ -141,19 +141,21 @@ impl Spec {
         Spec { name: name.to_owned(), kind: kind.to_owned(), ..Spec::default() }
     }
 
-    /// The same with one more parameter.
+    /// The same spec with one more parameter.
     pub fn with(mut self, key: &str, value: impl Into<Value>) -> Spec {
         self.parameters.set(key, value);
         self
     }
 
-    /// True for an environment that is only to be seen.
+    /// True for an environment that only the camera sees.
     pub fn is_backdrop(&self) -> bool {
         matches!(self.parameters.find("backdrop"), Some((Value::Bool(true), _)))
     }
 }
 
-/// Reads a spec's parameters by the row that describes them. Made by [`Reader::new`], which refuses unknown keys.
+/// Reads a spec's parameters according to its row.
+///
+/// It comes from [`Reader::new`], which rejects unknown keys.
 #[derive(Clone, Copy, Debug)]
 pub struct Reader<'a> {
     spec: &'a Spec,
@@ -161,10 +163,10 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Checks that every key is one of the row's and every value of its kind and within its range.
+    /// Checks that every key belongs to the row, and that every value is of its kind and within its range.
     ///
     /// # Errors
-    /// The first key or value that is wrong, with its place and, for a key, the nearest name.
+    /// The first key or value that is wrong, with its location and, for a key, the nearest name.
     pub fn new(spec: &'a Spec, entry: &Entry) -> Result<Reader<'a>, SceneError> {
         for (key, value, span) in &spec.parameters.0 {
             let Some(parameter) = entry.parameters.iter().find(|p| p.name == key) else {
@@ -189,12 +191,12 @@ impl<'a> Reader<'a> {
         Ok(Reader { spec, parameters: entry.parameters })
     }
 
-    /// True when the file says it, false when the default holds.
+    /// True when the file sets it, false when the default applies.
     pub fn is_given(&self, key: &str) -> bool {
         self.spec.parameters.find(key).is_some()
     }
 
-    /// Where a key was written, or else the whole spec.
+    /// Where a key was written, or otherwise the whole spec.
     pub fn span(&self, key: &str) -> &Span {
         self.spec.parameters.find(key).map_or(&self.spec.span, |(_, span)| span)
     }
@@ -204,7 +206,7 @@ impl<'a> Reader<'a> {
         self.value(key).as_number().unwrap_or_default() as f32
     }
 
-    /// The least and the greatest number that a key may have; both 0 where it is none.
+    /// The minimum and maximum of a key; both 0 if it is not a number.
     pub fn range(&self, key: &str) -> [f64; 2] {
         match self.parameters.iter().find(|p| p.name == key).map(|p| p.kind) {
             Some(ParameterKind::Number { min, max } | ParameterKind::NumberTexture { min, max }) => {
@@ -237,7 +239,7 @@ impl<'a> Reader<'a> {
         triple(&self.value(key)).map_or(Vec3::ZERO, Vec3::from)
     }
 
-    /// A colour; where a texture is given, white.
+    /// A colour; white if a texture is given.
     pub fn colour(&self, key: &str) -> Rgb {
         triple(&self.value(key)).map_or(Rgb::WHITE, Rgb::from_array)
     }
@@ -247,7 +249,7 @@ impl<'a> Reader<'a> {
         stops(&self.value(key)).unwrap_or_default()
     }
 
-    /// The texture given in place of a colour or a number, if one is.
+    /// The texture given in place of a colour or a number, if any.
     pub fn texture(&self, key: &str) -> Option<usize> {
         match self.value(key) {
             Value::Texture(index) => Some(index),
@@ -255,7 +257,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The material under a key, as an index; one that is not there where nothing or no material is.
+    /// The material under a key, as an index; an invalid index if none is given.
     pub fn material(&self, key: &str) -> usize {
         match self.value(key) {
             Value::Material(index) => index,
@@ -273,7 +275,7 @@ impl<'a> Reader<'a> {
 }
 
 impl Spec {
-    /// The keys that are given another value than their row's default.
+    /// The keys whose values differ from their row's defaults.
     pub fn differing<'s>(&'s self, entry: &'s Entry) -> impl Iterator<Item = &'s str> {
         let is_default = |key: &str, value: &Value| {
             let Some(row) = entry.parameters.iter().find(|p| p.name == key) else { return false };
@@ -285,7 +287,7 @@ impl Spec {
     }
 }
 
-/// A default as tables write it: `true`, `1.5`, `1 1 1` or a word.
+/// A default as written in tables: `true`, `1.5`, `1 1 1` or a word.
 fn parse_default(kind: ParameterKind, text: &str) -> Value {
     match kind {
         ParameterKind::Bool => Value::Bool(text == "true"),
@@ -313,7 +315,7 @@ fn triple(value: &Value) -> Option<[f32; 3]> {
     }
 }
 
-/// Pairs of a position and a colour, if it is a list of these.
+/// Pairs of a position and a colour, if the value is a list of these.
 fn stops(value: &Value) -> Option<Vec<(f32, Rgb)>> {
     let Value::List(list) = value else { return None };
     let stop = |value: &Value| match value {
@@ -326,7 +328,7 @@ fn stops(value: &Value) -> Option<Vec<(f32, Rgb)>> {
     list.iter().map(stop).collect()
 }
 
-/// What was wanted, where a value is not of its parameter's kind or out of range.
+/// The expected value, where a value has the wrong kind or is out of range.
 fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
     let number_in = |v: Option<f64>, min: f64, max: f64| v.is_some_and(|x| x >= min && x <= max);
     let (fits, wanted) = match parameter.kind {
@@ -376,7 +378,7 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
     if fits { Ok(()) } else { Err(wanted) }
 }
 
-/// The word that a misspelt one most likely stands for.
+/// The word most likely meant by a misspelt one.
 fn meant(value: &Value, words: &[&str]) -> String {
     let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
     let nearest = if let Value::Text(text) = value { nearest_name(text, &words) } else { None };

@@ -1,29 +1,29 @@
-//! Objects with their places.
+//! Objects placed in the scene.
 
 use crate::mesh::Mesh;
 use bilux_math::motion::Motion;
 use std::sync::Arc;
 
-/// An object with its place, as [`crate::geometry::Geometry::build`] takes it.
+/// An object placed in the scene, the input of [`crate::geometry::Geometry::build`].
 pub struct Placed {
-    /// Its triangles, in their own space.
+    /// Its triangles, in object space.
     pub mesh: Arc<Mesh>,
     /// Index of its material.
     pub material: u32,
-    /// Where it is, and when.
+    /// Its position and motion.
     pub motion: Motion,
-    /// Keep a tree of its own.
+    /// Whether it keeps a tree of its own.
     pub instanced: bool,
-    /// Its material gives light.
+    /// Whether its material emits light.
     pub gives_light: bool,
-    /// Its material asks for tangents.
+    /// Whether its material needs tangents.
     pub has_tangents: bool,
-    /// It has textures that are filtered.
+    /// Whether it has filtered textures.
     pub is_filtered: bool,
 }
 
 impl Placed {
-    /// True for what does not stand in the common tree.
+    /// True for an object outside of the common tree.
     pub(crate) fn in_own_tree(&self) -> bool {
         self.instanced || !self.motion.is_still()
     }

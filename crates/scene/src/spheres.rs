@@ -1,5 +1,5 @@
-//! Spheres as they are, round at every size: none of their triangles is ever seen. All of a scene stand in one tree, an
-//! instance like any other, whatever structure holds the triangles.
+//! Analytic spheres, round at every size, without triangles. All spheres of a scene share one tree, an instance like
+//! any other, whatever structure holds the triangles.
 
 use crate::surface::{Surface, gamma};
 use bilux_accel::instancing::Instance;
@@ -12,10 +12,10 @@ use bilux_math::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 use std::sync::Arc;
 
-/// A sphere where it is; it does not move.
+/// A sphere in world space; it does not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedSphere {
-    /// Its middle.
+    /// Its centre.
     pub centre: Vec3,
     /// Positive.
     pub radius: f32,
@@ -35,17 +35,17 @@ impl PlacedSphere {
     }
 }
 
-/// All of a scene.
+/// All spheres of a scene.
 pub(crate) struct Spheres {
     all: Vec<PlacedSphere>,
     tree: Arc<PrimitiveTree<Vec<Shape>>>,
-    /// The object that the first of them is.
+    /// The object index of the first sphere.
     first_object: u32,
-    /// The instance that they are; `u32::MAX` where there are none.
+    /// The instance of the spheres; `u32::MAX` if there are none.
     instance: u32,
 }
 
-/// How far f64 is off, beside f32.
+/// A bound on the error of f64 relative to that of f32.
 const WIDE: f32 = 1.0 / (1u32 << 26) as f32;
 
 impl Spheres {
@@ -55,17 +55,17 @@ impl Spheres {
         Spheres { all, tree: Arc::new(PrimitiveTree::new(shapes)), first_object, instance }
     }
 
-    /// The tree of all of them, in the world.
+    /// The tree of all spheres, in world space.
     pub(crate) fn tree(&self) -> Option<Instance> {
         (!self.all.is_empty()).then(|| Instance::new(self.tree.clone(), Motion::REST))
     }
 
-    /// A ray as the only tree of triangles is to be asked beside spheres: one that leaves a sphere leaves none of them.
+    /// The ray for the only tree of triangles: one that leaves a sphere excludes no triangle.
     pub(crate) fn aside(ray: &Ray) -> Ray {
         Ray { exclude: if ray.exclude.instance == 0 { ray.exclude } else { Primitive::NONE }, ..*ray }
     }
 
-    /// The same for the spheres.
+    /// The ray for the spheres.
     fn own(&self, ray: &Ray) -> Ray {
         let exclude = match ray.exclude {
             Primitive { instance, index } if instance == self.instance => Primitive { instance: 0, index },
@@ -74,7 +74,7 @@ impl Spheres {
         Ray { exclude, ..*ray }
     }
 
-    /// Which of them a ray meets first, up to `t_max`.
+    /// The closest sphere that a ray hits, up to `t_max`.
     pub(crate) fn closest_hit(&self, ray: &Ray, t_max: f32, query: &Query) -> Option<Hit> {
         let keeps =
             |hit: &Hit| query.filter.is_none_or(|filter| filter(&Hit { instance: self.instance, ..*hit }));
@@ -83,7 +83,7 @@ impl Spheres {
         Some(Hit { instance: self.instance, ..hit })
     }
 
-    /// Whether it meets any.
+    /// Whether the ray hits any sphere.
     pub(crate) fn any_hit(&self, ray: &Ray, query: &Query) -> bool {
         let keeps =
             |hit: &Hit| query.filter.is_none_or(|filter| filter(&Hit { instance: self.instance, ..*hit }));
@@ -111,13 +111,15 @@ impl Spheres {
         self.all[(object - self.first_object) as usize].material
     }
 
-    /// All that shading needs to know of a hit. The point lies on the sphere to the last bit of an f32, however far away
-    /// the ray began: its distance along the ray is found anew, in f64.
+    /// All that shading needs about a hit.
+    ///
+    /// The point lies on the sphere to the last bit of an f32, however far away the ray started: its distance along the
+    /// ray is recomputed in f64.
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let sphere = &self.all[hit.primitive as usize];
         let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
         let [enter, leave] = sphere.shape().chord(ray).unwrap_or([f64::from(hit.t); 2]);
-        // Of two that are rounded to one it is the nearer, unless the ray is past that.
+        // If two roots round to the same number, take the nearer one, unless the ray starts past it.
         let enters = hit.t == enter as f32 && ray.exclude != hit.primitive();
         let t = if enters { enter } else { leave };
         let from = wide(ray.origin) - sphere.centre.as_dvec3();

@@ -1,5 +1,5 @@
-//! Points and lines of a mesh as they are rendered: balls, and tubes with round ends, each met by its formula, so that none of
-//! them costs a triangle.
+//! Points and lines of a mesh as they are rendered: spheres, and tubes with round ends, each intersected analytically,
+//! so that none of them costs a triangle.
 
 use crate::builder::unit_or;
 use crate::corners::transform_with_error;
@@ -13,7 +13,7 @@ use bilux_math::{Motion, Rgb, Transform, Vec2, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// How wide points and lines are, in metres of the world. Where it is 0, they get a small part of the scene's size.
+/// The widths of points and lines, in metres in world space. A width of 0 becomes a small fraction of the scene's size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrokeWidths {
     /// The diameter of points.
@@ -23,7 +23,7 @@ pub struct StrokeWidths {
 }
 
 impl StrokeWidths {
-    /// The same, with parts of a scene's size (the diagonal of its box) in place of what is 0.
+    /// The same widths, with fractions of the scene's size (the diagonal of its bounding box) in place of 0.
     pub fn for_size(self, size: f32) -> StrokeWidths {
         let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
         let or = |width: f32, part: f32| if width > 0.0 && width.is_finite() { width } else { size * part };
@@ -31,20 +31,20 @@ impl StrokeWidths {
     }
 }
 
-/// An object, its tree, how that lies in the world, and whether it is in the world as it is.
+/// An object, its tree, the tree's motion, and whether the tree is in world space.
 type Placement = (u32, Arc<PrimitiveTree<Strokes>>, Motion, bool);
 
-/// The points of a mesh, then its lines, with their bodies.
+/// The points of a mesh, then its lines, with their shapes.
 pub(crate) struct Strokes {
     mesh: Arc<Mesh>,
-    /// The mesh's positions in the world, where that is not the mesh's own space.
+    /// The mesh's positions in world space, if the tree is not in object space.
     moved: Option<Vec<Vec3>>,
     radii: StrokeWidths,
 }
 
 impl Strokes {
-    /// The tree over those of a mesh: in the world, if `to_world` is given, else in the mesh's own space, in which widths are
-    /// `scale` times as small.
+    /// The tree over the points and lines of a mesh: in world space if `to_world` is given, otherwise in object space,
+    /// in which widths are divided by `scale`.
     pub(crate) fn tree(
         mesh: &Arc<Mesh>,
         to_world: Option<&Transform>,
@@ -59,7 +59,7 @@ impl Strokes {
         PrimitiveTree::new(Strokes { mesh: mesh.clone(), moved, radii })
     }
 
-    /// Those of all objects that have any: the object, its tree, how that lies in the world, and whether it is there as it is.
+    /// The trees of all objects with points or lines: object, tree, its motion, and whether it is in world space.
     pub(crate) fn trees(objects: &[Placed], widths: StrokeWidths) -> Vec<Placement> {
         let mut shared: HashMap<(*const Mesh, u32), Arc<PrimitiveTree<Strokes>>> = HashMap::new();
         let mut all = Vec::new();
@@ -83,7 +83,7 @@ impl Strokes {
         self.moved.as_ref().unwrap_or(&self.mesh.positions)[vertex as usize].to_array()
     }
 
-    /// The vertices at the ends of one; twice the same of a point.
+    /// The vertices at the two ends; the same vertex twice for a point.
     fn ends(&self, index: u32) -> [u32; 2] {
         let index = index as usize;
         match self.mesh.points.get(index) {
@@ -101,24 +101,26 @@ impl Strokes {
         }
     }
 
-    /// Between both ends of one.
+    /// Interpolates between the two ends.
     fn between<T: Copy>(&self, index: u32, u: f32, of: &[T], mix: impl Fn(T, T, f32) -> T) -> Option<T> {
         let [a, b] = self.ends(index).map(|i| of.get(i as usize).copied());
         Some(mix(a?, b?, u))
     }
 
-    /// Texture coordinates; 0 where the mesh has none.
+    /// Texture coordinates; 0 if the mesh has none.
     pub(crate) fn uv(&self, index: u32, u: f32) -> Vec2 {
         self.between(index, u, &self.mesh.uvs, Vec2::lerp).unwrap_or(Vec2::ZERO)
     }
 
-    /// All that shading needs to know of a hit, which is at a distance along a ray in the space of these. `to_world` is the
-    /// way to the world from there. The point is found anew in f64, so that it lies on the surface to the last bits of an f32.
+    /// All that shading needs about a hit, which is at a distance along a ray in the tree's space.
+    ///
+    /// `to_world` is the transform from there to world space. The point is recomputed in f64, so that it lies on the
+    /// surface to the last bits of an f32.
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit, to_world: &Transform, object: u32) -> Surface {
         let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));
         let is_still = to_world.is_identity();
         let own = || {
-            // As instances are asked.
+            // Transform the ray as for instances.
             let inverse = to_world.inverse_matrix().as_dmat4();
             let origin = inverse.transform_point3(wide(ray.origin)).as_vec3().to_array();
             let direction = inverse.transform_vector3(wide(ray.direction)).as_vec3().to_array();
@@ -145,7 +147,7 @@ impl Strokes {
         };
         let n = (at - centre).try_normalize().unwrap_or(DVec3::Y);
         let p = (centre + n * f64::from(radius)).as_vec3();
-        // Rounded once; f64 is off by far less.
+        // Rounded once; the error of f64 is far smaller.
         let error = (p.abs() + (centre.as_vec3().abs() + radius) * WIDE) * gamma(1);
         let (p, p_error) = if is_still { (p, error) } else { transform_with_error(to_world, p, error) };
         let n = unit_or(to_world.normal(n.as_vec3()), Vec3::Y);
@@ -172,14 +174,14 @@ impl Strokes {
     }
 }
 
-/// How much lengths grow on average.
+/// The mean factor on lengths.
 fn mean_scale(to_world: &Transform) -> f32 {
     let volume = f64::from(to_world.matrix().determinant()).abs();
     let scale = bilux_math::transcendental::powf_f64(volume, 1.0 / 3.0) as f32;
     if scale > 0.0 && scale.is_finite() { scale } else { 1.0 }
 }
 
-/// How far f64 is off, beside f32.
+/// A bound on the error of f64 relative to that of f32.
 const WIDE: f32 = 1.0 / (1u32 << 26) as f32;
 
 impl Primitives for Strokes {

@@ -1,7 +1,7 @@
-//! Wavelengths. Light is red, green and blue here, and a path has all three at once, until a surface that disperses sends
-//! each wavelength another way. From then on a path is of the one wavelength that was drawn for it before it began, and
-//! the channels count it as they see light of that wavelength. Several wavelengths at once [Wilkie 2014] would ask for
-//! reflectances and lights by wavelengths, of which files know nothing.
+//! Wavelengths. Light is red, green and blue here, and a path carries all three at once, until a dispersive surface
+//! refracts each wavelength differently. From then on the path has the single wavelength that was sampled for it at its
+//! start, and the channels weight it by their sensitivity to light of that wavelength. Several wavelengths at once
+//! [Wilkie 2014] would need spectral reflectances and lights, which files do not contain.
 
 use bilux_math::Rgb;
 use bilux_math::transcendental::exp;
@@ -12,33 +12,33 @@ use std::sync::LazyLock;
 pub struct Wavelength {
     /// In nanometres.
     pub nm: f32,
-    /// What the channels see of it, over the density with which it is drawn: on average 1 each.
+    /// The sensitivity of the channels to it, over its sampling density: 1 each on average.
     pub weight: Rgb,
-    /// How far it is from the d line, as Cauchy's formula has it: 1/nm², over what that is from the F to the C line.
+    /// Its difference from the d line in Cauchy's formula: in 1/nm², over the difference between the F and C lines.
     from_d: f32,
 }
 
-/// Fraunhofer's lines by which glass is told, in nm: helium's yellow one, hydrogen's blue and red one.
+/// The Fraunhofer lines that specify glass, in nm: helium's yellow line, hydrogen's blue and red lines.
 const D_LINE: f32 = 587.5618;
 const F_LINE: f32 = 486.1327;
 const C_LINE: f32 = 656.2725;
 
-/// Wavelengths that are drawn, in nm. The channels see next to nothing of others.
+/// The range of sampled wavelengths, in nm. The channels are almost blind to others.
 const SHORTEST: f32 = 385.0;
 const STEPS: usize = 340;
 
 impl Wavelength {
-    /// The one that indices are told for.
+    /// The wavelength for which indices are given.
     pub const D: Wavelength = Wavelength { nm: D_LINE, weight: Rgb::WHITE, from_d: 0.0 };
 
-    /// Draws one by a number, `[0, 1)`: the more often, the more the channels see of it together.
+    /// Samples a wavelength from a number in `[0, 1)`, in proportion to the mean sensitivity of the channels.
     pub fn sample(u: f32) -> Wavelength {
         let step = SPECTRUM.before.partition_point(|before| *before <= u).clamp(1, STEPS) - 1;
         let within = (u - SPECTRUM.before[step]) / (SPECTRUM.before[step + 1] - SPECTRUM.before[step]);
         Wavelength::of(SHORTEST + step as f32 + within.clamp(0.0, 1.0 - f32::EPSILON))
     }
 
-    /// That of so many nanometres.
+    /// The wavelength of `nm` nanometres.
     pub fn of(nm: f32) -> Wavelength {
         let inverse_square = |nm: f32| 1.0 / (nm * nm);
         let from_d =
@@ -47,8 +47,11 @@ impl Wavelength {
         Wavelength { nm, weight: SPECTRUM.weights.get(step).copied().unwrap_or(Rgb::BLACK), from_d }
     }
 
-    /// The index there of a boundary with the index `eta` at the d line; `dispersion` is 1 over Abbe's number. By Cauchy's
-    /// formula, the index of the denser side: no light makes of the denser side the thinner one. [Cauchy 1836]
+    /// The index at this wavelength of a boundary whose index at the d line is `eta`; `dispersion` is 1 over the Abbe
+    /// number.
+    ///
+    /// It uses Cauchy's formula for the index of the denser side, which stays the denser one at every wavelength.
+    /// [Cauchy 1836]
     pub fn index(&self, eta: f32, dispersion: f32) -> f32 {
         if eta < 1.0 {
             return 1.0 / self.index(1.0 / eta, dispersion);
@@ -57,20 +60,20 @@ impl Wavelength {
     }
 }
 
-/// What is drawn, in steps of 1 nm.
+/// The sampling table, in steps of 1 nm.
 struct Spectrum {
     weights: Vec<Rgb>,
-    /// The probability of all steps before each.
+    /// The cumulative probability before each step.
     before: Vec<f32>,
 }
 
 static SPECTRUM: LazyLock<Spectrum> = LazyLock::new(|| {
-    // Light of one wavelength is of purer a colour than red, green and blue make: where a channel would have to be negative it
-    // is 0, and a little more elsewhere.
+    // Light of one wavelength is more saturated than red, green and blue can show: a channel that would be negative is
+    // 0, and the rest of the spectrum compensates slightly.
     let clipped = |step| sensitivity(SHORTEST + step as f32 + 0.5).map(|channel| channel.max(0.0));
     let seen: Vec<Rgb> = (0..STEPS).map(clipped).collect();
     let whole = [0, 1, 2].map(|c| seen.iter().map(|rgb| f64::from(rgb[c])).sum::<f64>());
-    // Of each channel the part that is in each step, and their mean, by which steps are drawn.
+    // The fraction of each channel in each step; steps are sampled by the mean over the channels.
     let parts = |rgb: &Rgb| [0, 1, 2].map(|c| f64::from(rgb[c]) / whole[c]);
     let density = |rgb: &Rgb| parts(rgb).iter().sum::<f64>() / 3.0;
     let weight = |rgb: &Rgb| Rgb::from_array(parts(rgb).map(|part| (part / density(rgb)) as f32));
@@ -83,8 +86,8 @@ static SPECTRUM: LazyLock<Spectrum> = LazyLock::new(|| {
     Spectrum { weights: seen.iter().map(weight).collect(), before }
 });
 
-/// What the channels of Rec. 709 see of light of a wavelength in nm, in no unit: the standard observer's curves
-/// [Wyman 2013, eq. 4] by the primaries' matrix. Negative where a colour is purer than they make.
+/// The sensitivity of the Rec. 709 channels to a wavelength in nm, unnormalised: the standard observer's curves
+/// [Wyman 2013, eq. 4] times the primaries' matrix. Negative where a colour is out of gamut.
 pub(crate) fn sensitivity(nm: f32) -> Rgb {
     let bell = |middle: f32, below: f32, above: f32| {
         let t = (nm - middle) / if nm < middle { below } else { above };
@@ -138,7 +141,7 @@ mod tests {
         };
         let seen: String = [430.0, 460.0, 520.0, 550.0, 620.0, 680.0].map(brightest).iter().collect();
         assert_eq!(seen, "bbggrr");
-        // Violet has red in it, and yellow is half red and half green.
+        // Violet contains red, and yellow is half red and half green.
         assert!(Wavelength::of(420.0).weight.r > 0.1);
         let yellow = Wavelength::of(578.0).weight;
         assert!((yellow.r / yellow.g - 1.0).abs() < 0.35 && yellow.b < 0.02, "{yellow:?}");
@@ -151,11 +154,11 @@ mod tests {
         assert_eq!(Wavelength::D.index(eta, 1.0 / abbe), eta);
         let found = (eta - 1.0) / (at(F_LINE) - at(C_LINE));
         assert!((found - abbe).abs() < 0.1, "{found}");
-        // The glass that this is has an index of 1.5143 at 656 nm, of 1.5224 at 486 nm and of 1.5302 at 405 nm.
+        // This glass has an index of 1.5143 at 656 nm, of 1.5224 at 486 nm and of 1.5302 at 405 nm.
         for (nm, index) in [(656.3, 1.51432), (486.1, 1.52238), (404.7, 1.53024)] {
             assert!((at(nm) - index).abs() < 5e-4, "{nm}: {}", at(nm));
         }
-        // From its other side.
+        // From the other side.
         let other = Wavelength::of(450.0).index(1.0 / eta, 1.0 / abbe);
         assert!((other * at(450.0) - 1.0).abs() < 1e-6);
         assert_eq!(Wavelength::of(700.0).index(1.5, 1e3), 1.0, "the thinner side never becomes the denser");

@@ -1,5 +1,5 @@
-//! Conventions that both ends of a path share, so that no comparison of two of our own pictures sees them: each is held
-//! against a number from outside, a definition or a closed form that is written here once more in f64.
+//! Conventions that both ends of a path share, so that no comparison of two of our own images can detect an error in
+//! them. Each is tested against an external number, a definition, or a closed form written here independently in f64.
 
 use bilux_math::glam::DQuat;
 use bilux_math::motion::{Motion, MotionKey};
@@ -26,7 +26,7 @@ fn with_light(spec: Spec) -> Arc<dyn Light> {
     light_of(&SceneBuilder { lights: vec![spec], ..SceneBuilder::default() })
 }
 
-/// A sky by longitude and latitude, eight by four texels whose red says which it is.
+/// An environment map of eight by four texels, whose red channel numbers them.
 fn numbered_sky(rotation: f32) -> Arc<dyn Light> {
     let texels = (0..32).map(|i| Rgb::new((i + 1) as f32, (i % 8) as f32, (i / 8) as f32)).collect();
     let mut builder = SceneBuilder::default();
@@ -36,8 +36,8 @@ fn numbered_sky(rotation: f32) -> Arc<dyn Light> {
     light_of(&builder)
 }
 
-/// Where the texel coordinates `x`, `y` of a picture of eight by four are: its middle towards -z, its right half towards
-/// +x, its upper edge straight above.
+/// The direction of the texel coordinates `x`, `y` of an eight by four map: its centre is towards -z, its right half
+/// towards +x, and its upper edge is straight up.
 fn towards(x: f64, y: f64) -> Vec3 {
     let ((sin, cos), (r, up)) = (sin_cos_f64(TAU * (x / 8.0 - 0.5)), sin_cos_f64(PI * y / 4.0));
     DVec3::new(r * sin, up, -r * cos).as_vec3()
@@ -58,13 +58,13 @@ fn a_texel_of_the_sky_is_seen_at_its_centre_and_blended_half_way_to_the_next() {
         let between = sky.le(towards(3.5, f64::from(y) + 1.0)).b;
         assert!((between - (y as f32 + 0.5)).abs() < 1e-3, "between row {y} and the next: {between}");
     }
-    // The picture closes behind the viewer: its first and its last column are neighbours.
+    // The map closes behind the viewer: its first and last columns are neighbours.
     assert!((sky.le(towards(0.0, 1.5)).g - 3.5).abs() < 1e-3);
 }
 
 #[test]
 fn a_sky_is_turned_to_the_right() {
-    // Who looks at what was straight ahead has to look 45 degrees further to the right: towards +x.
+    // The texel that was straight ahead now appears 45 degrees further to the right: towards +x.
     let (plain, turned) = (numbered_sky(0.0), numbered_sky(45.0));
     let ahead = plain.le(towards(3.5, 1.5));
     assert!((turned.le(towards(4.5, 1.5)) - ahead).map(f32::abs).max_channel() < 1e-3);
@@ -73,13 +73,13 @@ fn a_sky_is_turned_to_the_right() {
 
 #[test]
 fn the_sun_of_a_sky_stands_where_it_is_told_to() {
-    // 30 degrees high, 90 degrees to the right of -z: towards +x.
+    // 30 degrees above the horizon, 90 degrees to the right of -z: towards +x.
     let spec = Spec::new("", "sky").with("elevation", 30.0f32).with("azimuth", 90.0f32);
     let scene = built(&SceneBuilder { lights: vec![spec], ..SceneBuilder::default() });
     let sun = &scene.lights()[1].light;
     let wanted = DVec3::new(cos_f64(PI / 6.0), 0.5, 0.0).as_vec3();
     assert!(!sun.le(wanted).is_black() && sun.le(wanted.with_x(-wanted.x)).is_black());
-    // And the sky itself is brightest around it.
+    // The sky itself is brightest around it.
     let sky = &scene.lights()[0].light;
     let beside = |azimuth: f64| {
         let (sin, cos) = sin_cos_f64(azimuth);
@@ -88,7 +88,7 @@ fn the_sun_of_a_sky_stands_where_it_is_told_to() {
     assert!(beside(FRAC_PI_2) > 1.5 * beside(0.0) && beside(FRAC_PI_2) > 1.5 * beside(-FRAC_PI_2));
 }
 
-/// The greatest angle from `towards` at which a light shines, found by halving, in radians.
+/// The maximum angle from `towards` at which a light shines, by bisection, in radians.
 fn edge(light: &dyn Light, towards: DVec3, most: f64) -> f64 {
     let across = towards.any_orthonormal_vector();
     let shines = |angle: f64| {
@@ -116,7 +116,8 @@ fn the_suns_edge_is_half_its_diameter_from_its_middle() {
             (found / wanted - 1.0).abs() < 1e-3,
             "{degrees} degrees: the edge is at {found}, not {wanted}"
         );
-        // What is drawn fills the disc to its edge, evenly: half of it lies within the angle of half the height.
+        // Samples fill the disc uniformly up to its edge: half of them lie within the angle of half of the cap's
+        // height.
         let angle = |i: u32| {
             let u = Vec2::new((f64::from(i) + 0.5) as f32 / 4096.0, 0.5 + 0.4 * (i % 2) as f32);
             let wi = sun.sample_li(Vec3::ZERO, 0.0, u).unwrap().wi.as_dvec3().normalize();
@@ -127,7 +128,7 @@ fn the_suns_edge_is_half_its_diameter_from_its_middle() {
         let rim = 2.0 * sin_f64(0.5 * wanted);
         assert!((chords[4095] / rim - 1.0).abs() < 2e-3, "{degrees}: {} and {rim}", chords[4095]);
         assert!((chords[2048] / (rim * 0.5f64.sqrt()) - 1.0).abs() < 2e-3, "{degrees}");
-        // A surface that faces it gets the irradiance that was asked for: E = π L sin²(diameter / 2).
+        // A surface that faces it receives the specified irradiance: E = π L sin²(diameter / 2).
         let radiance = f64::from(sun.le(towards.as_vec3()).g);
         let irradiance = PI * radiance * sin_f64(wanted) * sin_f64(wanted);
         assert!((irradiance / 2.0 - 1.0).abs() < 1e-4, "{degrees}: {irradiance}");
@@ -140,8 +141,8 @@ fn the_suns_edge_is_half_its_diameter_from_its_middle() {
 
 #[test]
 fn a_spot_falls_off_smoothly_between_the_cosines_of_its_angles() {
-    // The smooth step of pbrt's book, 12.2.2, which glTF leaves to whoever renders: at a quarter, at half and at three quarters of
-    // the way between the cosines it is 5/32, 1/2 and 27/32.
+    // The smoothstep of pbrt's book, 12.2.2, a choice that glTF leaves to the renderer: at a quarter, half and three
+    // quarters of the way between the cosines it is 5/32, 1/2 and 27/32.
     let (outer, inner) = (50f64.to_radians(), 20f64.to_radians());
     let spot = Spec::new("", "spot").with("position", Vec3::Y * 3.0).with("look_at", Vec3::ZERO);
     let spot = spot.with("intensity", 7.0f32).with("angle", 50.0f32).with("inner_angle", 20.0f32);
@@ -156,7 +157,7 @@ fn a_spot_falls_off_smoothly_between_the_cosines_of_its_angles() {
         (50.1f64.to_radians(), 0.0),
     ];
     for (angle, wanted) in cases {
-        // Two metres away, so that a quarter of the intensity arrives.
+        // Two metres away, a quarter of the intensity arrives.
         let (sin, cos) = sin_cos_f64(angle);
         let from = DVec3::new(2.0 * sin, 3.0 - 2.0 * cos, 0.0).as_vec3();
         let found = light.sample_li(from, 0.0, Vec2::ZERO).map_or(0.0, |sample| f64::from(sample.li.g));
@@ -164,7 +165,7 @@ fn a_spot_falls_off_smoothly_between_the_cosines_of_its_angles() {
     }
 }
 
-/// From afar every lamp of an intensity I is one point of it: E = I / d² on a surface that faces it, whatever its size.
+/// From afar every light of intensity I looks like a point: E = I / d² on a surface that faces it, whatever its size.
 #[test]
 fn an_intensity_is_what_arrives_from_afar_times_the_square_of_the_distance() {
     let lamp = |kind: &str| Spec::new("", kind).with("position", Vec3::ZERO).with("intensity", 8.0f32);
@@ -221,7 +222,7 @@ fn cameras_measure_upwards_and_the_first_row_is_on_top() {
 
 #[test]
 fn what_is_clear_has_its_colour_at_its_depth() {
-    // After two metres a half, a quarter and all of the light are left, by Beer's law.
+    // After two metres a half, a quarter and all of the light remain, by Beer's law.
     let spec =
         Spec::new("", "principled").with("transmission_weight", 1.0f32).with("transmission_depth", 2.0f32);
     let spec = spec.with("transmission_color", Rgb::new(0.5, 0.25, 1.0));
@@ -233,10 +234,10 @@ fn what_is_clear_has_its_colour_at_its_depth() {
     }
 }
 
-/// Smaller than the angle between the normals of a sphere's neighbouring vertices can make it.
+/// A smaller error than tessellation causes: the angle between the normals of neighbouring vertices.
 const COARSE: f64 = 0.01;
 
-/// A sphere of radius 1 with its normals.
+/// A sphere of radius 1 with normals.
 fn sphere() -> Mesh {
     uv_sphere(Vec3::ZERO, 1.0, 128, 64)
 }
@@ -249,8 +250,8 @@ fn turn() -> DQuat {
     DQuat::from_euler(bilux_math::glam::EulerRot::XYZ, 0.5, -0.8, 0.3)
 }
 
-/// Rays at an ellipsoid, the sphere of radius 1 scaled, turned and moved, and the greatest angle of a shading normal and of a
-/// triangle's own against the gradient of x²/a² + y²/b² + z²/c².
+/// Traces rays at an ellipsoid, the unit sphere scaled, rotated and translated, and returns the maximum angles of
+/// shading and geometric normals to the gradient of x²/a² + y²/b² + z²/c².
 fn worst_normals(scene: &Scene, scale: DVec3, turn: DQuat, middle: DVec3) -> [f64; 2] {
     let (mut tracer, mut worst, mut hits) = (Tracer::new(scene, false), [0.0f64; 2], 0);
     for i in 0..400 {
@@ -300,7 +301,7 @@ fn normals_of_a_sphere_scaled_unevenly_are_those_of_the_ellipsoid() {
     }
 }
 
-/// A square of silver towards +z with texture coordinates, brushed; what a ray straight from above meets.
+/// A brushed silver square towards +z with texture coordinates, and the hit of a ray from straight above.
 fn brushed(material: Spec, uvs: [Vec2; 4], transform: DMat4) -> (Scene, Surface) {
     let mut builder = SceneBuilder::default();
     let material = builder.add_material(material);
@@ -319,7 +320,7 @@ fn brushed(material: Spec, uvs: [Vec2; 4], transform: DMat4) -> (Scene, Surface)
     (scene, surface)
 }
 
-/// What comes back from a quarter of a radian aside, by the angle on the surface, from the direction of +x to +y.
+/// The light reflected from a quarter of a radian off the normal, by the azimuth from +x to +y.
 fn highlight(scene: &Scene, surface: &Surface, angle: f64) -> f64 {
     let ((sin, cos), (aside, up)) = (sin_cos_f64(angle), sin_cos_f64(0.25));
     let wi = DVec3::new(aside * cos, aside * sin, up).as_vec3();
@@ -327,9 +328,9 @@ fn highlight(scene: &Scene, surface: &Surface, angle: f64) -> f64 {
     f64::from(bsdf.eval(Vec3::Z, wi, TransportMode::Radiance).g)
 }
 
-/// The angle at which a highlight reaches farthest, 0..π.
+/// The azimuth at which a highlight is longest, 0..π.
 fn direction_of_highlight(scene: &Scene, surface: &Surface) -> f64 {
-    // The angle of the second harmonic: the light is the same in opposite directions.
+    // The phase of the second harmonic: the light is the same in opposite directions.
     let mut sum = [0.0; 2];
     for i in 0..360 {
         let angle = TAU * f64::from(i) / 360.0;
@@ -350,32 +351,32 @@ fn a_brushed_highlight_reaches_across_its_brushing() {
     for (kind, rotation, turn, [roughness, anisotropy]) in kinds {
         let metal = Spec::new("", kind).with(roughness, 0.4f32).with(anisotropy, 0.7f32);
         let metal = if kind == "principled" { metal.with("base_metalness", 1.0f32) } else { metal };
-        // Turned by 30 degrees from u towards v the brushing goes at 30 degrees, and the highlight at 120.
+        // If the brushing is rotated by 30 degrees from u towards v, it is at 30 degrees, and the highlight at 120.
         for degrees in [0.0f64, 30.0] {
             let spec = metal.clone().with(rotation, (degrees / 360.0) as f32 * turn);
             let (scene, surface) = brushed(spec, UPRIGHT, DMat4::IDENTITY);
             let found = direction_of_highlight(&scene, &surface).to_degrees();
             assert!((found - degrees - 90.0).abs() < 0.5, "{kind} turned by {degrees}: {found}");
         }
-        // u along +y: the brushing is upright, and the highlight goes to the sides.
+        // u along +y: the brushing is vertical, and the highlight horizontal.
         let sideways = UPRIGHT.map(|uv| Vec2::new(uv.y, -uv.x));
         let (scene, surface) = brushed(metal.clone(), sideways, DMat4::IDENTITY);
         let found = direction_of_highlight(&scene, &surface).to_degrees();
         assert!(found.min(180.0 - found) < 0.5, "{kind} with u upwards: {found}");
-        // u to the left: 30 degrees from there towards v are 150, and across them 60.
+        // u to the left: 30 degrees from there towards v is 150, and perpendicular to that is 60.
         let mirrored = UPRIGHT.map(|uv| Vec2::new(1.0 - uv.x, uv.y));
         let spec = metal.clone().with(rotation, turn / 12.0);
         let (scene, surface) = brushed(spec, mirrored, DMat4::IDENTITY);
         let found = direction_of_highlight(&scene, &surface).to_degrees();
         assert!((found - 60.0).abs() < 0.5, "{kind} with u to the left: {found}");
-        // A surface that is turned takes its brushing along.
+        // The brushing rotates with its surface.
         let (scene, surface) = brushed(metal, UPRIGHT, DMat4::from_rotation_z(0.5));
         let found = direction_of_highlight(&scene, &surface);
         assert!((found - 0.5 - FRAC_PI_2).abs() < 0.01, "{kind} on a turned surface: {found}");
     }
 }
 
-/// Of a rough metal seen straight on, by the definition of GGX with an alpha on each axis. [Walter 2007; Heitz 2014]
+/// A rough metal seen at normal incidence, by the definition of anisotropic GGX. [Walter 2007; Heitz 2014]
 fn ggx(alpha: [f64; 2], wi: DVec3) -> f64 {
     let h = (wi + DVec3::Z).normalize();
     let sum = h.x * h.x / (alpha[0] * alpha[0]) + h.y * h.y / (alpha[1] * alpha[1]) + h.z * h.z;
@@ -388,7 +389,7 @@ fn ggx(alpha: [f64; 2], wi: DVec3) -> f64 {
 
 #[test]
 fn a_brushed_metal_is_as_wide_as_openpbr_says() {
-    // Along the highlight α = r² √(2 / (1 + (1 - a)²)), across it (1 - a) times that. [OpenPBR 1.1]
+    // α = r² √(2 / (1 + (1 - a)²)) along the highlight, and (1 - a) times that across it. [OpenPBR 1.1]
     let (roughness, anisotropy) = (0.5f64, 0.6f64);
     let narrowed = 1.0 - anisotropy;
     let wide = roughness * roughness * (2.0 / (1.0 + narrowed * narrowed)).sqrt();
@@ -400,7 +401,7 @@ fn a_brushed_metal_is_as_wide_as_openpbr_says() {
     };
     for (a, b) in [(0.0, FRAC_PI_2), (0.3, FRAC_PI_2), (0.0, 1.2)] {
         let found = highlight(&scene, &surface, a) / highlight(&scene, &surface, b);
-        // What facets send on to each other is left out here: a few parts of a thousand.
+        // Multiple scattering between microfacets is left out here: a few thousandths.
         assert!((found / (at(a) / at(b)) - 1.0).abs() < 0.02, "{a} and {b}: {found}, not {}", at(a) / at(b));
     }
     assert!(at(0.0) < 0.5 * at(FRAC_PI_2));

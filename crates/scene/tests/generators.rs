@@ -1,4 +1,4 @@
-//! The scenes that we ship: what their users count on.
+//! The guarantees of the scenes that ship with Bilux.
 
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
@@ -14,7 +14,7 @@ fn bits(p: Vec3) -> [u32; 3] {
     p.to_array().map(f32::to_bits)
 }
 
-/// How often each edge is walked from its first to its second end, ends known by the bits of their positions.
+/// Counts how often each directed edge occurs, with ends identified by the bits of their positions.
 fn edges(mesh: &Mesh) -> HashMap<[[u32; 3]; 2], u32> {
     let mut edges = HashMap::new();
     for t in &mesh.triangles {
@@ -26,20 +26,20 @@ fn edges(mesh: &Mesh) -> HashMap<[[u32; 3]; 2], u32> {
     edges
 }
 
-/// Edges that are not walked once in each direction.
+/// The number of edges that do not occur exactly once in each direction.
 fn open_edges(mesh: &Mesh) -> usize {
     let edges = edges(mesh);
     edges.iter().filter(|([a, b], n)| **n != 1 || edges.get(&[*b, *a]) != Some(&1)).count()
 }
 
-/// Six times the volume, by the signed tetrahedra from the origin.
+/// Six times the volume, from the signed tetrahedra to the origin.
 fn volume(mesh: &Mesh) -> f64 {
     let corner = |i: u32| mesh.positions[i as usize].as_dvec3();
     let six: f64 = mesh.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum();
     six / 6.0
 }
 
-/// The least cosine between a triangle's winding and the normals of its corners.
+/// The minimum cosine between a triangle's normal and the normals of its corners.
 fn least_agreement(mesh: &Mesh) -> f32 {
     let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).normalize();
     let cosines = mesh.triangles.iter().flat_map(|t| {
@@ -54,7 +54,7 @@ fn the_teapot_has_two_triangles_a_square_less_those_at_its_poles() {
     for n in [1u32, 2, 4, 8, 16] {
         let teapot = Teapot { tessellation: n, ..Teapot::default() };
         let whole = teapot.mesh().triangles.len() as u32;
-        // The lid's four patches and the bottom's four meet in a pole each.
+        // The four patches of the lid meet in a pole, and so do the four of the bottom.
         assert_eq!(whole, 32 * 2 * n * n - 8 * n, "tessellation {n}");
         let open = Teapot { bottom: false, ..teapot }.mesh().triangles.len() as u32;
         assert_eq!(whole - open, 4 * (2 * n * n - n), "the bottom at {n}");
@@ -63,10 +63,10 @@ fn the_teapot_has_two_triangles_a_square_less_those_at_its_poles() {
 
 #[test]
 fn neighbouring_patches_share_their_edges_to_the_bit() {
-    // At 1 the halves of handle and spout are flat and lie on each other.
+    // At 1 the two halves of handle and spout are flat and coincide.
     for n in [2, 3, 8, 13] {
         let mesh = Teapot { tessellation: n, ..Teapot::default() }.mesh();
-        // Newell's teapot is open in five places: the lid's edge, the rim's, both ends of handle and spout.
+        // Newell's teapot is open in five places: the edge of the lid, the rim, and both ends of handle and spout.
         let rings = 4 * n + 4 * n + 4 * (2 * n);
         let open = open_edges(&mesh) as u32;
         assert_eq!(open, rings, "tessellation {n}");
@@ -121,7 +121,7 @@ fn the_control_points_are_newells() {
     };
     let micro = |x: f64| (x * 1e6).round() as i64;
     let numbers: Vec<f64> = text.split_whitespace().map(|w| w.parse().unwrap()).collect();
-    // A count, then for each patch its degrees (3 3) and 16 points, z up.
+    // A count, then the degrees (3 3) and 16 points of each patch, z up.
     let mut theirs: Vec<Vec<[i64; 3]>> = numbers[1..]
         .chunks(50)
         .map(|patch| patch[2..].chunks(3).map(|p| [micro(p[0]), micro(p[2]), micro(-p[1])]).collect())
@@ -292,7 +292,7 @@ fn the_scan_is_closed_faces_outwards_and_is_uneven() {
         let n = areas.len();
         assert!(areas[0] > 0.0 && areas[n * 9 / 10] > 10.0 * areas[n / 10]);
     }
-    // A finer one is the same figure.
+    // A finer scan has the same shape.
     assert!(volumes[1] > 0.0 && (volumes[1] / volumes[2] - 1.0).abs() < 0.05, "{volumes:?}");
 }
 
@@ -304,7 +304,7 @@ fn the_interior_grows_with_its_detail_and_everything_is_in_the_room() {
         assert!(bounds.min.cmpge(Vec3::new(-3.21, -0.11, -2.51)).all(), "{bounds:?}");
         assert!(bounds.max.cmple(Vec3::new(3.11, 2.81, 2.51)).all(), "{bounds:?}");
         for object in &scene.objects {
-            // Only where a thin rim turns sharply may a corner's normal look away from its triangle.
+            // A corner's normal may point away from its triangle only where a thin rim turns sharply.
             let mesh = &object.mesh;
             let looks_away = |t: &&[u32; 3]| {
                 let [a, b, c] = t.map(|i| mesh.positions[i as usize]);

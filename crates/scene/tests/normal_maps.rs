@@ -1,10 +1,10 @@
-//! Normal maps turn normals as OpenGL's convention says, however the surface and its texture lie.
+//! Normal maps follow OpenGL's convention, however the surface and its texture are placed.
 
 use bilux_math::{Rgb, Transform, Vec2, Vec3};
 use bilux_scene::{AccelChoice, Mesh, Object, Ray, Scene, SceneBuilder, Spec, Texture, Tracer, Value};
 use std::sync::Arc;
 
-/// A square towards +z with a texture that leans by `texel` everywhere.
+/// A square towards +z with a normal map that is `texel` everywhere.
 fn square(texel: Rgb, uvs: [Vec2; 4], transform: Transform, scale: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let texture = Texture::new("", 1, 1, vec![texel], true);

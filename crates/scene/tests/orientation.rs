@@ -1,4 +1,4 @@
-//! Which way a model is up, and that it is set up so before it is photographed.
+//! Models are oriented by up axis and front before they are framed.
 
 use bilux_math::{Aabb, DMat4, DVec3, Transform, Vec3};
 use bilux_scene::generators::shapes;
@@ -23,7 +23,7 @@ fn joined(boxes: &[[[f32; 3]; 2]]) -> Mesh {
     all
 }
 
-/// A bust on a round foot, higher than it is wide, and alike on its left and right alone. Up is y, the front is z.
+/// A bust on a round base, taller than wide, symmetric only in left and right. Up is y, the front is z.
 fn bust() -> Mesh {
     joined(&[
         [[-1.0, 0.0, -1.0], [1.0, 0.3, 1.0]],
@@ -77,7 +77,7 @@ fn a_shape_that_stands_well_overrules_what_is_usual_and_a_ball_does_not() {
         let found = Orientation::of(&scene(ball(), UpHint::Usually(usual)), None, None).unwrap();
         assert_eq!((found.up, found.because), (usual, Because::Usual));
     }
-    // A plate lies, and what a format says is not judged.
+    // A plate lies flat, and an orientation fixed by the format is not questioned.
     let plate = || joined(&[[[-1.0, -0.7, 0.0], [1.0, 0.7, 0.05]]]);
     let up_of = |hint| Orientation::of(&scene(plate(), hint), None, None).unwrap().up;
     assert_eq!(up_of(UpHint::Usually(Axis::Y)).index(), 2);
@@ -119,7 +119,7 @@ fn what_is_asked_for_is_done_and_a_scene_with_its_own_camera_stays() {
     complete(&mut front_x, &asked(None, Some(Axis::X)));
     front_x.objects.truncate(1);
     assert_eq!(height(&front_x), Vec3::new(5.0, 2.0, 1.0));
-    // Its own camera, and nothing asked.
+    // It has its own camera, and the user asked for nothing.
     let mut own = long();
     complete(&mut own, &Studio::default());
     let (before, mut again) = (own.bounds(0.0), SceneBuilder { up: UpHint::Usually(Axis::Z), ..own });
@@ -131,7 +131,7 @@ fn what_is_asked_for_is_done_and_a_scene_with_its_own_camera_stays() {
 fn a_model_far_from_the_origin_is_framed_as_tightly_as_one_at_it() {
     let placed = |shift: DVec3| {
         let mut mesh = bust();
-        // Coordinates that f32 holds exactly there too.
+        // Coordinates that f32 represents exactly after the shift too.
         mesh.positions.iter_mut().for_each(|p| *p = (*p * 16.0).round());
         mesh.positions.iter_mut().for_each(|p| *p = (p.as_dvec3() + shift).as_vec3());
         let mut scene = scene(mesh, UpHint::Is(Axis::Z));

@@ -1,4 +1,4 @@
-//! Presets: what is framed is seen, what is missing is made up for, what is there is kept.
+//! Presets: the framed model is visible, missing parts are added, and existing ones are kept.
 
 use bilux_math::motion::Motion;
 use bilux_math::{DMat4, DVec3, Transform, Vec2, Vec3};
@@ -25,12 +25,12 @@ fn teapot() -> SceneBuilder {
     scene_of(Teapot::default().mesh())
 }
 
-/// Where the scene's camera sees a point, -1..=1 within a square picture; found from the camera's own rays.
+/// Where the scene's camera sees a point, -1..=1 within a square image; derived from the camera's own rays.
 fn seen_at(scene: &SceneBuilder, p: Vec3) -> Option<Vec2> {
     seen_in(scene, p, 1.0)
 }
 
-/// Where a point is seen, from -1 to 1, in a picture so many times as wide as high.
+/// Where a point is seen, from -1 to 1, in an image `aspect` times as wide as high.
 fn seen_in(scene: &SceneBuilder, p: Vec3, aspect: f32) -> Option<Vec2> {
     let camera = cameras::build(&scene.cameras[0], aspect).unwrap();
     let ray = |x: f32, y: f32| {
@@ -50,7 +50,7 @@ fn seen_in(scene: &SceneBuilder, p: Vec3, aspect: f32) -> Option<Vec2> {
     })
 }
 
-/// The farthest from the middle, on either axis, that any vertex is seen, but for those of the studio's floor.
+/// The maximum distance from the centre, on either axis, of any visible vertex except for the studio's floor.
 fn reach(scene: &SceneBuilder) -> f32 {
     reach_in(scene, 1.0)
 }
@@ -77,7 +77,7 @@ fn a_bare_model_is_framed_whole_and_fills_the_picture() {
     builds(&scene);
     let reach = reach(&scene);
     assert!((0.85..0.9).contains(&reach), "{reach}");
-    // So are a long one in a wide picture, and a broad one in a narrow.
+    // A long model fills a wide image, and a broad one a narrow image.
     for aspect in [0.4, 1.5, 3.0] {
         let mut scene = points(&[[-3.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 1.0, 0.0]]);
         complete(&mut scene, &Studio { aspect: Some(aspect), ..Studio::default() });
@@ -126,7 +126,7 @@ fn a_bare_model_of_no_material_is_of_clay_on_a_floor() {
     let floor = &scene.objects[1].mesh.positions;
     let lowest = floor.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
     assert!(lowest < 0.0 && lowest > -0.01);
-    // What rises is the wall behind the model.
+    // The rising part is the wall behind the model.
     let away = |p: &Vec3| Vec2::new(p.x - 0.5, p.z).dot(Vec2::new(-0.447, -0.894));
     assert!(floor.iter().all(|p| p.y == lowest || away(p) > 2.0));
     let mut told = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
@@ -156,7 +156,7 @@ fn only_what_is_missing_is_added() {
     let mine = CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() };
     seen.cameras.push(mine.clone());
     complete(&mut seen, &Studio::default());
-    // The lamp behind the model would be in view.
+    // The light behind the model would be in view.
     let lights: Vec<_> = seen.lights.iter().map(|light| light.name.as_str()).collect();
     assert_eq!((seen.cameras, lights), (vec![mine], vec!["key", "room"]));
 }
@@ -190,7 +190,7 @@ fn the_course_camera_is_left_handed() {
     // From (-10, 5, -10) towards the origin, y × z points along (1, 0, -1).
     assert!(seen_at(&scene, Vec3::new(0.5, 0.0, -0.5)).unwrap().x > 0.0);
     assert!(seen_at(&scene, Vec3::Y * 0.5).unwrap().y > 0.0);
-    // The foot of the teapot, by hand: the origin goes to (0, -3.25, 3.5).
+    // The foot of the teapot, computed by hand: the origin maps to (0, -3.25, 3.5).
     assert_eq!(scene.objects[0].motion.at(0.0).point(Vec3::ZERO), Vec3::new(0.0, -3.25, 3.5));
 }
 
@@ -210,7 +210,7 @@ fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
 
 #[test]
 fn a_studio_is_as_it_is_asked_for() {
-    // From the right, at the height of its middle, through a long lens: seen whole, as big as through any other.
+    // From the right, at mid-height, through a long lens: framed whole, as large as with any other.
     let asked = Studio {
         ground: Some(Ground::Mirror),
         orbit: Some([90.0, 0.0]),
@@ -226,14 +226,14 @@ fn a_studio_is_as_it_is_asked_for() {
     let direction = Vec3::from(ray.direction);
     assert!((direction - Vec3::NEG_X).length() < 1e-5, "{direction}");
     assert_eq!(scene.materials.last().map(|m| m.kind.as_str()), Some("mirror"));
-    // What is asked for comes before what a file brings, and the rest of it is kept.
+    // The user's choices override the file's, and the rest of the file is kept.
     let mut seen = teapot();
     seen.cameras.push(CameraSpec { spec: Spec::new("mine", "orthographic"), keyframes: Vec::new() });
     seen.lights.push(Spec::new("mine", "point"));
     complete(&mut seen, &Studio { orbit: Some([0.0, 30.0]), ..Studio::default() });
     let names: Vec<_> = seen.cameras.iter().map(|camera| camera.spec.name.as_str()).collect();
     assert_eq!((names, seen.lights.len(), seen.objects.len()), (vec!["studio", "mine"], 1, 1));
-    // From below a floor would hide the model.
+    // From below, a floor would hide the model.
     let mut below = teapot();
     complete(&mut below, &Studio { orbit: Some([0.0, -40.0]), ..Studio::default() });
     assert_eq!(below.objects.len(), 1);
@@ -248,7 +248,7 @@ fn what_is_cut_out_gets_no_cove_and_a_backdrop_is_no_lamp() {
     scene.lights.push(Spec::new("behind", "environment").with("backdrop", true));
     complete(&mut scene, &Studio::default());
     assert_eq!((scene.objects.len(), scene.lights.len()), (1, 4));
-    // It is there all the same where it is asked for.
+    // It is present nevertheless if the user asks for it.
     let mut scene = teapot();
     complete(&mut scene, &Studio { cut_out: true, ground: Some(Ground::Shadow), ..Studio::default() });
     assert_eq!(scene.objects.len(), 2);
@@ -295,7 +295,7 @@ fn a_camera_that_is_there_has_the_studios_lamp_behind_it() {
     let number = |value: &Value| if let Value::Number(x) = value { *x as f32 } else { panic!() };
     let lamp = Vec3::new(number(&position[0]), number(&position[1]), number(&position[2]));
     let from = Vec3::new(-6.0, 2.0, -5.0).normalize();
-    // On the camera's side of the model, and outside of what it sees.
+    // On the camera's side of the model, and out of its view.
     assert!(lamp.dot(from) > 0.0, "{lamp}");
     let at = seen_at(&seen, lamp);
     assert!(at.is_none_or(|at| at.abs().max_element() > 1.0), "{lamp}: {at:?}");

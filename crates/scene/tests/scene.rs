@@ -1,4 +1,4 @@
-//! A scene is built from plain data, refuses what is wrong, and answers rays.
+//! A scene is built from plain data, rejects errors, and answers ray queries.
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::cameras::CameraSpec;
@@ -66,7 +66,7 @@ fn misspelt_names_are_told_with_the_nearest() {
     ));
 }
 
-/// A sphere light, and the scene with nothing else in it.
+/// A scene with a single sphere light.
 fn lone_sphere(position: Vec3, radius: f32) -> bilux_scene::Scene {
     let lamp =
         Spec::new("", "sphere").with("position", position).with("radius", radius).with("radiance", 1.0f32);
@@ -87,7 +87,7 @@ fn a_sphere_is_met_where_it_is_however_far_away_the_ray_begins() {
             let towards = centre + away.any_orthonormal_vector() * (0.3 * radius) - origin;
             let Some(hit) = tracer.closest(&bilux_scene::Ray::new(origin.to_array(), towards.to_array()))
             else {
-                // So small a thing may be missed where the ray's own numbers do not tell it from its neighbourhood.
+                // A sphere this small may be missed where the precision of the ray's own numbers is too coarse.
                 assert!(
                     radius * 0.1 < origin.abs().max_element() * f32::EPSILON,
                     "{centre}, {radius}: {distance}"
@@ -100,7 +100,7 @@ fn a_sphere_is_met_where_it_is_however_far_away_the_ray_begins() {
             assert!(hit.n_geom.dot(out.as_vec3().normalize()) > 0.999);
             let is_inside = distance < 1.0;
             assert_eq!(hit.n_geom.dot(towards) > 0.0, is_inside, "{distance}");
-            // Light outwards alone.
+            // It emits light only outwards.
             assert_eq!(scene.emission(&hit, -towards) == Rgb::BLACK, is_inside);
             assert!(tracer.closest(&hit.spawn(hit.n_geom)).is_none());
             let across = tracer.closest(&hit.spawn(-hit.n_geom)).expect("the far side");
@@ -129,7 +129,7 @@ fn spheres_beside_one_tree_answer_as_the_level_above_does() {
         builder.lights.push(lamp.with("radiance", 1.0f32));
     }
     let scene = builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
-    // To count, the level above is asked.
+    // The counting tracer uses the top level.
     let (mut plain, mut counting) = (Tracer::new(&scene, false), Tracer::new(&scene, true));
     let random = |i: u64| {
         let words = [0, 1, 2].map(|k| bilux_math::hash::hash_words([i, k]));

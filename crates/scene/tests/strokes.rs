@@ -1,4 +1,4 @@
-//! Points and lines: met where they are, with the colours of their vertices, wherever their object stands.
+//! Points and lines: rays hit them in the right place, with the colours of their vertices, wherever their object is.
 
 use bilux_math::{DMat4, DVec3, Motion, MotionKey, Rgb, Transform, Vec3};
 use bilux_scene::{AccelChoice, Mesh, Object, Ray, Scene, SceneBuilder, Spec, StrokeWidths, Tracer};
@@ -44,7 +44,7 @@ fn points_are_balls_and_lines_are_tubes_with_colours_between_their_ends() {
     assert!(from_above(&still, 1.0, 0.26).is_none() && from_above(&still, -3.0, 0.51).is_none());
     // A round end.
     assert!(from_above(&still, 4.2, 0.0).is_some() && from_above(&still, 4.26, 0.0).is_none());
-    // Nothing is met again where a ray leaves it.
+    // A ray that leaves a point or line does not hit it again.
     let mut tracer = Tracer::new(&still, false);
     for hit in [from_above(&still, -2.8, 0.3).unwrap(), from_above(&still, 2.0, 0.2).unwrap()] {
         assert!(tracer.closest(&hit.spawn(hit.n_geom)).is_none());
@@ -109,7 +109,7 @@ fn a_picture_of_twice_the_size_has_half_the_width() {
     };
     let (small, large) = (widths(128), widths(256));
     assert!((small.lines / large.lines - 2.0).abs() < 1e-4, "{small:?} {large:?}");
-    // A point a millimetre: what is between neighbours is covered, and no more than a few pixels.
+    // One point per millimetre: points cover the space between neighbours, and no more than a few pixels.
     let huge = widths(4096);
     assert!(huge.points > 1.0 && huge.points < 2.0, "{huge:?}");
     assert!(small.points >= large.points && small.points < 20.0, "{small:?}");

@@ -1,10 +1,10 @@
-//! The types of `bilux_scene::typed` are those of the tables, parameter by parameter.
+//! The types of `bilux_scene::typed` match the tables, parameter by parameter.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{LIGHTS, MATERIALS};
 use std::fmt::Write;
 
-/// `cargo xtask docs` sets it: files are written instead of compared.
+/// Set by `cargo xtask docs`: files are written instead of compared.
 const WRITE: &str = "BILUX_WRITE_TYPES";
 
 fn source(what: &str, rows: impl Iterator<Item = Entry>) -> String {
@@ -37,7 +37,7 @@ fn about(parameter: &Parameter) -> String {
     }
 }
 
-/// As a line of documentation: begins with a capital letter, and no bracket makes a link.
+/// Formats a line of documentation: it starts with a capital letter, and no bracket makes a link.
 fn documented(summary: &str) -> String {
     let escaped = summary.replace('[', "\\[").replace('<', "\\<");
     let mut letters = escaped.chars();
@@ -57,7 +57,7 @@ fn rust_type(kind: ParameterKind) -> &'static str {
         ParameterKind::Colour { .. } => "bilux_math::Rgb",
         ParameterKind::Vector => "bilux_math::Vec3",
         ParameterKind::Choice(_) | ParameterKind::Text => "&str",
-        // A colour or a number, or a texture in its place; of the others, what readers of files make.
+        // A colour or a number, or a texture in its place; for the others, the value that file readers make.
         _ => "impl Into<crate::Value>",
     }
 }

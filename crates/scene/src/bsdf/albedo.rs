@@ -1,55 +1,55 @@
-//! How much of the light along a direction the microfacets of a rough boundary reflect at once. What they lack to all of it
-//! goes below, or to microfacets that reflect it again. [Kulla 2017]
+//! The fraction of the light along a direction that the microfacets of a rough boundary reflect in a single bounce. The
+//! rest enters the layer below, or hits other microfacets that reflect it again. [Kulla 2017]
 //!
-//! Found by quadrature when it is first asked for, and kept as a table over the cosine, the roughness and the index.
-//! Fresnel's reflectance is split into what it is straight on and the share of the rest that it gains towards grazing:
-//! the second hardly depends on the index, so that a few of those suffice.
+//! It is computed by quadrature on first use, and stored as a table over the cosine, the roughness and the index.
+//! Fresnel's reflectance is split into its value at normal incidence and the share of the remainder that it gains
+//! towards grazing angles. That share hardly depends on the index, so a few indices suffice.
 
 use super::{Ggx, fresnel_dielectric};
 use bilux_math::frame::reflect;
 use bilux_math::{Vec2, Vec3};
 use std::sync::LazyLock;
 
-/// Roughness, the square root of alpha, in even steps from 0 to 1.
+/// Roughness, the square root of alpha, in uniform steps from 0 to 1.
 const ROUGHNESSES: usize = 28;
-/// Square roots of cosines, in even steps from 0 to 1.
+/// Square roots of cosines, in uniform steps from 0 to 1.
 const COSINES: usize = 24;
-/// Square roots of the amplitude that is reflected straight on, in even steps from 0 to 1.
+/// Square roots of the amplitude reflected at normal incidence, in uniform steps from 0 to 1.
 const INDICES: usize = 15;
-/// Facets along and across, on one half of the cap, which mirrors the other.
+/// Microfacets across and along one half of the cap; the other half mirrors it.
 const FACETS: [u32; 2] = [8, 16];
 
-/// For one cosine and roughness: the gain of each index, and all that microfacets reflect that let nothing through.
+/// For one cosine and roughness: the gain at each index, then the total reflected by opaque microfacets.
 type Entry = [f32; INDICES + 1];
 
 struct Table {
     at: [[Entry; COSINES]; ROUGHNESSES],
-    /// Over the hemisphere, weighted by the cosine.
+    /// Cosine-weighted means over the hemisphere.
     mean: [Entry; ROUGHNESSES],
-    /// What opaque microfacets leave on average between each two cosines, and how much of it the first of them hold.
+    /// Mean loss of opaque microfacets between two neighbouring cosines; `left_before` is its running integral.
     left: [[f32; COSINES - 1]; ROUGHNESSES],
     left_before: [[f32; COSINES]; ROUGHNESSES],
 }
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// What the microfacets of a boundary between two media reflect at once.
+/// The single-bounce albedo of the microfacets of a boundary between two media.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Albedo {
-    /// Place among the roughnesses.
+    /// Position among the table's roughnesses.
     roughness: f32,
-    /// Place among the indices.
+    /// Position among the table's indices.
     index: f32,
-    /// Reflected fraction of light that falls in straight.
+    /// Reflectance at normal incidence.
     straight: f32,
 }
 
 impl Albedo {
-    /// Nothing: an index of 1.
+    /// No reflection at all: an index of 1.
     pub const NONE: Albedo = Albedo { roughness: 0.0, index: 0.0, straight: 0.0 };
 
-    /// Of microfacets with an index `eta` of what is below over what is above, at least 1. Facets that have a direction count
-    /// as rough as along it, where they reflect more.
+    /// The albedo of microfacets on a boundary whose index, below over above, is `eta`, at least 1. Anisotropic
+    /// microfacets use the smaller alpha of the two directions, which reflects more.
     pub fn new(ggx: &Ggx, eta: f32) -> Albedo {
         let amplitude = ((eta - 1.0) / (eta + 1.0)).clamp(0.0, 1.0);
         Albedo {
@@ -59,13 +59,13 @@ impl Albedo {
         }
     }
 
-    /// The reflected fraction along a direction of this cosine with the normal, 0..=1.
+    /// The reflected fraction along a direction whose cosine with the normal is `cos`, 0..=1.
     #[inline]
     pub fn at(&self, cos: f32) -> f32 {
         self.entry(cos, self.shared())
     }
 
-    /// The same of microfacets that let nothing through.
+    /// Like [`Albedo::at`], for opaque microfacets, which reflect everything.
     #[inline]
     pub fn opaque_at(&self, cos: f32) -> f32 {
         self.entry(cos, |entry| entry[INDICES])
@@ -81,8 +81,8 @@ impl Albedo {
         self.between(|entry| entry[INDICES])
     }
 
-    /// A cosine by how much opaque microfacets leave of the light along it: with the density over the hemisphere that
-    /// [`Albedo::left_pdf`] tells.
+    /// Samples a cosine in proportion to the light that opaque microfacets lose along it; [`Albedo::left_pdf`] gives
+    /// the density over the hemisphere.
     pub(super) fn sample_left(&self, u: f32) -> f32 {
         let (row, between) = place(self.roughness, ROUGHNESSES);
         let [a, b] = [&TABLE.left_before[row], &TABLE.left_before[row + 1]];
@@ -91,7 +91,7 @@ impl Albedo {
         let k = (1..COSINES - 1).find(|&k| before(k) > wanted).unwrap_or(COSINES - 1) - 1;
         let within =
             ((wanted - before(k)) / (before(k + 1) - before(k)).max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-        // Within a step the square of the cosine is even.
+        // The square of the cosine is uniform within a step.
         let square = |k: usize| {
             let root = k as f32 / (COSINES - 1) as f32;
             (root * root) * (root * root)
@@ -99,7 +99,7 @@ impl Albedo {
         lerp(square(k), square(k + 1), within).sqrt()
     }
 
-    /// Density of [`Albedo::sample_left`] over the hemisphere, over that of the cosine.
+    /// The density of [`Albedo::sample_left`] over the hemisphere, divided by that of cosine-weighted sampling.
     #[inline]
     pub(super) fn left_pdf(&self, cos: f32) -> f32 {
         let (k, _) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
@@ -109,7 +109,7 @@ impl Albedo {
         lerp(TABLE.left[row][k], TABLE.left[row + 1][k], between) / whole
     }
 
-    /// One number of each of the four entries around a place, in between.
+    /// One number of the four entries around a position, interpolated bilinearly.
     #[inline]
     fn entry(&self, cos: f32, of: impl Fn(&Entry) -> f32) -> f32 {
         let (column, share) = place(cos.clamp(0.0, 1.0).sqrt() * (COSINES - 1) as f32, COSINES);
@@ -136,7 +136,7 @@ impl Albedo {
     }
 }
 
-/// The first of two neighbours, and how far a place is from it to the second.
+/// The first of the two neighbouring entries, and the position's fraction of the way to the second.
 #[inline]
 fn place(x: f32, count: usize) -> (usize, f32) {
     let first = (x as usize).min(count - 2);
@@ -155,7 +155,7 @@ impl Table {
             let roughness = step(row, ROUGHNESSES);
             let ggx = Ggx::new(roughness * roughness);
             std::array::from_fn(|column| {
-                // Light along the surface itself sees no microfacet from above: the limit is taken.
+                // No microfacet is visible from exactly along the surface, so take a limit.
                 let root = step(column, COSINES).max(1e-3);
                 reflected(&ggx, root * root)
             })
@@ -177,7 +177,7 @@ impl Table {
     }
 }
 
-/// An entry of the table, by quadrature over the microfacets that are seen.
+/// One entry of the table, by quadrature over the visible microfacets.
 fn reflected(ggx: &Ggx, cos: f32) -> Entry {
     if ggx.is_smooth() {
         return gained(cos, 1.0);
@@ -187,7 +187,7 @@ fn reflected(ggx: &Ggx, cos: f32) -> Entry {
     let (mut sum, mut shares) = ([0f64; INDICES + 1], 0f64);
     let [across, along] = FACETS;
     for i in 0..across * along {
-        // Few microfacets are turned far, and what they reflect is not little: they lie the more densely.
+        // Few microfacets tilt far, but they reflect a lot of light, so place more samples there.
         let left = 1.0 - ((i / across) as f32 + 0.5) / along as f32;
         let u = Vec2::new(0.5 * ((i % across) as f32 + 0.5) / across as f32, 1.0 - left * left * left);
         let share = left * left;
@@ -204,11 +204,11 @@ fn reflected(ggx: &Ggx, cos: f32) -> Entry {
     sum.map(|sum| (sum / shares) as f32)
 }
 
-/// The gain of each index at a microfacet, and all of the light.
+/// The gain of each index at one microfacet, and the total light.
 fn gained(cos: f32, weight: f32) -> Entry {
     std::array::from_fn(|i| {
         let root = i as f32 / (INDICES - 1) as f32;
-        // No light at all is reflected at the first index, and nothing is left to gain at the last.
+        // At the first index nothing is reflected, and at the last nothing is left to gain.
         let amplitude = (root * root).min(0.999);
         let eta = (1.0 + amplitude) / (1.0 - amplitude);
         let straight = amplitude * amplitude;
@@ -220,13 +220,13 @@ fn gained(cos: f32, weight: f32) -> Entry {
     })
 }
 
-/// ∫ E(µ) 2µ dµ of what is linear in √µ between the table's cosines.
+/// ∫ E(µ) 2µ dµ for E piecewise linear in √µ between the table's cosines.
 fn mean(row: &[Entry; COSINES]) -> Entry {
     let mut sum = [0f64; INDICES + 1];
     for (k, pair) in row.windows(2).enumerate() {
         let step = 1.0 / (COSINES - 1) as f64;
         let (a, b) = (k as f64 * step, (k + 1) as f64 * step);
-        // Of 4t³, and of 4t³ times how far t is between the two.
+        // The integrals of 4t³, and of 4t³ times the position of t between the two.
         let (a4, b4) = ((a * a) * (a * a), (b * b) * (b * b));
         let whole = b4 - a4;
         let second = (0.8 * (b4 * b - a4 * a) - a * whole) / step;
@@ -241,7 +241,7 @@ fn mean(row: &[Entry; COSINES]) -> Entry {
 mod tests {
     use super::*;
 
-    /// Where little light falls the table may be coarser.
+    /// The table may be coarser at grazing angles, where little light falls.
     fn within(cos: f32) -> f32 {
         if cos < 0.15 { 1.5e-2 } else { 4e-3 }
     }
@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// Against as many microfacets as it takes, between the table's entries.
+    /// Compares with a quadrature over many microfacets, between the table's entries.
     #[test]
     fn rough_boundaries_reflect_what_their_facets_do() {
         for (alpha, eta) in [(0.03f32, 1.5f32), (0.1, 1.4), (0.3, 1.6), (0.6, 2.0), (0.9, 1.3)] {

@@ -1,19 +1,20 @@
-//! A normal map's normals, where they face away from whoever looks: they are bent back, or the surface would be black
-//! there. A normal is mirrored about the plane across the view, which leaves it as it is where it just faces away.
+//! Shading normals of a normal map that face away from the viewer. They are bent back, because the surface would be
+//! black there otherwise. The normal is mirrored about the plane perpendicular to the view direction, so that a normal
+//! exactly perpendicular to the view stays as it is.
 //!
-//! Whoever looks is at the camera's end of the path: along `wo` for radiance, along `wi` for importance. So the surface
-//! scatters by one law whichever end a path begins at. A path from a light does not know yet who looks when it draws a
-//! direction: a part of its directions are drawn about the triangle's own normal, so that it finds what is seen about
-//! bent ones too.
+//! The viewer is at the camera's end of the path: along `wo` for radiance, along `wi` for importance. So the BSDF is
+//! the same whichever end a path starts at. A path from a light does not know the viewer yet when it samples a
+//! direction, so it samples some of its directions about the geometric normal, to cover those that a bent normal makes
+//! visible.
 
 use super::{Bsdf, BsdfSample, TransportMode};
 use bilux_math::{Frame, Vec3};
 
-/// Of directions from a light, at most this part is drawn about the triangle's normal.
+/// The maximum fraction of directions from a light that are sampled about the geometric normal.
 const MAX_FLAT: f32 = 0.25;
 
 impl Bsdf {
-    /// Something about the normal that is seen along `view`.
+    /// Calls `about` with the frame of the normal as seen along `view`.
     #[inline(always)]
     pub(super) fn seen_along<T>(&self, view: Vec3, about: impl FnOnce(&Frame) -> T) -> T {
         let cos = view.dot(self.frame.n);
@@ -24,7 +25,7 @@ impl Bsdf {
         about(&Frame::from_normal(n).along(self.frame.s))
     }
 
-    /// [`Bsdf::pdf_solid_angle`] of one that bends.
+    /// [`Bsdf::pdf_solid_angle`] of a BSDF that bends its normal.
     pub(super) fn bent_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f32 {
         if mode == TransportMode::Radiance {
             return self.seen_along(wo, |frame| self.pdf_about(frame, wo, wi));
@@ -33,7 +34,7 @@ impl Bsdf {
         (1.0 - share) * self.pdf_about(&self.frame, wo, wi) + share * self.pdf_about(&flat, wo, wi)
     }
 
-    /// A direction of a lobe with width, drawn by `about` a normal.
+    /// Samples a non-delta lobe, with `about` sampling about a given frame.
     pub(super) fn sample_bent(
         &self,
         wo: Vec3,
@@ -52,8 +53,9 @@ impl Bsdf {
         }
     }
 
-    /// The frame of the triangle, and how much of what comes from a light is drawn about it: more, the more views there
-    /// are from which the normal is bent.
+    /// The geometric frame, and the fraction of directions from a light that are sampled about it.
+    ///
+    /// The fraction grows with the set of views from which the normal is bent.
     fn flat(&self) -> (Frame, f32) {
         let sin = self.frame.n.cross(self.n_geom).length().min(1.0);
         (Frame::from_normal(self.n_geom).along(self.frame.s), MAX_FLAT * sin)

@@ -1,4 +1,4 @@
-//! The clear part of a surface: glass, smooth or rough, solid or a pane, below what covers it.
+//! The clear part of a surface: smooth or rough glass, solid or thin-walled, below a coating.
 
 use super::{
     BsdfEntry, BsdfSample, Coating, Dielectric, Ggx, Lobe, RoughDielectric, ThinFilm, TransportMode,
@@ -45,10 +45,10 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// Glass that tints what it reflects and what it lets through.
+/// Glass with separate tints for reflected and transmitted light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedDielectric {
-    /// With microfacets or without, as it is in the open.
+    /// The bare glass, smooth or rough, without its coating.
     glass: RoughDielectric,
     reflected: Rgb,
     passed: Rgb,
@@ -56,8 +56,8 @@ pub struct CoatedDielectric {
 }
 
 impl CoatedDielectric {
-    /// An index of the inside over the outside, and its dispersion; `thin` for a pane; factors on what is reflected and on
-    /// what passes, 0..=1.
+    /// Glass of a relative index (inside over outside) and a dispersion; `thin` for a thin pane; `reflected` and
+    /// `passed` are factors on reflected and transmitted light, 0..=1.
     pub fn new(
         index: (f32, f32),
         ggx: Ggx,
@@ -71,18 +71,18 @@ impl CoatedDielectric {
         CoatedDielectric { glass, reflected, passed, cover }
     }
 
-    /// The same below a thin film.
+    /// The same glass below a thin film.
     pub fn below(self, film: ThinFilm) -> CoatedDielectric {
         CoatedDielectric { glass: RoughDielectric { film: Some(film), ..self.glass }, ..self }
     }
 
-    /// What refracts, as it is in the open.
+    /// The glass that refracts, without its coating.
     #[inline]
     pub(super) fn glass(&self) -> &RoughDielectric {
         &self.glass
     }
 
-    /// The same of another index.
+    /// The same glass with another index.
     pub(super) fn of_index(self, eta: f32) -> CoatedDielectric {
         CoatedDielectric { glass: RoughDielectric { eta, ..self.glass }, ..self }
     }
@@ -98,13 +98,13 @@ impl CoatedDielectric {
         Dielectric { eta, dispersion, tint, thin, film }
     }
 
-    /// Where glass without width lets light through.
+    /// The direction in which smooth glass transmits light.
     #[inline]
     pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
         if self.is_delta() { self.smooth().transmitted(wo) } else { None }
     }
 
-    /// What is left of light between two directions. Inside of what is solid there is no cover.
+    /// The factor on light between two directions. The inside of solid glass has no coating.
     #[inline]
     fn left(&self, wo: Vec3, wi: Vec3) -> Rgb {
         let tint = if wo.z * wi.z > 0.0 { self.reflected } else { self.passed };

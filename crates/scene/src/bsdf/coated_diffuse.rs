@@ -1,6 +1,6 @@
-//! Diffuse reflection below a boundary and what covers it: what they let through is all scattered, and comes out again.
-//! [Kulla 2017] Where the base is rough, as [`RoughDiffuse`] has it: its light is scaled like Lambert's, and so no more comes out than
-//! got in.
+//! Diffuse reflection below a boundary and a coating: all of the light that they let through is scattered, and comes
+//! out again. [Kulla 2017] A rough base scatters like [`RoughDiffuse`]: its light is scaled like a Lambertian one's, so
+//! that no more comes out than went in.
 
 use super::{Albedo, BsdfEntry, BsdfSample, Coating, FuzzAlbedo, Ggx, Lobe, RoughDiffuse, TransportMode};
 use bilux_math::registry::Entry;
@@ -46,20 +46,20 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 
 const CLAY: Rgb = Rgb { r: 0.9, g: 0.6, b: 0.4 };
 
-/// Diffuse reflection below a boundary, on both sides of the surface alike.
+/// Diffuse reflection below a boundary, the same on both sides of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedDiffuse {
-    /// Reflected fraction of the light that gets there, over the mean of what passes.
+    /// The reflected fraction of the light that reaches the base, divided by the mean transmittance.
     scale: Rgb,
-    /// The same of what comes out on the other side.
+    /// The same for light that leaves on the other side.
     through: Rgb,
-    /// What the boundary reflects.
+    /// The reflectance of the boundary.
     boundary: Albedo,
     cover: Coating,
     grain: Option<RoughDiffuse>,
 }
 
-/// Gauss and Legendre's places and weights on 0..=1.
+/// Gauss-Legendre nodes and weights on 0..=1.
 pub(super) const GAUSS: [(f32, f32); 8] = [
     (0.019_855_07, 0.050_614_27),
     (0.101_666_76, 0.111_190_52),
@@ -72,13 +72,14 @@ pub(super) const GAUSS: [(f32, f32); 8] = [
 ];
 
 impl CoatedDiffuse {
-    /// Reflects `albedo`, 0..=1, of what passes a boundary and what covers that.
+    /// Reflects `albedo`, 0..=1, of the light that passes the boundary and the coating.
     pub fn new(albedo: Rgb, boundary: Albedo, cover: Coating) -> CoatedDiffuse {
         CoatedDiffuse::sheet(albedo, Rgb::BLACK, boundary, cover)
     }
 
-    /// A sheet of paper or a leaf: of what gets into it, it reflects one part and lets another out on its other side,
-    /// at most 1 together.
+    /// A sheet of paper or a leaf: reflects one fraction of the light that enters it, and transmits another.
+    ///
+    /// The two are at most 1 together.
     pub fn sheet(reflected: Rgb, passed: Rgb, boundary: Albedo, cover: Coating) -> CoatedDiffuse {
         let gets_in = |cos: f32| (1.0 - boundary.at(cos)) * cover.passed(cos);
         let mean = if cover.is_none() {
@@ -91,13 +92,13 @@ impl CoatedDiffuse {
         CoatedDiffuse { scale: reflected * scale, through: passed * scale, boundary, cover, grain: None }
     }
 
-    /// The same of a base of this roughness, 0..=1, whose own colour this is: what it reflects without what weakens it.
+    /// The same lobe with a rough base, roughness 0..=1; `colour` is the reflectance of the base without any weights.
     pub fn rough(self, roughness: f32, colour: Rgb) -> CoatedDiffuse {
         let grain = RoughDiffuse::new(roughness, colour, |cos| self.passed(cos));
         CoatedDiffuse { grain: (roughness > 0.0).then_some(grain), ..self }
     }
 
-    /// How often a direction on the other side is drawn.
+    /// The probability of sampling a direction on the other side.
     #[inline]
     fn share_through(&self) -> f32 {
         if self.through.is_black() {
@@ -106,13 +107,13 @@ impl CoatedDiffuse {
         self.through.luminance() / (self.through.luminance() + self.scale.luminance())
     }
 
-    /// The fraction that gets there along a direction of this cosine with all normals.
+    /// The fraction of light that reaches the base when all normals make this cosine with the direction.
     #[inline]
     fn passed(&self, cos: f32) -> f32 {
         (1.0 - self.boundary.at(cos)) * self.cover.passed(cos)
     }
 
-    /// The same along a direction, whichever normals these are.
+    /// The same along a direction, where the coating may have a normal of its own.
     #[inline]
     fn passed_along(&self, v: Vec3) -> f32 {
         (1.0 - self.boundary.at(v.z.abs())) * self.cover.passed_along(v)
@@ -165,7 +166,7 @@ impl CoatedDiffuse {
         (self.scale + self.through).luminance() * self.passed(1.0)
     }
 
-    /// Towards grazing next to nothing gets there; a tenth is left, so that no direction is drawn too rarely.
+    /// Almost no light reaches the base at grazing angles. Keep a tenth, so that no direction is sampled too rarely.
     #[inline]
     pub(super) fn rise(&self) -> f32 {
         -0.9 * self.strength()

@@ -1,4 +1,4 @@
-//! Metal: microfacets that reflect by Fresnel's equations and let nothing through, smooth or rough. [Walter 2007]
+//! Metal: opaque microfacets that reflect by Fresnel's equations, smooth or rough. [Walter 2007]
 
 use super::{BsdfEntry, BsdfSample, Ggx, Lobe, TransportMode};
 use bilux_math::frame::reflect;
@@ -32,31 +32,31 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// How much a microfacet reflects.
+/// The reflectance of a microfacet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fresnel {
-    /// By the complex refractive index eta + i·k, over that of the outside.
+    /// From the complex refractive index eta + i·k, relative to the outside.
     Complex {
         /// Its real part, above 0.
         eta: Rgb,
         /// Its imaginary part, the extinction, 0 or more.
         k: Rgb,
     },
-    /// By the reflectance straight on; see [`Fresnel::tinted`].
+    /// From the reflectance at normal incidence; see [`Fresnel::tinted`].
     Tinted {
-        /// Straight on, 0..=1.
+        /// The reflectance at normal incidence, 0..=1.
         straight: Rgb,
-        /// What is taken off near grazing.
+        /// The amount subtracted near grazing.
         dip: Rgb,
     },
 }
 
-/// Cosine of 82 degrees, near where Schlick's curve rises most steeply and real metals dip.
+/// The cosine of 82 degrees, near which Schlick's curve is steepest and the reflectance of real metals dips.
 const COS_82: f32 = 0.139_173_1;
 
 impl Fresnel {
-    /// A reflectance straight on, 0..=1, and what remains of Schlick's approximation at 82 degrees, 0..=1: white for the
-    /// approximation itself. [Kutz 2021, eq. 5]
+    /// The reflectance at normal incidence, 0..=1, and the factor on Schlick's approximation at 82 degrees, 0..=1;
+    /// white leaves the approximation as it is. [Kutz 2021, eq. 5]
     pub fn tinted(straight: Rgb, edge: Rgb) -> Fresnel {
         let straight = straight.clamp(0.0, 1.0);
         let at_82 = schlick_from(straight, COS_82);
@@ -64,8 +64,8 @@ impl Fresnel {
         Fresnel::Tinted { straight, dip }
     }
 
-    /// The mean of the reflected fraction over all directions, weighted by the cosine; of measured metals what is
-    /// reflected straight on.
+    /// The cosine-weighted mean of the reflectance over all directions; for measured metals, the reflectance at normal
+    /// incidence.
     pub fn mean(&self) -> Rgb {
         match self {
             Fresnel::Complex { .. } => self.at(1.0),
@@ -76,7 +76,7 @@ impl Fresnel {
         }
     }
 
-    /// The reflected fraction; `cos_theta` of the direction against the microfacet, 0..=1.
+    /// The reflectance, where `cos_theta`, 0..=1, is between the direction and the microfacet's normal.
     #[inline]
     pub fn at(&self, cos_theta: f32) -> Rgb {
         let c = cos_theta.clamp(0.0, 1.0);
@@ -103,10 +103,10 @@ fn dent(cos: f32) -> f32 {
     cos * (m * m) * (m * m) * (m * m)
 }
 
-/// Reflected fraction of unpolarised light at a smooth metal of index `eta` + i·`k`. [pbrt 2023, 9.3.6]
+/// The reflectance of a smooth metal of index `eta` + i·`k` for unpolarised light. [pbrt 2023, 9.3.6]
 pub fn fresnel_conductor(cos_theta: f32, eta: f32, k: f32) -> f32 {
     let (cos2, sin2) = (cos_theta * cos_theta, 1.0 - cos_theta * cos_theta);
-    // The refracted direction's index times its cosine, squared, is a + i·2·eta·k: its absolute value and its root.
+    // The square of index times cosine of the refracted direction is a + i·2·eta·k; here are its modulus and root.
     let a = eta * eta - k * k - sin2;
     let absolute = (a * a + 4.0 * eta * eta * k * k).sqrt();
     let root = (0.5 * (absolute + a)).max(0.0).sqrt();
@@ -116,12 +116,12 @@ pub fn fresnel_conductor(cos_theta: f32, eta: f32, k: f32) -> f32 {
     0.5 * perpendicular * (1.0 + (even - odd) / (even + odd))
 }
 
-/// A metal, on both sides of the surface alike.
+/// A metal, the same on both sides of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
-    /// How much a microfacet reflects.
+    /// The reflectance of a microfacet.
     pub fresnel: Fresnel,
-    /// How its microfacets are turned.
+    /// The distribution of its microfacets.
     pub ggx: Ggx,
 }
 
@@ -178,8 +178,8 @@ impl Conductor {
     }
 }
 
-/// The two directions seen from above, and the microfacet that reflects one into the other; `None` where they are on two
-/// sides of the surface, or the surface has no microfacets.
+/// The two directions mirrored to above the surface, and the half-vector; `None` where they are on opposite sides of
+/// the surface, or the surface is smooth.
 #[inline]
 pub(super) fn facet_between(ggx: &Ggx, wo: Vec3, wi: Vec3) -> Option<(Vec3, Vec3, Vec3)> {
     if wo.z * wi.z <= 0.0 || ggx.is_smooth() {

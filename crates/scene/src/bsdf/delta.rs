@@ -1,20 +1,21 @@
-//! Lobes without width about an interpolated normal, which may send light through the triangle, or see `wo` on the
-//! wrong side. The triangle's own normal is then taken, so that no light is lost.
+//! Delta lobes about an interpolated normal, which may send light through the triangle, or see `wo` on the wrong side.
+//! In those cases the geometric normal replaces the interpolated one, so that no light is lost.
 //!
-//! From a camera that is a rule of what follows `wo`. A path from a light comes along what follows, and more than one
-//! `wo` may have led there: one about the interpolated normal, others about the triangle's. It has to take each as
-//! often as the rule does, or the picture of a coarse mirror depends on where paths begin.
+//! For a camera path the rule depends on the known `wo`. A light path arrives along the direction that the rule would
+//! sample, and more than one `wo` may lead to it: one about the interpolated normal, others about the geometric one. It
+//! has to sample each as often as the rule does, or the image of a coarsely tessellated mirror would depend on the end
+//! that paths start from.
 
 use super::{Bsdf, BsdfSample, Lobe, TransportMode};
 use bilux_math::frame::reflect;
 use bilux_math::{Frame, Vec2, Vec3};
 use std::ops::Range;
 
-/// What a lobe does about one normal: it reflects, it transmits.
+/// The events of a lobe about one normal: reflection, transmission.
 type Events = [Option<BsdfSample>; 2];
 
 impl Bsdf {
-    /// A direction of a lobe without width.
+    /// Samples a direction of a delta lobe.
     pub(super) fn sample_delta(
         &self,
         lobe: &Lobe,
@@ -34,8 +35,9 @@ impl Bsdf {
         shaded.or_else(|| about(&Frame::from_normal(self.n_geom)))
     }
 
-    /// True when the interpolated normal does for `wo`, and would have for whatever else could have led to `wo`. That
-    /// is nearly always so, and far sooner seen than all chances are found.
+    /// True when the interpolated normal works for `wo`, and for every other direction that could have led to `wo`.
+    ///
+    /// That is nearly always so, and much cheaper to test than to compute all probabilities.
     fn holds_both_ways(&self, lobe: &Lobe, wo: Vec3) -> bool {
         if self.frame.n == self.n_geom {
             return true;
@@ -52,14 +54,15 @@ impl Bsdf {
             && through(&Frame::from_normal(self.n_geom), wo).is_none_or(holds)
     }
 
-    /// The adjoint of the rule: everything that it could have begun with to go on along `wo`, by its chance.
+    /// The adjoint of the rule: samples every event that could continue along `wo`, each by its probability.
     fn sample_delta_importance(&self, lobe: &Lobe, wo: Vec3, u_choice: f32) -> Option<BsdfSample> {
         let keeps = |event: Option<BsdfSample>| event.filter(|sample| self.keeps_side(wo, sample));
         let shaded = if self.sees_side(wo) { events(lobe, &self.frame, wo).map(keeps) } else { [None; 2] };
         let flat = events(lobe, &Frame::from_normal(self.n_geom), wo).map(keeps);
         let n = self.frame.n;
         let ways = [(shaded[0], n), (shaded[1], n), (flat[0], self.n_geom), (flat[1], self.n_geom)];
-        // About the interpolated normal the way back has the same chance: Fresnel's equations have no direction.
+        // About the interpolated normal the reverse event has the same probability, as Fresnel's equations are
+        // symmetric.
         let chances: [f32; 4] = std::array::from_fn(|i| match &ways[i].0 {
             Some(event) if i < 2 => event.pdf_solid_angle,
             Some(event) => self.falls_back(lobe, event),
@@ -73,8 +76,8 @@ impl Bsdf {
         Some(BsdfSample { weight, pdf_solid_angle: chances[chosen] / total, ..event })
     }
 
-    /// The chance, from the other end of an event about the triangle's normal, that the interpolated normal fails and
-    /// this event takes its place.
+    /// The probability, seen from the other end of an event about the geometric normal, that the interpolated normal
+    /// fails and this event replaces it.
     fn falls_back(&self, lobe: &Lobe, event: &BsdfSample) -> f32 {
         let wo = event.wi;
         if !self.sees_side(wo) {
@@ -102,7 +105,7 @@ fn about(lobe: &Lobe, frame: &Frame, wo: Vec3, u_choice: f32, mode: TransportMod
     Some(sample)
 }
 
-/// The least number reflects if any does, the greatest transmits.
+/// The smallest random number selects reflection if there is any; the largest selects transmission.
 fn events(lobe: &Lobe, frame: &Frame, wo: Vec3) -> Events {
     let by = |u: f32| about(lobe, frame, wo, u, TransportMode::Importance);
     [by(0.0).filter(|sample| !sample.transmits), by(1f32.next_down()).filter(|sample| sample.transmits)]

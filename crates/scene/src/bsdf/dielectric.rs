@@ -31,13 +31,13 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 pub struct Dielectric {
     /// Refractive index of the inside over that of the outside, at the d line.
     pub eta: f32,
-    /// 1 over Abbe's number: how much the index depends on the wavelength.
+    /// 1 over the Abbe number: how strongly the index depends on the wavelength.
     pub dispersion: f32,
     /// Factor on all light, 0..=1; white for real glass.
     pub tint: Rgb,
-    /// A pane without thickness: both of its faces at once, straight through. [pbrt 2023, 9.5.1]
+    /// A thin pane: both of its faces at once, with light transmitted straight through. [pbrt 2023, 9.5.1]
     pub thin: bool,
-    /// On its outside; a pane has it on both sides.
+    /// A thin film on the outside; a pane has it on both sides.
     pub film: Option<ThinFilm>,
 }
 
@@ -68,7 +68,7 @@ impl Dielectric {
         let eta = self.eta_from(wo);
         let mut reflected = fresnel_dielectric(wo.z.abs(), if self.thin { self.eta } else { eta });
         if self.thin && reflected < 1.0 {
-            // Light that goes to and fro between the two faces adds up. [pbrt 2023, eq. 9.12]
+            // Light that bounces between the two faces adds up. [pbrt 2023, eq. 9.12]
             reflected = 2.0 * reflected / (1.0 + reflected);
         }
         let mut colours = [Rgb::WHITE; 2];
@@ -89,20 +89,20 @@ impl Dielectric {
         Some(sample)
     }
 
-    /// Index of the far side over that of the side of `wo`.
+    /// The index of the far side over that of the side of `wo`.
     #[inline]
     fn eta_from(&self, wo: Vec3) -> f32 {
         if wo.z > 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
-    /// The direction that is not reflected; `None` under total internal reflection.
+    /// The transmitted direction; `None` under total internal reflection.
     #[inline]
     pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
         let normal = Vec3::new(0.0, 0.0, 1f32.copysign(wo.z));
         if self.thin { Some(-wo) } else { refract(wo, normal, self.eta_from(wo)) }
     }
 
-    /// The weight of a direction is f·|cosθ| / probability: Fresnel's share cancels against the choice.
+    /// The weight of a direction is f·|cosθ| / probability: Fresnel's factor cancels against the probability.
     fn towards(&self, wi: Vec3, probability: f32, refracted: Option<f32>) -> BsdfSample {
         BsdfSample {
             wi,
@@ -120,15 +120,17 @@ impl Dielectric {
     }
 }
 
-/// The mean of what is reflected by the channels; and of what is reflected and of what passes, each channel over the mean.
+/// The mean reflectance of the channels, then reflectance and transmittance of each channel over their means.
 pub(super) fn shares(reflected: Rgb) -> (f32, [Rgb; 2]) {
     let mean = (reflected.r + reflected.g + reflected.b) * (1.0 / 3.0);
     let over = |share: Rgb, mean: f32| if mean > 0.0 { share * (1.0 / mean) } else { Rgb::WHITE };
     (mean, [over(reflected, mean), over(Rgb::WHITE + reflected * -1.0, 1.0 - mean)])
 }
 
-/// Reflected fraction of unpolarised light at a smooth boundary: `cos_theta` of the incident direction, 0..=1,
-/// `eta` the index of the far side over the near side; 1 under total internal reflection. [pbrt 2023, 9.3.5]
+/// The reflectance of a smooth boundary for unpolarised light.
+///
+/// `cos_theta`, 0..=1, belongs to the incident direction, and `eta` is the index of the far side over the near side.
+/// The result is 1 under total internal reflection. [pbrt 2023, 9.3.5]
 pub fn fresnel_dielectric(cos_theta: f32, eta: f32) -> f32 {
     let cos_i = cos_theta.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
@@ -141,8 +143,8 @@ pub fn fresnel_dielectric(cos_theta: f32, eta: f32) -> f32 {
     (parallel * parallel + perpendicular * perpendicular) * 0.5
 }
 
-/// Schlick's approximation to [`fresnel_dielectric`], total internal reflection included: from the denser side
-/// the cosine is that of the refracted direction. [Schlick 1994, eq. 15]
+/// Schlick's approximation to [`fresnel_dielectric`], including total internal reflection: from the denser side it uses
+/// the cosine of the refracted direction. [Schlick 1994, eq. 15]
 pub fn schlick(cos_theta: f32, eta: f32) -> f32 {
     let cos_i = cos_theta.clamp(0.0, 1.0);
     let r0 = ((1.0 - eta) / (1.0 + eta)) * ((1.0 - eta) / (1.0 + eta));
@@ -159,7 +161,7 @@ pub fn schlick(cos_theta: f32, eta: f32) -> f32 {
     r0 + (1.0 - r0) * (m * m) * (m * m) * m
 }
 
-/// The refracted direction, away from the surface; `n` is on the side of `wo`, `eta` the index of the far side
+/// The refracted direction, away from the surface; `n` is on the side of `wo`, and `eta` is the index of the far side
 /// over the near side. `None` under total internal reflection.
 pub fn refract(wo: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cos_i = wo.dot(n);

@@ -1,4 +1,4 @@
-//! A [`Bsdf`] from which one direction leaves and many arrive, as photons do: what the one is to it is found once.
+//! A [`Bsdf`] with one fixed direction and many others, as in photon mapping: terms of the fixed one are computed once.
 
 use super::{Bsdf, TransportMode};
 use bilux_math::{Rgb, Vec3};
@@ -16,7 +16,7 @@ pub struct BsdfForWo<'a> {
 }
 
 impl Bsdf {
-    /// With the direction that stays the same.
+    /// Fixes the direction `wo`.
     #[inline]
     pub fn facing(&self, wo: Vec3, mode: TransportMode) -> BsdfForWo<'_> {
         let (local_wo, cos_geom) = (self.frame.to_local(wo), wo.dot(self.n_geom));
@@ -25,7 +25,8 @@ impl Bsdf {
 }
 
 impl BsdfForWo<'_> {
-    /// [`Bsdf::eval_and_pdf`], and [`Bsdf::pdf_solid_angle`] of the way back, the same bits; `None` where it is black.
+    /// [`Bsdf::eval_and_pdf`], and [`Bsdf::pdf_solid_angle`] of the reverse direction, bit for bit; `None` where it is
+    /// black.
     #[inline]
     pub fn both_ways(&self, wi: Vec3) -> Option<(Rgb, f32, f32)> {
         let BsdfForWo { bsdf, wo, local_wo, cos_geom, risen, mode } = *self;

@@ -1,5 +1,5 @@
-//! Fuzz: fine upright fibres on top of a surface, velvet's pile or the bloom of a peach. They are seen where one looks
-//! along the surface, and cover what is below there. [Estevez 2017; Neubelt 2013]
+//! Fuzz: fine upright fibres on top of a surface, like velvet's pile or the bloom of a peach. They are visible at
+//! grazing angles, and hide what is below them there. [Estevez 2017; Neubelt 2013]
 
 use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
 use bilux_math::registry::Entry;
@@ -24,23 +24,23 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// Fibres upright on the surface, on both of its sides alike.
+/// Upright fibres on the surface, the same on both of its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fuzz {
-    /// Of the fibres, times how much of the surface has them.
+    /// The colour of the fibres, times the fraction of the surface that has them.
     colour: Rgb,
     albedo: FuzzAlbedo,
-    /// Factor on light from below.
+    /// A factor on light from below.
     from_below: f32,
 }
 
 impl Fuzz {
-    /// Fibres of a colour, 0..=1, and how they stand.
+    /// Fuzz from the fibres' colour, 0..=1, and their albedo.
     pub fn new(colour: Rgb, albedo: FuzzAlbedo) -> Fuzz {
         Fuzz { colour, albedo, from_below: 1.0 }
     }
 
-    /// The same with a factor, 0..=1, on light from below the surface.
+    /// The same fuzz with a factor, 0..=1, on light from below the surface.
     pub fn from_below(self, factor: f32) -> Fuzz {
         Fuzz { from_below: factor, ..self }
     }
@@ -55,7 +55,7 @@ impl Fuzz {
         self.colour * (scattered * side * wi.z.abs())
     }
 
-    /// Uniform: near the horizon, where fibres are seen, there are not too few.
+    /// Uniform, which samples enough directions near the horizon, where fibres are visible.
     #[inline]
     pub(super) fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z * wi.z > 0.0 { 0.5 * FRAC_1_PI } else { 0.0 }
@@ -91,8 +91,8 @@ impl Fuzz {
     }
 }
 
-/// Of white fibres the light that they scatter from `wo` to `wi`, per cosine: their normals' distribution [Estevez 2017,
-/// eq. 2] and how fibres hide each other [Neubelt 2013].
+/// The light that white fibres scatter from `wo` to `wi`, per cosine: their normal distribution [Estevez 2017, eq. 2]
+/// and their visibility term [Neubelt 2013].
 #[inline]
 fn scattered(inverse_alpha: f32, wo: Vec3, wi: Vec3) -> f32 {
     let (o, i) = (wo.z.abs(), wi.z.abs());
@@ -102,14 +102,14 @@ fn scattered(inverse_alpha: f32, wo: Vec3, wi: Vec3) -> f32 {
     distribution / (4.0 * (o + i - o * i)).max(f32::MIN_POSITIVE)
 }
 
-/// Square roots of alpha, in even steps from 0 to 1.
+/// Square roots of alpha, in uniform steps from 0 to 1.
 const ROUGHNESSES: usize = 16;
-/// Square roots of cosines, in even steps from 0 to 1.
+/// Square roots of cosines, in uniform steps from 0 to 1.
 const COSINES: usize = 20;
-/// Fibres that stand more evenly than this would be all seen at once along the surface.
+/// Below this alpha, all fibres would become visible at once at grazing angles.
 const MIN_ALPHA: f32 = 0.05;
 
-/// What fibres scatter at each cosine, in the steps above.
+/// The albedo of the fibres at each cosine, in the steps above.
 static TABLE: LazyLock<[[f32; COSINES]; ROUGHNESSES]> = LazyLock::new(|| {
     std::array::from_fn(|row| {
         let inverse = inverse_alpha(row as f32 / (ROUGHNESSES - 1) as f32);
@@ -124,7 +124,7 @@ fn inverse_alpha(roughness: f32) -> f32 {
     1.0 / (roughness * roughness).max(MIN_ALPHA)
 }
 
-/// By the midpoints of a grid over half of the hemisphere; squares of steps, so that there are many near the horizon.
+/// Midpoint rule on a grid over half of the hemisphere, with squared steps to place many samples near the horizon.
 fn all_scattered(inverse_alpha: f32, cos: f32) -> f64 {
     const STEPS: [u32; 2] = [32, 32];
     let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
@@ -140,25 +140,25 @@ fn all_scattered(inverse_alpha: f32, cos: f32) -> f64 {
     sum * 2.0 * f64::from(PI) / f64::from(STEPS[1])
 }
 
-/// How fibres stand, and the fraction of light along a direction that white ones scatter.
+/// The distribution of the fibres, and the fraction of light along a direction that white fibres scatter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FuzzAlbedo {
     inverse_alpha: f32,
-    /// Place among the roughnesses.
+    /// Position among the table's roughnesses.
     roughness: f32,
-    /// Makes of all that is scattered no more than there is.
+    /// Keeps the scattered light at most as large as the incident light.
     scale: f32,
 }
 
 impl FuzzAlbedo {
-    /// Of a roughness, 0..=1: low for fibres that stand upright, which are seen only along the surface.
+    /// The albedo for a roughness, 0..=1: low for upright fibres, which are visible only at grazing angles.
     pub fn new(roughness: f32) -> FuzzAlbedo {
         let place = roughness.clamp(0.0, 1.0) * (ROUGHNESSES - 1) as f32;
         let unscaled = FuzzAlbedo { inverse_alpha: inverse_alpha(roughness), roughness: place, scale: 1.0 };
         FuzzAlbedo { scale: 1.0 / unscaled.at(0.0).max(1.0), ..unscaled }
     }
 
-    /// The scattered fraction along a direction of this cosine with the normal, 0..=1.
+    /// The scattered fraction along a direction whose cosine with the normal is `cos`, 0..=1.
     #[inline]
     pub fn at(&self, cos: f32) -> f32 {
         let row = (self.roughness as usize).min(ROUGHNESSES - 2);
@@ -175,7 +175,7 @@ impl FuzzAlbedo {
 mod tests {
     use super::*;
 
-    /// Against far more directions, between the table's entries.
+    /// Compares with far more directions, between the table's entries.
     #[test]
     fn fibres_scatter_what_the_table_says() {
         for roughness in [0.1f32, 0.33, 0.52, 0.77, 1.0] {

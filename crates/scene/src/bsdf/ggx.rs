@@ -1,38 +1,37 @@
-//! Roughness: how the microfacets of a rough surface are turned, and how much of them is seen. The distribution of Trowbridge
-//! and Reitz, called GGX, with the masking and shadowing of Smith. [Walter 2007; Heitz 2014]
+//! Roughness: the orientation and visibility of the microfacets of a rough surface. The Trowbridge-Reitz distribution,
+//! called GGX, with Smith's masking and shadowing. [Walter 2007; Heitz 2014]
 //!
-//! Directions are local, with the normal as z, and seen from above: callers mirror what comes from below.
+//! Directions are local, with the normal as z, and above the surface: callers mirror directions from below.
 
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, TAU};
 
-/// Facets that are turned as those of a stretched sphere. Along each of two directions across each other the stretch is
-/// the alpha of that direction.
+/// Microfacets distributed like the normals of a stretched sphere. The stretch along each of two perpendicular
+/// directions is the alpha of that direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ggx {
     /// The stretch as a symmetric matrix: xx, xy, yy.
     stretch: [f32; 3],
-    /// The lesser alpha; 0 for a smooth surface.
+    /// The smaller alpha; 0 for a smooth surface.
     least: f32,
 }
 
-/// Below this alpha a surface is smooth, and no direction's alpha is less: f32 holds no sharper peaks.
+/// A surface with a smaller alpha is smooth, and no direction's alpha is smaller: f32 cannot hold sharper peaks.
 const MIN_ALPHA: f32 = 1e-3;
 
 impl Ggx {
-    /// No roughness at all.
+    /// A smooth surface.
     pub const SMOOTH: Ggx = Ggx { stretch: [0.0; 3], least: 0.0 };
 
-    /// Equally rough in all directions.
+    /// The same roughness in all directions.
     pub fn new(alpha: f32) -> Ggx {
         Ggx::anisotropic(alpha, alpha, 0.0)
     }
 
-    /// With an alpha along a direction, which the local x axis becomes when turned by `rotation` in radians, and
-    /// another across it.
+    /// One alpha along a direction, which is the local x axis turned by `rotation` in radians, and another across it.
     pub fn anisotropic(alpha_along: f32, alpha_across: f32, rotation: f32) -> Ggx {
-        // Of two numbers `max` takes the one that is a number, if any is.
+        // `max` returns the operand that is not NaN, if there is one.
         if !matches!(alpha_along.max(alpha_across), MIN_ALPHA..) {
             return Ggx::SMOOTH;
         }
@@ -43,21 +42,22 @@ impl Ggx {
         Ggx { stretch: [xx, (along - across) * sin * cos, yy], least: along.min(across) }
     }
 
-    /// As users say it: roughness 0..=1, the square root of alpha; anisotropy 0..=1, how much smoother the surface is
-    /// along its brushing than across; and that direction against the local x axis, in radians. [OpenPBR 1.1]
+    /// From the parameters of the materials: roughness 0..=1, the square root of alpha; anisotropy 0..=1, how much
+    /// smoother the surface is along its brushing than across; and the angle of the brushing from the local x axis, in
+    /// radians. [OpenPBR 1.1]
     pub fn from_roughness(roughness: f32, anisotropy: f32, rotation: f32) -> Ggx {
         let narrowed = 1.0 - anisotropy;
         let across = roughness * roughness * (2.0 / (1.0 + narrowed * narrowed)).sqrt();
         Ggx::anisotropic(narrowed * across, across, rotation)
     }
 
-    /// True for a surface that reflects in single directions.
+    /// True for a surface that reflects as a delta distribution.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.least == 0.0
     }
 
-    /// The lesser alpha of all directions.
+    /// The smaller alpha of the two directions.
     #[inline]
     pub(super) fn least(&self) -> f32 {
         self.least
@@ -69,7 +69,7 @@ impl Ggx {
         Vec2::new(xx * x + xy * y, xy * x + yy * y)
     }
 
-    /// Density of microfacets over the directions that they face, weighted by their cosine. [Walter 2007, eq. 33]
+    /// The density of microfacets over their normals, weighted by cosine. [Walter 2007, eq. 33]
     #[inline]
     pub(super) fn distribution(&self, m: Vec3) -> f32 {
         let [xx, xy, yy] = self.stretch;
@@ -79,38 +79,38 @@ impl Ggx {
         FRAC_1_PI / (determinant * q * q)
     }
 
-    /// How long a direction is once stretched: cosθ·(1 + 2Λ), Λ the mean shadow. [Heitz 2014, eq. 72]
+    /// The length of a stretched direction: cosθ·(1 + 2Λ), where Λ is Smith's auxiliary function. [Heitz 2014, eq. 72]
     #[inline]
     pub(super) fn shadow(&self, v: Vec3) -> f32 {
         (self.stretched(v.x, v.y).length_squared() + v.z * v.z).sqrt()
     }
 
-    /// Masking and shadowing of two directions together, height-correlated, over 4·cosθo, times 4·cosθo·cosθi over
-    /// that: what microfacets of density 1 reflect from `wi` to `wo`, f·|cosθi|. [Heitz 2014, eq. 99]
+    /// The height-correlated masking and shadowing of two directions, G2 / (4·cosθo): f·|cosθi| of microfacets that
+    /// reflect from `wi` to `wo` with density 1. [Heitz 2014, eq. 99]
     #[inline]
     pub(super) fn visible(&self, wo: Vec3, wi: Vec3) -> f32 {
         let sum = self.shadow(wo) * wi.z + self.shadow(wi) * wo.z;
         if sum > 0.0 { 0.5 * wi.z / sum } else { 0.0 }
     }
 
-    /// Density over solid angle of the microfacets that `wo` sees, as [`Ggx::sample_visible`] draws them with a bound of
-    /// [`Ggx::FULL`], over their distribution and their cosine with `wo`.
+    /// The density over solid angle of the microfacets visible to `wo`, as sampled by [`Ggx::sample_visible`] with a
+    /// bound of [`Ggx::FULL`], divided by the microfacet distribution and by the microfacet's cosine with `wo`.
     #[inline]
     pub(super) fn seen(&self, wo: Vec3) -> f32 {
         2.0 / (wo.z + self.shadow(wo))
     }
 
-    /// Density over solid angle of directions reflected about microfacets drawn within [`Ggx::bound`], over the microfacets'
-    /// distribution. [Eto 2023, eq. 8]
+    /// The density over solid angle of directions reflected at microfacets sampled within [`Ggx::bound`], divided by
+    /// the microfacet distribution. [Eto 2023, eq. 8]
     #[inline]
     pub(super) fn reflected_within_bound(&self, wo: Vec3) -> f32 {
         0.5 / (self.bound(wo) * wo.z + self.shadow(wo))
     }
 
-    /// The whole cap of microfacets that can be seen.
+    /// The full cap of visible microfacets.
     pub(super) const FULL: f32 = 1.0;
 
-    /// How much of the cap of visible microfacets can reflect `wo` upwards. [Eto 2023, eq. 5]
+    /// The part of the cap of visible microfacets that can reflect `wo` upwards. [Eto 2023, eq. 5]
     #[inline]
     pub(super) fn bound(&self, wo: Vec3) -> f32 {
         let across = 1.0 + (1.0 - wo.z * wo.z).max(0.0).sqrt();
@@ -118,8 +118,8 @@ impl Ggx {
         (1.0 - a2) * s2 / (s2 + a2 * wo.z * wo.z)
     }
 
-    /// A microfacet that `wo`, above the surface, sees: a point of a spherical cap, since a reflected uniform direction of
-    /// the unit sphere is one above the stretched `wo`'s horizon. [Dupuy 2023]
+    /// Samples a microfacet visible to `wo`, which is above the surface, as a point of a spherical cap: a reflection
+    /// uniform on the unit sphere is above the horizon of the stretched `wo`. [Dupuy 2023]
     #[inline]
     pub(super) fn sample_visible(&self, wo: Vec3, u: Vec2, bound: f32) -> Vec3 {
         let flat = self.stretched(wo.x, wo.y);

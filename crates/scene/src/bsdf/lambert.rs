@@ -23,7 +23,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// Diffuse reflection, on both sides of the surface alike.
+/// Diffuse reflection, the same on both sides of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lambert {
     /// Reflected fraction of the light, 0..=1.

@@ -7,10 +7,10 @@ use super::{
 use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec2, Vec3};
 
-/// One way of scattering, on a local frame.
+/// One scattering lobe, in a local frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
-    /// Equal in all directions.
+    /// Lambertian: equal in all directions.
     Lambert(Lambert),
     /// A perfect mirror.
     Mirror(Mirror),
@@ -22,11 +22,11 @@ pub enum Lobe {
     Conductor(Conductor),
     /// Rough glass.
     RoughDielectric(RoughDielectric),
-    /// Facets of glass, metal or both, with what they reflect onto each other.
+    /// Microfacets of glass, metal or both, with multiple scattering between them.
     MicrofacetReflection(MicrofacetReflection),
-    /// Diffuse below a boundary.
+    /// Diffuse reflection below a boundary.
     CoatedDiffuse(CoatedDiffuse),
-    /// Glass below what covers it.
+    /// Glass below a coating.
     CoatedDielectric(CoatedDielectric),
     /// Fine upright fibres.
     Fuzz(Fuzz),
@@ -50,7 +50,7 @@ macro_rules! each_lobe {
 }
 
 impl Lobe {
-    /// f·|cosθi|; black for delta lobes. For importance, f is that of the two directions exchanged.
+    /// f·|cosθi|; black for delta lobes. For importance, f is evaluated with the two directions exchanged.
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         each_lobe!(self, l => l.eval(wo, wi, mode))
     }
@@ -60,19 +60,19 @@ impl Lobe {
         each_lobe!(self, l => l.pdf_solid_angle(wo, wi))
     }
 
-    /// [`Lobe::eval`] and [`Lobe::pdf_solid_angle`], the same bits: at once they take little more than one of them.
+    /// [`Lobe::eval`] and [`Lobe::pdf_solid_angle`], bit for bit; together they cost little more than one of them.
     #[inline]
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
         each_lobe!(self, l => l.eval_and_pdf(wo, wi, mode))
     }
 
-    /// A direction; `None` where nothing is scattered.
+    /// Samples a direction; `None` where nothing is scattered.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         each_lobe!(self, l => l.sample(wo, u_choice, u, mode))
     }
 
-    /// Where one without width lets light through that is known to come along `wo`, however little.
+    /// The direction in which a delta lobe transmits light known to come along `wo`, however little it is.
     #[inline]
     pub(super) fn transmitted(&self, wo: Vec3) -> Option<Vec3> {
         match self {
@@ -82,7 +82,7 @@ impl Lobe {
         }
     }
 
-    /// The index of what lets light in, and its dispersion; none of a wall without thickness.
+    /// The index and dispersion of a lobe that transmits light into an interior; `None` for a thin wall.
     #[inline]
     pub(super) fn index(&self) -> Option<(f32, f32)> {
         let (eta, dispersion, thin) = match self {
@@ -94,7 +94,7 @@ impl Lobe {
         (!thin).then_some((eta, dispersion))
     }
 
-    /// The same of another index.
+    /// The same lobe with another index.
     pub(super) fn of_index(self, eta: f32) -> Lobe {
         match self {
             Lobe::Dielectric(glass) => Lobe::Dielectric(Dielectric { eta, ..glass }),
@@ -104,7 +104,7 @@ impl Lobe {
         }
     }
 
-    /// True when it has no width.
+    /// True for a delta lobe.
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
@@ -120,13 +120,13 @@ impl Lobe {
         }
     }
 
-    /// About how much light it sends on, the weight by which it is chosen.
+    /// Approximately how much light the lobe scatters, which is the weight for choosing it.
     #[inline]
     pub fn strength(&self) -> f32 {
         each_lobe!(self, l => l.strength())
     }
 
-    /// By how much more light than [`Lobe::strength`] it sends on when seen along the surface; less where negative.
+    /// How much more light than [`Lobe::strength`] it scatters at grazing angles; negative for less.
     #[inline]
     pub fn rise(&self) -> f32 {
         match self {
@@ -143,15 +143,15 @@ impl Lobe {
 pub struct BsdfEntry {
     /// Name, summary, source.
     pub entry: Entry,
-    /// True when eval(a, b) · |cos b| = eval(b, a) · |cos a| is promised.
+    /// True when eval(a, b) · |cos b| = eval(b, a) · |cos a| is guaranteed.
     pub reciprocal: bool,
-    /// True when a white one loses no light.
+    /// True when a white lobe loses no light.
     pub lossless: bool,
     /// Cases for the contract tests: a name and a lobe.
     pub cases: fn() -> Vec<(&'static str, Lobe)>,
 }
 
-/// Every lobe that there is.
+/// All lobes.
 pub const BSDFS: &[BsdfEntry] = &[
     super::lambert::ENTRY,
     super::mirror::ENTRY,

@@ -1,10 +1,10 @@
-//! A lobe about a normal of its own, as a smooth coat has over a rough ground: a [`Bsdf`] in two parts, each of which is
-//! one about a single normal. All that is promised of these holds for their sum.
+//! A lobe with a normal of its own, such as a smooth coat over a rough base: a [`Bsdf`] split into two parts, each
+//! about a single normal. Their sum keeps every guarantee of a [`Bsdf`].
 
 use super::{Bsdf, BsdfSample, TransportMode};
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 
-/// Which lobe it is, and about which normal.
+/// The lobe's index, and its normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LobeFrame {
     index: u8,
@@ -12,19 +12,19 @@ pub(super) struct LobeFrame {
     bends: bool,
 }
 
-/// What is about the normal that all share, and what is not.
+/// The lobes about the shared normal, and the lobe about its own.
 pub(super) struct Parts([Bsdf; 2]);
 
 impl Bsdf {
-    /// The same with one of its lobes, by its place among those that there are, about a normal of its own, which is
-    /// [bent](Bsdf::bending) where it `bends`.
+    /// The same BSDF with one of its lobes, by index, about a normal of its own, which [bends](Bsdf::bending) if
+    /// `bends` is true.
     pub fn with_apart(self, index: usize, n: Vec3, bends: bool) -> Bsdf {
         let is_there = self.lobes.get(index).is_some_and(|lobe| lobe.is_some());
         let apart = LobeFrame { index: index as u8, n, bends: bends && n != self.n_geom };
         Bsdf { apart: (is_there && n != self.frame.n).then_some(apart), ..self }
     }
 
-    /// Its parts, where it has more than one.
+    /// The two parts, if a lobe has its own normal.
     #[inline]
     pub(super) fn parts(&self) -> Option<Parts> {
         self.apart.as_ref().map(|apart| self.parted(apart))

@@ -1,6 +1,6 @@
-//! What is reflected at the surface itself, by microfacets that are glass, metal or a mixture of both. What microfacets of metal
-//! reflect onto each other comes out in the end, spread widely, without being followed: so much that a white metal
-//! loses nothing, and a coloured one is the more saturated. [Kulla 2017]
+//! Reflection at the surface itself, by microfacets of glass, metal or a mixture of both. Multiple scattering between
+//! the microfacets of metal is not traced: it leaves in a wide lobe that carries just enough light that a white metal
+//! loses nothing, and a coloured metal becomes more saturated. [Kulla 2017]
 
 use super::conductor::facet_between;
 use super::{
@@ -72,31 +72,31 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// Reflection at the surface, on both of its sides alike.
+/// Reflection at the surface, the same on both of its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MicrofacetReflection {
     ggx: Ggx,
-    /// Index of what is below microfacets of glass over what is above.
+    /// The index below the glass microfacets over the index above.
     eta: f32,
-    /// Factor on what microfacets of glass reflect; black where there are none.
+    /// A factor on the reflection of glass microfacets; black if there are none.
     glass: Rgb,
     metal: Fresnel,
-    /// Factor on what microfacets of metal reflect; black where there are none.
+    /// A factor on the reflection of metal microfacets; black if there are none.
     metal_weight: Rgb,
     albedo: Albedo,
-    /// What comes out after more than one reflection, over the two fractions that one reflection leaves.
+    /// The multiple-scattering colour, divided by the two fractions that a single bounce loses.
     again: Rgb,
-    /// How often a direction of that is drawn, over what one reflection leaves along `wo`.
+    /// The probability of sampling multiple scattering, divided by the fraction that a single bounce along `wo` loses.
     again_share: f32,
     cover: Coating,
     film: Option<ThinFilm>,
-    /// Factor on light from below.
+    /// A factor on light from below.
     from_below: f32,
 }
 
 impl MicrofacetReflection {
-    /// Facets of an index `eta`, at least 1, that reflect `glass` times Fresnel's fraction, and `metal_weight` times that
-    /// of metal. The two are at most white together.
+    /// Microfacets of an index `eta`, at least 1, that reflect `glass` times Fresnel's reflectance, and `metal_weight`
+    /// times that of metal. The sum of the two is at most white.
     pub fn new(
         ggx: Ggx,
         eta: f32,
@@ -129,17 +129,17 @@ impl MicrofacetReflection {
         gloss
     }
 
-    /// The same with a factor, 0..=1, on light from below the surface.
+    /// The same lobe with a factor, 0..=1, on light from below the surface.
     pub fn from_below(self, factor: f32) -> MicrofacetReflection {
         MicrofacetReflection { from_below: factor, ..self }
     }
 
-    /// The same below a thin film.
+    /// The same lobe below a thin film.
     pub fn below(self, film: ThinFilm) -> MicrofacetReflection {
         MicrofacetReflection { film: Some(film), ..self }
     }
 
-    /// True for white metal without a cover, which reflects all light.
+    /// True for white metal without a coating, which reflects all light.
     pub fn is_white(&self) -> bool {
         let is_bare = self.cover.is_none() && self.from_below == 1.0;
         is_bare && self.metal_weight == Rgb::WHITE && self.metal == Fresnel::tinted(Rgb::WHITE, Rgb::WHITE)
@@ -173,7 +173,7 @@ impl MicrofacetReflection {
         bare.lerp(reflected, film.weight)
     }
 
-    /// What is left of light on its way through what covers the microfacets.
+    /// The fraction of light that passes the coating above the microfacets.
     #[inline]
     fn covered(&self, wo: Vec3, wi: Vec3) -> f32 {
         let passed = self.cover.both(wo, wi);
@@ -238,7 +238,7 @@ impl MicrofacetReflection {
         self.fresnel(1.0).luminance()
     }
 
-    /// Facets that face the light reflect more of it towards grazing, the more so the smoother they are.
+    /// Microfacets reflect more light towards grazing, and smoother surfaces gain more.
     #[inline]
     pub(super) fn rise(&self) -> f32 {
         let grazing = (self.glass + self.metal_weight).luminance();

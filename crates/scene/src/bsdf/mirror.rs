@@ -17,7 +17,7 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// A perfect mirror, on both sides of the surface alike.
+/// A perfect mirror, the same on both sides of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mirror {
     /// Reflected fraction of the light, 0..=1.

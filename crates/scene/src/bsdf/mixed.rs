@@ -3,8 +3,8 @@
 use super::{Bsdf, MAX_LOBES};
 
 impl Bsdf {
-    /// The sum of `1 - share` of this one and `share`, 0..=1, of another about the same normal, which a coat takes on
-    /// that has its own. Lobes beyond [`MAX_LOBES`] are left out.
+    /// A mixture: `1 - share` of this BSDF plus `share`, 0..=1, of another about the same normal. A coat with its own
+    /// normal keeps it. Lobes beyond [`MAX_LOBES`] are left out.
     pub fn mixed(&self, other: &Bsdf, share: f32) -> Bsdf {
         let Bsdf { frame, n_geom, bends, splits, .. } = *self;
         let mut sum = Bsdf { bends, splits, ..Bsdf::empty(frame, n_geom) };

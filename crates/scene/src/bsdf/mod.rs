@@ -1,11 +1,11 @@
-//! How surfaces scatter light. One lobe a file; a [`Bsdf`] is a sum of lobes on a frame.
+//! How surfaces scatter light. Each lobe has its own file; a [`Bsdf`] is a sum of lobes on a frame.
 //!
 //! Directions: `wo` is the known one, `wi` the sampled or evaluated one; both are unit and point away from the
 //! surface. `eval` gives f·|cosθi|. In the lobes' own files directions are local, with the normal as z.
 //!
-//! A shading normal is not the surface's own, and so light and importance scatter by different laws. What arrives along
-//! `wi` at a surface that faces n_shade is f·|wi·n_shade|: so radiance is carried. For a path from a light to carry the
-//! same light between the same directions, what it found along `wo` leaves along `wi` by
+//! A shading normal is not the surface's own normal, so light and importance scatter by different laws. Radiance that
+//! arrives along `wi` at a surface with the normal n_shade scatters by f·|wi·n_shade|. For a path from a light to carry
+//! the same light between the same directions, importance that arrives along `wo` leaves along `wi` by
 //! f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|. [Veach 1997, 5.3]
 
 mod albedo;
@@ -54,7 +54,7 @@ use crate::wavelength::Wavelength;
 use bilux_math::{Frame, Rgb, Vec2, Vec3};
 use lobe_frame::LobeFrame;
 
-/// What is carried along a path: radiance from the lights, or importance from the camera.
+/// The quantity that a path carries: radiance from the lights, or importance from the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransportMode {
     /// The path began at the camera: refraction scales radiance by the square of the relative index.
@@ -64,7 +64,7 @@ pub enum TransportMode {
 }
 
 impl TransportMode {
-    /// What is carried along the same path from its other end.
+    /// The quantity that the same path carries when traced from its other end.
     #[inline]
     pub fn reversed(self) -> TransportMode {
         match self {
@@ -74,7 +74,7 @@ impl TransportMode {
     }
 }
 
-/// Where a shading normal raises importance by more than this, its direction is the surface's own but for rounding.
+/// A shading normal can raise importance by more than this only for a direction within rounding of the surface itself.
 const MAX_TURNED: f32 = (1u64 << 60) as f32;
 
 /// A sum of lobes at a point of a surface.
@@ -82,23 +82,23 @@ const MAX_TURNED: f32 = (1u64 << 60) as f32;
 pub struct Bsdf {
     frame: Frame,
     n_geom: Vec3,
-    /// Those that there are, without gaps, come first.
+    /// The lobes, the present ones first, without gaps.
     lobes: [Option<Lobe>; MAX_LOBES],
-    /// What each lobe's light is multiplied by.
+    /// A factor on each lobe's light.
     weights: [f32; MAX_LOBES],
-    /// By how much each lobe is chosen: weight times strength.
+    /// The weight for choosing each lobe: weight times strength.
     strengths: [f32; MAX_LOBES],
     total_strength: f32,
-    /// What the strengths gain where they are seen along the surface.
+    /// The gain of each strength at grazing angles.
     rises: [f32; MAX_LOBES],
     total_rise: f32,
     bends: bool,
     splits: bool,
-    /// A lobe about a normal of its own.
+    /// A lobe with a normal of its own.
     apart: Option<LobeFrame>,
 }
 
-/// So many lobes are summed at most.
+/// The maximum number of lobes in a sum.
 pub const MAX_LOBES: usize = 5;
 
 impl Bsdf {
@@ -130,7 +130,7 @@ impl Bsdf {
         sum
     }
 
-    /// No lobe yet.
+    /// A BSDF without lobes.
     #[inline]
     fn empty(frame: Frame, n_geom: Vec3) -> Bsdf {
         Bsdf {
@@ -148,7 +148,7 @@ impl Bsdf {
         }
     }
 
-    /// The same lobes about another normal; what was asked of the last one has to be asked again.
+    /// The same lobes about another normal; settings that depend on the previous normal have to be applied again.
     #[inline]
     pub fn moved_to(&self, n_shade: Vec3, n_geom: Vec3) -> Bsdf {
         Bsdf { frame: Frame::from_normal(n_shade), n_geom, bends: false, apart: None, ..*self }
@@ -162,7 +162,7 @@ impl Bsdf {
         self.total_rise += self.rises[i];
     }
 
-    /// How much of the rises counts for light that is known to come along `wo`: what Schlick's law adds.
+    /// The fraction of the rises that counts for light known to come along `wo`: Schlick's power of the cosine.
     #[inline]
     fn risen(&self, wo: Vec3) -> f32 {
         if self.rises == [0.0; MAX_LOBES] {
@@ -172,13 +172,13 @@ impl Bsdf {
         (m * m) * (m * m) * m
     }
 
-    /// By how much this is chosen among others, for light that is known to come along `wo`.
+    /// The weight for choosing this BSDF among others, for light known to come along `wo`.
     #[inline]
     fn strength_along(&self, wo: Vec3) -> f32 {
         self.total_strength + self.total_rise * self.risen(wo)
     }
 
-    /// True where it is not simply a sum about one normal.
+    /// True when it is more than a plain sum about one normal.
     #[inline]
     fn is_special(&self) -> bool {
         self.bends || self.apart.is_some()
@@ -190,8 +190,7 @@ impl Bsdf {
         self.weights.iter().zip(&self.lobes).map_while(|(w, lobe)| Some((*w, lobe.as_ref()?)))
     }
 
-    /// The same with the local x axis along a tangent, for lobes that tell directions apart; the zero vector
-    /// leaves it.
+    /// The same BSDF with the local x axis along a tangent, for anisotropic lobes; a zero vector leaves it unchanged.
     #[inline]
     pub fn along(mut self, tangent: Vec3) -> Bsdf {
         if tangent != Vec3::ZERO {
@@ -200,15 +199,16 @@ impl Bsdf {
         self
     }
 
-    /// The same where whoever looks from behind the shading normal sees it bent back, instead of black. Not where a
-    /// lobe leaves out directions, as Phong's does: what is seen about one normal nothing drawn about another may reach.
+    /// The same BSDF, with the shading normal bent back for a viewer behind it instead of scattering black. It has no
+    /// effect if a lobe excludes directions, as Phong's does: sampling about one normal might not reach directions
+    /// visible about another.
     pub fn bending(self) -> Bsdf {
         let is_narrow = self.weighted().any(|(_, lobe)| matches!(lobe, Lobe::Phong(_)));
         Bsdf { bends: self.frame.n != self.n_geom && !is_narrow, ..self }
     }
 
-    /// The same for light of one wavelength, where the outside has this refractive index, and not that of air. Where the
-    /// wavelength makes a difference, it [splits](Bsdf::splits) paths.
+    /// The same BSDF for light of one wavelength, where the outside has this refractive index rather than that of air.
+    /// If the wavelength matters, the BSDF [splits](Bsdf::splits) paths.
     pub fn refracting(mut self, wavelength: &Wavelength, eta_outside: f32) -> Bsdf {
         for lobe in self.lobes.iter_mut().flatten() {
             let Some((eta, dispersion)) = lobe.index() else { continue };
@@ -219,24 +219,24 @@ impl Bsdf {
         self
     }
 
-    /// The same where that outside makes a difference between wavelengths.
+    /// The same BSDF, marked when the outside medium depends on the wavelength.
     pub fn splitting(self, splits: bool) -> Bsdf {
         Bsdf { splits: self.splits || splits, ..self }
     }
 
-    /// True where light of other wavelengths is scattered otherwise: a path that has been here is of one.
+    /// True when other wavelengths scatter differently: a path through here carries a single wavelength.
     #[inline]
     pub fn splits(&self) -> bool {
         self.splits
     }
 
-    /// True when all that it scatters goes into single directions.
+    /// True when all of its lobes are delta lobes.
     #[inline]
     pub fn is_delta(&self) -> bool {
         self.weighted().all(|(_, lobe)| lobe.is_delta())
     }
 
-    /// f·|wi·n_shade| of all lobes with width; for importance f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|.
+    /// f·|wi·n_shade| of all non-delta lobes; for importance f·|wo·n_shade|·|wi·n_geom| / |wo·n_geom|.
     pub fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         if self.apart.is_some() {
             return self.eval_and_pdf(wo, wi, mode).0;
@@ -251,7 +251,7 @@ impl Bsdf {
         })
     }
 
-    /// Density of [`Bsdf::sample`] over the lobes with width.
+    /// The density of [`Bsdf::sample`] over the non-delta lobes.
     pub fn pdf_solid_angle(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> f32 {
         if self.total_strength <= 0.0 {
             return 0.0;
@@ -273,7 +273,7 @@ impl Bsdf {
         pdf / (self.total_strength + self.total_rise * risen)
     }
 
-    /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], the same bits: at once they take little more than one of them.
+    /// [`Bsdf::eval`] and [`Bsdf::pdf_solid_angle`], bit for bit; together they cost little more than one of them.
     #[inline]
     pub fn eval_and_pdf(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (Rgb, f32) {
         if self.is_special() {
@@ -299,7 +299,7 @@ impl Bsdf {
         (scattered, if total > 0.0 { pdf / total } else { 0.0 })
     }
 
-    /// A direction: `u_choice` picks the lobe (and reflection or refraction in it), `u` the direction.
+    /// Samples a direction: `u_choice` picks the lobe (and reflection or refraction in it), `u` the direction.
     #[inline]
     pub fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         if let Some(parts) = self.parts() {
@@ -325,14 +325,15 @@ impl Bsdf {
         let (scattered, pdf_solid_angle) = self.eval_and_pdf(wo, sample.wi, mode);
         (sample.weight, sample.pdf_solid_angle) = (scattered / pdf_solid_angle, pdf_solid_angle);
         if self.bends && !self.keeps_side(wo, &sample) {
-            // It was drawn about another normal than it is seen about, and the triangle alone tells what it is.
+            // The sampled normal differs from the visible one, so classify the event by the triangle alone.
             (sample.transmits, sample.eta) = (!sample.transmits, 1.0);
         }
         (self.keeps_side(wo, &sample) && sample.pdf_solid_angle > 0.0).then_some(sample)
     }
 
-    /// What was scattered about a normal `n`, as radiance or as importance. Importance that comes along the surface
-    /// itself carries nothing, rather than what no number holds.
+    /// Light scattered about a normal `n`, as radiance or as importance.
+    ///
+    /// Importance along the surface itself is black instead of infinite.
     #[inline]
     fn carried(&self, scattered: Rgb, n: Vec3, wo: Vec3, wi: Vec3, mode: TransportMode) -> Rgb {
         if mode == TransportMode::Radiance {
@@ -343,13 +344,13 @@ impl Bsdf {
         if ratio < MAX_TURNED { scattered * ratio } else { Rgb::BLACK }
     }
 
-    /// True when what is reflected stays on its side of the triangle, and what is transmitted does not.
+    /// True when a reflected direction stays on its side of the triangle, and a transmitted one does not.
     #[inline]
     fn keeps_side(&self, wo: Vec3, sample: &BsdfSample) -> bool {
         (wo.dot(self.n_geom) * sample.wi.dot(self.n_geom) < 0.0) == sample.transmits
     }
 
-    /// A lobe by its share of the strength, what is left of the random number, and that share.
+    /// Picks a lobe in proportion to its strength; returns it, the rest of the random number, and its probability.
     #[inline]
     fn choose(&self, wo: Vec3, u: f32) -> Option<(usize, f32, f32)> {
         let risen = self.risen(wo);
@@ -371,7 +372,8 @@ impl Bsdf {
         last
     }
 
-    /// Light must be on the same side of the triangle as of the interpolated surface `n`, or it leaks through.
+    /// Both directions must be on the same sides of the triangle and of the interpolated surface `n`, or light leaks
+    /// through.
     #[inline]
     fn sides_agree(&self, n: Vec3, wo: Vec3, wi: Vec3) -> bool {
         let geometric = wo.dot(self.n_geom) * wi.dot(self.n_geom);

@@ -1,5 +1,5 @@
-//! The highlight of Phong as a BRDF: a cosine power around the mirrored direction, normalised so that it never
-//! gives out more than it gets. [Lafortune 1994]
+//! Phong's highlight as a BRDF: a power of the cosine around the mirrored direction, normalised so that it never
+//! reflects more light than it receives. [Lafortune 1994]
 
 use super::{BsdfEntry, BsdfSample, Lobe, TransportMode};
 use bilux_math::registry::Entry;
@@ -23,10 +23,10 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
     },
 };
 
-/// A normalised Phong highlight, on both sides of the surface alike.
+/// A normalised Phong highlight, the same on both sides of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhongLobe {
-    /// Reflected fraction of light that falls in straight, 0..=1.
+    /// The reflectance at normal incidence, 0..=1.
     pub reflectance: Rgb,
     /// Power of the cosine, 0 or more.
     pub exponent: f32,
@@ -68,7 +68,7 @@ impl PhongLobe {
         let mirrored = Frame::from_normal(Vec3::new(-wo.x, -wo.y, wo.z));
         let wi = mirrored.to_world(warp::sample_power_cosine(u, self.exponent)).normalize();
         let pdf_solid_angle = self.pdf_solid_angle(wo, wi);
-        // Directions below the surface carry nothing: their share of the density is lost, as it must be.
+        // Directions below the surface carry nothing: their part of the density is lost, as it should be.
         BsdfSample::reflected(wi, self.eval(wo, wi, mode), pdf_solid_angle)
     }
 

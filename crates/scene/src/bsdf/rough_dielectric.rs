@@ -45,26 +45,28 @@ pub(super) const ENTRY: BsdfEntry = BsdfEntry {
 pub struct RoughDielectric {
     /// Refractive index of the inside over that of the outside, at the d line.
     pub eta: f32,
-    /// 1 over Abbe's number: how much the index depends on the wavelength.
+    /// 1 over the Abbe number: how strongly the index depends on the wavelength.
     pub dispersion: f32,
     /// Factor on all light, 0..=1; white for real glass.
     pub tint: Rgb,
-    /// A pane without thickness: what passes goes on as what is reflected would, on the other side.
+    /// A thin pane: transmitted light continues as the mirror image of reflected light, on the other side.
     pub thin: bool,
-    /// How its microfacets are turned; not smooth.
+    /// The distribution of its microfacets; not smooth.
     pub ggx: Ggx,
-    /// On its outside; a pane has it on both sides.
+    /// A thin film on the outside; a pane has it on both sides.
     pub film: Option<ThinFilm>,
 }
 
 impl RoughDielectric {
-    /// True where the roughness shows: microfacets that hardly bend light let it through as a smooth boundary does, and
-    /// their width is lost to rounding.
+    /// True where the roughness matters.
+    ///
+    /// With an index near 1, microfacets hardly bend light: it passes as through a smooth boundary, and the lobe's
+    /// width is lost to rounding.
     pub fn is_rough(eta: f32, thin: bool, ggx: &Ggx) -> bool {
         !ggx.is_smooth() && (thin || (eta - 1.0).abs() > 1e-2)
     }
 
-    /// The same of another index; smooth where it is nearly that of the outside.
+    /// The same glass with another index; smooth if the index is close to that of the outside.
     pub fn of_index(self, eta: f32) -> Lobe {
         let RoughDielectric { dispersion, tint, thin, ggx, film, .. } = self;
         if RoughDielectric::is_rough(eta, thin, &ggx) {
@@ -92,13 +94,14 @@ impl RoughDielectric {
         };
         let Some(film) = &self.film else { return (self.tint * f, pdf) };
         let passes = usize::from(wo.z * wi.z < 0.0);
-        // What is refracted tells its cosine on the outside.
+        // For refracted light `cos` is the cosine on the outside.
         let outside = wo.z > 0.0 || passes == 1;
         let (_, colours) = shares(film.over_clear(cos, self.eta, outside, self.thin));
         (self.tint * colours[passes] * f, pdf)
     }
 
-    /// Light that comes back from the microfacets, or through those of a pane; `share` is that of Fresnel's fraction.
+    /// Light reflected by the microfacets, or transmitted by those of a pane; `share` maps Fresnel's reflectance to its
+    /// factor.
     #[inline]
     fn reflected(&self, wo: Vec3, wi: Vec3, share: impl Fn(f32) -> f32) -> (f32, f32, f32) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
@@ -108,7 +111,7 @@ impl RoughDielectric {
         (density * self.ggx.visible(wo, wi), density * 0.25 * self.ggx.seen(wo), cos)
     }
 
-    /// Light that passes the microfacets. [Walter 2007, eq. 21]
+    /// Light refracted by the microfacets. [Walter 2007, eq. 21]
     #[inline]
     fn refracted(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> (f32, f32, f32) {
         let (eta, outside) = (self.eta_from(wo), wo.z > 0.0);
@@ -123,7 +126,7 @@ impl RoughDielectric {
         }
         let spread = cos_o - eta * cos_i;
         let per_angle = cos_i * cos_o * eta * eta / (spread * spread);
-        // By the cosine on the outside, from which both ends find the same to the last digits.
+        // Use the cosine on the outside, from which both ends compute the same value to the last digits.
         let above = if outside { cos_o } else { cos_i };
         let passes = match &self.film {
             Some(_) => 1.0 - self.fresnel(above, self.eta, true),
@@ -156,7 +159,7 @@ impl RoughDielectric {
         Some(BsdfSample { transmits: !reflects, eta, ..sample })
     }
 
-    /// The reflected fraction at a microfacet, the mean of the channels; of a pane, at both of its faces.
+    /// The reflectance of a microfacet, averaged over the channels; for a pane, of both faces.
     #[inline]
     fn fresnel(&self, cos: f32, eta: f32, outside: bool) -> f32 {
         if let Some(film) = &self.film {
@@ -169,7 +172,7 @@ impl RoughDielectric {
         2.0 * once / (1.0 + once)
     }
 
-    /// Index of the far side over that of the side of `wo`.
+    /// The index of the far side over that of the side of `wo`.
     #[inline]
     fn eta_from(&self, wo: Vec3) -> f32 {
         if wo.z > 0.0 { self.eta } else { 1.0 / self.eta }
@@ -181,8 +184,8 @@ impl RoughDielectric {
     }
 }
 
-/// What [`fresnel_dielectric`] lacks to 1, by the cosines on both sides: the same from both, and exact where next to
-/// nothing passes. `eta` is the index of the second side over that of the first.
+/// 1 minus [`fresnel_dielectric`], from the cosines on both sides: equal from both, and exact where almost nothing is
+/// transmitted. `eta` is the index of the second side over that of the first.
 #[inline]
 fn passed(cos_o: f32, cos_i: f32, eta: f32) -> f32 {
     let (parallel, perpendicular) = (eta * cos_o + cos_i, cos_o + eta * cos_i);

@@ -1,26 +1,27 @@
-//! Roughness of what scatters diffusely, such as clay or the moon: microfacets that are matt themselves. Seen from where the
-//! light comes they are brighter, and towards grazing than Lambert has it; what they scatter onto each other comes out in
-//! the end, so that white loses nothing. [Portsmouth 2025]
+//! Rough diffuse surfaces such as clay or the moon, whose microfacets are diffuse themselves. They are brighter than
+//! Lambert's law when seen from the direction of the light, and towards grazing. Multiple scattering between
+//! microfacets comes out in the end, so that white loses nothing. [Portsmouth 2025]
 
 use bilux_math::{Rgb, Vec3};
 use std::f32::consts::{FRAC_1_PI, PI};
 
-/// How a rough base scatters, over how a matt one would.
+/// The scattering of a rough base, relative to a Lambertian one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughDiffuse {
     roughness: f32,
-    /// What a microfacet scatters at once, over all of it: A of [Portsmouth 2025].
+    /// The weight of single scattering: A of [Portsmouth 2025].
     once: f32,
-    /// What comes out after more than once, over the two fractions that once leaves.
+    /// The multiple-scattering colour, divided by the two fractions that single scattering loses.
     again: Rgb,
 }
 
 impl RoughDiffuse {
-    /// Of a roughness, 0..=1, and the colour of the microfacets, where light gets there along a direction as `gets_in` says.
+    /// From a roughness, 0..=1, the colour of the microfacets, and the fraction `gets_in` of light that reaches them by
+    /// cosine.
     pub(super) fn new(roughness: f32, colour: Rgb, gets_in: impl Fn(f32) -> f32) -> RoughDiffuse {
         let once = 1.0 / (1.0 + roughness * (0.5 - 2.0 * FRAC_1_PI / 3.0));
         let unscaled = RoughDiffuse { roughness, once, again: Rgb::WHITE };
-        // Of what gets there, the part that is scattered again.
+        // The light that reaches the microfacets, and the part of it that is scattered again.
         let (mut all, mut left) = (0.0, 0.0);
         for (t, w) in super::coated_diffuse::GAUSS {
             let here = w * 4.0 * t * t * t * gets_in(t * t);
@@ -28,33 +29,34 @@ impl RoughDiffuse {
             left += here * unscaled.left(t * t);
         }
         let mean = once * (1.0 + roughness * (2.0 / 3.0 - 28.0 / (15.0 * PI)));
-        // Each further time, light takes the microfacets' colour on.
+        // Each further bounce multiplies the light by the microfacets' colour.
         let tinted = colour.map(|c| c * mean / (1.0 - c * (1.0 - mean)));
         RoughDiffuse { again: tinted * (all / left.max(f32::MIN_POSITIVE)), ..unscaled }
     }
 
-    /// The part of the light along a direction that one scattering does not send on.
+    /// The fraction of light along a direction that single scattering loses.
     #[inline]
     fn left(&self, cos: f32) -> f32 {
-        // What shadows and microfacets that face the viewer add to it: the closed form has arcs of cosines in it, and is this
-        // within 6e-4.
+        // The gain from shadowing and from microfacets that face the viewer. The closed form contains arc cosines; this
+        // fit is within 6e-4 of it.
         let x = 1.0 - cos;
         let gained = x * (0.057_108_53 + x * (0.491_881_86 + x * (-0.332_181_44 + x * 0.071_442_99)));
         (1.0 - self.once * (1.0 + self.roughness * gained)).max(0.0)
     }
 
-    /// What it scatters between two directions on one side, over what Lambert's law has.
+    /// The ratio to Lambert's law, for two directions on one side.
     #[inline]
     pub(super) fn over_lambert(&self, wo: Vec3, wi: Vec3) -> Rgb {
         let (o, i) = (wo.z.abs(), wi.z.abs());
-        // How much nearer the directions are to each other than they would be on average.
+        // How much closer together the directions are than on average.
         let near = wo.x * wi.x + wo.y * wi.y;
         let stretched = if near > 0.0 { near / o.max(i) } else { near };
         let single = self.once * (1.0 + self.roughness * stretched);
         self.again * (self.left(o) * self.left(i)) + Rgb::grey(single.max(0.0))
     }
 
-    /// How often a direction is drawn evenly, where a cosine would draw too few that lie near the horizon, as `wo` does.
+    /// The probability of uniform sampling, as cosine sampling draws too few directions near the horizon of a grazing
+    /// `wo`.
     #[inline]
     pub(super) fn share_even(&self, wo: Vec3) -> f32 {
         let grazing = 1.0 - wo.z.abs().min(1.0);
@@ -67,7 +69,7 @@ mod tests {
     use super::*;
     use bilux_math::transcendental::{acos, sin_cos};
 
-    /// The model as it is told, with its arcs of cosines. [Portsmouth 2025]
+    /// The published model, with its arc cosines. [Portsmouth 2025]
     fn told(roughness: f32, colour: f32, wo: Vec3, wi: Vec3) -> f32 {
         let once = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * PI)) * roughness);
         let s = wo.dot(wi) - wo.z * wi.z;
@@ -99,7 +101,8 @@ mod tests {
         }
     }
 
-    /// White microfacets, in the open, send all light on; and the part that is left is what the mean of one scattering lacks.
+    /// White microfacets without a coating scatter all light; and the lost part is what the mean of single scattering
+    /// lacks.
     #[test]
     fn nothing_is_lost() {
         for roughness in [0.2f32, 0.6, 1.0] {
@@ -110,7 +113,7 @@ mod tests {
                 let middle = |i: u32| (i as f32 + 0.5) / N as f32;
                 let mut all = 0.0;
                 for (i, k) in (0..N).flat_map(|i| (0..N).map(move |k| (i, k))) {
-                    // Cosines by squares, for there is much to be seen near the horizon.
+                    // Squared cosines, as much is visible near the horizon.
                     let (t, (sin_turn, cos_turn)) = (middle(i), sin_cos(PI * middle(k)));
                     let (z, sin) = (t * t, (1.0 - t * t * t * t).sqrt());
                     let wi = Vec3::new(sin * cos_turn, sin * sin_turn, z);

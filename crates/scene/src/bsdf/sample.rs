@@ -1,4 +1,4 @@
-//! What sampling gives.
+//! The result of sampling a BSDF.
 
 use bilux_math::{Rgb, Vec3};
 
@@ -9,9 +9,9 @@ pub struct BsdfSample {
     pub wi: Vec3,
     /// f·|cosθi| over the density (over the probability, for a delta lobe).
     pub weight: Rgb,
-    /// Density in solid angle; for a delta lobe the probability of having chosen it.
+    /// Density over solid angle; for a delta lobe the probability of having chosen it.
     pub pdf_solid_angle: f32,
-    /// True for a lobe without width: `eval` and `pdf` know nothing of it.
+    /// True for a delta lobe, which `eval` and `pdf` leave out.
     pub is_delta: bool,
     /// True when `wi` is on the other side of the surface.
     pub transmits: bool,
@@ -20,7 +20,7 @@ pub struct BsdfSample {
 }
 
 impl BsdfSample {
-    /// A direction of a lobe with width, on the side that light came from; `None` where it has no density.
+    /// A sample of a non-delta lobe, on the side of `wo`; `None` where its density is zero.
     #[inline]
     pub(super) fn reflected(wi: Vec3, scattered: Rgb, pdf_solid_angle: f32) -> Option<BsdfSample> {
         let weight = scattered / pdf_solid_angle;

@@ -1,9 +1,9 @@
-//! A film as thin as light's waves on a surface, such as oil or the oxide of steel: what its two sides reflect adds up or
-//! cancels, at each wavelength otherwise.
+//! Thin-film interference, such as oil or the oxide on steel: the reflections of the film's two sides add up or cancel,
+//! depending on the wavelength.
 //!
-//! Between amplitudes a above and b below it, with q = ab, Airy's sum reflects
-//! R = 1 - (1-a²)(1-b²) / (1-q²) · (1 + 2 Σ (-q)^m cos mδ), δ = 2π · path / wavelength. Only the cosines depend on the
-//! wavelength: their means over what the channels see are a table over the path. [Belcour 2017; Born 1999, 7.6]
+//! For amplitudes a above the film and b below it, with q = ab, Airy's sum is the reflectance R = 1 - (1-a²)(1-b²) /
+//! (1-q²) · (1 + 2 Σ (-q)^m cos mδ), δ = 2π · path / wavelength. Only the cosines depend on the wavelength, and a table
+//! over the path stores their means over the channels' sensitivities. [Belcour 2017; Born 1999, 7.6]
 
 use super::{Fresnel, fresnel_dielectric};
 use crate::wavelength::sensitivity;
@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 /// A film on part of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinFilm {
-    /// How much of the surface has it, 0..=1.
+    /// The fraction of the surface that has it, 0..=1.
     pub weight: f32,
     /// Thickness in nm.
     pub thickness: f32,
@@ -23,11 +23,12 @@ pub struct ThinFilm {
     pub eta: f32,
 }
 
-/// How often light goes to and fro before the rest of it counts for nothing.
+/// The number of interreflections in the film before the rest is negligible.
 const ORDERS: i32 = 5;
 
 impl ThinFilm {
-    /// What a boundary of this index (at least 1) over what is above reflects below the film, by the channels.
+    /// The reflectance per channel, under the film, of a boundary whose index over the medium above is `eta`, at least
+    /// 1.
     pub(super) fn over_glass(&self, cosine: f32, eta: f32) -> Rgb {
         let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
         let below = (1.0 - (1.0 - above * above) / (eta * eta)).max(0.0).sqrt();
@@ -36,8 +37,9 @@ impl ThinFilm {
         self.reflected(above, within, [Rgb::grey(across), Rgb::grey(along)])
     }
 
-    /// What clear glass of an index `eta` over the outside reflects where its surface has the film in part, by the channels:
-    /// of light that comes from the outside, or from the inside, under this cosine. A pane has the film on both of its faces.
+    /// The reflectance per channel of clear glass of relative index `eta`, part of whose surface has the film.
+    ///
+    /// Light comes from the outside or from the inside, at this cosine. A pane has the film on both of its faces.
     #[inline(never)]
     pub(super) fn over_clear(&self, cosine: f32, eta: f32, outside: bool, thin: bool) -> Rgb {
         let above2 = 1.0 - (1.0 - cosine * cosine) * if outside || thin { 1.0 } else { eta * eta };
@@ -50,14 +52,14 @@ impl ThinFilm {
         if thin { once.map(|r| 2.0 * r / (1.0 + r)) } else { once }
     }
 
-    /// The same of metal, which turns the phase of light by half.
+    /// The same for metal, which shifts the phase of light by half a wavelength.
     pub(super) fn over_metal(&self, cosine: f32, metal: &Fresnel) -> Rgb {
         let Some((above, within)) = self.cosines(cosine) else { return Rgb::WHITE };
         let b = metal.at(within).map(f32::sqrt);
         self.reflected(above, within, [b * -1.0, b])
     }
 
-    /// The index of a boundary that reflects as much straight on as this film over one of `eta` ever does.
+    /// The index of a boundary that reflects as much at normal incidence as the maximum of this film over `eta`.
     pub fn most(&self, eta: f32) -> f32 {
         let (a, b) = ((self.eta - 1.0) / (self.eta + 1.0), (eta - self.eta).abs() / (eta + self.eta));
         let most = (a + b) / (1.0 + a * b);
@@ -66,15 +68,15 @@ impl ThinFilm {
         (1.0 + amplitude) / (1.0 - amplitude)
     }
 
-    /// Above and within the film; `None` where light does not get into it.
+    /// The cosines above and within the film; `None` where light does not enter it.
     fn cosines(&self, cosine: f32) -> Option<(f32, f32)> {
         let above = cosine.clamp(0.0, 1.0);
         let within = 1.0 - (1.0 - above * above) / (self.eta * self.eta);
         (within > 0.0).then(|| (above, within.sqrt()))
     }
 
-    /// The mean of both polarisations; `b` has the amplitudes below for light that swings across and along the plane of
-    /// incidence.
+    /// The mean of both polarisations; `b` has the amplitudes below the film, perpendicular and parallel to the plane
+    /// of incidence.
     fn reflected(&self, above: f32, within: f32, b: [Rgb; 2]) -> Rgb {
         let path = 2.0 * self.eta * self.thickness * within;
         let a = [amplitude(above, self.eta * within), amplitude(above, within / self.eta)];
@@ -94,18 +96,18 @@ impl ThinFilm {
     }
 }
 
-/// Amplitude that is reflected from one medium to another: of light that swings across the plane of incidence, given index
-/// times cosine of each; of light that swings along it, given cosine over index.
+/// The reflected amplitude between two media. For perpendicular polarisation the arguments are index times cosine of
+/// each medium, for parallel polarisation cosine over index.
 #[inline]
 fn amplitude(first: f32, second: f32) -> f32 {
     (first - second) / (first + second).max(f32::MIN_POSITIVE)
 }
 
-/// Paths in nm, in even steps; longer ones give no colour.
+/// Paths in nm, in uniform steps; longer ones give no colour.
 const LONGEST: f32 = 16_000.0;
 const STEPS: usize = 1601;
 
-/// The mean of cos(2π · path / wavelength), weighted by what the channels see.
+/// The mean of cos(2π · path / wavelength), weighted by the sensitivity of each channel.
 #[inline]
 fn mean_cosine(path: f32) -> Rgb {
     let place = path / LONGEST * (STEPS - 1) as f32;
@@ -133,7 +135,7 @@ mod tests {
     use super::*;
     use bilux_math::transcendental::sin_cos_f64;
 
-    /// Airy's sum itself, wavelength by wavelength, and by complex amplitudes.
+    /// Airy's sum computed directly, wavelength by wavelength, with complex amplitudes.
     fn by_wavelengths(film: &ThinFilm, cosine: f32, eta: f32) -> Rgb {
         let (c1, sin2) = (f64::from(cosine), 1.0 - f64::from(cosine * cosine));
         let (n2, n3) = (f64::from(film.eta), f64::from(eta));
@@ -172,7 +174,7 @@ mod tests {
                 }
             }
         }
-        // There are colours to be told apart.
+        // The colours do differ.
         assert!(most > 0.05, "{most}");
     }
 
@@ -194,7 +196,7 @@ mod tests {
                     assert!(off < 0.01, "{film:?} at {cosine}: {found:?}, {wanted:?}");
                 }
             }
-            // Beyond the critical angle all is reflected, film or not.
+            // Beyond the critical angle all light is reflected, with or without a film.
             assert_eq!(film.over_clear(0.5, 1.5, false, false), Rgb::WHITE);
         }
     }

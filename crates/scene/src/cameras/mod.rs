@@ -1,4 +1,4 @@
-//! Where the picture is seen from. One camera a file; the table is [`CAMERAS`].
+//! Cameras. Each camera has its own file; the table is [`CAMERAS`].
 
 mod orthographic;
 mod perspective;
@@ -10,33 +10,33 @@ use bilux_math::registry::Entry;
 use bilux_math::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// A point of the film, of the lens and of time.
+/// A sample of the film, the lens and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSample {
     /// Point of the film, 0..=1 on both axes, y downwards.
     pub film: Vec2,
-    /// Point of the unit disc, times the aperture; zero for a pinhole.
+    /// Point on the unit disc, to be scaled by the aperture; zero for a pinhole.
     pub lens: Vec2,
     /// When, in seconds.
     pub time: f32,
 }
 
-/// How a camera sees a point of the scene.
+/// A connection from a point of the scene to the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraConnection {
-    /// Point of the film, as of [`CameraSample`], from 0 to below 1 on both axes.
+    /// Point of the film, as in [`CameraSample`], from 0 to below 1 on both axes.
     pub film: Vec2,
-    /// Point of the lens (of the film, for parallel rays) from which it is seen.
+    /// Point on the lens (on the film, for parallel rays) that sees it.
     pub p: Vec3,
     /// Unit direction from the point of the scene to there.
     pub wi: Vec3,
-    /// Density of camera rays at the point of the scene, over area across `wi`, 1/m², for film points uniform over
-    /// the unit square and this point of the lens. It is the camera's importance, for a film of area 1.
+    /// Density of camera rays at the point of the scene, over area perpendicular to `wi`, 1/m², for film points uniform
+    /// over the unit square and this point on the lens. It is the camera's importance, for a film of area 1.
     pub density: f32,
 }
 
 impl CameraConnection {
-    /// This, if the film's point is on the film and the density a number.
+    /// The connection, if its point is on the film and its density is finite.
     fn on_film(self) -> Option<CameraConnection> {
         let inside = |x: f32| (0.0..1.0).contains(&x);
         (inside(self.film.x) && inside(self.film.y) && self.density.is_finite()).then_some(self)
@@ -47,21 +47,22 @@ impl CameraConnection {
 pub trait Camera: Send + Sync {
     /// The ray of a sample; its direction is of unit length.
     fn ray(&self, sample: &CameraSample) -> Ray;
-    /// How a point of the scene is seen through a point of the lens (as of [`CameraSample`]) at a time in seconds:
-    /// the inverse of [`Camera::ray`]. `None` when it is behind the camera or off the film.
+    /// Connects a point of the scene through a point on the lens (as in [`CameraSample`]) at a time in seconds.
+    ///
+    /// This is the inverse of [`Camera::ray`]. `None` when the point is behind the camera or off the film.
     fn connect(&self, from: Vec3, lens: Vec2, time: f32) -> Option<CameraConnection>;
-    /// [`CameraConnection::density`] where one of its rays (of unit direction) has come to `t`.
+    /// [`CameraConnection::density`] at distance `t` along one of its rays (of unit direction).
     fn density(&self, ray: &Ray, t: f32) -> f32;
-    /// Height of what the film shows where a point is, in metres across its axis, at a time in seconds: over the film's rows
-    /// of pixels it is how wide a pixel is there.
+    /// The height of the film's view at a point, in metres perpendicular to the axis, at a time in seconds. Divided by
+    /// the number of pixel rows, it is the width of a pixel there.
     fn height_at(&self, p: Vec3, time: f32) -> f32;
     /// True when its rays depend on [`CameraSample::lens`].
     fn has_lens(&self) -> bool;
-    /// Where it looks, a unit vector, at a time in seconds.
+    /// The viewing direction, a unit vector, at a time in seconds.
     fn forward(&self, time: f32) -> Vec3;
 }
 
-/// A camera's parameters at a time: one row, or one for every keyframe.
+/// A camera's parameters over time: one row, or one for every keyframe.
 pub type CameraKeys<'a> = &'a [(f32, Reader<'a>)];
 
 /// A row of [`CAMERAS`].
@@ -73,15 +74,15 @@ pub struct CameraEntry {
     pub build: fn(CameraKeys, f32) -> Result<Arc<dyn Camera>, SceneError>,
 }
 
-/// Every camera that there is.
+/// All cameras.
 pub const CAMERAS: &[CameraEntry] = &[perspective::ENTRY, orthographic::ENTRY];
 
-/// A camera as a scene describes it: a spec, and what changes at keyframes.
+/// A camera as a scene describes it: a spec, and the changes at keyframes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CameraSpec {
     /// Kind and parameters.
     pub spec: Spec,
-    /// Times in seconds, rising, each with the parameters that differ from the spec's.
+    /// Times in seconds, in ascending order, each with the parameters that differ from the spec's.
     pub keyframes: Vec<(f32, Parameters)>,
 }
 
@@ -129,7 +130,7 @@ pub fn build(camera: &CameraSpec, aspect: f32) -> Result<Arc<dyn Camera>, SceneE
     (row.build)(&readers, aspect)
 }
 
-/// The two keyframes around a time, and how far it is between them.
+/// The two keyframes around a time, and its fraction of the way between them.
 fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
     let after = keys.partition_point(|(t, _)| *t <= time);
     let (low, high) = (after.saturating_sub(1), after.min(keys.len() - 1));
@@ -138,7 +139,7 @@ fn around<K>(keys: &[(f32, K)], time: f32) -> (&K, &K, f32) {
     (&keys[low].1, &keys[high].1, fraction)
 }
 
-/// Right, up and forward of a camera that looks from one point to another.
+/// The right, up and forward axes of a camera that looks from one point to another.
 fn look(position: Vec3, look_at: Vec3, up: Vec3) -> Option<[Vec3; 3]> {
     let forward = (look_at - position).try_normalize()?;
     let right = forward.cross(up).try_normalize()?;

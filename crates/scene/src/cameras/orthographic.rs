@@ -71,7 +71,7 @@ impl Orthographic {
         }
     }
 
-    /// Rays over area: the film's points are uniform, and the rays parallel.
+    /// Rays per area: film points are uniform, and the rays are parallel.
     fn density_of(&self, key: &Key) -> f32 {
         1.0 / (4.0 * key.half_height * key.half_height * self.aspect.abs())
     }

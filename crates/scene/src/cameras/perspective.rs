@@ -1,4 +1,4 @@
-//! `perspective`: a pinhole, or a thin lens where an aperture is given.
+//! `perspective`: a pinhole, or a thin lens if an aperture is given.
 
 use super::{Camera, CameraConnection, CameraEntry, CameraSample, around, look};
 use crate::error::SceneError;
@@ -80,7 +80,7 @@ struct Perspective {
     keys: Vec<(f32, Key)>,
     /// Width over height; negative when mirrored.
     aspect: f32,
-    /// What [`Perspective::key_at`] gives at any time, where there is one key only.
+    /// The constant result of [`Perspective::key_at`] when there is only one key.
     resting: Option<(Key, [Vec3; 3])>,
 }
 
@@ -138,7 +138,7 @@ impl Perspective {
         }
         let (low, high, t) = around(&self.keys, time);
         let key = if t == 0.0 { *low } else { low.lerp(high, t) };
-        // Between two sound keyframes the view can pass through a senseless one; the first is sound.
+        // Between two valid keyframes the view can become degenerate; the first keyframe is valid.
         let axes = look(key.position, key.look_at, key.up)
             .or_else(|| look(low.position, low.look_at, low.up))
             .unwrap_or([Vec3::X, Vec3::Y, -Vec3::Z]);
@@ -147,14 +147,14 @@ impl Perspective {
 }
 
 impl Key {
-    /// Distance of what is sharp, along the axis.
+    /// Distance of the focal plane, along the axis.
     fn focus(&self) -> f32 {
         if self.focus > 0.0 { self.focus } else { (self.look_at - self.position).length() }
     }
 
-    /// Density of rays over area across them, at a distance and a cosine to the axis. On the plane at distance 1
-    /// the film's points are uniform, whatever the point of the lens; `1 / cos³` is what of that is seen in solid
-    /// angle, there as in the plane that is sharp.
+    /// Density of rays over area perpendicular to them, at a distance and a cosine to the axis. The film's points are
+    /// uniform on the plane at distance 1, whatever the point on the lens; `1 / cos³` converts their density to solid
+    /// angle, there as on the focal plane.
     fn density(&self, aspect: f32, cos: f32, distance2: f32) -> f32 {
         let film_area = 4.0 * self.tan_half_fov * self.tan_half_fov * aspect.abs();
         1.0 / (film_area * cos * cos * cos * distance2)
@@ -185,7 +185,7 @@ impl Camera for Perspective {
         if depth.is_nan() || depth <= 0.0 {
             return None;
         }
-        // Where the middle of the lens sees, at distance 1, what the ray meets where things are sharp.
+        // The film point at distance 1, seen from the centre of the lens, of the ray's point on the focal plane.
         let aside = if lens == Vec2::ZERO { lens } else { lens / key.focus() };
         let seen = Vec2::new(away.dot(right), away.dot(up)) / depth + aside;
         let film =

@@ -3,8 +3,9 @@
 use crate::builder::{Object, SceneBuilder};
 use bilux_math::{DMat4, Transform, Vec3};
 
-/// The scene with all of its objects `count` times: the copy `i` (from 0, which is the original) stands
-/// `i * offset` away from it. Meshes and materials are shared; lights, cameras and settings stay as they are.
+/// The scene with `count` copies of each object; copy `i` (from 0, the original) is moved by `i * offset`.
+///
+/// The copies share meshes and materials; lights, cameras and settings stay as they are.
 pub fn copies(scene: &SceneBuilder, count: u32, offset: Vec3) -> SceneBuilder {
     let mut result = scene.clone();
     result.objects = (0..count)
@@ -21,7 +22,7 @@ fn moved(object: &Object, i: u32, by: Vec3) -> Object {
         return object.clone();
     }
     let shift = Transform::from_matrix(DMat4::from_translation(by.as_dvec3())).unwrap_or_default();
-    // A shift follows every motion.
+    // Apply the shift after every motion.
     let motion = object.motion.then(&shift).unwrap_or_else(|| object.motion.clone());
     Object { name: format!("{} {}", object.name, i + 1), motion, ..object.clone() }
 }

@@ -1,5 +1,5 @@
-//! The Cornell box, in metres: places and sizes as measured [Cornell 1998]; colours and the lamp are ours, near to
-//! the measured spectra but a little brighter and less yellow.
+//! The Cornell box, in metres: positions and sizes as measured [Cornell 1998]; the colours and the light are ours,
+//! close to the measured spectra but a little brighter and less yellow.
 
 use super::{GeneratorEntry, integer, shapes};
 use crate::builder::{Object, SceneBuilder};
@@ -53,7 +53,7 @@ pub(super) const SPHERES: GeneratorEntry = GeneratorEntry {
 
 const MILLIMETRE: f32 = 0.001;
 
-/// Floor, ceiling, three walls, the lamp and the camera; and the white of the walls.
+/// Floor, ceiling, three walls, the light and the camera; also returns the index of the white wall material.
 fn empty_room() -> (SceneBuilder, usize) {
     let mut room = SceneBuilder::default();
     let matt = |name: &str, colour: Rgb| Spec::new(name, "diffuse").with("reflectance", colour);
@@ -88,7 +88,7 @@ fn empty_room() -> (SceneBuilder, usize) {
     (room, white)
 }
 
-/// The ceiling around the hole that the lamp fills: a panel in front of it would light the gap behind itself.
+/// The ceiling around the hole that the light fills: a panel in front of it would light the gap behind itself.
 fn ceiling(height: f32, depth: f32) -> Mesh {
     let (xs, zs) = ([0.0, 213.0, 343.0, 556.0], [0.0, 227.0, 332.0, depth]);
     let cells = (0..9u32).filter(|&cell| cell != 4).map(|cell| (cell / 3) * 4 + cell % 3);

@@ -1,4 +1,4 @@
-//! How much of a picture things cover.
+//! Measures how much of an image objects cover.
 
 use bilux_math::transcendental::tan;
 use bilux_math::{Vec2, Vec3};
@@ -12,7 +12,7 @@ pub(super) struct Pinhole {
 }
 
 impl Pinhole {
-    /// From `eye` to `look_at`, which must not be straight above or below; `fov` in degrees.
+    /// Looks from `eye` to `look_at`, which must not be vertically above or below it; `fov` in degrees.
     pub(super) fn new(eye: Vec3, look_at: Vec3, fov: f32) -> Pinhole {
         let forward = (look_at - eye).normalize_or(Vec3::NEG_Z);
         let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
@@ -23,13 +23,13 @@ impl Pinhole {
         }
     }
 
-    /// Where a point is seen, -1..=1 within the picture; `None` behind the eye.
+    /// Projects a point to the image, where it is visible within -1..=1; `None` behind the eye.
     fn project(&self, p: Vec3) -> Option<Vec2> {
         let [x, y, z] = self.axes.map(|axis| axis.dot(p - self.eye));
         (z > 0.0).then(|| Vec2::new(x, y) / (z * self.tan_half_fov))
     }
 
-    /// The share of the picture that triangles cover, by the middles of `RESOLUTION²` pixels.
+    /// The fraction of the image that triangles cover, by the centres of `RESOLUTION²` pixels.
     pub(super) fn coverage(&self, triangles: impl Iterator<Item = [Vec3; 3]>) -> f64 {
         let mut mask = vec![false; RESOLUTION * RESOLUTION];
         for [a, b, c] in triangles {
@@ -43,7 +43,7 @@ impl Pinhole {
 
 const RESOLUTION: usize = 128;
 
-/// Marks the pixels whose middles are in a triangle, given in pixels.
+/// Marks the pixels whose centres are in a triangle, whose corners are in pixels.
 fn fill(mask: &mut [bool], [a, b, c]: [Vec2; 3]) {
     let last = (RESOLUTION - 1) as f32;
     let (low, high) = (a.min(b).min(c) - 0.5, a.max(b).max(c) - 0.5);

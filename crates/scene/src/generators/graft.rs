@@ -1,11 +1,11 @@
-//! Where the teapot's tubes meet its body: the outline that both are cut to.
+//! The outlines where the teapot's tubes meet its body, to which both are cut.
 
 use super::teapot::{Cubic, PROFILE, Patch, SHOULDER, TUBES, half_of, quarter_of};
 use bilux_math::transcendental::atan2_f64;
 use bilux_math::{DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// A tube of two patches, its parameter from 0 to 2.
+/// A tube of two patches, with a parameter from 0 to 2.
 pub(super) struct Tube {
     halves: [&'static [[f64; 5]; 4]; 2],
 }
@@ -14,7 +14,7 @@ impl Tube {
     pub(super) const HANDLE: Tube = Tube { halves: [&TUBES[0], &TUBES[1]] };
     pub(super) const SPOUT: Tube = Tube { halves: [&TUBES[2], &TUBES[3]] };
 
-    /// Point and normal at step `t` of `2 n` around and at `s` along.
+    /// The point and normal at step `t` of `2 n` around the tube, and at parameter `s` along it.
     pub(super) fn at(&self, t: u32, n: u32, s: f64) -> (DVec3, DVec3) {
         let patch: Patch = half_of(self.halves[usize::from(s > 1.0)]);
         let u = Cubic::new(if t <= n { t } else { 2 * n - t }, n);
@@ -24,17 +24,17 @@ impl Tube {
     }
 }
 
-/// Where a tube meets the body.
+/// The seam where a tube meets the body.
 pub(super) struct Graft {
-    /// Around the tube: where it is in cells of the body, and the point with the body's normal.
+    /// Points around the tube: the position in cells of the body, and the point with the body's normal.
     pub(super) ring: Vec<(DVec2, (DVec3, DVec3))>,
     /// The tube's parameter at each of these.
     pub(super) ends: Vec<f64>,
-    /// Cells that are taken out of the body: first and last plus one, around and down.
+    /// The range of cells removed from the body (first, last plus one), around and down.
     cells: [[u32; 2]; 2],
-    /// Cells around the body.
+    /// The number of cells around the body.
     around: u32,
-    /// Middle of the ring, in cells, and half its width and height.
+    /// The centre of the ring, in cells; then half of its width and height.
     middle: DVec2,
     half: DVec2,
 }
@@ -52,7 +52,7 @@ impl Graft {
         Graft::new(&Tube::HANDLE, n, 2.0, 1.0)
     }
 
-    /// Follows the tube from its parameter `inside` the body to `outside`.
+    /// Finds where the tube leaves the body, between its parameters `inside` and `outside`.
     fn new(tube: &Tube, n: u32, inside: f64, outside: f64) -> Graft {
         let ends: Vec<f64> = (0..2 * n)
             .map(|t| {
@@ -81,11 +81,11 @@ impl Graft {
     pub(super) fn takes(&self, i: u32, down: u32) -> bool {
         let [[i0, i1], [j0, j1]] = self.cells;
         let columns = i0..i1;
-        // Cells of the spout go on beyond the last quarter.
+        // The spout's cells continue beyond the last quarter.
         (j0..j1).contains(&down) && (columns.contains(&i) || columns.contains(&(i + self.around)))
     }
 
-    /// Corners around the cells that are taken.
+    /// Corners around the removed cells.
     pub(super) fn outline(&self) -> Vec<(u32, u32)> {
         let [[i0, i1], [j0, j1]] = self.cells;
         let right = (i0..i1).map(|i| (i, j0));
@@ -101,13 +101,13 @@ impl Graft {
     }
 }
 
-/// A point seen from the body: the body is a profile times a curve that is nearly a circle.
+/// A point in the coordinates of the body, which is a profile swept along a curve that is nearly a circle.
 struct BodyPoint {
-    /// How far it is outside, in lengths of the profile's radius.
+    /// Distance outside the body, in units of the profile's radius.
     outside: f64,
-    /// Quarters around, from +z over -x and -z to +x and beyond: spout and handle lie whole on either side.
+    /// Quarter turns from +z over -x and -z to +x and beyond, so that neither spout nor handle crosses the end.
     around: f64,
-    /// Curves down the profile.
+    /// Position down the profile, in curves.
     down: f64,
     normal: DVec3,
 }
@@ -138,7 +138,7 @@ impl BodyPoint {
     }
 }
 
-/// Where a rising function of 0..=1 is zero.
+/// The root of a rising function on 0..=1.
 fn solve(f: impl Fn(f64) -> f64) -> f64 {
     let (mut a, mut b) = (0.0, 1.0);
     for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! Every scene that Bilux ships, made by formula. One scene a file; the table is [`GENERATORS`].
+//! The procedural scenes that ship with Bilux. Each scene has its own file; the table is [`GENERATORS`].
 //!
 //! ```
 //! use bilux_scene::{Spec, Value, generators};
@@ -38,7 +38,7 @@ pub struct GeneratorEntry {
     pub generate: fn(&Reader) -> Result<SceneBuilder, SceneError>,
 }
 
-/// Every scene that there is.
+/// All generated scenes.
 pub const GENERATORS: &[GeneratorEntry] = &[
     trio::ENTRY,
     teapots::ENTRY,

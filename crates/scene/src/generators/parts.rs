@@ -1,4 +1,4 @@
-//! What furniture is put together from: boxes with round edges, turned things, sheets. All with normals.
+//! Building blocks for furniture: boxes with rounded edges, turned shapes and sheets. All have normals.
 
 use super::shapes::grid;
 use crate::mesh::Mesh;
@@ -7,7 +7,7 @@ use bilux_math::transcendental::sin_cos;
 use bilux_math::{Aabb, Mat3, Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// A number in 0..1 that belongs to a thing of a kind.
+/// A pseudo-random number in 0..1 for one object of a kind.
 pub(super) fn chance(kind: u64, index: u32) -> f32 {
     unit_f32(hash_words([kind, u64::from(index)]) as u32)
 }
@@ -17,13 +17,13 @@ pub(super) fn between(low: [f32; 3], high: [f32; 3]) -> Aabb {
     Aabb { min: Vec3::from(low), max: Vec3::from(high) }
 }
 
-/// A closed box whose edges are rounded to a radius, in `n` pieces a quarter.
+/// A closed box with edges rounded to a radius, in `n` segments per quarter circle.
 pub(super) fn rounded(bounds: Aabb, radius: f32, n: u32) -> Mesh {
     let radius = radius.min(0.5 * bounds.extent().min_element());
     let (middle, inner) = (bounds.centre(), bounds.extent() * 0.5 - radius);
     let quarter =
         |k: u32| (k / (n + 1), FRAC_PI_2 * ((k % (n + 1)) as f32 / n as f32 + (k / (n + 1)) as f32));
-    // The first and the last row are the middles of top and bottom.
+    // The first and last rows are the centres of the top and bottom.
     let rows = 2 * (n + 1) + 1;
     grid("box", 4 * (n + 1), rows, |i, j| {
         let (side, phi) = quarter(i % (4 * (n + 1)));
@@ -56,14 +56,15 @@ pub(super) fn sharp(bounds: Aabb) -> Mesh {
     mesh
 }
 
-/// What a lathe makes of an outline, given from the top down along the outside as radius and height; smooth
-/// between the points, of which `steps` pieces are made each.
+/// A surface of revolution: `outline` runs from the top down along the outside, as radius and height.
+///
+/// The outline is smooth between its points, in `steps` segments each.
 pub(super) fn turned(outline: &[[f32; 2]], around: u32, steps: u32) -> Mesh {
     let points = smooth(outline, steps.max(1));
     let last = points.len() - 1;
     grid("turned", around, last as u32, |i, j| {
         let j = j as usize;
-        // Halfway between the pieces on both sides, however short one is: less than a right angle from each.
+        // Halfway between the segments on both sides, however short one is: less than a right angle from each.
         let piece = |a: usize| (points[(a + 1).min(last)] - points[a.min(last)]).normalize_or_zero();
         let slope = (piece(j) + if j > 0 { piece(j - 1) } else { Vec2::ZERO }).normalize_or(Vec2::NEG_Y);
         let (sin, cos) = sin_cos(TAU * (i % around) as f32 / around as f32);
@@ -72,7 +73,7 @@ pub(super) fn turned(outline: &[[f32; 2]], around: u32, steps: u32) -> Mesh {
     })
 }
 
-/// A curve through points, each of which comes up once.
+/// A smooth curve that passes through each point once.
 fn smooth(points: &[[f32; 2]], steps: u32) -> Vec<Vec2> {
     let at = |i: usize| Vec2::from(points[i.min(points.len() - 1)]);
     let mut curve: Vec<Vec2> = (0..(points.len() - 1) as u32 * steps)
@@ -81,7 +82,7 @@ fn smooth(points: &[[f32; 2]], steps: u32) -> Vec<Vec2> {
             let (p0, p1, p2, p3) = (at(i.saturating_sub(1)), at(i), at(i + 1), at(i + 2));
             let (a, b) = ((p2 - p0) * 0.5, (p3 - p1) * 0.5);
             let p = p1 + (a + ((p2 - p1) * 3.0 - a * 2.0 - b + ((p1 - p2) * 2.0 + a + b) * t) * t) * t;
-            // Curves swing, radii may not.
+            // The curve may overshoot, but a radius must not be negative.
             Vec2::new(p.x.max(0.0), p.y)
         })
         .collect();
@@ -90,7 +91,7 @@ fn smooth(points: &[[f32; 2]], steps: u32) -> Vec<Vec2> {
     curve
 }
 
-/// A sheet over the unit square; seen from where ∂v × ∂u points it is counter-clockwise.
+/// A sheet over the unit square; counter-clockwise when seen from the side that ∂v × ∂u points to.
 pub(super) fn sheet(columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) -> Mesh {
     let place = |i: u32, j: u32| at(i as f32 / columns as f32, j as f32 / rows as f32);
     let mut mesh = grid("sheet", columns, rows, |i, j| (place(i, j), Vec3::Y));
@@ -98,7 +99,7 @@ pub(super) fn sheet(columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) -> M
     mesh
 }
 
-/// One mesh of several.
+/// Joins several meshes into one.
 pub(super) fn joined(parts: impl IntoIterator<Item = Mesh>) -> Mesh {
     let mut whole = Mesh::default();
     for part in parts {
@@ -110,7 +111,7 @@ pub(super) fn joined(parts: impl IntoIterator<Item = Mesh>) -> Mesh {
     whole
 }
 
-/// The same, turned by degrees around an axis and then moved.
+/// A copy of the mesh, turned by degrees around an axis and then moved.
 pub(super) fn placed(mesh: &Mesh, turn: (Vec3, f32), by: [f32; 3]) -> Mesh {
     let turn = Mat3::from_axis_angle(turn.0, turn.1.to_radians());
     Mesh {
@@ -122,7 +123,7 @@ pub(super) fn placed(mesh: &Mesh, turn: (Vec3, f32), by: [f32; 3]) -> Mesh {
     }
 }
 
-/// The same, moved.
+/// A copy of the mesh, moved.
 pub(super) fn moved(mesh: &Mesh, by: [f32; 3]) -> Mesh {
     placed(mesh, (Vec3::Y, 0.0), by)
 }

@@ -6,7 +6,7 @@ use bilux_math::{Aabb, DVec3, Vec2, Vec3};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-/// A parallelogram around its middle; seen from where `u × v` points its vertices run counter-clockwise.
+/// A parallelogram around its centre; counter-clockwise when seen from the side that `u × v` points to.
 pub fn quad(middle: Vec3, u: Vec3, v: Vec3) -> Mesh {
     let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
     Mesh {
@@ -18,12 +18,12 @@ pub fn quad(middle: Vec3, u: Vec3, v: Vec3) -> Mesh {
     }
 }
 
-/// A level square of this side length around a point, seen from above.
+/// A horizontal square of this side length around a point, facing upwards.
 pub fn floor(middle: Vec3, side: f32) -> Mesh {
     Mesh { name: "floor".to_owned(), ..quad(middle, Vec3::Z * side, Vec3::X * side) }
 }
 
-/// A level disc around a point, seen from above, of `around` (at least 3) triangles.
+/// A horizontal disc around a point, facing upwards, of `around` (at least 3) triangles.
 pub fn disc(middle: Vec3, radius: f32, around: u32) -> Mesh {
     let around = around.max(3);
     let rim = (0..around).map(|i| {
@@ -38,11 +38,11 @@ pub fn disc(middle: Vec3, radius: f32, around: u32) -> Mesh {
     }
 }
 
-/// A level chessboard of `count * count` squares around a point: those of one colour, then those of the other.
+/// A horizontal chessboard of `count * count` squares around a point: those of one colour, then those of the other.
 pub fn chessboard(middle: Vec3, side: f32, count: u32) -> [Mesh; 2] {
     let square = side / count.max(1) as f32;
     let mut boards = ["light squares", "dark squares"].map(|n| Mesh { name: n.into(), ..Mesh::default() });
-    // Corners are multiples of one length, so that neighbours share them to the bit.
+    // Corners are multiples of one length, so that neighbours share them bit for bit.
     let corner = |i: u32, k: u32| {
         let at = |i: u32| (i as f32 - count as f32 * 0.5) * square;
         middle + Vec3::new(at(i), 0.0, at(k))
@@ -67,8 +67,9 @@ pub fn cuboid(bounds: Aabb) -> Mesh {
     }
 }
 
-/// A closed upright prism around a point, flat-shaded: `sides` (at least 3) corners on a circle of this radius, the first of
-/// them along x.
+/// A closed upright prism around a point, flat-shaded, with `sides` (at least 3) corners on a circle of this radius.
+///
+/// The first of them is along x.
 pub fn prism(middle: Vec3, radius: f32, height: f32, sides: u32) -> Mesh {
     let sides = sides.max(3);
     let corner = |i: u32, y: f32| {
@@ -89,8 +90,9 @@ pub fn prism(middle: Vec3, radius: f32, height: f32, sides: u32) -> Mesh {
     }
 }
 
-/// A closed sphere of nearly equal triangles: an icosahedron, each triangle cut in four `level` times (at most
-/// 10): 20 · 4^level triangles.
+/// A closed sphere of nearly equal triangles, with 20 · 4^level of them.
+///
+/// It is an icosahedron whose triangles are each cut into four, `level` times (at most 10).
 pub fn icosphere(centre: Vec3, radius: f32, level: u32) -> Mesh {
     let mut points = icosahedron();
     let mut triangles = ICOSAHEDRON.to_vec();
@@ -119,8 +121,9 @@ pub fn icosphere(centre: Vec3, radius: f32, level: u32) -> Mesh {
     }
 }
 
-/// A closed surface round a centre, `distance(direction)` away in every direction, with area-weighted normals:
-/// smooth and bumpy things for tests.
+/// A closed surface around a centre, `distance(direction)` away in every direction, with area-weighted normals.
+///
+/// It makes smooth and bumpy objects for tests.
 pub fn blob(centre: Vec3, level: u32, distance: impl Fn(Vec3) -> f32) -> Mesh {
     let mut mesh = Mesh { name: "blob".to_owned(), ..icosphere(Vec3::ZERO, 1.0, level) };
     for p in &mut mesh.positions {
@@ -130,8 +133,8 @@ pub fn blob(centre: Vec3, level: u32, distance: impl Fn(Vec3) -> f32) -> Mesh {
     mesh
 }
 
-/// A closed sphere by longitude and latitude, poles up and down, with uv: `around` (at least 3) by `along` (at
-/// least 2) pieces.
+/// A closed sphere by longitude and latitude, poles up and down, with uv: `around` (at least 3) by `along` (at least 2)
+/// segments.
 pub fn uv_sphere(centre: Vec3, radius: f32, around: u32, along: u32) -> Mesh {
     let point = |theta: f64, phi: f64| {
         let ((st, ct), (sp, cp)) = (sin_cos_f64(theta), sin_cos_f64(phi));
@@ -140,7 +143,7 @@ pub fn uv_sphere(centre: Vec3, radius: f32, around: u32, along: u32) -> Mesh {
     let (around, along) = (around.max(3), along.max(2));
     let place = |n: DVec3| (centre.as_dvec3() + n * f64::from(radius)).as_vec3();
     grid("sphere", around, along, |i, j| {
-        // The last meridian is the first, and a pole is one point, to the bit.
+        // The last meridian equals the first, and a pole is one point, bit for bit.
         let (i, theta) = (i % around, PI * f64::from(j) / f64::from(along));
         let n = match j {
             0 => DVec3::Y,
@@ -151,7 +154,7 @@ pub fn uv_sphere(centre: Vec3, radius: f32, around: u32, along: u32) -> Mesh {
     })
 }
 
-/// A closed ring around the y axis: `radius` to the middle of the tube, `tube` the tube's own.
+/// A closed torus around the y axis: `radius` to the centre of the tube, whose own radius is `tube`.
 pub fn torus(centre: Vec3, radius: f32, tube: f32, around: u32, along: u32) -> Mesh {
     let (around, along) = (around.max(3), along.max(3));
     grid("torus", around, along, |i, j| {
@@ -163,7 +166,7 @@ pub fn torus(centre: Vec3, radius: f32, tube: f32, around: u32, along: u32) -> M
     })
 }
 
-/// Squares over `(0..=columns) × (0..=rows)`, v downwards; corners that coincide make one triangle of a square.
+/// Squares over `(0..=columns) × (0..=rows)`, v downwards; a square with coinciding corners becomes one triangle.
 pub(super) fn grid(name: &str, columns: u32, rows: u32, at: impl Fn(u32, u32) -> (Vec3, Vec3)) -> Mesh {
     let mut mesh = Mesh { name: name.to_owned(), ..Mesh::default() };
     for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {

@@ -1,8 +1,8 @@
 //! The teapot, from its 32 bicubic Bézier patches. [Newell 1975]
 //!
-//! It is 3.15 high where nothing else is said, stands on the plane y = 0, and its spout points to +x. As
-//! Newell left it, the surface is open: the lid lies loosely in the rim, the spout is a tube without an end,
-//! and spout and handle go through the wall. `vessel` makes a closed one of it, for glass.
+//! It is 3.15 high by default, stands on the plane y = 0, and its spout points to +x. As Newell left it, the surface is
+//! open: the lid lies loosely in the rim, the spout is a tube without an end, and spout and handle pass through the
+//! wall. `vessel` makes a closed version of it, for glass.
 
 use super::{GeneratorEntry, integer, length, switch};
 use crate::builder::{Object, SceneBuilder};
@@ -44,17 +44,17 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
 pub(super) const TESSELLATION: Parameter =
     integer("tessellation", "pieces that each edge of the 32 patches is cut into", 1, 256, "8");
 
-/// Height that the control points give.
+/// The height of the original control points.
 pub const NEWELL_HEIGHT: f64 = 3.15;
 
-/// How the teapot is made.
+/// How the teapot is tessellated and scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Teapot {
-    /// Pieces that each patch edge is cut into, at least 1: about 64 times its square triangles.
+    /// Segments along each patch edge, at least 1; the teapot has about 64 times the square of this many triangles.
     pub tessellation: u32,
     /// From the table to the top of the lid, metres.
     pub height: f64,
-    /// Closed below.
+    /// Whether it is closed at the bottom.
     pub bottom: bool,
 }
 
@@ -65,8 +65,10 @@ impl Default for Teapot {
 }
 
 impl Teapot {
-    /// The mesh: patch after patch, each with its own vertices, whose positions along shared edges are the same
-    /// bit for bit; normals outwards, counter-clockwise from outside; uv from 0 to 1 over each patch.
+    /// The mesh, patch by patch: normals point outwards, counter-clockwise from outside; uv from 0 to 1 over each
+    /// patch.
+    ///
+    /// Each patch has its own vertices, but their positions along shared edges are equal bit for bit.
     pub fn mesh(&self) -> Mesh {
         let mut mesh = Mesh { name: "teapot".to_owned(), ..Mesh::default() };
         let scale = self.height / NEWELL_HEIGHT;
@@ -77,8 +79,9 @@ impl Teapot {
     }
 }
 
-/// A bicubic Bézier patch: four rows of control points, v from row to row and u along each. Outside is where
-/// ∂u × ∂v points.
+/// A bicubic Bézier patch: four rows of control points, v from row to row and u along each row.
+///
+/// Outside is where ∂u × ∂v points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch(pub [[DVec3; 4]; 4]);
 
@@ -89,8 +92,8 @@ pub fn patches(bottom: bool) -> impl Iterator<Item = Patch> {
     body.chain(TUBES.iter().flat_map(|rows| [half_of(rows), mirrored(&half_of(rows))]))
 }
 
-/// The outline that lid, rim and body are turned from, inside out and top down: radius, the control points'
-/// offset that makes a quarter of a circle of it (0.56 of the radius, but for the lid's knob), height.
+/// The outline that is revolved into lid, rim and body, from inside out and top down: radius, the control points'
+/// offset that makes a quarter of a circle of it (0.56 of the radius, except for the lid's knob), height.
 pub(super) const PROFILE: [[[f64; 3]; 4]; 6] = [
     [[0.0, 0.0, 3.15], [0.8, 0.45, 3.15], [0.0, 0.0, 2.85], [0.2, 0.112, 2.7]],
     [[0.2, 0.112, 2.7], [0.4, 0.224, 2.55], [1.3, 0.728, 2.55], [1.3, 0.728, 2.4]],
@@ -100,14 +103,14 @@ pub(super) const PROFILE: [[[f64; 3]; 4]; 6] = [
     [[1.5, 0.84, 0.15], [1.5, 0.84, 0.075], [1.425, 0.798, 0.0], [0.0, 0.0, 0.0]],
 ];
 
-/// Curves of the profile by their place in it.
+/// Indices of the profile's curves.
 pub(super) const LID: u32 = 1;
 pub(super) const RIM: u32 = 2;
 pub(super) const SHOULDER: u32 = 3;
 pub(super) const FOOT: u32 = 5;
 
-/// Handle and spout, two patches each, by rings of control points: x and y where the ring crosses the middle
-/// plane first and last, and how far it bulges from that plane.
+/// Handle and spout, two patches each, by rings of control points: x and y of the ring's first and last crossing of the
+/// middle plane, and how far it bulges from that plane.
 pub(super) const TUBES: [[[f64; 5]; 4]; 4] = [
     [
         [-1.6, 2.025, -1.5, 2.25, 0.3],
@@ -135,9 +138,9 @@ pub(super) const TUBES: [[[f64; 5]; 4]; 4] = [
     ],
 ];
 
-/// The patch that a quarter turn of a profile sweeps, from +x to +z and on.
+/// The patch swept by a quarter turn of a profile, starting from +x towards +z.
 ///
-/// Here and below `0.0 - x`, not `-x`: a zero stays positive, so that edges are the same to the bit.
+/// Here and below the code says `0.0 - x`, not `-x`: a zero stays positive, so that edges are equal bit for bit.
 pub(super) fn quarter_of(profile: &[[f64; 3]; 4], quarter: usize) -> Patch {
     Patch(profile.map(|[r, k, y]| {
         [(r, 0.0), (r, k), (k, r), (0.0, r)].map(|(x, z)| match quarter % 4 {
@@ -149,7 +152,7 @@ pub(super) fn quarter_of(profile: &[[f64; 3]; 4], quarter: usize) -> Patch {
     }))
 }
 
-/// The half of a tube on the side of +z.
+/// The half of a tube on the +z side.
 pub(super) fn half_of(rings: &[[f64; 5]; 4]) -> Patch {
     Patch(
         rings.map(|[x0, y0, x1, y1, w]| {
@@ -158,7 +161,7 @@ pub(super) fn half_of(rings: &[[f64; 5]; 4]) -> Patch {
     )
 }
 
-/// The other half, its rows turned round so that outside stays outside.
+/// The other half, with reversed rows so that outside stays outside.
 fn mirrored(patch: &Patch) -> Patch {
     Patch(patch.0.map(|[a, b, c, d]| [d, c, b, a].map(|p| DVec3::new(p.x, p.y, 0.0 - p.z))))
 }
@@ -166,8 +169,8 @@ fn mirrored(patch: &Patch) -> Patch {
 impl Patch {
     /// The point and the unit normal at `i / n` along u and `j / n` along v.
     ///
-    /// The point is the same, to the bit, from whichever side and in whichever direction an edge is walked: at
-    /// an edge three of the four weights are exactly 0, and weights and sums are symmetric in `i` and `n - i`.
+    /// The point is the same, bit for bit, from either side of an edge and in either direction along it: at an edge
+    /// three of the four weights are exactly 0, and weights and sums are symmetric in `i` and `n - i`.
     pub fn at(&self, i: u32, j: u32, n: u32) -> (DVec3, DVec3) {
         self.blend(&Cubic::new(i, n), &Cubic::new(j, n))
     }
@@ -178,7 +181,7 @@ impl Patch {
         let slopes = self.0.map(|row| u.slope(&row));
         let (along_u, along_v) = (v.blend(&slopes), v.slope(&rows));
         let size = along_u.length().max(along_v.length());
-        // At a pole the row is a single point: ∂u vanishes, and next to it is the change of ∂u along v.
+        // At a pole the row is a single point: ∂u vanishes, and the change of ∂u along v replaces it.
         let normal = if along_u.length() > 1e-12 * size {
             along_u.cross(along_v)
         } else {
@@ -220,12 +223,12 @@ impl Cubic {
         Cubic::of(f64::from(i) / f64::from(n), f64::from(n - i) / f64::from(n))
     }
 
-    /// At a parameter in 0..=1.
+    /// The polynomials at a parameter in 0..=1.
     pub(super) fn at(t: f64) -> Cubic {
         Cubic::of(t, 1.0 - t)
     }
 
-    /// At a parameter and its complement to 1.
+    /// The polynomials at a parameter, given with its complement to 1.
     fn of(a: f64, b: f64) -> Cubic {
         Cubic {
             weights: [b * b * b, 3.0 * (a * (b * b)), 3.0 * (b * (a * a)), a * a * a],

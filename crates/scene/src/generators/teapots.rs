@@ -54,14 +54,14 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     },
 };
 
-/// Distances in the block of teapots.
+/// Spacing in the block of teapots.
 const ACROSS: f32 = 7.5;
 const BACK: f32 = 4.5;
 
-/// Share of a square picture that the teapots of `equal-coverage` cover.
+/// The fraction of a square image that the teapots of `equal-coverage` cover.
 const COVERAGE: f64 = 0.2;
 
-/// Where the teapots stand.
+/// The positions of the teapots.
 fn places(reader: &Reader) -> Vec<Vec3> {
     let count = reader.integer("count") as u32;
     if reader.text("layout") == "paper" {
@@ -74,7 +74,7 @@ fn places(reader: &Reader) -> Vec<Vec3> {
         .collect()
 }
 
-/// Names and colours that the teapots take in turn.
+/// Names and colours that the teapots cycle through.
 const GLAZES: [(&str, Rgb); 5] = [
     ("copper", Rgb::new(0.75, 0.33, 0.16)),
     ("cream", Rgb::new(0.78, 0.70, 0.52)),
@@ -110,7 +110,7 @@ fn standing(place: Vec3) -> Motion {
     Motion::still(Transform::from_matrix(matrix).unwrap_or_default())
 }
 
-/// Once around a point, turning with the way.
+/// One revolution around a point, facing the direction of travel.
 fn circling(around: Vec3, from: Vec3, seconds: f32) -> Option<Motion> {
     const STEPS: u32 = 12;
     let radius = if from.length() > 0.0 { from } else { Vec3::X * ACROSS };
@@ -123,7 +123,7 @@ fn circling(around: Vec3, from: Vec3, seconds: f32) -> Option<Motion> {
     Motion::from_keys(keys.collect())
 }
 
-/// Darker and glossier towards the foot, as a glaze that has run.
+/// Darker and glossier towards the foot, like a glaze that has run.
 fn vary(mesh: &mut Mesh) {
     let height = |p: &Vec3| (p.y / NEWELL_HEIGHT as f32).clamp(0.0, 1.0);
     mesh.vertex_kd = mesh.positions.iter().map(|p| Rgb::grey(0.45 + 0.55 * height(p))).collect();
@@ -184,7 +184,7 @@ fn add_camera(scene: &mut SceneBuilder, reader: &Reader, places: &[Vec3], bounds
 
 const FOV: f32 = 40.0;
 
-/// How far the camera has to be for the teapots to cover [`COVERAGE`] of a square picture.
+/// The camera distance at which the teapots cover [`COVERAGE`] of a square image.
 fn distance_for(places: &[Vec3], middle: Vec3, towards: Vec3, radius: f32) -> f32 {
     let coarse = Teapot { tessellation: 2, ..Teapot::default() }.mesh();
     let (mut near, mut far) = (radius * 1.05, radius * 40.0);

@@ -1,4 +1,4 @@
-//! The picture on the front page: a glass, a mirror and a matt teapot in soft light.
+//! The image on the front page: a glass, a mirror and a diffuse teapot in soft light.
 
 use super::teapot::TESSELLATION;
 use super::vessel::Vessel;
@@ -46,12 +46,12 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     },
 };
 
-/// Height of the teapots, metres.
+/// The height of the teapots, metres.
 const HEIGHT: f64 = 1.0;
-/// The glass teapot's wall in parts of its height.
+/// The glass teapot's wall thickness, as a fraction of its height.
 const WALL: f64 = 0.022;
 
-/// Puts a teapot on the floor, turned by some degrees.
+/// Places a teapot on the floor, turned by an angle in degrees.
 fn place(
     scene: &mut SceneBuilder,
     name: &str,

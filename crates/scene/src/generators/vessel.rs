@@ -1,10 +1,10 @@
-//! The teapot as a solid that glass can be made of: closed, and nowhere inside of itself.
+//! The teapot as a solid for glass: closed, and without self-intersections.
 //!
-//! Light that enters glass has to leave it again, so the outside has to be one closed surface. Newell's is not:
-//! handle and spout are tubes that go through the wall, the lid lies in the rim without touching it. Here lid and
-//! rim are joined by a flat ring, tubes are cut off where they meet the body, the body has holes of the same
-//! outline, to the bit, and the spout has a flat end below its lip. A cavity, if there is one, is a second closed
-//! surface that faces inwards, within body and lid; handle and spout are solid.
+//! Light that enters glass has to leave it again, so the outside has to be one closed surface. Newell's is not: handle
+//! and spout are tubes that pass through the wall, and the lid lies in the rim without touching it. Here a flat ring
+//! connects lid and rim, the tubes end where they meet the body, the body has holes of exactly the same outline, bit
+//! for bit, and the spout has a flat end below its lip. A cavity, if there is one, is a second closed surface that
+//! faces inwards, within body and lid; handle and spout are solid.
 
 use super::graft::{Graft, Tube};
 use super::teapot::{FOOT, LID, NEWELL_HEIGHT, PROFILE, RIM, SHOULDER, quarter_of};
@@ -12,19 +12,19 @@ use crate::mesh::Mesh;
 use bilux_math::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// How the vessel is made.
+/// How the vessel is tessellated and scaled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vessel {
-    /// Pieces that each patch edge is cut into, at least 4.
+    /// Segments along each patch edge, at least 4.
     pub tessellation: u32,
     /// From the table to the top of the lid, metres.
     pub height: f64,
-    /// Thickness of the wall, in parts of the height; `None` for one that is glass all through.
+    /// Thickness of the wall, as a fraction of the height; `None` for solid glass.
     pub wall: Option<f64>,
 }
 
 impl Vessel {
-    /// The mesh: closed, counter-clockwise from where the air is, with normals.
+    /// The mesh: closed, counter-clockwise when seen from the air, with normals.
     pub fn mesh(&self) -> Mesh {
         let n = self.tessellation.clamp(4, 256);
         let mut maker = Maker { n, corners: Vec::new(), triangles: Vec::new() };
@@ -37,8 +37,9 @@ impl Vessel {
 }
 
 impl Vessel {
-    /// What a hollow vessel holds: a closed mesh that fills its cavity up to this part of the height, and
-    /// stays a hundredth of the wall's thickness away from it, since two surfaces in one place have no order.
+    /// The contents of a hollow vessel: a closed mesh that fills its cavity up to this fraction of the height.
+    ///
+    /// It keeps a gap of a hundredth of the wall's thickness, since two coincident surfaces have no order.
     pub fn filling(&self, level: f64) -> Mesh {
         let n = self.tessellation.clamp(4, 256);
         let mut maker = Maker { n, corners: Vec::new(), triangles: Vec::new() };
@@ -67,12 +68,12 @@ impl Maker {
         Mesh { name: "vessel".into(), positions, normals, triangles: self.triangles, ..Mesh::default() }
     }
 
-    /// Corners around the body.
+    /// The number of corners around the body.
     fn around(&self) -> u32 {
         4 * self.n
     }
 
-    /// A point of the body, by steps around and by steps down along a curve of the profile.
+    /// A point of the body, by step around it and by step down a curve of the profile.
     fn on_body(&self, i: u32, curve: u32, j: u32) -> (DVec3, DVec3) {
         let i = i % self.around();
         quarter_of(&PROFILE[curve as usize], (i / self.n) as usize).at(i % self.n, j, self.n)
@@ -83,7 +84,7 @@ impl Maker {
         self.corners.len() as u32 - 1
     }
 
-    /// A ring of corners around the body; gives the index of the first.
+    /// Adds a ring of corners around the body, and returns the index of the first.
     fn ring(&mut self, at: impl Fn(&Maker, u32) -> (DVec3, DVec3)) -> u32 {
         let first = self.corners.len() as u32;
         for i in 0..self.around() {
@@ -93,7 +94,7 @@ impl Maker {
         first
     }
 
-    /// Squares between two rings, the upper one first, where `keep` says so.
+    /// Adds the squares between two rings, upper and lower, where `keep` is true.
     fn band(&mut self, upper: u32, lower: u32, keep: impl Fn(u32) -> bool) {
         let around = self.around();
         for i in (0..around).filter(|&i| keep(i)) {
@@ -105,7 +106,7 @@ impl Maker {
 
     fn body(&mut self) {
         let n = self.n;
-        // Two rows meet where curves do; row (c, j) begins at `(c * (n + 1) + j) * around`.
+        // Two rows coincide where curves meet; row (c, j) begins at `(c * (n + 1) + j) * around`.
         for (curve, j) in (0..PROFILE.len() as u32).flat_map(|c| (0..=n).map(move |j| (c, j))) {
             self.ring(|m, i| m.on_body(i, curve, j));
         }
@@ -127,13 +128,14 @@ impl Maker {
         self.tube(&Tube::HANDLE, &top.ends, &foot.ends, false);
     }
 
-    /// Where a row begins, by steps down the whole profile, as a row of the given curve.
+    /// The first corner of a row, by steps down the whole profile, as a row of the given curve.
     fn row(&self, down: u32, curve: u32) -> u32 {
         (down + curve) * self.around()
     }
 
-    /// Joins the outline of the cells that a graft takes to the ring where the tube meets the body: walks both
-    /// by angle around the middle.
+    /// Connects the outline of the cells that a graft removes with the ring where the tube meets the body.
+    ///
+    /// It walks both by angle around the centre.
     fn sew(&mut self, graft: &Graft) {
         let outline = graft.outline();
         let outer: Vec<(f64, u32)> = outline
@@ -163,7 +165,7 @@ impl Maker {
         }
     }
 
-    /// A tube between two parameters for every point around it; `capped` at its end.
+    /// A tube between two parameters for every point around it, with a cap at its end if `capped`.
     fn tube(&mut self, tube: &Tube, from: &[f64], to: &[f64], capped: bool) {
         let (around, along) = (2 * self.n, 2 * self.n);
         let first = self.corners.len() as u32;
@@ -230,9 +232,10 @@ impl Maker {
         }
     }
 
-    /// Rows of the body that the cavity has too, by curve and step. The lid's edge and the shoulder's beginning
-    /// would meet the rim from below; and where the outside bends more tightly than the wall is thick, the
-    /// inside would run back on itself.
+    /// The rows of the body that the cavity keeps, by curve and step.
+    ///
+    /// The lid's edge and the beginning of the shoulder would touch the rim from below. Where the outside curves more
+    /// tightly than the wall is thick, the inside would fold back on itself.
     fn cavity_rows(&self, inwards: impl Fn((DVec3, DVec3)) -> (DVec3, DVec3)) -> Vec<(u32, u32)> {
         let n = self.n;
         let lid = (0..=n * 3 / 4).map(|j| (LID, j));

@@ -1,5 +1,5 @@
-//! `ambient`: the constant light of Equation 1. There is no such light in nature, and the physical integrators
-//! know nothing of it: give them an `environment`.
+//! `ambient`: the constant light of Equation 1. Nature has no such light, and the physical integrators ignore it: use
+//! an `environment` for them.
 
 use super::{BuiltLight, EmissionSample, Light, LightEntry, LightSample, colour};
 use crate::classic::ClassicLight;

@@ -37,7 +37,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         })?;
         let (irradiance, classic) = (reader.colour("irradiance"), given_classic(reader));
         let diameter = reader.number("diameter").to_radians();
-        // A smaller one has no area in f32.
+        // A smaller sun has no area in f32.
         if diameter > 1e-6 {
             return Ok(BuiltLight::Light(Arc::new(Sun::new(towards, diameter, irradiance, classic))));
         }

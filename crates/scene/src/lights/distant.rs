@@ -1,29 +1,28 @@
-//! What lights infinitely far have in common: their rays enter the scene through a disc across them, as wide as
-//! the sphere around the scene and just outside of it. [Georgiev 2012]
+//! Shared by infinite lights: their rays enter the scene through a perpendicular disc as wide as the scene's bounding
+//! sphere, and just outside of it. [Georgiev 2012]
 
 use super::EmissionSample;
 use crate::surface::gamma;
 use bilux_accel::Primitive;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 
-/// Density over area of the points of [`sample_disc`]; zero where the scene has no size, or none that can be squared.
+/// Area density of points on the disc; zero where the scene has no size, or a size whose square is out of range.
 pub(super) fn disc_pdf_area(bounds: &Aabb) -> f32 {
     let radius = bounds.radius();
     let pdf = warp::disc_pdf_area() / (radius * radius);
     if pdf.is_finite() { pdf } else { 0.0 }
 }
 
-/// How light along a direction is led into a scene, which must not be empty.
+/// How light along a direction enters a scene, which must not be empty.
 #[derive(Clone, Copy)]
 pub(super) enum Across {
-    /// Through any point of the disc alike.
+    /// Through a uniform point of the disc.
     Anywhere(Vec2),
-    /// At a place of the square around it. See [`place_across`].
+    /// At a point of the square around the disc. See [`place_across`].
     At(Vec2),
 }
 
-/// A ray of light along `direction`, which is found with density `pdf_direct`, and sent with density `pdf_emission` if that
-/// is not zero.
+/// A ray of light along `direction`, with the densities `pdf_direct` and `pdf_emission`; `None` if the latter is zero.
 pub(super) fn ray(
     bounds: &Aabb,
     place: Across,
@@ -37,7 +36,7 @@ pub(super) fn ray(
         Across::Anywhere(u) => warp::sample_disc(u),
         Across::At(at) => at * 2.0 - Vec2::ONE,
     } * radius;
-    // Beyond what rounding can do to the sphere and to the point.
+    // Far enough that rounding of the sphere and of the point cannot matter.
     let away = radius + gamma(16) * (radius + centre.abs().max_element());
     (pdf_emission > 0.0).then(|| EmissionSample {
         p: centre + across.s * d.x + across.t * d.y - direction * away,
@@ -51,14 +50,14 @@ pub(super) fn ray(
     })
 }
 
-/// Where the line through `p` along `direction` passes the square around the disc: 0..=1 on both axes within it.
+/// Where the line through `p` along `direction` crosses the square around the disc: 0..=1 on both axes within it.
 pub(super) fn place_across(bounds: &Aabb, p: Vec3, direction: Vec3) -> Vec2 {
     let across = Frame::from_normal(direction);
     let d = (p - bounds.centre()) / bounds.radius();
     Vec2::new(across.s.dot(d), across.t.dot(d)) * 0.5 + Vec2::splat(0.5)
 }
 
-/// Density over area of places that are uniform over that square; zero where it has no size.
+/// Density over area of uniform points on that square; zero where it has no size.
 pub(super) fn square_pdf_area(bounds: &Aabb) -> f32 {
     disc_pdf_area(bounds) * (0.25 / warp::disc_pdf_area())
 }

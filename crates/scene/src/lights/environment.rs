@@ -1,4 +1,4 @@
-//! `environment`: light from all around, infinitely far: one colour, a sky that changes with height, or a picture.
+//! `environment`: an infinite light all around: one colour, a gradient sky, or an environment map.
 
 use super::distant::{Across, disc_pdf_area, ray};
 use super::environment_map::EnvironmentMap;
@@ -80,7 +80,7 @@ struct Environment {
 }
 
 impl Environment {
-    /// Radiance averaged over all directions: height is uniform over a sphere.
+    /// Radiance averaged over all directions: on a sphere, height is uniform.
     fn mean(&self) -> Rgb {
         self.horizon * 0.5 + (self.zenith + self.ground) * 0.25
     }

@@ -1,10 +1,10 @@
-//! A picture of all that is around, infinitely far: latitude and longitude, its middle towards -z, +y above.
+//! An environment map: an infinite light in latitude and longitude, its centre towards -z, with +y at the top.
 //!
-//! Directions are drawn by how much light comes from there: first a row of cells, then a cell, then any direction in it.
-//! A cell's chance is that of its light once neighbouring texels are blended, as they are looked up.
+//! Directions are sampled in proportion to their light: first a row of cells, then a cell, then a uniform direction in
+//! it. The probability of a cell comes from its light after bilinear filtering, as in look-ups.
 //!
-//! Points that ask for light are only sent where there is more of it than on average: scattering finds the rest as well,
-//! and the two ways together do better than if each tried to find all of it. [Karlík 2019]
+//! Direct lighting samples only directions that are brighter than the average: BSDF sampling finds the rest as well,
+//! and the two strategies together do better than if each tried to find all of the light. [Karlík 2019]
 
 use super::distant::{Across, disc_pdf_area, ray};
 use super::{EmissionSample, Light, LightSample};
@@ -16,46 +16,46 @@ use bilux_math::{Aabb, Rgb, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Light from a picture.
+/// An environment map as a light.
 pub(super) struct EnvironmentMap {
     texture: Arc<Texture>,
     scale: Rgb,
-    /// By how much the picture is turned, as a part of a whole turn.
+    /// The rotation of the map, as a fraction of a whole turn.
     turn: f32,
     is_backdrop: bool,
-    /// Cells a row, and rows.
+    /// Cells per row, and rows.
     columns: usize,
     rows: usize,
-    /// Heights of the rows' edges on the unit sphere, downwards.
+    /// Heights of the rows' edges on the unit sphere, from the top down.
     heights: Vec<f64>,
-    /// How light is sent.
+    /// The distribution for emission sampling.
     sent: Chances,
-    /// How it is asked for.
+    /// The distribution for direct lighting.
     asked: Chances,
     /// Radiance averaged over all directions.
     mean: Rgb,
 }
 
-/// The chance of each cell; none has one where there are no rows.
+/// The probability of each cell; empty if there are no rows.
 #[derive(Default)]
 struct Chances {
-    /// For each row the share of all light in it and the rows above.
+    /// For each row, the fraction of all light in it and the rows above.
     row_cdf: Vec<f64>,
-    /// For each cell the share of its row's light in it and the cells to its left.
+    /// For each cell, the fraction of its row's light in it and the cells to its left.
     cell_cdf: Vec<f64>,
 }
 
-/// So many cells at most on each side, of pictures however large.
+/// The maximum number of cells on each side, however large the map.
 const MAX: (usize, usize) = (2048, 1024);
-/// So many rows are looked at to add up what a small picture gives.
+/// The minimum number of rows of samples with which the light of a small map is summed.
 const FINE: usize = 512;
-/// Even where the picture is black a direction has this share of an even sky's density.
+/// Black parts of the map still get this fraction of a uniform sky's density.
 const FLOOR: f64 = 1e-3;
 
 impl EnvironmentMap {
-    /// A picture whose colours are multiplied by `scale`, turned to the right by `rotation` in radians.
+    /// A map whose colours are multiplied by `scale`, rotated to the right by `rotation` in radians.
     pub(super) fn new(texture: Arc<Texture>, scale: Rgb, rotation: f32, is_backdrop: bool) -> EnvironmentMap {
-        // Densities are of texels.
+        // Densities are defined per texel.
         let texture = texture.pictured(false).map_or(texture, |(picture, _)| Arc::new(picture));
         let (columns, rows) = (texture.width().min(MAX.0), texture.height().min(MAX.1));
         let height = |row| sin_cos_f64(std::f64::consts::PI * row as f64 / rows.max(1) as f64).1;
@@ -112,12 +112,12 @@ impl EnvironmentMap {
         (self.sent, self.asked) = (over(floor), over(-even));
     }
 
-    /// Solid angle of each cell of a row.
+    /// The solid angle of each cell of a row.
     fn solid_angle(&self, row: usize) -> f64 {
         (self.heights[row] - self.heights[row + 1]) * std::f64::consts::TAU / self.columns as f64
     }
 
-    /// The picture at a place in texels, blended, round about and cut off at the poles.
+    /// The map at a position in texels, filtered bilinearly, wrapped around and clamped at the poles.
     fn texel(&self, at: Vec2) -> Rgb {
         let (width, height) = (self.texture.width(), self.texture.height());
         let (x, y) = (at.x - 0.5, at.y - 0.5);
@@ -130,13 +130,13 @@ impl EnvironmentMap {
         texel(x0, y0).lerp(texel(x1, y0), fx).lerp(texel(x0, y1).lerp(texel(x1, y1), fx), fy)
     }
 
-    /// Where in the picture a direction is, 0..=1 from the left and from the top.
+    /// The position of a direction in the map, 0..=1 from the left and from the top.
     fn place(&self, direction: Vec3) -> Vec2 {
         let u = 0.5 + atan2(direction.x, -direction.z) / TAU - self.turn;
         Vec2::new(u - u.floor(), acos(direction.y.clamp(-1.0, 1.0)) / PI)
     }
 
-    /// Density over solid angle; zero where there is no picture.
+    /// Density over solid angle; zero where there is no map.
     fn pdf(&self, chances: &Chances, direction: Vec3) -> f32 {
         if self.is_backdrop || chances.row_cdf.is_empty() {
             return 0.0;
@@ -148,7 +148,7 @@ impl EnvironmentMap {
         (share / self.solid_angle(row)) as f32
     }
 
-    /// A direction towards the picture, with its density.
+    /// Samples a direction towards the map, with its density.
     fn sample(&self, chances: &Chances, u: Vec2) -> Option<(Vec3, f32)> {
         if self.is_backdrop || chances.row_cdf.is_empty() {
             return None;
@@ -167,7 +167,7 @@ impl EnvironmentMap {
 }
 
 impl Chances {
-    /// In proportion to what is in the cells; none where next to nothing is.
+    /// Probabilities in proportion to the cells' values; empty if all of them are zero.
     fn new(cells: &[f64], columns: usize) -> Chances {
         let mut chances = Chances::default();
         let mut row_sum = 0.0;
@@ -201,7 +201,7 @@ fn share(cdf: &[f64], i: usize) -> f64 {
     cdf[i] - if i == 0 { 0.0 } else { cdf[i - 1] }
 }
 
-/// What a number picks, and how far into it the number lies.
+/// The interval that a number picks, and the number's position within it.
 fn choose(cdf: &[f64], u: f32) -> (usize, f64) {
     let u = f64::from(u);
     let i = cdf.partition_point(|&c| c <= u).min(cdf.len() - 1);

@@ -1,4 +1,4 @@
-//! Triangles that give light. Not in the table: objects whose material gives light become one.
+//! Emissive triangle meshes. Not in the table: objects with an emissive material become mesh lights.
 
 use super::{EmissionSample, Light, LightSample, Sides};
 use crate::classic::ClassicLight;
@@ -10,36 +10,37 @@ use bilux_math::motion::Motion;
 use bilux_math::{Aabb, Frame, Rgb, Vec2, Vec3, warp};
 use std::f32::consts::PI;
 
-/// An emissive object, sampled by the area that its triangles have in their own space, times how bright they are; evenly
-/// within each.
+/// An emissive object, sampled in proportion to the object-space area of its triangles times their brightness.
+///
+/// Points are uniform within each triangle.
 pub struct MeshLight {
     triangles: Vec<[Vec3; 3]>,
-    /// `cdf[i]` is the share of triangles `0..=i`; the last is 1.
+    /// `cdf[i]` is the total probability of triangles `0..=i`; the last is 1.
     cdf: Vec<f32>,
-    /// The object's first triangle, as rays number it.
+    /// The object's first triangle, as in a hit.
     first: Primitive,
-    /// Centre of the area, in the object's own space.
+    /// Centroid of the area, in object space.
     middle: Vec3,
     motion: Motion,
-    /// The triangles where they are; none when they move.
+    /// The triangles in world space; empty when they move.
     resting: Vec<LightTriangle>,
-    /// The mean over its area.
+    /// The mean radiance over its area.
     radiance: Rgb,
     picture: Option<Picture>,
     sides: Sides,
-    /// By which a triangle's corners, as they are in the world, turn round its front: -1 behind a mirror, else 1.
+    /// The orientation of the front in world space: -1 if mirrored, otherwise 1.
     turn: f32,
     classic: Option<Rgb>,
 }
 
-/// What a light gives out where.
+/// The emission of a light across its surface.
 pub struct Picture {
-    /// By texture coordinates.
+    /// Emission by texture coordinates.
     pub map: ColourMap,
-    /// Where it has holes, how much of it there is: as much of its light is there for who looks for it. Who hits it has
-    /// been let through in the other cases.
+    /// The opacity mask, if any. Light sampling scales the emission by it; a ray that hits the light has already passed
+    /// the opacity test.
     pub opacity: Option<NumberMap>,
-    /// Those of each triangle's corners.
+    /// The texture coordinates of each triangle's corners.
     pub uvs: Vec<[UvPair; 3]>,
 }
 
@@ -49,11 +50,11 @@ impl Picture {
         self.map.at(uv) * self.opacity.as_ref().map_or(1.0, |opacity| opacity.at(uv))
     }
 
-    /// The mean over a triangle, from the middles of sixteen that it is cut into.
+    /// The mean over a triangle, from the centres of its sixteen sub-triangles.
     fn mean(&self, triangle: usize) -> Rgb {
         let mut sum = Rgb::BLACK;
         for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i, j))) {
-            // Every second one stands on its head.
+            // Every second sub-triangle is upside down.
             let (i, j, third) = if i + j < 4 { (i, j, 1.0 / 3.0) } else { (7 - i - j, j, 2.0 / 3.0) };
             let (u, v) = ((i as f32 + third) / 4.0, (j as f32 + third) / 4.0);
             sum += self.at(triangle, [1.0 - u - v, u, v]);
@@ -62,26 +63,27 @@ impl Picture {
     }
 }
 
-/// Triangles get at least this part of the mean brightness as theirs, since the mean of some points may miss what is
-/// bright in them.
+/// The minimum brightness of a triangle, relative to the mean: a few points may miss the bright parts of a triangle.
 const MIN_SHARE: f64 = 0.1;
 
-/// A triangle where it is at a moment.
+/// A triangle in world space at a time.
 #[derive(Clone, Copy)]
 struct LightTriangle {
     corners: [Vec3; 3],
-    /// Unit, towards the front; zero where it has no area.
+    /// Unit, towards the front; zero for a triangle without area.
     normal: Vec3,
     /// Density of its points over area.
     pdf_area: f32,
 }
 
-/// Up to so many triangles, all are compared: that has no branch that nobody can foresee.
+/// Up to this many triangles, compare with all of them: that avoids unpredictable branches.
 const FEW: usize = 8;
 
 impl MeshLight {
-    /// A light from an object's triangles in its own space; `first` is how rays number the first of
-    /// them. `mirrored` says that on the way into the world they were turned inside out. `None` when they have no area.
+    /// A light from an object's object-space triangles; `None` when they have no area.
+    ///
+    /// `first` is the first of them, as in a hit. `mirrored` says whether the transform to world space reverses the
+    /// winding.
     pub fn new(
         triangles: Vec<[Vec3; 3]>,
         mirrored: bool,
@@ -137,7 +139,7 @@ impl MeshLight {
         self.cdf[triangle] - if triangle == 0 { 0.0 } else { self.cdf[triangle - 1] }
     }
 
-    /// What it gives out at a point of a triangle.
+    /// The emitted radiance at a point of a triangle.
     fn radiance(&self, triangle: usize, weights: [f32; 3]) -> Rgb {
         self.picture.as_ref().map_or(self.radiance, |picture| picture.at(triangle, weights))
     }
@@ -157,7 +159,7 @@ impl MeshLight {
         LightTriangle { corners, normal: normal.normalize_or_zero() * self.turn, pdf_area }
     }
 
-    /// The triangle that a number picks by area.
+    /// Picks a triangle by its probability.
     fn choose(&self, u: f32) -> usize {
         let below = if self.cdf.len() <= FEW {
             self.cdf.iter().map(|&c| usize::from(c <= u)).sum()
@@ -167,7 +169,7 @@ impl MeshLight {
         below.min(self.cdf.len() - 1)
     }
 
-    /// A triangle by area, and weights of its corners, uniform over it.
+    /// Picks a triangle, and barycentric coordinates uniform over it.
     fn sample_weights(&self, u: Vec2) -> (usize, [f32; 3]) {
         let triangle = self.choose(u.x);
         let share = self.share(triangle);
@@ -177,14 +179,14 @@ impl MeshLight {
         (triangle, [1.0 - weights.x - weights.y, weights.x, weights.y])
     }
 
-    /// A point, its triangle and what it gives out.
+    /// Samples a point; returns it, its triangle and the emitted radiance.
     fn sample_point(&self, time: f32, u: Vec2) -> (Vec3, LightTriangle, Rgb) {
         let (triangle, weights) = self.sample_weights(u);
         let facet = self.facet(triangle, time);
         (blend(&facet.corners, weights), facet, self.radiance(triangle, weights))
     }
 
-    /// A point of a triangle and the bound on its error, both as a hit there would have them.
+    /// A point of a triangle and the bound on its error, both as for a hit there.
     fn point_with_error(&self, triangle: usize, weights: [f32; 3], time: f32) -> (Vec3, Vec3) {
         let own = &self.triangles[triangle];
         let (p, error) = (blend(own, weights), blend(&own.map(Vec3::abs), weights) * gamma(7));
@@ -192,7 +194,7 @@ impl MeshLight {
         if to_world.is_identity() { (p, error) } else { transform_with_error(&to_world, p, error) }
     }
 
-    /// A ray from a point of a triangle, sent with density `pdf_emission` if that is not zero.
+    /// A ray from a point of a triangle, emitted with density `pdf_emission`; `None` if that is zero.
     fn ray(
         &self,
         (triangle, weights): (usize, [f32; 3]),
@@ -223,7 +225,7 @@ impl MeshLight {
     }
 }
 
-/// The mean radiance over all triangles, and how often each of them is sampled, in any unit.
+/// The mean radiance over all triangles, and the unnormalised probability of each.
 fn weights_by_brightness(picture: &Picture, areas: &[f64]) -> (Rgb, Vec<f64>) {
     let total: f64 = areas.iter().sum();
     let means: Vec<Rgb> = (0..areas.len()).map(|i| picture.mean(i)).collect();
@@ -242,9 +244,9 @@ fn area(t: &[Vec3; 3]) -> f32 {
     (t[1] - t[0]).cross(t[2] - t[0]).length() * 0.5
 }
 
-/// See [`LightSample::clearance`]: a hit lies within a few roundings of its triangle's plane, as far as its
-/// corners and the ray's origin are from each other and from the world's origin (the lemma of
-/// [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and so many times `1 / cos` of that along the ray.
+/// See [`LightSample::clearance`]: a hit lies within a few rounding errors of its triangle's plane. They are relative
+/// to the distances of its corners and of the ray's origin from each other and from the world's origin (see the lemma
+/// of [`bilux_accel::triangle`], and [`bilux_accel::instancing`]), and grow by `1 / cos` along the ray.
 fn clearance(from: Vec3, point: Vec3, corners: &[Vec3; 3], cos: f32) -> f32 {
     let far = corners.iter().map(|c| c.distance_squared(from)).fold(0.0, f32::max).sqrt();
     let size = far + from.abs().max_element().max(point.abs().max_element());
@@ -302,7 +304,7 @@ impl Light for MeshLight {
         let LightTriangle { normal, pdf_area, .. } = self.facet(triangle, time);
         let (n_light, u) = match self.sides {
             Sides::Front => (normal, u_direction),
-            // Each takes half of the numbers.
+            // Each side takes half of the random numbers.
             Sides::Both if u_direction.x < 0.5 => (normal, Vec2::new(2.0 * u_direction.x, u_direction.y)),
             Sides::Both => (-normal, Vec2::new(2.0 * u_direction.x - 1.0, u_direction.y)),
         };

@@ -31,7 +31,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
     },
 };
 
-/// A ray of light from a point, sent with density `pdf_emission` if that is not zero.
+/// A ray of light from a point, emitted with density `pdf_emission`; `None` if that is zero.
 pub(super) fn ray(position: Vec3, direction: Vec3, le: Rgb, pdf_emission: f32) -> Option<EmissionSample> {
     (pdf_emission > 0.0).then_some(EmissionSample {
         p: position,

@@ -1,4 +1,4 @@
-//! `rect`: a flat panel that gives light; seen, and casting soft shadows.
+//! `rect`: a flat, visible panel that emits light and casts soft shadows.
 
 use super::{BuiltLight, CLASSIC, LightEntry, Sides, colour, given_classic, vector};
 use crate::error::SceneError;

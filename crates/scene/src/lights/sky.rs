@@ -1,4 +1,4 @@
-//! `sky`: a clear or hazy sky by day with its sun, by formulas. [Preetham 1999]
+//! `sky`: a clear or hazy daylight sky with its sun, by an analytic model. [Preetham 1999]
 
 use super::environment_map::EnvironmentMap;
 use super::sun::Sun;
@@ -57,22 +57,22 @@ const fn number(
     Parameter { name, summary, unit, kind: ParameterKind::Number { min, max }, default }
 }
 
-/// The picture's size: the sky is smooth.
+/// The size of the map: the sky is smooth.
 const SIZE: [usize; 2] = [256, 128];
-/// kcd/m² that are a radiance of 1, and klx that are an irradiance of 1.
+/// The luminance in kcd/m² of a radiance of 1, and the illuminance in klx of an irradiance of 1.
 const UNIT: f32 = 20.0;
-/// What the sun gives above the air, in klx, and its colour there: that of a black body of 5800 K, of luminance 1.
+/// The sun's illuminance above the atmosphere, in klx, then its colour there: a black body of 5800 K with luminance 1.
 const ABOVE_THE_AIR: f32 = 128.0;
 const SUN_COLOUR: Rgb = Rgb::new(1.075, 0.985, 0.927);
 /// Wavelengths for red, green and blue, in µm.
 const WAVELENGTHS: [f32; 3] = [0.612, 0.549, 0.465];
 
-/// How something goes over the sky, by the angles to the zenith and to the sun: A to E of Perez. [Preetham 1999, eq. 3]
+/// The distribution over the sky, by the angles to the zenith and to the sun: Perez's A to E. [Preetham 1999, eq. 3]
 #[derive(Clone, Copy)]
 struct Perez([f32; 5]);
 
 impl Perez {
-    /// Each from a slope by turbidity, and what it is at none. [Preetham 1999, A.2]
+    /// Each coefficient from its slope over turbidity, and its value at zero turbidity. [Preetham 1999, A.2]
     fn of(table: [[f32; 2]; 5], turbidity: f32) -> Perez {
         Perez(table.map(|[slope, start]| slope * turbidity + start))
     }
@@ -83,11 +83,11 @@ impl Perez {
     }
 }
 
-/// A sky. What is told of chromaticity and luminance is x, y and Y.
+/// A sky. Chromaticity and luminance are in x, y and Y.
 struct Sky {
     towards: Vec3,
     turbidity: f32,
-    /// x, y and Y in kcd/m² at the zenith, over what Perez gives there.
+    /// x, y and Y in kcd/m² at the zenith, divided by Perez's function there.
     zenith: [f32; 3],
     over: [Perez; 3],
 }
@@ -159,8 +159,8 @@ impl Sky {
         from_xyy(x, y, luminance.max(0.0)) * (1.0 / UNIT)
     }
 
-    /// Irradiance by the sun on a surface that faces it: what molecules and haze leave of it, on its way through the air.
-    /// [Preetham 1999, A.1] The mass of that air: [Kasten 1966]
+    /// The sun's irradiance on a surface that faces it, after extinction by molecules and haze in the atmosphere.
+    /// [Preetham 1999, A.1] The air mass is from [Kasten 1966].
     fn sun(&self) -> Rgb {
         let angle = acos(self.towards.y.clamp(0.0, 1.0));
         let mass = 1.0 / (self.towards.y + 0.15 * powf(93.885 - angle.to_degrees(), -1.253));
@@ -172,7 +172,7 @@ impl Sky {
         Rgb::from_array(left) * SUN_COLOUR * (ABOVE_THE_AIR / UNIT)
     }
 
-    /// As an environment has it; what is below the horizon is ground, lit by the sky and a sun.
+    /// The sky as an environment map; below the horizon is the ground, lit by the sky and a sun.
     fn picture(&self, ground: Rgb, sun: Rgb) -> Texture {
         let [width, height] = SIZE;
         let direction = |i: usize| {
@@ -194,7 +194,7 @@ impl Sky {
     }
 }
 
-/// Linear Rec. 709 of a chromaticity and a luminance; what is out of range is cut off. [IEC 61966-2-1]
+/// Linear Rec. 709 from a chromaticity and a luminance; values out of range are clamped. [IEC 61966-2-1]
 fn from_xyy(x: f32, y: f32, luminance: f32) -> Rgb {
     let (x, z) = (x / y * luminance, (1.0 - x - y) / y * luminance);
     let y = luminance;
@@ -215,8 +215,8 @@ mod tests {
         Sky::new(Vec3::new(cos, sin, 0.0), turbidity)
     }
 
-    /// Luminances that one measures: a clear zenith has some kcd/m² (more where the sun is near it), a sun at noon gives 70 to 110 klx, the
-    /// sky 10 to 30. Of haze above 3 and a high sun the formulas are known to make too much. [Zotti 2007]
+    /// Measured luminances: a clear zenith has some kcd/m² (more near the sun), the sun at noon gives 70 to 110 klx,
+    /// the sky 10 to 30. For haze above 3 and a high sun the model is known to give too much. [Zotti 2007]
     #[test]
     fn a_day_is_as_bright_as_days_are() {
         for (elevation, turbidity) in [(30.0, 2.5), (45.0, 3.0), (60.0, 3.0)] {
@@ -240,7 +240,7 @@ mod tests {
             sun.r / sun.b
         };
         assert!(colour(60.0) < 1.6 && colour(5.0) > 3.0 * colour(60.0), "{} {}", colour(60.0), colour(5.0));
-        // Brightest around the sun.
+        // The sky is brightest around the sun.
         let morning = sky(30.0, 3.0);
         let [beside, above, opposite] =
             [morning.towards, Vec3::Y, morning.towards * Vec3::new(-1.0, 1.0, 1.0)]
@@ -248,7 +248,7 @@ mod tests {
         assert!(beside > 2.0 * above && beside > 2.0 * opposite, "{beside} {above} {opposite}");
     }
 
-    /// However low the sun and thick the haze, nothing is negative or not a number.
+    /// However low the sun and thick the haze, no value is negative or NaN.
     #[test]
     fn every_sky_is_light() {
         for (elevation, turbidity) in [(0.0, 1.7), (0.0, 10.0), (90.0, 1.7), (90.0, 10.0), (1.0, 5.0)] {

@@ -1,7 +1,7 @@
-//! `sphere`: a ball that gives light outwards; seen, round at every size, and casting soft shadows.
+//! `sphere`: a visible sphere that emits light outwards, round at every size, and casts soft shadows.
 //!
-//! It is sampled by the solid angle under which it is seen, evenly over the cone that just holds it, so that near it as
-//! far away every sample counts the same. [Shirley 1996, 4.2] The density of a point on it therefore depends on who asks.
+//! It is sampled by solid angle, uniformly over its bounding cone, so that every sample has the same weight near it and
+//! far away. [Shirley 1996, 4.2] The density of a point on it therefore depends on the receiver.
 
 use super::{
     BuiltLight, CLASSIC, EmissionSample, Light, LightEntry, LightSample, colour, given_classic, vector,
@@ -41,7 +41,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
     },
     build: |reader, _| {
         let radius = reader.number("radius");
-        // What the square of is no number, too small a ball for any ray.
+        // If the square of the radius is out of range, the sphere is too small for any ray.
         if !(radius * radius).is_normal() {
             let message = "the radius of a sphere light must be above 0";
             return Err(SceneError::invalid(message, reader.span("radius")));
@@ -60,22 +60,22 @@ pub(super) const ENTRY: LightEntry = LightEntry {
     },
 };
 
-/// A ball that gives light outwards.
+/// A sphere that emits light outwards.
 pub struct SphereLight {
     sphere: PlacedSphere,
-    /// As rays number it.
+    /// As in a hit.
     primitive: Primitive,
     radiance: Rgb,
     classic: Option<Rgb>,
 }
 
-/// The cone that just holds a sphere, as seen from outside.
+/// The bounding cone of a sphere, as seen from outside.
 struct Cone {
-    /// Unit, towards the middle.
+    /// Unit, towards the centre.
     axis: Vec3,
     /// Square of the sine of the angle between the axis and the rim.
     sin2_max: f32,
-    /// What the cosine of that angle lacks to 1.
+    /// 1 minus the cosine of that angle.
     height: f32,
 }
 
@@ -90,12 +90,12 @@ impl SphereLight {
         SphereLight { sphere, primitive, radiance, classic }
     }
 
-    /// Over all of the surface.
+    /// The density of a uniform point on the whole surface.
     fn uniform_pdf_area(&self) -> f32 {
         1.0 / (4.0 * PI * self.sphere.radius * self.sphere.radius)
     }
 
-    /// A ray from where the normal is `n_light`, sent with the density `pdf` of its cosine.
+    /// A ray from the point whose normal is `n_light`, emitted with the density `pdf` of its cosine.
     fn ray(&self, n_light: Vec3, direction: Vec3, pdf: impl Fn(f32) -> f32) -> Option<EmissionSample> {
         let (p, p_error) = self.sphere.point(n_light.as_dvec3());
         let cos = n_light.dot(direction);
@@ -112,9 +112,9 @@ impl SphereLight {
         })
     }
 
-    /// `None` from within, and from where nothing of it is left in an f32.
+    /// The bounding cone; `None` from within, and from where it is too small for an f32.
     fn cone(&self, from: Vec3) -> Option<Cone> {
-        // In f64: close to the surface all depends on how much further than the radius it is to the middle.
+        // In f64: close to the surface, the result depends on how little the distance to the centre exceeds the radius.
         let to_centre = self.sphere.centre.as_dvec3() - from.as_dvec3();
         let radius2 = f64::from(self.sphere.radius) * f64::from(self.sphere.radius);
         let (axis, distance2) = (to_centre.try_normalize()?, to_centre.length_squared());
@@ -124,8 +124,8 @@ impl SphereLight {
         is_seen.then(|| Cone { axis: axis.as_vec3(), sin2_max: sin2_max as f32, height })
     }
 
-    /// See [`LightSample::clearance`]: the point is off the sphere by `error` at most, and a ray towards it under this
-    /// cosine meets the sphere no sooner than where it has come out of that depth; a half of the way at most.
+    /// See [`LightSample::clearance`]: the point is off the sphere by at most `error`, and a ray towards it at this
+    /// cosine hits the sphere no earlier than where it leaves that depth. At most half of the distance.
     fn clearance(&self, from: Vec3, point: Vec3, cos: f32) -> f32 {
         let distance = point.distance(from);
         let size = distance + from.abs().max_element().max(point.abs().max_element());
@@ -140,7 +140,7 @@ impl Light for SphereLight {
     fn sample_li(&self, from: Vec3, _time: f32, u: Vec2) -> Option<LightSample> {
         let cone = self.cone(from)?;
         let wi = warp::sample_cap(u, cone.height);
-        // The angles at the receiver, at the point on the light and, between them, at its middle. [pbrt 2023, 6.2.4]
+        // The angles at the receiver, at the point on the light and, between them, at its centre. [pbrt 2023, 6.2.4]
         let (sin_theta, cos_theta) = ((wi.x * wi.x + wi.y * wi.y).sqrt(), wi.z);
         let sin2_light = (sin_theta * sin_theta / cone.sin2_max).min(1.0);
         let (sin_light, cos_light) = (sin2_light.sqrt(), (1.0 - sin2_light).sqrt());
@@ -193,7 +193,7 @@ impl Light for SphereLight {
         self.ray(n_light, direction, pdf)
     }
 
-    /// From a point of the disc that is seen from where the ray goes.
+    /// Starts at a point of the disc that the sphere presents to the ray's direction.
     fn sample_le_aimed(&self, bounds: &Aabb, _time: f32, u: Vec2, aim: Vec2) -> Option<EmissionSample> {
         let direction = warp::square_to_sphere(aim).normalize();
         let n_light = Frame::from_normal(direction).to_world(warp::sample_cosine_hemisphere(u)).normalize();
@@ -204,7 +204,7 @@ impl Light for SphereLight {
         warp::cosine_hemisphere_pdf_solid_angle(cos) / (self.sphere.radius * self.sphere.radius)
     }
 
-    /// Rays start evenly all over the surface, whoever asks.
+    /// Rays start uniformly on the whole surface, whatever the receiver.
     fn emission_pdf(&self, _bounds: &Aabb, _pdf_direct: f32, _direction: Vec3, cos: f32) -> f32 {
         self.uniform_pdf_area() * warp::cosine_hemisphere_pdf_solid_angle(cos)
     }
@@ -230,7 +230,7 @@ impl Light for SphereLight {
         let within = warp::sample_sphere(u) * (radius * extent);
         let position = self.sphere.centre + within;
         let wi = (position - from).try_normalize()?;
-        // Up to the surface: what is left is within the lamp, where nothing shades.
+        // Only up to the surface: the rest of the segment is inside the light, where nothing casts shadows.
         let along = within.dot(wi);
         let inside = along + (along * along + (radius * radius - within.length_squared()).max(0.0)).sqrt();
         let margin = self.clearance(from, position, 1.0);

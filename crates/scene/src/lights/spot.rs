@@ -58,7 +58,7 @@ struct Spot {
 }
 
 impl Spot {
-    /// 1 within the inner cone, 0 outside of the outer one, smooth between.
+    /// 1 within the inner cone, 0 outside of the outer one, and smooth in between.
     fn falloff(&self, towards_light: Vec3) -> f32 {
         let cos = -towards_light.dot(self.axis);
         if cos >= self.cos_inner {
@@ -121,7 +121,7 @@ impl Light for Spot {
     }
 
     fn power(&self, _bounds: &Aabb) -> f32 {
-        // The smooth edge has half of the light of its cosines' range.
+        // The smooth edge emits half of the light in its range of cosines.
         self.intensity.luminance() * TAU * (1.0 - 0.5 * (self.cos_inner + self.cos_outer))
     }
 

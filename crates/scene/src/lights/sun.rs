@@ -1,4 +1,4 @@
-//! A disc infinitely far, evenly bright: the sun, whose shadows have soft edges, and which is seen in mirrors.
+//! A uniformly bright disc at infinity: the sun, which casts soft shadows and appears in mirrors.
 
 use super::distant::{Across, disc_pdf_area, ray};
 use super::{EmissionSample, Light, LightSample};
@@ -10,7 +10,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 pub(super) struct Sun {
     towards: Vec3,
-    /// Of the cap of the unit sphere that it covers.
+    /// The height of the cap of the unit sphere that it covers.
     height: f32,
     radiance: Rgb,
     irradiance: Rgb,
@@ -18,11 +18,13 @@ pub(super) struct Sun {
 }
 
 impl Sun {
-    /// In a direction, of an angular diameter in radians above 0 and at most π, which gives this irradiance to a surface that faces it.
+    /// A sun in direction `towards`, with an angular diameter in radians above 0 and at most π.
+    ///
+    /// `irradiance` is that of a surface that faces it.
     pub(super) fn new(towards: Vec3, diameter: f32, irradiance: Rgb, classic: Option<Rgb>) -> Sun {
         let (quarter, half) = (sin(diameter * 0.25), sin(diameter * 0.5));
         let radiance = irradiance / (PI * half * half);
-        // What the cosine of half its diameter lacks to 1.
+        // 1 minus the cosine of half of its diameter.
         Sun { towards, height: 2.0 * quarter * quarter, radiance, irradiance, classic }
     }
 
@@ -71,7 +73,7 @@ impl Light for Sun {
         true
     }
 
-    /// By the chord between the directions, which keeps the digits that their cosine would lose.
+    /// Compares the chord between the directions, which keeps digits that their cosine would lose.
     fn le(&self, direction: Vec3) -> Rgb {
         let is_within = (direction - self.towards).length_squared() <= 2.0 * self.height * (1.0 + 1e-4);
         if is_within { self.radiance } else { Rgb::BLACK }
@@ -83,7 +85,7 @@ impl Light for Sun {
 
     fn power(&self, bounds: &Aabb) -> f32 {
         let radius = bounds.radius();
-        // Across the ray: over the disc, not over a surface that faces its middle.
+        // Integrated over the disc perpendicular to each ray, not over a surface that faces the sun's centre.
         self.radiance.luminance() * 2.0 * PI * self.height * PI * radius * radius
     }
 

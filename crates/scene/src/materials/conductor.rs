@@ -1,4 +1,4 @@
-//! `conductor`: metal, polished, satin or brushed.
+//! `conductor`: polished, satin or brushed metal.
 
 use super::metals::{METALS, NAMES};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
@@ -65,7 +65,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
 };
 
-/// What a metal that a spec describes reflects straight on; `None` where the spec is of none, or wrong.
+/// A metal's reflectance at normal incidence; `None` if the spec is not a valid conductor.
 pub fn straight_on(spec: &Spec) -> Option<Rgb> {
     let reader = Reader::new(spec, &ENTRY.entry).ok().filter(|_| spec.kind == ENTRY.entry.name)?;
     if reader.is_given("reflectance") {
@@ -83,7 +83,7 @@ const fn index(name: &'static str, summary: &'static str, min: f64) -> Parameter
     Parameter { name, summary, unit: "", kind: ParameterKind::Colour { min, max: 100.0 }, default: "1" }
 }
 
-/// Refuses two ways of saying one thing, and half of one.
+/// Rejects contradictory or incomplete descriptions of the metal.
 fn one_colour(reader: &Reader) -> Result<(), SceneError> {
     let given: Vec<&str> =
         ["metal", "eta", "reflectance"].into_iter().filter(|key| reader.is_given(key)).collect();

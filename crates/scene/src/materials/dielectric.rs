@@ -1,4 +1,4 @@
-//! `dielectric`: smooth glass, water, diamond.
+//! `dielectric`: glass, water, diamond, smooth or rough.
 
 use super::glasses::{NAMES, glass_indices};
 use super::roughness::{ANISOTROPY, ROTATION, Roughness, roughness};
@@ -91,7 +91,7 @@ const DISPERSION: Parameter = Parameter {
     default: "0",
 };
 
-/// The same with numbers for a name, for formats that know none.
+/// The spec with numbers in place of the glass's name, for formats without named glasses.
 pub fn with_indices(spec: &Spec) -> Cow<'_, Spec> {
     let name = spec.parameters.find("glass").map(|(value, _)| value);
     let Some(Value::Text(name)) = name.filter(|_| spec.kind == ENTRY.entry.name) else {

@@ -1,4 +1,4 @@
-//! `diffuse`: matt, equally bright from everywhere.
+//! `diffuse`: matte, equally bright from every direction.
 
 use super::{
     EMISSION, EMISSION_SCALE, EMISSION_SIDES, Material, MaterialEntry, NORMAL, NORMAL_SCALE, OPACITY,

@@ -1,4 +1,4 @@
-//! Light that a surface gives out by itself.
+//! Emission of surfaces.
 
 use super::{MaterialInputs, texture};
 use crate::error::SceneError;
@@ -8,7 +8,7 @@ use crate::texture::{ColourMap, Texture};
 use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};
 
-/// Shared by all materials: what a surface gives out by itself.
+/// Emitted radiance; shared by the materials.
 pub(super) const EMISSION: Parameter = Parameter {
     name: "emission",
     summary: "emitted radiance",
@@ -17,7 +17,7 @@ pub(super) const EMISSION: Parameter = Parameter {
     default: "0",
 };
 
-/// How bright a picture of that is.
+/// A factor on an emission texture.
 pub(super) const EMISSION_SCALE: Parameter = Parameter {
     name: "emission_scale",
     summary: "factor on an emission texture",
@@ -26,7 +26,7 @@ pub(super) const EMISSION_SCALE: Parameter = Parameter {
     default: "1",
 };
 
-/// On which sides it is.
+/// The emitting sides.
 pub(super) const EMISSION_SIDES: Parameter = Parameter {
     name: "emission_sides",
     summary: "where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise",
@@ -35,16 +35,16 @@ pub(super) const EMISSION_SIDES: Parameter = Parameter {
     default: "both",
 };
 
-/// What a surface gives out.
+/// The emission of a surface.
 pub(super) struct SurfaceEmission {
-    /// The colour, or what its picture is multiplied by, and that.
+    /// The emitted colour, or an emission texture and the factor on it.
     pub(super) map: ColourMap,
-    /// The greatest of each channel.
+    /// The maximum of each channel.
     pub(super) brightest: Rgb,
     pub(super) sides: Sides,
 }
 
-/// The light that a material is told to give out, if any.
+/// Reads the emission of a material, if it has any.
 pub(super) fn read(
     reader: &Reader,
     ingredients: &MaterialInputs,
@@ -57,7 +57,7 @@ pub(super) fn read(
     Ok((!brightest.is_black()).then_some(SurfaceEmission { map, brightest, sides }))
 }
 
-/// The greatest of each channel.
+/// The maximum of each channel.
 fn brightest(picture: &Texture) -> Rgb {
     let greater = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
     match picture.formula() {

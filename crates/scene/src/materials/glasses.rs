@@ -1,8 +1,9 @@
-//! Clear matter by name: refractive index at 587.6 nm, and Abbe's number. Glasses are from the maker's sheets [Schott 2023], the
-//! others from formulas fitted to measurements: silica [Malitson 1965], sapphire for the ordinary ray [Malitson 1962], diamond
-//! [Peter 1923], water at 20 °C [Daimon 2007], acrylic and polycarbonate [Sultanova 2009].
+//! Transparent materials by name: refractive index at 587.6 nm, and Abbe number. Glasses are from the maker's data
+//! sheets [Schott 2023]. The others are from formulas fitted to measurements: silica [Malitson 1965], sapphire for the
+//! ordinary ray [Malitson 1962], diamond [Peter 1923], water at 20 °C [Daimon 2007], acrylic and polycarbonate
+//! [Sultanova 2009].
 
-/// The names, as users choose among them.
+/// The names that users choose from.
 pub(super) const NAMES: &[&str] = &[
     "none",
     "acrylic",
@@ -20,7 +21,7 @@ pub(super) const NAMES: &[&str] = &[
     "water",
 ];
 
-/// Each behind its name, and what they are of.
+/// Each name with its refractive index and its Abbe number.
 const GLASSES: &[(&str, f32, f32)] = &[
     ("acrylic", 1.4906, 53.18),
     ("baf10", 1.6700, 47.11),
@@ -37,7 +38,7 @@ const GLASSES: &[(&str, f32, f32)] = &[
     ("water", 1.3334, 55.76),
 ];
 
-/// The refractive index of what goes by a name, at 587.6 nm, and its Abbe number.
+/// The refractive index of a named material at 587.6 nm, and its Abbe number.
 pub fn glass_indices(name: &str) -> Option<(f32, f32)> {
     GLASSES.iter().find(|(known, ..)| *known == name).map(|&(_, index, abbe_number)| (index, abbe_number))
 }
@@ -51,7 +52,7 @@ mod tests {
         assert!(GLASSES.iter().map(|(name, ..)| *name).eq(NAMES[1..].iter().copied()));
     }
 
-    /// Index and Abbe number by Sellmeier's formula: n² - 1 is the sum of a·λ²/(λ² - b), λ in µm.
+    /// Index and Abbe number by the Sellmeier equation: n² - 1 is the sum of a·λ²/(λ² - b), λ in µm.
     fn sellmeier(terms: &[(f64, f64)]) -> (f64, f64) {
         let index = |l: f64| (1.0 + terms.iter().map(|(a, b)| a * l * l / (l * l - b)).sum::<f64>()).sqrt();
         let [d, f, c] = [0.587_561_8, 0.486_132_7, 0.656_272_5].map(index);

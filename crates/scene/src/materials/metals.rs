@@ -1,9 +1,9 @@
 //! Metals by name. [Johnson 1972; Johnson 1974; Rakić 1995; Querry 1985]
 //!
-//! One index for a third of the spectrum has to stand for all of it. Each is the one whose reflectance, straight on and at
-//! 82 degrees, is the channel of the colour that the measured indices reflect there under D65, seen by the observer of
-//! 1931. In between it differs from that colour by less than 0.006. Gold alone is more saturated than Rec. 709 can show:
-//! its red channel is held at 0.985.
+//! One index per channel has to represent a third of the spectrum. It is chosen so that its reflectance, at normal
+//! incidence and at 82 degrees, equals that channel of the colour that the measured indices reflect there under D65,
+//! for the observer of 1931. In between it differs from that colour by less than 0.006. Only gold is more saturated
+//! than Rec. 709 can show: its red channel is limited to 0.985.
 
 use bilux_math::Rgb;
 
@@ -14,7 +14,7 @@ pub(super) struct Metal {
     pub(super) k: Rgb,
 }
 
-/// The names, as users choose among them.
+/// The names that users choose from.
 pub(super) const NAMES: &[&str] =
     &["aluminium", "brass", "chromium", "copper", "gold", "iron", "nickel", "silver", "titanium"];
 

@@ -1,4 +1,4 @@
-//! `mix`: two materials in one place, each for a share of the light.
+//! `mix`: a mixture of two materials, weighted by `amount`.
 
 use super::{Material, MaterialEntry, MaterialInputs, NORMAL, NORMAL_SCALE, Nested, OPACITY, number_map};
 use crate::bsdf::{Bsdf, MAX_LOBES};
@@ -84,7 +84,7 @@ struct Mix {
 }
 
 impl Mix {
-    /// The share of the second material.
+    /// The weight of the second material.
     fn share(&self, surface: &Surface) -> f32 {
         self.amount.at(surface.uvs())
     }
@@ -102,7 +102,7 @@ impl Material for Mix {
     fn classic(&self, surface: &Surface) -> ClassicMaterial {
         let (a, b, share) = (self.a.classic(surface), self.b.classic(surface), self.share(surface));
         let number = |a: f32, b: f32| a + (b - a) * share;
-        // What light meets inside is that of the part that lets it in.
+        // The interior is that of the material that transmits light.
         let clear = if a.kt.is_black() { b } else { a };
         ClassicMaterial {
             ka: a.ka.lerp(b.ka, share),
@@ -132,7 +132,7 @@ impl Material for Mix {
         self.a.nested().or(self.b.nested())
     }
 
-    /// What is inside does not depend on where light came in: the denser of the two.
+    /// The interior does not depend on where light entered: use the denser of the two.
     fn sigma_a(&self) -> Rgb {
         let (a, b) = (self.a.sigma_a(), self.b.sigma_a());
         Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b))

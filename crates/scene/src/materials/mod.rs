@@ -1,17 +1,18 @@
-//! What surfaces are made of. One material a file; the table is [`MATERIALS`].
+//! Materials of surfaces. Each material has its own file; the table is [`MATERIALS`].
 //!
-//! A material says two things of a point: its [`Bsdf`], for the physical integrators, and its
-//! [`ClassicMaterial`], for Equations 1 and 2 of the paper. The map between the two:
+//! A material has two descriptions at a point: its [`Bsdf`], for the physical integrators, and its [`ClassicMaterial`],
+//! for Equations 1 and 2 of the paper. R₀ is the reflectance at normal incidence, and the opaque base is the part that
+//! is neither metal nor clear. The two correspond as follows:
 //!
 //! | material | ka | kd | ks | kt | exponent | reflectivity | Fresnel |
 //! | --- | --- | --- | --- | --- | --- | --- | --- |
 //! | `phong` | as given | as given | as given | as given | as given | as given | where kt > 0 |
 //! | `diffuse` | reflectance | reflectance | 0 | 0 | – | 0 | no |
 //! | `mirror` | 0 | 0 | reflectance | 0 | 500 | 1 | no |
-//! | `conductor` | 0 | 0 | reflectance straight on | 0 | 2/α² − 2, at most 500 | 1 | no |
+//! | `conductor` | 0 | 0 | R₀ | 0 | 2/α² − 2, at most 500 | 1 | no |
 //! | `dielectric` | 0 | 0 | 1 | tint | 500 | 1 | yes |
-//! | `principled` | base that is neither metal nor clear | as ka | what is reflected straight on; 1 where kt > 0 | transmission | 2/α² − 2, at most 500 | 1 | where kt > 0 |
-//! | `mix` | in between | in between | in between | in between | in between | in between | as what lets light in |
+//! | `principled` | opaque base | as ka | R₀; 1 where kt > 0 | transmission | as `conductor` | 1 | where kt > 0 |
+//! | `mix` | in between | in between | in between | in between | in between | in between | as the transmitting part |
 //!
 //! Roughness α spreads the reflected and refracted rays of `cook` by up to the arc tangent of α.
 
@@ -50,67 +51,68 @@ use opacity::OPACITY;
 use std::sync::Arc;
 use visible::VISIBLE_SIDES;
 
-/// Something that surfaces are made of.
+/// The material of a surface.
 pub trait Material: Send + Sync {
     /// How light scatters at a point.
     fn bsdf(&self, surface: &Surface) -> Bsdf;
     /// The same point under Equations 1 and 2.
     fn classic(&self, surface: &Surface) -> ClassicMaterial;
-    /// The shading normal at a point, on the same side as `n_geom`: the interpolated one, unless there is a normal map.
-    /// Tracers ask for it, where there are tangents; the other functions find it in the surface.
+    /// The shading normal at a point, on the same side as `n_geom`: interpolated, or from a normal map.
+    ///
+    /// Tracers call it where there are tangents; the other functions read the result from the surface.
     fn n_shade(&self, surface: &Surface) -> Vec3 {
         surface.n_shade
     }
-    /// True when it tells directions along the surface apart, and so asks for [`Surface::tangent`].
+    /// True when it is anisotropic, and so needs [`Surface::tangent`].
     fn needs_tangents(&self) -> bool {
         false
     }
-    /// In how many ways it scatters light at most: lobes of its [`Bsdf`].
+    /// The maximum number of lobes of its [`Bsdf`].
     fn most_lobes(&self) -> usize {
         1
     }
-    /// Radiance given out, black for what is no light; the greatest, where a picture tells it.
+    /// Emitted radiance, black for no emission; the maximum, if a texture varies it.
     fn emission(&self) -> Rgb {
         Rgb::BLACK
     }
-    /// The picture that tells it.
+    /// The emission texture.
     fn emission_map(&self) -> Option<&ColourMap> {
         None
     }
-    /// On which sides of its triangles a surface gives that out.
+    /// The sides of its triangles from which a surface emits.
     fn emission_sides(&self) -> Sides {
         Sides::Both
     }
-    /// How much of the surface there is, where it has holes.
+    /// The opacity mask, if it has one.
     fn opacity(&self) -> Option<&NumberMap> {
         None
     }
-    /// From which sides of its triangles a camera sees it.
+    /// The sides of its triangles that a camera sees.
     fn visible_sides(&self) -> Sides {
         Sides::Both
     }
-    /// True when it sends light of each wavelength another way.
+    /// True when it refracts each wavelength differently.
     fn disperses(&self) -> bool {
         false
     }
-    /// How what is inside stands against what it overlaps with; `None` for what takes no part in that.
+    /// Its interior medium for overlapping objects; `None` if it takes no part in nesting.
     fn nested(&self) -> Option<Nested> {
         None
     }
-    /// Absorption per metre on the inside, by Beer's law; none where there is no inside.
+    /// Absorption per metre inside, by Beer's law; black if there is no interior.
     fn sigma_a(&self) -> Rgb {
         Rgb::BLACK
     }
 }
 
-/// A medium that may overlap with others: where several are, the one of the greatest priority is. [Schmidt 2002]
+/// A nested medium; where several overlap, only the one of the highest priority exists. [Schmidt 2002]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nested {
     /// At least 1.
     pub priority: u32,
-    /// Refractive index over that of air.
+    /// Refractive index relative to air.
     pub eta: f32,
-    /// 1 over Abbe's number.
+    /// 1 over the Abbe number.
     pub dispersion: f32,
 }
 
@@ -130,30 +132,30 @@ pub struct MaterialEntry {
     pub build: BuildMaterial,
 }
 
-/// How a material is made from its parameters and what else is in the scene.
+/// Builds a material from its parameters and the rest of the scene.
 pub type BuildMaterial = fn(&Reader, &MaterialInputs) -> Result<Arc<dyn Material>, SceneError>;
 
-/// What materials are made of.
+/// The inputs of a material.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MaterialInputs<'a> {
     /// The scene's textures.
     pub textures: &'a [Arc<Texture>],
-    /// The scene's materials, for those that are made of others.
+    /// The scene's materials, for those that refer to others.
     pub materials: &'a [Spec],
-    /// How many materials this one is already a part of.
+    /// The nesting depth of this material in mixes.
     depth: usize,
 }
 
-/// Each way of scattering needs a material, so that no mix that is allowed is deeper.
+/// Each lobe needs a material, so no allowed mix is deeper.
 const DEEPEST: usize = MAX_LOBES - 1;
 
 impl<'a> MaterialInputs<'a> {
-    /// Those of a whole scene.
+    /// The inputs from a whole scene.
     pub fn new(textures: &'a [Arc<Texture>], materials: &'a [Spec]) -> MaterialInputs<'a> {
         MaterialInputs { textures, materials, depth: 0 }
     }
 
-    /// Another material of the scene, as a part of the one that is being made.
+    /// Builds another material of the scene, as a part of this one.
     fn material(&self, index: usize, at: &Span) -> Result<Arc<dyn Material>, SceneError> {
         let Some(spec) = self.materials.get(index) else {
             return Err(SceneError::invalid(format!("no material {index}"), at));
@@ -166,12 +168,12 @@ impl<'a> MaterialInputs<'a> {
     }
 }
 
-/// The refractive index of a named metal, channel by channel: its real part, and the imaginary one.
+/// The refractive index of a named metal per channel: real part, then imaginary part.
 pub fn metal_indices(name: &str) -> Option<[Rgb; 2]> {
     metals::METALS.iter().find(|metal| metal.name == name).map(|metal| [metal.eta, metal.k])
 }
 
-/// Every material that there is.
+/// All materials.
 pub const MATERIALS: &[MaterialEntry] = &[
     phong::ENTRY,
     diffuse::ENTRY,

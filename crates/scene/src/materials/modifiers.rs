@@ -1,5 +1,5 @@
-//! What any material may have besides its way to scatter light: normals from a picture, light of its own, holes, a back that
-//! is not seen.
+//! Features that any material may have in addition to its BSDF: a normal map, emission, opacity, and backs hidden from
+//! the camera.
 
 use super::emission::{self, SurfaceEmission};
 use super::normal_map::{self, NormalMap};
@@ -15,7 +15,7 @@ use crate::texture::{ColourMap, NumberMap};
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 
-/// The material with what its parameters say of these; the same one where they say nothing.
+/// Wraps the material in the modifiers that its parameters ask for; without any it stays the same.
 pub(super) fn dress(
     material: Arc<dyn Material>,
     row: &MaterialEntry,

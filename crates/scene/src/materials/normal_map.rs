@@ -1,5 +1,5 @@
-//! Normals from a picture, for any material: red along the tangent, green across it, blue away from the surface, each
-//! from -1 to 1 (tangent space, as OpenGL and glTF have it: green is up).
+//! Normal maps, for any material: red along the tangent, green across it, blue away from the surface, each from -1 to 1
+//! (tangent space as in OpenGL and glTF: green is up).
 
 use super::{MaterialInputs, texture};
 use crate::error::SceneError;
@@ -34,18 +34,18 @@ pub(super) const COAT_NORMAL: Parameter = Parameter {
 
 pub(super) const COAT_NORMAL_SCALE: Parameter = Parameter { name: "coat_normal_scale", ..NORMAL_SCALE };
 
-/// Normals of a picture.
+/// A normal map.
 pub(super) struct NormalMap {
     map: Arc<Texture>,
     scale: f32,
 }
 
-/// The normals that a material is given, if any.
+/// The normal map of a material, if any.
 pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Option<NormalMap>, SceneError> {
     read_named(reader, [NORMAL.name, NORMAL_SCALE.name], ingredients)
 }
 
-/// The same of its coat.
+/// The normal map of its coat, if any.
 pub(super) fn read_of_coat(
     reader: &Reader,
     ingredients: &MaterialInputs,
@@ -66,7 +66,7 @@ fn read_named(
 impl NormalMap {
     /// The normal at a point that has a tangent, on the same side as `n_geom`.
     pub(super) fn at(&self, surface: &Surface) -> Vec3 {
-        // Those of single texels: their mean would be a smoother surface.
+        // Use single texels: averaged normals would give a smoother surface.
         let texel = self.map.at(surface.uv_pair());
         let lean = |c: f32| (2.0 * c - 1.0) * self.scale;
         let (x, y, z) = (lean(texel.r), lean(texel.g), 2.0 * texel.b - 1.0);
@@ -74,7 +74,7 @@ impl NormalMap {
         let Some(tangent) = (surface.tangent - n * n.dot(surface.tangent)).try_normalize() else { return n };
         let across = n.cross(tangent) * surface.handedness;
         let Some(turned) = (tangent * x + across * y + n * z).try_normalize() else { return n };
-        // No normal is on the inside.
+        // No normal points inside the surface.
         let depth = turned.dot(surface.n_geom).min(0.0);
         (turned - surface.n_geom * (2.0 * depth)).try_normalize().unwrap_or(n)
     }

@@ -1,8 +1,8 @@
-//! Holes in a surface: how much of it there is.
+//! Opacity masks (alpha): how much of a surface is present.
 //!
-//! A ray meets a surface of opacity o with probability o, and else goes on as if nothing were there: leaves that are
-//! drawn on squares, lace, gauze. Every ray decides for itself, so that what light passes through holes does is the
-//! same from both ends. See [`crate::Tracer`].
+//! A ray hits a surface of opacity o with probability o, and otherwise continues as if it were not there: leaves cut
+//! out of squares, lace, gauze. The decision is made per ray, so that transport through cut-outs is the same from both
+//! ends of a path. See [`crate::Tracer`].
 
 use super::{MaterialInputs, number_map};
 use crate::error::SceneError;
@@ -19,7 +19,7 @@ pub(super) const OPACITY: Parameter = Parameter {
     default: "1",
 };
 
-/// What it is where there may be holes.
+/// The opacity, if it may be below 1.
 pub(super) fn read(reader: &Reader, ingredients: &MaterialInputs) -> Result<Option<NumberMap>, SceneError> {
     let map = number_map(reader, OPACITY.name, ingredients)?;
     Ok((map.texture.is_some() || map.number < 1.0).then_some(map))

@@ -1,8 +1,8 @@
 //! `phong`: the material of the paper, with every constant of Equations 1 and 2.
 //!
-//! For the physical integrators it is a diffuse lobe (kd), a mirror (ks · reflectivity), a normalised
-//! highlight (the rest of ks), and, where kt is given, smooth glass in place of all three. Where kd + ks > 1
-//! the lobes are scaled down together, so that it never gives out more light than it gets.
+//! For the physical integrators it is a diffuse lobe (kd), a mirror (ks · reflectivity), a normalised highlight (the
+//! rest of ks), and, where kt is given, smooth glass in place of all three. Where kd + ks > 1 the lobes are scaled down
+//! together, so that it never reflects more light than it receives.
 
 use super::{
     ABSORPTION, EMISSION, EMISSION_SCALE, EMISSION_SIDES, ETA, Material, MaterialEntry, NORMAL, NORMAL_SCALE,

@@ -1,4 +1,4 @@
-//! How rough a surface is, as users say it.
+//! Surface roughness, in the parameters that users set.
 
 use super::{MaterialInputs, number_map};
 use crate::bsdf::Ggx;
@@ -9,13 +9,13 @@ use crate::texture::NumberMap;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_math::transcendental::atan;
 
-/// Roughness, the same in all directions or smoother along a brushing.
+/// Roughness, isotropic or smoother along a brushing.
 pub(super) struct Roughness {
     roughness: NumberMap,
     anisotropy: NumberMap,
-    /// Of the brushing, in radians.
+    /// Rotation of the brushing, in radians.
     rotation: f32,
-    /// What it comes to where it is the same everywhere.
+    /// The precomputed distribution, if no texture varies it.
     even: Option<Ggx>,
 }
 
@@ -32,7 +32,7 @@ impl Roughness {
     /// The microfacets at a point.
     #[inline]
     pub(super) fn at(&self, surface: &Surface) -> Ggx {
-        // Turned from u towards v, on whichever side of u that is.
+        // The rotation is from u towards v, whichever side of u that is on.
         let rotation = self.rotation * surface.handedness;
         self.even.filter(|_| rotation == self.rotation).unwrap_or_else(|| {
             let uv = surface.uvs();
@@ -40,7 +40,7 @@ impl Roughness {
         })
     }
 
-    /// True when it may matter how the surface is turned.
+    /// True when the surface may be anisotropic.
     pub(super) fn has_direction(&self) -> bool {
         let is_rough = self.even.is_none_or(|ggx| !ggx.is_smooth());
         is_rough && (self.anisotropy.texture.is_some() || self.anisotropy.number > 0.0)
@@ -52,12 +52,12 @@ impl Roughness {
         roughness * roughness
     }
 
-    /// The greatest angle by which the classic modes spread rays, in radians.
+    /// The maximum angle by which the classic modes spread rays, in radians.
     pub(super) fn spread(&self, surface: &Surface) -> f32 {
         atan(self.alpha(surface))
     }
 
-    /// The exponent of a highlight about as wide, in the classic modes.
+    /// The exponent of a highlight of about the same width, in the classic modes.
     pub(super) fn exponent(&self, surface: &Surface) -> f32 {
         let alpha = self.alpha(surface);
         (2.0 / (alpha * alpha) - 2.0).min(500.0)

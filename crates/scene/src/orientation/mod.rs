@@ -1,4 +1,4 @@
-//! Which way a model is up, and where its front is.
+//! The up axis of a model, and its front.
 
 mod shape;
 
@@ -27,7 +27,7 @@ impl Axis {
     /// All six.
     pub const ALL: [Axis; 6] = [Axis::X, Axis::Y, Axis::Z, Axis::NegX, Axis::NegY, Axis::NegZ];
 
-    /// By its name; a `+` may stand before it.
+    /// The axis of a name, with an optional leading `+`.
     pub fn named(name: &str) -> Option<Axis> {
         let name = name.trim().to_lowercase();
         let name = name.strip_prefix('+').unwrap_or(&name);
@@ -46,7 +46,7 @@ impl Axis {
         }
     }
 
-    /// The other way.
+    /// The opposite direction.
     pub fn opposite(self) -> Axis {
         Axis::ALL[(self as usize + 3) % 6]
     }
@@ -65,49 +65,49 @@ impl Axis {
         if matches!(self, Axis::X | Axis::Y | Axis::Z) { 1.0 } else { -1.0 }
     }
 
-    /// Of length one.
+    /// The unit vector of the axis.
     pub fn direction(self) -> DVec3 {
         DVec3::AXES[self.index()] * self.sign()
     }
 }
 
-/// What a file or its format says of which way is up.
+/// The up axis as stated by a file or its format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UpHint {
-    /// It is said, or follows from the format.
+    /// It is stated, or follows from the format.
     Is(Axis),
-    /// Most files of the format have it so; the shape may show that this one has not.
+    /// Most files of the format use it; the shape may show that this one does not.
     Usually(Axis),
 }
 
 impl Default for UpHint {
-    /// As scenes have it that are made here.
+    /// The convention of scenes generated here.
     fn default() -> UpHint {
         UpHint::Is(Axis::Y)
     }
 }
 
-/// How a model stands.
+/// The orientation of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation {
-    /// Which of its axes is up.
+    /// The axis that points up.
     pub up: Axis,
-    /// Which of them is its front.
+    /// The axis that points to the front.
     pub front: Axis,
-    /// Whence this is known.
+    /// How this is known.
     pub because: Because,
 }
 
-/// Whence it is known how a model stands.
+/// How the orientation of a model is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Because {
-    /// The user says it.
+    /// The user asked for it.
     Asked,
-    /// The file's format says it.
+    /// The file's format specifies it.
     Format,
-    /// Most files of its format have it so, and nothing in the shape speaks against it.
+    /// Most files of its format use it, and nothing in the shape contradicts it.
     Usual,
-    /// The shape speaks for it.
+    /// The shape suggests it.
     Shape,
 }
 
@@ -124,7 +124,7 @@ impl Because {
 }
 
 impl Orientation {
-    /// How a scene stands, as far as it is not asked for; `None` where front and up are along one axis.
+    /// The orientation of a scene, where the user did not choose it; `None` if front and up are on the same axis.
     pub fn of(scene: &SceneBuilder, up: Option<Axis>, front: Option<Axis>) -> Option<Orientation> {
         let (usual, is_open) = match scene.up {
             UpHint::Is(axis) => (axis, false),
@@ -151,14 +151,14 @@ impl Orientation {
         (turned.index() != found.index()).then_some(Orientation { up: found, front: turned, because })
     }
 
-    /// The rotation that turns up to +y and the front to +z.
+    /// The rotation that takes up to +y and the front to +z.
     pub fn upright(self) -> DMat3 {
         let (up, front) = (self.up.direction(), self.front.direction());
         DMat3::from_cols(up.cross(front), up, front).transpose()
     }
 }
 
-/// Where the front is by custom: +z where y is up, -y where z is, as modelling programs have it.
+/// The conventional front: +z if y is up, -y if z is, as in modelling programs.
 fn front_of(up: Axis) -> Axis {
     match up {
         Axis::Z | Axis::NegZ => Axis::NegY,

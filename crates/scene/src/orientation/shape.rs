@@ -1,10 +1,10 @@
-//! What a shape says of how it stands. By hand, from what tells 105 public models apart; see `docs/adr/0029-up-and-front.md`.
+//! Orientation from shape: a hand-made score that distinguishes 105 public models; see `docs/adr/0029-up-and-front.md`.
 
 use super::Axis;
 use crate::builder::SceneBuilder;
 use bilux_math::DVec3;
 
-/// A point of a surface with its unit normal, which is zero where there is none, and its area.
+/// A point of a surface with its unit normal, or zero if it has none, and its area.
 #[derive(Clone, Copy)]
 struct Sample {
     p: DVec3,
@@ -12,26 +12,26 @@ struct Sample {
     area: f64,
 }
 
-/// Points that are looked at.
+/// The number of points that are sampled.
 const SAMPLES: usize = 1 << 14;
-/// Cells along the longest side of the box in which symmetry is looked for.
+/// Cells along the longest side of the bounding box, for measuring symmetry.
 const CELLS: usize = 24;
 
-/// What was found.
+/// The measurements.
 pub(super) struct Shape {
-    /// The sides of its box.
+    /// The sides of its bounding box.
     extent: DVec3,
     low: DVec3,
     middle: DVec3,
     samples: Vec<Sample>,
-    /// By axis, how much of it is there in the mirror across the middle of the box, 0..=1.
+    /// For each axis, how much of the shape its mirror image across the centre of the box contains, 0..=1.
     symmetry: [f64; 3],
-    /// Triangles behind and before the middle of each axis, over their area.
+    /// Triangles per area on the lower and upper half of each axis.
     density: [[f64; 2]; 3],
 }
 
 impl Shape {
-    /// `None` for what has no size.
+    /// `None` for a shape of zero size.
     pub(super) fn of(scene: &SceneBuilder) -> Option<Shape> {
         let bounds = scene.bounds(0.0);
         let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
@@ -47,7 +47,7 @@ impl Shape {
         (!shape.samples.is_empty()).then_some(shape)
     }
 
-    /// The share of filled cells that are filled in the mirror too, or one beside that.
+    /// The fraction of filled cells whose mirror image, or a neighbour of that, is also filled.
     fn symmetries(&self) -> [f64; 3] {
         let longest = self.extent.max_element();
         let cell = |p: DVec3| -> [usize; 3] {
@@ -92,8 +92,9 @@ impl Shape {
         sums.map(|halves| halves.map(|[count, area]| count / area.max(f64::MIN_POSITIVE)))
     }
 
-    /// How well it stands with this axis up, where `usual` is up in most files of its format. The weights are those that put most
-    /// of the models of the record right.
+    /// A score for this up axis, where `usual` is the up axis of most files of its format.
+    ///
+    /// The weights are those that orient most of the models of the record correctly.
     pub(super) fn upright(&self, up: Axis, usual: Axis) -> f64 {
         let axis = up.index();
         let mut score = match up {
@@ -104,18 +105,18 @@ impl Shape {
         };
         let mut sides = self.extent.to_array();
         sides.sort_by(f64::total_cmp);
-        // A plate lies; what has no height at all is a picture, and hangs.
+        // A plate lies flat; a shape without any height is a picture, and hangs.
         let flatness = self.extent[axis] / sides[1].max(f64::MIN_POSITIVE);
         if self.extent[axis] == sides[0] && flatness > 0.01 {
             score += 4.0 * (1.0 - flatness / 0.16).max(0.0);
         }
-        // Up lies in the plane that a thing is symmetrical across.
+        // Up lies in the plane of symmetry of an object.
         let others = (0..3).filter(|other| *other != axis).map(|other| self.symmetry[other]);
         score += 0.44 * ((others.fold(0.0, f64::max) - self.symmetry[axis]) * 4.0).clamp(-1.0, 1.0);
         score + self.support(up)
     }
 
-    /// How broad its foot is, how flat, and how low its weight.
+    /// A score for a broad, flat base and a low centre of mass.
     fn support(&self, up: Axis) -> f64 {
         let (axis, longest) = (up.index(), self.extent.max_element());
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -150,8 +151,9 @@ impl Shape {
         0.22 * (contact / cross).min(1.0) + 1.08 * foot.min(1.0) + 0.12 * lowness
     }
 
-    /// True where the head looks back: what is alike on its left and its right has the more of its upper half, and the finer
-    /// triangles, behind the middle.
+    /// True when the head looks backwards.
+    ///
+    /// A shape with left-right symmetry does if its upper half and its finer triangles tend to lie behind the centre.
     pub(super) fn looks_back(&self, up: Axis, front: Axis) -> bool {
         let [up_axis, axis] = [up.index(), front.index()];
         let across = 3 - up_axis - axis;
@@ -174,7 +176,7 @@ impl Shape {
     }
 }
 
-/// All triangles, in the world.
+/// All triangles, in world space.
 fn triangles(scene: &SceneBuilder) -> impl Iterator<Item = [DVec3; 3]> {
     scene.objects.iter().flat_map(|object| {
         let (mesh, to_world) = (&object.mesh, object.motion.at(0.0));
@@ -190,7 +192,7 @@ fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() * 0.5
 }
 
-/// Points evenly over all triangles, or where there are none those of clouds and the ends of lines.
+/// Uniform points on all triangles; without triangles, the points of point clouds and the ends of lines.
 fn samples(scene: &SceneBuilder) -> Vec<Sample> {
     let total: f64 = triangles(scene).map(area).sum();
     if total > 0.0 && total.is_finite() {
@@ -206,9 +208,9 @@ fn samples(scene: &SceneBuilder) -> Vec<Sample> {
     some.map(|p| Sample { p, n: DVec3::ZERO, area: 1.0 }).collect()
 }
 
-/// One for each such part of the area.
+/// One sample per `part` of the area.
 fn on_triangles(scene: &SceneBuilder, part: f64) -> Vec<Sample> {
-    // Of the plastic number: points that fill a square evenly. [Roberts 2018]
+    // From the plastic number: points that fill a square uniformly. [Roberts 2018]
     const STEPS: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053_3];
     let (mut samples, mut sum, mut next) = (Vec::new(), 0.0, 0.5);
     for [a, b, c] in triangles(scene) {

@@ -1,7 +1,7 @@
-//! `course`: as the renderer of the course drew them that `.asc` files come from.
+//! `course`: renders `.asc` files as the renderer of their course did.
 //!
-//! A camera of the left-handed kind, a model matrix, lights fixed to the camera, one material, pixels sampled
-//! at their corners, bytes in proportion to light.
+//! It has a left-handed camera, a model matrix, lights fixed to the camera and one material. Pixels are sampled at
+//! their corners, and bytes are proportional to light.
 
 #![allow(clippy::approx_constant, reason = "0.7071 is what that renderer has, not the square root of a half")]
 
@@ -38,7 +38,7 @@ pub(super) const SECOND: PresetEntry = PresetEntry {
 
 /// A camera of the course, angles in degrees.
 pub(super) struct CourseView {
-    /// The middle of the image plane, not the eye.
+    /// The centre of the image plane, not the eye.
     position: Vec3,
     look_at: Vec3,
     up: Vec3,
@@ -56,8 +56,8 @@ const SECOND_VIEW: CourseView = CourseView {
 };
 
 impl CourseView {
-    /// The camera's x, y and z axes in the world, as columns. Left-handed means that x = y × z points to the
-    /// right of the picture while z goes into it.
+    /// The camera's x, y and z axes in world space, as columns. Left-handed means that x = y × z points to the right of
+    /// the image while z points into it.
     pub(super) fn axes(&self) -> DMat3 {
         let z = (self.look_at - self.position).as_dvec3().normalize();
         let up = self.up.as_dvec3();
@@ -65,7 +65,7 @@ impl CourseView {
         DMat3::from_cols(y.cross(z), y, z)
     }
 
-    /// The centre of projection. That renderer divides x and y by `z tan(fov / 2) + 1`, z being the depth from
+    /// The centre of projection. That renderer divides x and y by `z tan(fov / 2) + 1`, where z is the depth from
     /// `position`: rays meet where this is zero, 1/tan(fov / 2) behind it.
     fn eye(&self) -> Vec3 {
         let behind = 1.0 / tan_f64(f64::from(self.fov).to_radians() / 2.0);
@@ -83,7 +83,7 @@ impl CourseView {
     }
 }
 
-/// The course's rotations about y and x, one after the other (x first), to as many digits as it had.
+/// The course's rotations about y and x, concatenated (x first), with the number of digits that it used.
 pub(super) fn turn() -> DMat3 {
     let about_y = DMat3::from_cols_array_2d(&[[0.866, 0.0, 0.5], [0.0, 1.0, 0.0], [-0.5, 0.0, 0.866]]);
     let about_x =
@@ -91,12 +91,12 @@ pub(super) fn turn() -> DMat3 {
     about_y * about_x
 }
 
-/// Turned, 3.25 times as large, shifted.
+/// Rotated, scaled by 3.25 and translated.
 fn model() -> Transform {
     affine(turn() * 3.25, DVec3::new(0.0, -3.25, 3.5))
 }
 
-/// Lights in camera space: the direction towards each, its colour.
+/// Lights in camera space: the direction towards each, and its colour.
 const LIGHTS: [(Vec3, Rgb); 3] = [
     (Vec3::new(-0.7071, 0.7071, 0.0), Rgb::new(0.5, 0.5, 0.9)),
     (Vec3::new(0.0, -0.7071, -0.7071), Rgb::new(0.9, 0.2, 0.3)),
@@ -139,7 +139,7 @@ fn apply(scene: &mut SceneBuilder, view: &CourseView) -> Result<(), SceneError> 
     Ok(())
 }
 
-/// The lights of the course, turned with the camera into the world, its ambient light and its background.
+/// The lights of the course, rotated into world space with the camera, its ambient light and its background.
 pub(super) fn lights(camera: &DMat3) -> Vec<Spec> {
     let suns = LIGHTS.iter().zip(["left", "below", "right"]).map(|((towards, colour), name)| {
         let direction = -(*camera * towards.as_dvec3()).as_vec3();
@@ -163,8 +163,8 @@ mod tests {
     use crate::cameras;
     use bilux_math::Vec2;
 
-    /// Rows of a picture by that renderer, which its course hands out as an example: the first column that shows the
-    /// square from 0 to 20 in x and z, and the last where no other thing hides it.
+    /// Rows of an example image by that renderer, which its course hands out: the first column that shows the square
+    /// from 0 to 20 in x and z, and the last one where no other object hides it.
     const ROWS: [(u32, u32, Option<u32>); 10] = [
         (50, 3, None),
         (70, 10, None),
@@ -178,7 +178,7 @@ mod tests {
         (255, 94, Some(127)),
     ];
 
-    /// The camera of that picture.
+    /// The camera of that image.
     const EXAMPLE: CourseView = CourseView {
         position: Vec3::new(-3.0, -25.0, -4.0),
         look_at: Vec3::new(7.8, 0.7, 6.5),
@@ -186,7 +186,7 @@ mod tests {
         fov: 63.7,
     };
 
-    /// Pixels that do not see what they see in the picture.
+    /// The number of pixels that differ from the image in what they see.
     fn wrong(camera: &CameraSpec) -> usize {
         let camera = cameras::build(camera, 1.0).unwrap();
         let to_model = *model().inverse_matrix();
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn the_eye_is_where_a_picture_of_the_course_has_it() {
         assert_eq!(wrong(&EXAMPLE.camera()), 0);
-        // In the camera's own place it would see something else.
+        // From the camera's own position it would see something else.
         let mut there = EXAMPLE.camera();
         there.spec.parameters.set("position", EXAMPLE.position);
         assert!(wrong(&there) > 10);

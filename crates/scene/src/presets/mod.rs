@@ -1,7 +1,7 @@
-//! Ways to look at a scene that does not say how. One preset a file; the table is [`PRESETS`].
+//! Cameras, lights and settings for scenes without them. Each preset has its own file; the table is [`PRESETS`].
 //!
-//! [`apply`] puts a preset's camera, lights and settings in place of the scene's own; [`complete`] only adds
-//! what a scene lacks to be seen at all.
+//! [`apply`] replaces a scene's own camera, lights and settings with those of a preset; [`complete`] only adds what a
+//! scene lacks to be visible at all.
 
 mod course;
 mod paper;
@@ -28,13 +28,13 @@ pub struct PresetEntry {
     pub apply: fn(&mut SceneBuilder) -> Result<(), SceneError>,
 }
 
-/// Every preset that there is.
+/// All presets.
 pub const PRESETS: &[PresetEntry] = &[studio::ENTRY, course::ENTRY, course::SECOND, paper::ENTRY];
 
 /// Applies the preset of this name.
 ///
 /// # Errors
-/// When there is none, or it cannot be applied to the scene.
+/// When there is no such preset, or it cannot be applied to the scene.
 pub fn apply(name: &str, scene: &mut SceneBuilder) -> Result<(), SceneError> {
     let names = PRESETS.iter().map(|row| row.entry.name);
     let row = PRESETS
@@ -44,7 +44,7 @@ pub fn apply(name: &str, scene: &mut SceneBuilder) -> Result<(), SceneError> {
     (row.apply)(scene)
 }
 
-/// Moves all objects. What moves along keys cannot be stretched unevenly: presets only turn, scale and shift.
+/// Moves all objects. Keyframed motion cannot be scaled non-uniformly: presets only rotate, scale and translate.
 fn move_all(scene: &mut SceneBuilder, by: &Transform) -> Result<(), SceneError> {
     for object in &mut scene.objects {
         object.motion = object.motion.then(by).ok_or_else(|| {

@@ -1,6 +1,6 @@
-//! `paper`: light sent from (0, 0, -1) through each pixel of the screen, as section 3 of the paper says.
+//! `paper`: rays from (0, 0, -1) through each pixel of the screen, as in section 3 of the paper.
 //!
-//! What the paper leaves open is read as in `docs/adr/0007-paper-preset.md`.
+//! For details that the paper leaves open, see `docs/adr/0007-paper-preset.md`.
 
 use super::{PresetEntry, affine, course, move_all, set_all};
 use crate::builder::SceneBuilder;
@@ -20,7 +20,7 @@ pub(super) const ENTRY: PresetEntry = PresetEntry {
     apply,
 };
 
-/// Radius of the sphere that touches the screen and, seen from one unit before it, all four of its sides:
+/// Radius of the sphere that touches the screen and, as seen from one unit in front of it, all four of its edges:
 /// `radius / (radius + 1) = sin 45°`.
 const RADIUS: f64 = 1.0 + std::f64::consts::SQRT_2;
 
@@ -29,7 +29,7 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     if !bounds.is_empty() {
         let (low, high) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let radius = (high - low).length() * 0.5;
-        // Turned as the course's renderer turns models, and then into the space of its camera.
+        // Rotate as the course's renderer rotates models, and then into the space of its camera.
         let turn = course::FIRST_VIEW.axes().transpose() * course::turn();
         let linear = turn * if radius > 0.0 { RADIUS / radius } else { 1.0 };
         move_all(scene, &affine(linear, DVec3::Z * RADIUS - linear * ((low + high) * 0.5)))?;

@@ -1,22 +1,23 @@
-//! How wide points and lines are for a picture of some size: a few pixels where most of them are.
+//! The widths of points and lines for an image of a given size: a few pixels where most of them are.
 
 use crate::builder::SceneBuilder;
 use crate::cameras;
 use crate::strokes::StrokeWidths;
 use bilux_math::Vec3;
 
-/// Vertices that are looked at.
+/// The number of vertices that are sampled.
 const PLACES: usize = 512;
-/// The least diameter, in pixels.
+/// The minimum diameter, in pixels.
 const MIN: f32 = 1.5;
-/// The greatest diameter of points, and the diameter of lines, in parts of the picture's shorter side.
+/// The maximum diameter of points, and the diameter of lines, as fractions of the image's shorter side.
 const LARGE: f32 = 1.0 / 50.0;
 const LINE: f32 = 1.0 / 256.0;
-/// Points cover the ground between them where they lie as on a surface: their diameter, beside their mean distance.
+/// The diameter of points relative to their mean distance, at which points on a surface cover it.
 const COVERING: f32 = 1.3;
 
-/// Gives points and lines their widths for a picture by one of the scene's cameras, of so many columns and rows, unless the scene
-/// has widths of its own. Does nothing where there are none.
+/// Sets the widths of points and lines for an image by one of the scene's cameras, with this many columns and rows.
+///
+/// Does nothing if the scene has widths of its own, or has no points or lines.
 pub fn set_stroke_widths(scene: &mut SceneBuilder, camera: &str, size: [u32; 2], time: f32) {
     let [columns, rows] = size.map(|side| side.max(1) as f32);
     let strokes = || scene.objects.iter().filter(|object| object.mesh.stroke_count() > 0);
@@ -50,7 +51,7 @@ pub fn set_stroke_widths(scene: &mut SceneBuilder, camera: &str, size: [u32; 2],
     heights.sort_by(f32::total_cmp);
     let Some(&height) = heights.get(heights.len() / 2) else { return };
     let (pixel, side) = (height / rows, columns.min(rows));
-    // As if all lay on the box around them.
+    // As if all of them lay on their bounding box.
     let area = {
         let e = (high - low) / pixel;
         (e.x * e.y + e.y * e.z + e.z * e.x) * 0.7

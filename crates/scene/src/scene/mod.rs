@@ -1,4 +1,4 @@
-//! The immutable scene, and the [`Tracer`] through which integrators ask it.
+//! The immutable scene, and the [`Tracer`] with which integrators query it.
 
 mod sheets;
 mod tracer;
@@ -22,7 +22,7 @@ pub use tracer::Tracer;
 /// A light of the scene.
 #[derive(Clone)]
 pub struct SceneLight {
-    /// What the user calls it; may be empty.
+    /// The user's name for it; may be empty.
     pub name: String,
     /// The light.
     pub light: Arc<dyn Light>,
@@ -36,15 +36,15 @@ impl SceneLight {
     }
 }
 
-/// What of a scene does not change with time.
+/// The parts of a scene that do not change with time.
 pub(crate) struct SceneParts {
     geometry: Geometry,
     materials: Vec<Arc<dyn Material>>,
     lights: Vec<SceneLight>,
-    /// For each object the light that it is, spheres after them.
+    /// The light index of each object, then of each sphere.
     object_lights: Vec<Option<u32>>,
     cameras: Vec<(String, Arc<dyn Camera>)>,
-    /// Of each material those that can be filtered.
+    /// The textures of each material that can be filtered.
     textures: Vec<Vec<Arc<Texture>>>,
     classic_ambient: Rgb,
     has_backdrop: bool,
@@ -131,18 +131,18 @@ impl SceneParts {
     }
 }
 
-/// A scene at a time, ready to be asked.
+/// A scene at a time, ready for ray queries.
 pub struct Scene {
     parts: Arc<SceneParts>,
     accelerator: TwoLevel,
-    /// The only tree of triangles, where there is one alone and it stands in the world as it is: asked without the level
-    /// above, and then the spheres.
+    /// The only tree of triangles, if there is just one and it is in world space: rays bypass the top level, and query
+    /// it and then the spheres.
     alone: Option<Arc<dyn Accelerator>>,
     query: Query<'static>,
     shutter: [f32; 2],
-    /// For whom textures are filtered.
+    /// The camera for which textures are filtered.
     view: Option<FootprintView>,
-    /// The gaps of sheets, where there are any.
+    /// The gaps between the shells of sheets, if any.
     sheets: Option<Sheets>,
 }
 
@@ -159,7 +159,7 @@ impl Scene {
         Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets }
     }
 
-    /// The same scene at another time: only the top level is built anew.
+    /// The same scene at another time: rebuilds only the top level.
     pub fn at(&self, accel: &AccelChoice, shutter: [f32; 2]) -> Scene {
         let scene = Scene::new(self.parts.clone(), accel, shutter);
         match &self.view {
@@ -168,8 +168,10 @@ impl Scene {
         }
     }
 
-    /// The same scene with its textures filtered for pictures by a camera, of so many rows of pixels: what is finer than half
-    /// a pixel is not told apart, so that fewer samples show the mean. Emission and opacity stay as they are.
+    /// The same scene with its textures filtered for images by a camera, with this many rows of pixels.
+    ///
+    /// Detail finer than half a pixel is averaged, so that fewer samples suffice. Emission and opacity stay as they
+    /// are.
     pub fn filtered(self, camera: Arc<dyn Camera>, rows: u32) -> Scene {
         self.seen_by(FootprintView { camera, rows: rows as f32 })
     }
@@ -183,17 +185,17 @@ impl Scene {
         Scene { view: Some(view), ..self }
     }
 
-    /// When light is let in, in seconds.
+    /// The exposure interval, in seconds.
     pub fn shutter(&self) -> [f32; 2] {
         self.shutter
     }
 
-    /// The box around everything.
+    /// The bounding box of everything.
     pub fn bounds(&self) -> Aabb {
         Accelerator::bounds(&self.accelerator)
     }
 
-    /// The structure that answers rays.
+    /// The acceleration structure.
     pub fn accelerator(&self) -> &dyn Accelerator {
         &self.accelerator
     }
@@ -203,17 +205,17 @@ impl Scene {
         &self.parts.geometry
     }
 
-    /// Every light.
+    /// All lights.
     pub fn lights(&self) -> &[SceneLight] {
         &self.parts.lights
     }
 
-    /// Index in [`Scene::lights`] of the light that an object is.
+    /// Index in [`Scene::lights`] of an object that is a light.
     pub fn light_index_of(&self, object: u32) -> Option<usize> {
         self.parts.object_lights[object as usize].map(|i| i as usize)
     }
 
-    /// The light that an object is.
+    /// The light of an object.
     pub fn light_of(&self, object: u32) -> Option<&SceneLight> {
         self.parts.object_lights[object as usize].map(|i| &self.parts.lights[i as usize])
     }
@@ -223,28 +225,27 @@ impl Scene {
         self.parts.classic_ambient
     }
 
-    /// Every camera with its name; the first is the default.
+    /// All cameras with their names; the first is the default.
     pub fn cameras(&self) -> &[(String, Arc<dyn Camera>)] {
         &self.parts.cameras
     }
 
-    /// What a surface is made of.
+    /// The material of a surface.
     pub fn material(&self, surface: &Surface) -> &dyn Material {
         self.material_of(surface.object)
     }
 
-    /// What an object is made of.
+    /// The material of an object.
     pub fn material_of(&self, object: u32) -> &dyn Material {
         &*self.parts.materials[self.parts.geometry.material_of(object) as usize]
     }
 
-    /// Radiance that a surface itself gives out towards `wo`: triangles on those sides that their material says, spheres
-    /// outwards.
+    /// Radiance that a surface emits towards `wo`: triangles on the sides that their material sets, spheres outwards.
     #[inline]
     pub fn emission(&self, surface: &Surface, wo: Vec3) -> Rgb {
         let material = self.material(surface);
         let emission = match material.emission_map() {
-            // As lights have it that are sampled, to the last texel.
+            // The same value as in light sampling, down to the last texel.
             Some(map) => map.at(surface.uv_pair()),
             None => material.emission(),
         };
@@ -255,27 +256,28 @@ impl Scene {
         if emission.is_black() || !shines() { Rgb::BLACK } else { emission }
     }
 
-    /// True when some object is of a medium with a priority.
+    /// True when some object's medium has a priority.
     #[inline]
     pub fn has_nested(&self) -> bool {
         self.parts.has_nested
     }
 
-    /// True when some material sends light of each wavelength another way.
+    /// True when some material refracts each wavelength differently.
     #[inline]
     pub fn disperses(&self) -> bool {
         self.parts.disperses
     }
 
-    /// Radiance from infinity in a direction away from the scene, as it is seen after so many mirrors and glasses.
+    /// Radiance from infinity, along a direction away from the scene, after this many specular events.
     pub fn background(&self, direction: Vec3, events: u32) -> Rgb {
         let shown = self.parts.lights.iter().filter(|l| self.shows(&*l.light, events, true));
         shown.map(|l| l.light.le(direction)).sum()
     }
 
-    /// True when light from infinity is there for a ray that has been scattered so often, all of it by mirrors and smooth glass if
-    /// `specular`: the camera itself sees backdrops in place of the surroundings that light the scene, and mirrors and glass show them
-    /// where there are no surroundings.
+    /// True when an infinite light is visible to a ray after this many scattering events, all specular if `specular`.
+    ///
+    /// The camera itself sees backdrops in place of the environment that lights the scene; mirrors and smooth glass
+    /// show backdrops only if there is no environment.
     #[inline]
     pub fn shows(&self, light: &dyn Light, events: u32, specular: bool) -> bool {
         match (light.is_backdrop(), events) {
@@ -286,8 +288,8 @@ impl Scene {
         }
     }
 
-    /// The greatest channel of the radiance that any surface gives out, or that comes from infinity straight
-    /// above, below or from a side.
+    /// The maximum channel of the emitted radiance of any surface, and of the radiance from infinity along the six
+    /// axes.
     pub fn brightest_radiance(&self) -> f32 {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
         let surfaces = self.parts.materials.iter().map(|m| m.emission());
@@ -296,13 +298,13 @@ impl Scene {
         surfaces.chain(infinity).map(Rgb::max_channel).fold(0.0, f32::max)
     }
 
-    /// The greatest channel of all that lights give in the classic modes.
+    /// The maximum channel of the sum of all lights in the classic modes.
     pub fn classic_brightness(&self) -> f32 {
         let lights: Rgb = self.parts.lights.iter().map(|l| l.classic_colour).sum();
         (lights + self.parts.classic_ambient).max_channel()
     }
 
-    /// True when some surface gives light.
+    /// True when some surface is emissive.
     pub fn has_luminous_surfaces(&self) -> bool {
         self.parts.object_lights.iter().any(Option::is_some)
     }

@@ -1,8 +1,9 @@
-//! Sheets that are made of two one-sided shells, back to back, so that they are seen from both sides.
+//! Sheets made of two one-sided shells, back to back, so that they are visible from both sides.
 //!
-//! Where the shells cross or coincide, the one whose back the camera looks through lies before the one that it sees, and
-//! would shade it. No light comes between two shells that are so close: for what ends on the one, the other is not there. Both ends of a
-//! segment count alike, so that it is free or blocked whichever end it is traced from. See docs/adr/0023-shells.md.
+//! Where the shells cross or coincide, the shell whose back the camera sees through lies in front of the visible one,
+//! and would cast a shadow on it. No light enters between two shells that are so close: for a segment that ends on one
+//! shell, the other does not exist. Both ends of a segment are treated alike, so that it is free or blocked whichever
+//! end it is traced from. See docs/adr/0023-shells.md.
 
 use super::{Scene, SceneParts};
 use crate::lights::Sides;
@@ -10,35 +11,35 @@ use crate::surface::Surface;
 use bilux_accel::{Accelerator, Hit, Primitive, Query, Ray};
 use bilux_math::{Aabb, Vec3};
 
-/// The shells of a sheet are no farther apart than this part of the extent of the object whose back is looked through,
+/// The maximum distance of a sheet's shells, relative to the extent of the object whose back is seen through,
 const PART_OF_OBJECT: f32 = 1.0 / 1024.0;
-/// nor than this part of the triangle that is met: a canopy of a large scene is no shell of the ground below.
+/// and relative to the triangle that the ray hits: a canopy in a large scene is no shell of the ground below.
 const PART_OF_TRIANGLE: f32 = 0.25;
-/// Cosine of the angle between the shells, at least.
+/// Minimum cosine of the angle between the shells.
 const PARALLEL: f32 = 0.7;
-/// Backs in a row that a ray looks behind; beyond that the first counts.
+/// Maximum number of consecutive backs that a ray looks behind; beyond that the first one counts.
 const MAX_BACKS: usize = 8;
-/// Triangles of an object that are tried for a shell close by.
+/// Maximum number of triangles of an object that are tested for a nearby shell.
 const MAX_PROBES: usize = 2048;
-/// Rays that look for a shell in the same place begin this part of the greatest gap before it.
+/// Rays that look for a coincident shell start in front of it by this fraction of the maximum gap.
 const BEHIND: f32 = 1.0 / 16.0;
 
 /// The end of a ray on a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End {
     pub(super) p: Vec3,
-    /// Normal of the surface there, unit, of its front where it is seen from there alone, else towards the other end.
+    /// Unit normal of the surface there: of its front if it is one-sided, otherwise towards the other end.
     pub(super) n: Vec3,
 }
 
-/// How far apart the shells of a sheet may be.
+/// The maximum gap between the shells of a sheet.
 #[derive(Clone)]
 pub(super) struct Sheets {
-    /// By the object whose back is looked through; those of spheres are not asked for.
+    /// For each object whose back may be seen through; not used for spheres.
     gaps: Vec<f32>,
 }
 
-/// A back that light passes where the other shell is behind it.
+/// A back face that light passes if the other shell is behind it.
 struct Back {
     p: Vec3,
     front: Vec3,
@@ -46,7 +47,7 @@ struct Back {
 }
 
 impl Back {
-    /// True when a surface at `p`, with a normal that looks this way, is the other shell of it.
+    /// True when a surface at `p`, with a normal in this direction, is its other shell.
     fn is_shell_of(&self, p: Vec3, n: Vec3) -> bool {
         let along = self.front.dot(p - self.p).abs();
         along <= self.gap * self.front.length() && self.front.dot(n) <= -PARALLEL * self.front.length()
@@ -54,7 +55,7 @@ impl Back {
 }
 
 impl Sheets {
-    /// The gaps of a scene; `None` where no sheet is found, so that nobody pays for it.
+    /// The gaps of a scene; `None` if there are no sheets, so that such scenes cost nothing.
     pub(super) fn find(parts: &SceneParts, accelerator: &dyn Accelerator, time: f32) -> Option<Sheets> {
         if !parts.hides_backs {
             return None;
@@ -68,7 +69,7 @@ impl Sheets {
         one_sided.any(|object| sheets.has_shell(parts, accelerator, object, time)).then_some(sheets)
     }
 
-    /// True when some triangle of an object faces another shell of a sheet.
+    /// True when some triangle of an object faces the other shell of a sheet.
     fn has_shell(&self, parts: &SceneParts, accelerator: &dyn Accelerator, object: u32, time: f32) -> bool {
         let first = parts.geometry.first_primitive(object);
         let count = parts.geometry.objects()[object as usize].mesh.triangles.len();
@@ -108,13 +109,13 @@ impl Sheets {
         if !accelerator.any_hit(&forwards, &Query { filter: Some(&is_shell), ..Query::default() }) {
             return false;
         }
-        // Behind the wall of a solid is its inside: what stands on a floor is no sheet.
+        // Behind the wall of a solid is its inside: a solid that stands on a floor is no sheet.
         let backwards = Ray { t_min: gap, ..from(p, -n) };
         let behind = accelerator.closest_hit(&backwards, &Query::default());
         behind.is_none_or(|hit| parts.is_back(&backwards, &hit).is_none())
     }
 
-    /// The greatest gap behind the back of a triangle, `front` along its normal and twice as long as its area.
+    /// The maximum gap behind a triangle's back; the length of its normal `front` is twice its area.
     fn gap(&self, object: u32, front: Vec3) -> f32 {
         let part = self.gaps.get(object as usize).copied().unwrap_or(0.0);
         part.min(PART_OF_TRIANGLE * front.length().sqrt())
@@ -126,7 +127,7 @@ impl SceneParts {
         self.materials[self.geometry.material_of(object) as usize].visible_sides() == Sides::Front
     }
 
-    /// Along the normal of a triangle's front, where a ray meets the back of what is seen from its front alone.
+    /// Along the front normal of a one-sided triangle, if the ray hits its back.
     fn is_back(&self, ray: &Ray, hit: &Hit) -> Option<Vec3> {
         let object = self.geometry.object_of(hit);
         let front =
@@ -134,7 +135,7 @@ impl SceneParts {
         (front.dot(ray.direction.into()) > 0.0).then_some(front)
     }
 
-    /// The normal of a surface's front where it is seen from there alone, else the one on the side of a direction; unit.
+    /// The unit normal of the front of a one-sided surface, otherwise the one on the side of a direction.
     pub(super) fn normal_towards(&self, surface: &Surface, direction: Vec3) -> Vec3 {
         let front = || self.geometry.front(surface.primitive, surface.time)?.try_normalize();
         if self.is_one_sided_object(surface.object)
@@ -145,7 +146,8 @@ impl SceneParts {
         if surface.n_geom.dot(direction) < 0.0 { -surface.n_geom } else { surface.n_geom }
     }
 
-    /// True when a ray that is met by a one-sided surface, `front` along its normal, begins or ends on the other shell of it.
+    /// True when a ray that hits a one-sided surface, `front` along its normal, starts or ends on the other shell of
+    /// it.
     pub(super) fn is_between_shells(
         &self,
         sheets: &Sheets,
@@ -176,13 +178,14 @@ impl SceneParts {
 }
 
 impl Scene {
-    /// The end of segments on a surface that come from a direction, for [`super::Tracer::ending_on`].
+    /// The normal at the end of segments that arrive from a direction, for [`super::Tracer::ending_on`].
     pub fn normal_towards(&self, surface: &Surface, direction: Vec3) -> Vec3 {
         self.parts.normal_towards(surface, direction)
     }
 
-    /// What a ray meets behind the backs of sheets: their other shell, where `hit` is the back of one; else `hit`. `next` asks
-    /// for what comes first.
+    /// The hit behind the backs of sheets, on their other shell, if `hit` is on the back of one; otherwise `hit`.
+    ///
+    /// `next` finds the closest hit of a ray.
     #[inline]
     pub(super) fn behind_shells(&self, ray: &Ray, hit: Hit, next: impl FnMut(&Ray) -> Option<Hit>) -> Hit {
         match &self.sheets {

@@ -1,4 +1,4 @@
-//! How a scene is asked: what rays meet, and what they pass.
+//! Ray queries: what rays hit, and what they pass.
 
 use super::sheets::{End, Sheets};
 use super::{Scene, SceneParts};
@@ -8,20 +8,20 @@ use bilux_accel::{Accelerator, Counters, Hit, Query, Ray};
 use bilux_math::Vec3;
 use bilux_math::hash::{hash_words, unit_f32};
 
-/// The mask of rays from the camera, which pass the backs that it does not see.
+/// The mask of rays from the camera, which pass back faces that it does not see.
 const FROM_CAMERA: u32 = u32::MAX >> 1;
 
 /// The mask of rays that end at the camera.
 const TO_CAMERA: u32 = u32::MAX >> 2;
 
 impl Scene {
-    /// A ray from the camera: it passes the backs of what is seen from its front alone.
+    /// A ray from the camera: it passes the backs of one-sided surfaces.
     #[inline]
     pub fn from_camera(&self, ray: Ray) -> Ray {
         if self.parts.hides_backs { Ray { mask: FROM_CAMERA, ..ray } } else { ray }
     }
 
-    /// A ray that ends at the camera: it passes the same as one that comes from there.
+    /// A ray that ends at the camera: it passes the same surfaces as one that starts there.
     #[inline]
     pub fn to_camera(&self, ray: Ray) -> Ray {
         if self.parts.hides_backs { Ray { mask: TO_CAMERA, ..ray } } else { ray }
@@ -32,7 +32,7 @@ impl Scene {
         self.parts.geometry.front(surface.primitive, surface.time).unwrap_or(surface.n_geom)
     }
 
-    /// True when a camera that is `towards` there from a surface sees through it.
+    /// True when a camera in the direction `towards` from a surface sees through it.
     #[inline]
     pub fn hides(&self, surface: &Surface, towards: Vec3) -> bool {
         self.parts.hides_backs
@@ -42,15 +42,17 @@ impl Scene {
 }
 
 impl SceneParts {
-    /// What lets some rays pass.
+    /// True when some surfaces may let this ray pass.
     #[inline]
     fn is_patchy_for(&self, ray: &Ray) -> bool {
         self.has_holes || ray.mask != u32::MAX
     }
 
-    /// True when the surface is there for a ray that hits it: not where the camera sees through its back, nor where the ray begins or
-    /// ends on the other shell of a sheet; and where it has holes each ray decides for itself, by a `number` that depends on nothing but the
-    /// ray and the hit.
+    /// True when the surface stops a ray that hits it.
+    ///
+    /// It does not where the camera sees through its back, nor where the ray starts or ends on the other shell of a
+    /// sheet. With an opacity mask the decision is random per ray, by a hash of the ray's `number` and the hit, and of
+    /// nothing else.
     fn stops(
         &self,
         ray: &Ray,
@@ -79,14 +81,14 @@ impl SceneParts {
     }
 }
 
-/// Asks a scene on behalf of one thread, and counts.
+/// Traces rays on behalf of one thread, and counts.
 pub struct Tracer<'s> {
     /// The scene.
     pub scene: &'s Scene,
-    /// What the rays took; only `rays` unless counting is on.
+    /// Costs of the rays; only `rays` unless counting is on.
     pub counters: Counters,
     counting: bool,
-    /// Where the rays of the moment end on a surface.
+    /// The surface point on which the current rays end.
     end: Option<End>,
 }
 
@@ -96,9 +98,10 @@ impl<'s> Tracer<'s> {
         Tracer { scene, counters: Counters::default(), counting, end: None }
     }
 
-    /// Asks with rays that lie between the origin of `ray` and a point at its parameter 1, on a surface with this
-    /// [normal](Scene::normal_towards); zero where there is no surface. Without this a ray may be blocked by the shell before the one that it
-    /// ends on.
+    /// Traces rays between the origin of `ray` and its point at parameter 1, which is on a surface with the normal `n`.
+    ///
+    /// `n` is from [`Scene::normal_towards`], or zero without a surface. Without this a ray may be blocked by the shell
+    /// in front of the one that it ends on.
     #[inline]
     pub fn ending_on<T>(&mut self, ray: &Ray, n: Vec3, question: impl FnOnce(&mut Self) -> T) -> T {
         if self.scene.sheets.is_none() || n == Vec3::ZERO {
@@ -110,7 +113,7 @@ impl<'s> Tracer<'s> {
         answer
     }
 
-    /// Asks for a ray, past what lets it through.
+    /// Traces a ray, past surfaces that let it through.
     #[inline(always)]
     fn ask<T>(&mut self, ray: &Ray, question: impl FnOnce(&mut Self, &Ray, &Query) -> T) -> T {
         let scene = self.scene;
@@ -122,7 +125,7 @@ impl<'s> Tracer<'s> {
         question(self, ray, &Query { filter: Some(&stops), ..scene.query })
     }
 
-    /// What a ray meets first.
+    /// The closest hit of a ray.
     #[inline]
     pub fn closest(&mut self, ray: &Ray) -> Option<Surface> {
         let scene = self.scene;
@@ -170,8 +173,9 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    /// True when something that gives no light itself is between a ray's ends: in the classic modes the
-    /// surface of a lamp does not shade.
+    /// True when something that emits no light is between a ray's ends.
+    ///
+    /// In the classic modes the surface of a light casts no shadow.
     pub fn blocked(&mut self, ray: &Ray) -> bool {
         if !self.occluded(ray) {
             return false;
@@ -191,7 +195,7 @@ impl<'s> Tracer<'s> {
     }
 }
 
-/// What tells a ray from others.
+/// A number that identifies a ray.
 fn number_of(ray: &Ray) -> u64 {
     let [x, y, z] = ray.origin.map(|c| u64::from(c.to_bits()));
     let [dx, dy, dz] = ray.direction.map(|c| u64::from(c.to_bits()));

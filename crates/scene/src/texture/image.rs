@@ -1,4 +1,4 @@
-//! The texels of pictures, held as compactly as they came.
+//! The texels of images, stored as compactly as in their files.
 
 use super::Channel;
 use super::procedural::{Formula, centre};
@@ -6,10 +6,10 @@ use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use std::sync::LazyLock;
 
-/// A picture, row 0 on top.
+/// An image, with row 0 at the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
-    /// Texels a row.
+    /// Texels per row.
     pub width: usize,
     /// Rows.
     pub height: usize,
@@ -20,24 +20,24 @@ pub struct Image {
 /// Texels in rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Texels {
-    /// Red, green, blue and alpha, from 0 to 255; colours by the sRGB curve, numbers as they are.
+    /// Red, green, blue and alpha, from 0 to 255; colours are sRGB-encoded, numbers are linear.
     Bytes(Vec<[u8; 4]>),
     /// Linear light, or numbers.
     Floats {
         /// Red, green and blue.
         colours: Vec<Rgb>,
-        /// As many, or none where all is opaque.
+        /// As many alpha values as colours, or none if all texels are opaque.
         alpha: Vec<f32>,
     },
-    /// None at all: what they would be is worked out.
+    /// No stored texels: a procedural texture computes them.
     Formula(Formula),
 }
 
-/// What bytes mean as colours.
+/// The linear values of sRGB bytes.
 static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| srgb_decode(i as f32 / 255.0)));
 
 impl Image {
-    /// True when there is a texel for every place, and any at all.
+    /// True when it has the full number of texels, and at least one.
     #[inline]
     pub fn is_whole(&self) -> bool {
         let have = match &self.texels {
@@ -48,12 +48,12 @@ impl Image {
         have != 0 && have == self.width * self.height
     }
 
-    /// True where texels are held in bytes, which are the same whether they mean colours or numbers.
+    /// True if texels are stored as bytes, which are the same for colours and for numbers.
     pub fn is_bytes(&self) -> bool {
         matches!(self.texels, Texels::Bytes(_))
     }
 
-    /// Bytes that the texels take.
+    /// The size of the texels in bytes.
     pub fn size(&self) -> u64 {
         match &self.texels {
             Texels::Bytes(bytes) => size_of_val(&bytes[..]) as u64,
@@ -62,7 +62,7 @@ impl Image {
         }
     }
 
-    /// A texel by its number, or one channel of it as a grey.
+    /// A texel by its index, or one channel of it as a grey.
     #[inline]
     pub(super) fn texel(&self, index: usize, channel: Option<Channel>, is_data: bool) -> Rgb {
         match &self.texels {
@@ -86,7 +86,7 @@ impl Image {
         }
     }
 
-    /// The same of a formula; apart, so that looking up what is stored stays small.
+    /// The texel of a procedural texture; a separate function, to keep look-ups of stored texels small.
     #[cold]
     #[inline(never)]
     fn worked_out(&self, formula: &Formula, index: usize, channel: Option<Channel>) -> Rgb {

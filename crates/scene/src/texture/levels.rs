@@ -1,5 +1,5 @@
-//! A picture again with half as many texels a row and a column, and that again, and so on: for pixels in which there is
-//! more than one texel. [Williams 1983]
+//! Mipmaps: an image at half of its resolution, at a quarter, and so on, for pixels that cover more than one texel.
+//! [Williams 1983]
 
 use super::{Filter, Image, Texels, Texture};
 use bilux_math::Rgb;
@@ -8,8 +8,9 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-/// The coarser levels of a texture's picture, finest first; none until a render asks for them ([`build`]). They say nothing that
-/// the picture does not, and so are alike for comparisons.
+/// The coarser levels of a texture's image, finest first; empty until a render asks for them ([`build`]).
+///
+/// They derive from the image alone, and so compare as equal.
 #[derive(Clone, Debug, Default)]
 pub struct Levels(OnceLock<Arc<[Image]>>);
 
@@ -20,17 +21,17 @@ impl PartialEq for Levels {
 }
 
 impl Levels {
-    /// The coarser levels that there are.
+    /// The coarser levels, if they were built.
     #[inline]
     pub fn coarser(&self) -> &[Image] {
         self.0.get().map_or(&[], |levels| levels)
     }
 
-    /// The coarsest of these whose texels are at most so many of the picture's wide; `None` for the picture itself.
+    /// The coarsest level whose texels are at most `width` texels of the image wide; `None` for the image itself.
     #[inline]
     pub(super) fn with_texels_of(&self, width: f32) -> Option<&Image> {
         let coarser = self.coarser();
-        // What is not a number is not at least 2 either.
+        // NaN is not at least 2 either.
         if width >= 2.0 && !coarser.is_empty() {
             let doubled =
                 (width.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as usize + 1 - f32::MAX_EXP as usize;
@@ -40,8 +41,10 @@ impl Levels {
     }
 }
 
-/// True where coarser levels of a texture are of any use: where texels are blended, and nothing hangs on what each of them is; of colours
-/// alone, to which light is in proportion, as it is not to roughness.
+/// True if coarser levels of a texture are of use: it is filtered, and nothing depends on the exact value of single
+/// texels.
+///
+/// Only colours qualify, since light is proportional to them, but not to roughness.
 pub(crate) fn has_use(texture: &Texture) -> bool {
     let blends = texture.filter == Filter::Linear && texture.threshold.is_none() && !texture.is_data;
     blends
@@ -50,7 +53,7 @@ pub(crate) fn has_use(texture: &Texture) -> bool {
         && is_divisible([texture.width(), texture.height()])
 }
 
-/// Makes the coarser levels of textures that have none yet; those with the same picture share them.
+/// Builds the coarser levels of textures that have none yet; textures of the same image share them.
 pub(crate) fn build(textures: &[&Arc<Texture>]) {
     let key = |texture: &Texture| (Arc::as_ptr(&texture.image), texture.is_data && texture.image.is_bytes());
     let mut pictures: HashMap<_, Vec<&Texture>> = HashMap::new();
@@ -61,14 +64,15 @@ pub(crate) fn build(textures: &[&Arc<Texture>]) {
     pictures.par_iter().for_each(|sharers| {
         let levels = of(&sharers[0].image, sharers[0].is_data);
         for texture in sharers.iter() {
-            // Whoever was faster made the same.
+            // Another thread may have been faster, with the same result.
             let _ = texture.levels.0.set(levels.clone());
         }
     });
 }
 
-/// Each level is made of the one before: half as many texels a row and a column, rounded down, each the mean of those that it
-/// covers. Together they are at most a third of the picture.
+/// Builds each level from the previous one, with half as many texels per row and column, rounded down.
+///
+/// Each texel is the mean of those that it covers. All levels together are at most a third of the image.
 fn of(image: &Image, is_data: bool) -> Arc<[Image]> {
     let size = [image.width, image.height];
     match &image.texels {
@@ -83,11 +87,11 @@ fn is_divisible([width, height]: [usize; 2]) -> bool {
     width.min(height) >= 2
 }
 
-/// Up to so many texels a level is kept in sixteen bits a channel for the next: errors of rounding are no longer many, and so no
-/// longer nothing on average.
+/// Levels of at most this many texels keep sixteen bits per channel for the next level: rounding errors are then too
+/// few to average out.
 const FEW: usize = 1 << 18;
 
-/// Light is averaged where bytes mean colours.
+/// Averages light if bytes are colours.
 fn of_bytes(mut size: [usize; 2], bytes: &[[u8; 4]], curve: &Curve) -> Vec<Image> {
     let (mut levels, mut wide) = (Vec::<Image>::new(), None::<Vec<[u16; 4]>>);
     while is_divisible(size) {
@@ -137,14 +141,14 @@ fn of_floats(mut size: [usize; 2], colours: &[Rgb], alpha: &[f32]) -> Vec<Image>
     levels
 }
 
-/// The texels that one of the next level covers.
+/// The texels that one texel of the next level covers.
 #[derive(Clone, Copy)]
 enum Covered<'a, T> {
-    /// Four, each whole.
+    /// Four whole texels.
     Four([T; 4]),
-    /// Parts of those of up to three columns and rows, in whole numbers.
+    /// Parts of the texels of up to three columns and rows, as integer weights.
     Parts {
-        /// From the first of each row on.
+        /// Each row, from its first covered texel on.
         rows: [&'a [T]; 3],
         down: [u32; 3],
         across: [u32; 3],
@@ -152,7 +156,7 @@ enum Covered<'a, T> {
 }
 
 impl<T: Copy> Covered<'_, T> {
-    /// Each, with how much of it.
+    /// Calls `take` with each texel and its weight.
     #[inline(always)]
     fn for_each(self, mut take: impl FnMut(T, u64)) {
         match self {
@@ -178,8 +182,9 @@ impl<T: Copy> Covered<'_, T> {
     }
 }
 
-/// Of `n` texels in a row, how much one of half as many covers of `2 * i` and the two after it. Where `n` is odd, it covers a
-/// little more than two.
+/// How much texel `i` of the next level covers of texels `2 * i` and the next two, in a row of `n`.
+///
+/// If `n` is odd, it covers slightly more than two.
 fn parts(i: usize, n: usize) -> [u32; 3] {
     if n.is_multiple_of(2) { [1, 1, 0] } else { [n / 2 - i, n / 2, i + 1].map(|part| part as u32) }
 }
@@ -190,7 +195,7 @@ fn each<S: Copy + Sync, T: Default + Copy + Send>(
     fine: &[S],
     mean: impl Fn(Covered<S>) -> T + Sync,
 ) -> Vec<T> {
-    /// Texels that are worth a thread.
+    /// The number of texels worth a thread.
     const PIECE: usize = 1 << 14;
     let [width, height] = size.map(|side| side / 2);
     let is_even = size.iter().all(|side| side.is_multiple_of(2));
@@ -214,16 +219,16 @@ fn each<S: Copy + Sync, T: Default + Copy + Send>(
     texels
 }
 
-/// How bytes are averaged: what each is in 65,535ths, and the byte that is nearest to so many of them.
+/// How bytes are averaged: the value of each byte in 65,535ths, and the nearest byte of each such value.
 struct Curve {
     light: [u16; 256],
     bytes: Vec<u8>,
 }
 
-/// Colours: light.
+/// Colours, averaged as light.
 static SRGB: LazyLock<Curve> = LazyLock::new(|| Curve::new(srgb_decode));
 
-/// Numbers.
+/// Numbers, averaged as they are.
 static PLAIN: LazyLock<Curve> = LazyLock::new(|| Curve::new(|number| number));
 
 impl Curve {
@@ -238,7 +243,7 @@ impl Curve {
         Curve { light, bytes }
     }
 
-    /// A texel in 65,535ths; alpha is a number.
+    /// A texel in 65,535ths; alpha is linear.
     #[inline(always)]
     fn widened(&self, [r, g, b, a]: [u8; 4]) -> [u16; 4] {
         let light = |byte: u8| self.light[usize::from(byte)];
@@ -278,7 +283,7 @@ mod tests {
     use super::*;
     use bilux_math::Vec2;
 
-    /// Numbers from 0 to 1 that look like noise.
+    /// Numbers from 0 to 1 that resemble noise.
     fn noise(i: usize) -> f32 {
         (bilux_math::hash::hash_words([i as u64]) >> 40) as f32 / (1u64 << 24) as f32
     }
@@ -315,7 +320,7 @@ mod tests {
                 },
             };
             let bytes = noisy_bytes(width, height);
-            // Half of a byte, and half of the light from one to the next, of which the brightest are 0.9% apart.
+            // Half of a byte, and half of the step in light from one byte to the next, at most 0.9% for the brightest.
             let kinds = [(floats, false, 1e-6), (bytes.clone(), true, 0.502 / 255.0), (bytes, false, 0.0045)];
             for (image, is_data, tolerance) in kinds {
                 let (levels, wanted) = (of(&image, is_data), means(&image, is_data));
@@ -374,7 +379,7 @@ mod tests {
 
     #[test]
     fn beyond_a_clamped_edge_is_that_edge_alone() {
-        // White but for a black column on the left.
+        // White except for a black column on the left.
         let texels = (0..32 * 32).map(|i| Rgb::grey(if i % 32 == 0 { 0.0 } else { 1.0 })).collect();
         let edge = Texture { wrap: [Wrap::Clamp, Wrap::Repeat], ..Texture::new("", 32, 32, texels, false) };
         let edge = Arc::new(edge);

@@ -1,4 +1,4 @@
-//! Pictures on surfaces, as images and procedural.
+//! Textures on surfaces: images and procedural textures.
 
 mod image;
 pub(crate) mod levels;
@@ -13,40 +13,41 @@ pub use sampling::{Filter, UvTransform, Wrap};
 use bilux_math::{Rgb, Vec2};
 use std::sync::Arc;
 
-/// A picture as it lies on a surface, linear light or plain numbers.
+/// An image placed on a surface, in linear light or plain numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// The file that it came from, relative to the scene.
     pub name: String,
     /// Its texels; textures may share them.
     pub image: Arc<Image>,
-    /// They are numbers, such as roughness, and not colours: files hold them as they are.
+    /// It holds numbers, such as roughness, rather than colours: files store them without a curve.
     pub is_data: bool,
-    /// What lies beyond its left and right, and its upper and lower edge.
+    /// Its values beyond its left and right edges, and beyond its upper and lower edges.
     pub wrap: [Wrap; 2],
-    /// What lies between texels.
+    /// Its values between texels.
     pub filter: Filter,
-    /// Where it lies, if not from 0 to 1.
+    /// Its placement, if it is not from 0 to 1.
     pub transform: Option<UvTransform>,
-    /// What every texel is multiplied by; of one channel, red.
+    /// A factor on every texel; for a single channel, red.
     pub factor: Rgb,
-    /// The channel that counts, as a grey, if it is only one.
+    /// The channel that is used, as a grey, if only one is.
     pub channel: Option<Channel>,
-    /// Where it is given, what is less becomes 0 and all else 1, once texels are blended.
+    /// If given, filtered values below it become 0, and all others 1.
     pub threshold: Option<f32>,
-    /// It lies as the second set of texture coordinates says.
+    /// It uses the second set of texture coordinates.
     pub second_uv: bool,
-    /// The picture with fewer texels, once a render has asked for that.
+    /// The coarser levels of the image, once a render has asked for them.
     pub levels: Levels,
 }
 
-/// Where textures are looked up: texture coordinates, v upwards, and the second set of these. Meshes with one set have it
-/// in both.
+/// A texture look-up position: texture coordinates, v upwards, and the second set of them.
+///
+/// Meshes with one set use it for both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvPair(pub [Vec2; 2]);
 
 impl UvPair {
-    /// Between the corners of a triangle.
+    /// Interpolates between the corners of a triangle.
     pub fn between(corners: [UvPair; 3], weights: [f32; 3]) -> UvPair {
         let [a, b, c] = corners.map(|corner| corner.0);
         UvPair([0, 1].map(|set| a[set] * weights[0] + b[set] * weights[1] + c[set] * weights[2]))
@@ -59,12 +60,12 @@ impl From<Vec2> for UvPair {
     }
 }
 
-/// What of a texture a pixel sees at once.
+/// The part of a texture that a pixel sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
-    /// Where it is.
+    /// Its position.
     pub at: UvPair,
-    /// How wide it is along either coordinate, for each set; 0 for a point.
+    /// Its width along each coordinate, for each set; 0 for a point.
     pub width: [Vec2; 2],
 }
 
@@ -75,7 +76,7 @@ impl<T: Into<UvPair>> From<T> for Patch {
     }
 }
 
-/// One of the numbers of a texel.
+/// A channel of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Channel {
     /// Red.
@@ -103,7 +104,7 @@ impl Channel {
 }
 
 impl Texture {
-    /// A picture that is repeated, blended and otherwise left as it is.
+    /// An image that is repeated, filtered linearly and otherwise unchanged.
     pub fn of(name: &str, image: Arc<Image>, is_data: bool) -> Texture {
         Texture {
             name: name.to_owned(),
@@ -120,13 +121,13 @@ impl Texture {
         }
     }
 
-    /// The same of `width * height` texels in rows, the top one first.
+    /// The same from `width * height` texels in rows, the top one first.
     pub fn new(name: &str, width: usize, height: usize, texels: Vec<Rgb>, is_data: bool) -> Texture {
         let texels = Texels::Floats { colours: texels, alpha: Vec::new() };
         Texture::of(name, Arc::new(Image { width, height, texels }), is_data)
     }
 
-    /// Stands in place of a picture that is not there: squares of magenta and black, which nobody overlooks.
+    /// A placeholder for a missing image: squares of magenta and black, which are hard to overlook.
     pub fn missing(name: &str) -> Texture {
         let square =
             |i: usize| if (i + i / 8).is_multiple_of(2) { [255, 0, 255, 255] } else { [0, 0, 0, 255] };
@@ -134,7 +135,7 @@ impl Texture {
         Texture { filter: Filter::Nearest, ..Texture::of(name, Arc::new(image), false) }
     }
 
-    /// What stands in for the picture of a light that cannot be read: an even grey, whose radiance is 0.5.
+    /// A placeholder for an unreadable image of a light: a uniform grey with a radiance of 0.5.
     pub fn missing_light(name: &str) -> Texture {
         let image = Image {
             width: 8,
@@ -144,7 +145,7 @@ impl Texture {
         Texture::of(name, Arc::new(image), true)
     }
 
-    /// Texels a row.
+    /// Texels per row.
     pub fn width(&self) -> usize {
         self.image.width
     }
@@ -154,10 +155,10 @@ impl Texture {
         self.image.height
     }
 
-    /// A texel of a column and a row, counted from the upper left, with all that is done to it.
+    /// The texel of a column and a row, counted from the upper left, fully processed.
     ///
     /// # Panics
-    /// When there is none.
+    /// When there is no such texel.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> Rgb {
         self.finished(self.raw(&self.image, x, y))
@@ -169,8 +170,10 @@ impl Texture {
         (0..count).map(|i| self.texel(i % self.width(), i / self.width()))
     }
 
-    /// The colour at texture coordinates, v upwards; white where there is no picture. Of a patch that is wide, and where there
-    /// are coarser levels, it is that of texels at most half as wide: they are not told apart, and fewer samples show their mean.
+    /// The colour at texture coordinates, v upwards; white if there is no image.
+    ///
+    /// For a wide patch, if there are coarser levels, it comes from a level whose texels are at most half as wide:
+    /// finer detail is averaged, so that fewer samples suffice.
     #[inline]
     pub fn at(&self, patch: impl Into<Patch>) -> Rgb {
         self.seen_in(&patch.into())
@@ -184,26 +187,26 @@ impl Texture {
         self.look_up(if is_picture || self.is_beyond_clamped_edge(uv) { &self.image } else { level }, uv)
     }
 
-    /// True where its edge is drawn on and on: a coarser level has what is behind the edge in it, too.
+    /// True beyond an edge that is clamped: a coarser level would also contain what is inside the edge.
     fn is_beyond_clamped_edge(&self, uv: Vec2) -> bool {
         let at = self.placed(uv);
         let beyond = |wrap: Wrap, x: f32| wrap == Wrap::Clamp && !(0.0..=1.0).contains(&x);
         beyond(self.wrap[0], at.x) || beyond(self.wrap[1], at.y)
     }
 
-    /// Where coordinates are in the picture, downwards from its upper left corner.
+    /// The position of coordinates in the image, downwards from its upper left corner.
     #[inline(always)]
     fn placed(&self, uv: Vec2) -> Vec2 {
         let uv = Vec2::new(uv.x, 1.0 - uv.y);
         self.transform.map_or(uv, |transform| transform.apply(uv))
     }
 
-    /// The same at coordinates of its own set.
+    /// The colour at coordinates of its own set.
     pub fn at_one(&self, uv: Vec2) -> Rgb {
         self.look_up(&self.image, uv)
     }
 
-    /// The picture with as few texels as do for a patch so wide.
+    /// The coarsest level of the image that suffices for a patch of this width.
     #[inline(always)]
     fn level_for(&self, width: Vec2) -> &Image {
         if width == Vec2::ZERO {
@@ -212,14 +215,14 @@ impl Texture {
         self.levels.with_texels_of(self.half_in_texels(width)).unwrap_or(&self.image)
     }
 
-    /// Half of a patch so wide, in texels, along the axis that has fewer.
+    /// Half of a patch's width, in texels, along the axis that has fewer.
     #[inline(always)]
     fn half_in_texels(&self, width: Vec2) -> f32 {
         let width = self.transform.map_or(width, |transform| transform.widen(width));
         (width.x * self.width() as f32).min(width.y * self.height() as f32) * 0.5
     }
 
-    /// True where a patch may be so wide that a coarser level does for it.
+    /// True if a patch may be wide enough for a coarser level.
     pub(crate) fn has_level_for(&self, widths: [Vec2; 2]) -> bool {
         self.half_in_texels(widths[usize::from(self.second_uv)]) >= 2.0
     }
@@ -252,7 +255,7 @@ impl Texture {
         self.finished(above.lerp(below, fy))
     }
 
-    /// A formula at texture coordinates; its wrap and its filter say nothing.
+    /// A procedural texture at texture coordinates; wrap and filter have no effect on it.
     #[inline(never)]
     fn worked_out(&self, formula: &Formula, uv: Vec2) -> Rgb {
         let downwards = |uv: Vec2| Vec2::new(uv.x, 1.0 - uv.y);
@@ -263,7 +266,7 @@ impl Texture {
         self.finished(Channel::of(self.channel, formula.at(uv)))
     }
 
-    /// A number at texture coordinates: the channel that counts, else the luminance.
+    /// A number at texture coordinates: the selected channel, otherwise the luminance.
     #[inline]
     pub fn number(&self, patch: impl Into<Patch>) -> f32 {
         let colour = self.at(patch);
@@ -291,9 +294,9 @@ impl Texture {
 pub struct NumberMap {
     /// The number, where there is no texture.
     pub number: f32,
-    /// The least and the greatest that a texture can say.
+    /// The minimum and maximum of the texture's values.
     pub range: [f32; 2],
-    /// The texture, if there is one; of colours their luminance counts.
+    /// The texture, if there is one; for colours their luminance is used.
     pub texture: Option<Arc<Texture>>,
 }
 
@@ -302,8 +305,8 @@ impl NumberMap {
     #[inline(always)]
     pub fn at(&self, patch: impl Into<Patch>) -> f32 {
         match &self.texture {
-            // What is not a number becomes the least one.
-            // At the point: few numbers of a material are in proportion to the light.
+            // NaN becomes the minimum. Look up the point alone: few numbers of a material are proportional to the
+            // light.
             Some(texture) => texture.number(patch.into().at).max(self.range[0]).min(self.range[1]),
             None => self.number,
         }
@@ -313,7 +316,7 @@ impl NumberMap {
 /// A colour that may vary over a surface.
 #[derive(Clone, Debug)]
 pub struct ColourMap {
-    /// The colour, or what the texture is multiplied by.
+    /// The colour, or the factor on the texture.
     pub colour: Rgb,
     /// The texture, if there is one.
     pub texture: Option<Arc<Texture>>,

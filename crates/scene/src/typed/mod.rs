@@ -1,7 +1,7 @@
-//! Materials and lights with a type of their own: a misspelt parameter, or one of the wrong kind, does not compile.
+//! Materials and lights as Rust types: a misspelt parameter, or one of the wrong kind, does not compile.
 //!
-//! Each becomes a [`Spec`](crate::Spec), which is what scenes are made of. The types are written from
-//! [`MATERIALS`](crate::MATERIALS) and [`LIGHTS`](crate::LIGHTS) by `cargo xtask docs`, and a test compares them.
+//! Each converts to a [`Spec`](crate::Spec), from which scenes are built. `cargo xtask docs` generates the types from
+//! [`MATERIALS`](crate::MATERIALS) and [`LIGHTS`](crate::LIGHTS), and a test compares them.
 //!
 //! ```
 //! use bilux_math::{Rgb, Vec3};
@@ -15,7 +15,7 @@
 //! assert_eq!((red, scene.materials[0].kind.as_str()), (0, "principled"));
 //! ```
 
-/// Types for the rows of a table.
+/// Generates types for the rows of a table.
 macro_rules! typed {
     ($(
         $(#[$about:meta])*
@@ -30,7 +30,7 @@ macro_rules! typed {
             pub struct $name(Spec);
 
             impl $name {
-                /// With the default of every parameter. The name is the user's own, and may be empty.
+                /// All parameters at their defaults. The name is up to the user, and may be empty.
                 pub fn new(name: &str) -> $name {
                     $name(Spec::new(name, $kind))
                 }

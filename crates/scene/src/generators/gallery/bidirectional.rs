@@ -1,4 +1,4 @@
-//! A room for light from both ends, after the one that Veach made: a lamp that faces the wall, a lamp in a covered shade,
+//! A room for bidirectional path tracing, after Veach's: a spotlight that faces the wall, a lamp in a covered shade,
 //! and a glass egg on a table. [Veach 1997]
 
 use super::super::interior::furniture;
@@ -54,7 +54,7 @@ fn room(stage: &mut Stage) {
     stage.put("floor", boxes(&[[[-2.1, -0.1, -1.9], [2.1, 0.0, 3.6]]]), floor);
 }
 
-/// A standing lamp; its shade is open above, and covered below but for a ring.
+/// A floor lamp; its shade is open at the top, and closed at the bottom except for a ring.
 fn stand(stage: &mut Stage) {
     let brass = stage.glossy("brass", [0.30, 0.20, 0.07], 0.4, 70.0);
     let at = [-1.35, 0.0, -1.1];
@@ -68,13 +68,13 @@ fn stand(stage: &mut Stage) {
     stage.put("bulb", shapes::icosphere(Vec3::new(up[0], 1.585, up[2]), 0.045, 3), bulb);
 }
 
-/// A tube on the ceiling's rail that throws its light at the wall, and one down at the egg.
+/// Two tubes on the ceiling rail: one lights the wall, the other shines down at the egg.
 fn spot(stage: &mut Stage) {
     let black = stage.matt("black", [0.04, 0.04, 0.045]);
     let tube = tube();
     let lamp = stage.glowing("spot", [900.0, 830.0, 720.0]);
     let disc = shapes::disc(Vec3::new(0.0, -0.02, 0.0), 0.042, 24);
-    // Down and a little back; and flat against the back wall.
+    // One points down and slightly back; the other points straight at the back wall.
     for (turn, at) in [((Vec3::X, 7.0), [-0.15, 2.28, 0.05]), ((Vec3::X, 62.0), [0.95, 2.22, -0.7])] {
         stage.put("tube", placed(&tube, turn, at), black);
         stage.put("lamp", placed(&disc_with_normals(&disc), turn, at), lamp);
@@ -95,7 +95,7 @@ fn disc_with_normals(disc: &Mesh) -> Mesh {
     Mesh { normals: disc.smooth_normals(), ..disc.clone() }
 }
 
-/// Closed above, open below.
+/// A tube, closed at the top and open at the bottom.
 fn tube() -> Mesh {
     let outline = [
         [0.0, 0.06],
@@ -127,11 +127,11 @@ fn round_table() -> Mesh {
     moved(&joined([turned(&leg, 28, 4), turned(&top, 72, 3)]), [-0.15, 0.0, -0.1])
 }
 
-/// 24 cm long, lying on its side.
+/// An egg, 24 cm long, lying on its side.
 fn egg() -> Mesh {
     let mut egg = shapes::icosphere(Vec3::ZERO, 0.115, 5);
     for p in &mut egg.positions {
-        // Blunt on one end.
+        // One end is blunt.
         let narrow = 1.0 - 1.2 * p.x;
         *p = Vec3::new(p.x * 1.4, p.y * narrow, p.z * narrow);
     }

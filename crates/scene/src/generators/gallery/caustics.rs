@@ -55,7 +55,7 @@ fn backdrop() -> Mesh {
     })
 }
 
-/// 21 cm high, its bowl hollow and empty.
+/// A goblet, 21 cm high, its bowl hollow and empty.
 fn goblet() -> Mesh {
     let outline = [
         [0.0, 0.098],

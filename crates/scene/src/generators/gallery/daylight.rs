@@ -1,4 +1,4 @@
-//! Open daylight, no caustics: a giant's teapot among columns, under sun and sky.
+//! Open daylight without caustics: a giant's teapot among columns, under sun and sky.
 
 use super::super::parts::{joined, moved, placed, turned};
 use super::super::teapot::Teapot;
@@ -92,7 +92,7 @@ fn paving(stage: &mut Stage) {
     }
 }
 
-/// Eight in a ring that is open towards the front.
+/// Eight columns in a ring that is open towards the front.
 fn columns() -> Mesh {
     let shaft = [[0.0, 3.55], [0.30, 3.55], [0.275, 3.2], [0.30, 2.0], [0.33, 0.9], [0.345, 0.16]];
     let base = [[0.345, 0.16], [0.44, 0.15], [0.46, 0.1], [0.44, 0.05], [0.46, 0.0]];
@@ -110,7 +110,7 @@ fn columns() -> Mesh {
     joined((1..10).map(place))
 }
 
-/// Slim, a little uneven.
+/// A slim, slightly irregular cypress.
 fn cypress(k: f32, [x, z]: [f32; 2], size: f32) -> Mesh {
     let outline = [
         [0.0, 6.2],

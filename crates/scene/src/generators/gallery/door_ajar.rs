@@ -1,4 +1,4 @@
-//! A door ajar: light through a small opening from the next room, which alone has a lamp. [Veach 1997]
+//! A door ajar: light enters through a narrow gap from the next room, which has the only light. [Veach 1997]
 
 use super::super::parts::{between, joined, moved, placed, rounded, turned};
 use super::super::teapot::Teapot;
@@ -18,7 +18,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     generate: |_| Ok(build()),
 };
 
-/// The wall with the door, from its front to its back, and the door's edges.
+/// The wall with the door, from front to back, and the edges of the door.
 const WALL: [f32; 2] = [-1.6, -1.72];
 const DOOR: [f32; 2] = [-0.95, -0.05];
 const DOOR_HEIGHT: f32 = 2.05;
@@ -33,7 +33,7 @@ fn build() -> SceneBuilder {
     stage.seen([0.55, 1.38, 2.75], [0.0, 0.95, -0.9], 40.0)
 }
 
-/// Two rooms with one wall between.
+/// Two rooms with one wall between them.
 fn rooms(stage: &mut Stage) {
     let plaster = stage.matt("plaster", [0.70, 0.69, 0.68]);
     let bright = stage.matt("bright plaster", [0.78, 0.72, 0.60]);
@@ -65,7 +65,7 @@ fn rooms(stage: &mut Stage) {
     );
 }
 
-/// The door stands open into the next room by a hand's breadth; its frame and its knob.
+/// The door, ajar by a hand's breadth into the next room, with its frame and knob.
 fn door(stage: &mut Stage) {
     let paint = stage.glossy("paint", [0.34, 0.42, 0.40], 0.05, 40.0);
     let [left, right] = DOOR;
@@ -77,7 +77,7 @@ fn door(stage: &mut Stage) {
         panel(0.12, 0.18, width - 0.13, 0.85),
         panel(0.12, 1.02, width - 0.13, 1.88),
     ]);
-    // Hinges on the left.
+    // The hinges are on the left.
     stage.put("door", placed(&leaf, (Vec3::Y, 22.0), [left + 0.005, 0.0, WALL[1] + 0.02]), paint);
     let brass = stage.metal("brass", 0.3);
     let knob = turned(

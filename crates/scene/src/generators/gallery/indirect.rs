@@ -1,4 +1,4 @@
-//! A room lit indirectly: an uplighter, and all of its light comes by way of the ceiling.
+//! A room lit indirectly by an uplighter: all light comes from the ceiling.
 
 use super::super::interior::{furniture, soft, tableware};
 use super::super::parts::{between, joined, moved, placed, rounded, turned};
@@ -62,7 +62,7 @@ fn room(stage: &mut Stage) {
     stage.put("rug", placed(&soft::rug(1), (Vec3::Y, 8.0), [0.15, 0.0, 0.1]), wool);
 }
 
-/// A bowl on a pole, 1.85 m up, that lets light out above only.
+/// A bowl on a pole, 1.85 m high, that emits light only upwards.
 fn uplighter() -> Mesh {
     let bowl = [
         [0.0, 1.745],
@@ -95,7 +95,7 @@ fn side_table() -> Mesh {
     moved(&joined([turned(&leg, 24, 3), turned(&top, 48, 2)]), [0.72, 0.0, -0.35])
 }
 
-/// A vase with leaves, a cup, and books that somebody has left.
+/// A vase with leaves, a cup, and books left on the table.
 fn table_things(stage: &mut Stage) {
     let glaze = stage.glossy("glaze", [0.08, 0.20, 0.34], 0.10, 200.0);
     let leaf = stage.matt("leaf", [0.20, 0.40, 0.10]);
@@ -115,7 +115,7 @@ fn table_things(stage: &mut Stage) {
     }
 }
 
-/// Two pictures on the wall, in frames.
+/// Two framed pictures on the wall.
 fn pictures(stage: &mut Stage) {
     let oak = stage.matt("oak", [0.40, 0.25, 0.13]);
     let spots =

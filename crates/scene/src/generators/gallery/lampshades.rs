@@ -1,4 +1,4 @@
-//! Lamps in shades of clear glass: no shadow ray gets through, so that all light in the room has passed two walls of glass.
+//! Lamps in clear glass shades: no shadow ray gets through, so all light in the room has passed two walls of glass.
 
 use super::super::interior::{furniture, tableware};
 use super::super::parts::{joined, moved, placed, turned};
@@ -68,14 +68,14 @@ fn lamps(stage: &mut Stage) {
     }
 }
 
-/// Closed on both sides: an outside and an inside, which faces inwards.
+/// A closed shade with two surfaces: an outside, and an inside that faces inwards.
 fn shade(tall: bool) -> Mesh {
     let (wide, high) = if tall { (0.125, 0.16) } else { (0.115, 0.115) };
     let shell = |wide: f32, high: f32| {
         let mut outline: Vec<[f32; 2]> = (0..=24)
             .map(|k| {
                 let (sin, cos) = bilux_math::transcendental::sin_cos(std::f32::consts::PI * k as f32 / 24.0);
-                // A little narrower above than below.
+                // Slightly narrower at the top than at the bottom.
                 [wide * sin * (1.0 - 0.12 * cos), high * cos]
             })
             .collect();
@@ -89,7 +89,7 @@ fn shade(tall: bool) -> Mesh {
     joined([shell(wide, high), inside])
 }
 
-/// From just above the shade up to the ceiling.
+/// The cord from just above the shade up to the ceiling.
 fn cord() -> Mesh {
     turned(
         &[

@@ -1,4 +1,4 @@
-//! Many lights: a supper in a garden at night under six hundred small bulbs.
+//! Many lights: a garden supper at night under six hundred small bulbs.
 
 use super::super::interior::{furniture, tableware};
 use super::super::parts::{chance, joined, moved, placed, turned};
@@ -15,7 +15,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
     generate: |_| Ok(build()),
 };
 
-/// Cords, and bulbs on each.
+/// The number of cords, and of bulbs on each.
 const CORDS: u32 = 15;
 const BULBS: u32 = 40;
 
@@ -54,7 +54,7 @@ fn ground(stage: &mut Stage) {
     stage.put("joints", joints, moss);
 }
 
-/// Cords that hang between two beams on posts, a bulb every few inches; warm, with a few coloured ones.
+/// Cords between two beams on posts, with a bulb every few inches; most are warm, a few are coloured.
 fn bulbs(stage: &mut Stage) {
     let wood = stage.matt("posts", [0.24, 0.15, 0.09]);
     stage.put(
@@ -101,7 +101,7 @@ fn bulbs(stage: &mut Stage) {
     stage.put("cords", joined(cords), black);
 }
 
-/// A thin bar with three sides from a point to another.
+/// A thin three-sided bar from one point to another.
 fn piece(a: Vec3, b: Vec3) -> Mesh {
     let around = [Vec3::new(0.0, 0.006, 0.0), Vec3::new(0.0, -0.003, 0.005), Vec3::new(0.0, -0.003, -0.005)];
     let positions: Vec<Vec3> = around.iter().map(|&o| a + o).chain(around.iter().map(|&o| b + o)).collect();
@@ -111,7 +111,7 @@ fn piece(a: Vec3, b: Vec3) -> Mesh {
     mesh
 }
 
-/// A long table, laid, with chairs.
+/// A long table, laid, with chairs around it.
 fn supper(stage: &mut Stage) {
     let oak = stage.glossy("oak", [0.38, 0.23, 0.12], 0.05, 60.0);
     let linen = stage.matt("linen", [0.74, 0.72, 0.68]);
@@ -141,7 +141,7 @@ fn supper(stage: &mut Stage) {
     stage.put("vase", moved(&tableware::vase(2), [0.0, 0.757, 0.3]), glaze);
 }
 
-/// Dark round trees behind.
+/// Dark round trees in the background.
 fn trees(stage: &mut Stage) {
     let leaf = stage.matt("leaves", [0.09, 0.17, 0.05]);
     let bark = stage.matt("bark", [0.16, 0.10, 0.07]);

@@ -1,5 +1,5 @@
-//! Eight small scenes, each hard for light transport in another way, and good to look at. One scene a file, composed for
-//! pictures of 4:3; `bilux bench render` measures on them.
+//! Eight small scenes that look good, each difficult for light transport in a different way. Each scene has its own
+//! file and is composed for a 4:3 image; `bilux bench render` measures on them.
 
 pub(super) mod bidirectional;
 pub(super) mod caustics;
@@ -20,18 +20,18 @@ use bilux_math::registry::Entry;
 use bilux_math::{Rgb, Vec3};
 use std::sync::Arc;
 
-/// What a scene of the gallery says of itself.
+/// The table entry of a gallery scene.
 const fn about(name: &'static str, summary: &'static str) -> Entry {
     Entry { name, summary, source: "", parameters: &[] }
 }
 
-/// A scene while it is set.
+/// A scene being set up.
 struct Stage {
     scene: SceneBuilder,
 }
 
 impl Stage {
-    /// Nothing yet, to be exposed by so many stops.
+    /// An empty stage, exposed by this many stops.
     fn new(exposure: f32) -> Stage {
         let mut scene = SceneBuilder::default();
         scene.settings.set("size", "960x720");
@@ -40,7 +40,7 @@ impl Stage {
         Stage { scene }
     }
 
-    /// So many bounces, where there is much glass.
+    /// Sets the maximum number of bounces, for scenes with a lot of glass.
     fn deep(&mut self, bounces: i64) {
         self.scene.settings.set("max_depth", Value::Integer(bounces));
     }
@@ -53,13 +53,13 @@ impl Stage {
         self.material(Spec::new(name, "diffuse").with("reflectance", Rgb::from_array(colour)))
     }
 
-    /// Matt under a thin gloss.
+    /// Diffuse under a thin gloss.
     fn glossy(&mut self, name: &str, colour: [f32; 3], gloss: f32, exponent: f32) -> usize {
         let spec = Spec::new(name, "phong").with("kd", Rgb::from_array(colour)).with("ks", gloss);
         self.material(spec.with("exponent", exponent).with("reflectivity", 0.0f32))
     }
 
-    /// Smooth glass that takes so much of each colour a metre.
+    /// Smooth glass with this absorption per metre for each colour.
     fn glass(&mut self, name: &str, absorption: [f32; 3]) -> usize {
         self.material(Spec::new(name, "dielectric").with("absorption", Rgb::from_array(absorption)))
     }
@@ -68,7 +68,7 @@ impl Stage {
         self.material(Spec::new(metal, "conductor").with("metal", metal).with("roughness", roughness))
     }
 
-    /// What gives light by itself.
+    /// An emissive material.
     fn glowing(&mut self, name: &str, radiance: [f32; 3]) -> usize {
         let spec = Spec::new(name, "diffuse").with("reflectance", 0.0f32);
         self.material(spec.with("emission", Rgb::from_array(radiance)))
@@ -82,7 +82,7 @@ impl Stage {
         self.scene.lights.push(spec);
     }
 
-    /// A flat lamp around a point.
+    /// A flat light around a point.
     fn panel(&mut self, name: &str, middle: [f32; 3], edges: [[f32; 3]; 2], radiance: [f32; 3]) {
         self.light(
             Spec::new(name, "rect")
@@ -93,7 +93,7 @@ impl Stage {
         );
     }
 
-    /// The picture: from where to where, and how many degrees high.
+    /// Adds the camera: eye, target, and vertical field of view in degrees.
     fn seen(mut self, from: [f32; 3], to: [f32; 3], degrees: f32) -> SceneBuilder {
         let eye = Spec::new("front", "perspective")
             .with("position", Vec3::from(from))
@@ -104,7 +104,7 @@ impl Stage {
     }
 }
 
-/// One mesh of boxes with sharp edges, each from corner to corner.
+/// One mesh of sharp-edged boxes, each given by two opposite corners.
 fn boxes(corners: &[[[f32; 3]; 2]]) -> Mesh {
     joined(corners.iter().map(|&[low, high]| sharp(between(low, high))))
 }

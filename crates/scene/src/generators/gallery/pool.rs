@@ -1,4 +1,4 @@
-//! A pool: what lies below the water is lit through it and seen through it, from specular to diffuse to specular.
+//! A pool: objects below the water are lit and seen through it, along specular-diffuse-specular paths.
 
 use super::super::parts::{joined, moved, placed, sheet, turned};
 use super::super::{GeneratorEntry, shapes};
@@ -18,7 +18,7 @@ pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
 /// Half the basin's width and length, and its depth.
 const HALF: [f32; 2] = [2.0, 3.0];
 const DEPTH: f32 = 1.3;
-/// Where the water stands, below the edge.
+/// The height of the water, below the edge.
 const LEVEL: f32 = -0.12;
 
 fn build() -> SceneBuilder {
@@ -40,7 +40,7 @@ fn build() -> SceneBuilder {
     stage.seen([2.75, 2.55, 4.9], [-0.15, -0.5, -0.1], 40.0)
 }
 
-/// Ripples; the sheet goes on into the walls, where nobody sees its edge.
+/// Rippled water; the sheet continues into the walls, which hide its edge.
 fn surface() -> Mesh {
     let [x, z] = HALF.map(|half| half + 0.03);
     let waves = [
@@ -59,7 +59,7 @@ fn surface() -> Mesh {
     })
 }
 
-/// Floor and walls of small tiles in blues, each wall before a solid one.
+/// Floor and walls of small blue tiles, each wall in front of a solid one.
 fn basin(stage: &mut Stage) {
     let [x, z] = HALF;
     let d = DEPTH;

@@ -1,4 +1,4 @@
-//! Tiled surfaces: squares of a few shades between joints.
+//! Tiled surfaces: square tiles of a few shades, with joints between them.
 
 use super::super::parts::chance;
 use crate::mesh::Mesh;
@@ -6,20 +6,20 @@ use bilux_math::Vec3;
 
 /// A tiled rectangle.
 pub(super) struct Tiles {
-    /// A corner.
+    /// One corner.
     pub(super) corner: [f32; 3],
-    /// Along the rows, and across; seen from where `u × v` points.
+    /// Along the rows, and across; visible from the side that `u × v` points to.
     pub(super) edges: [[f32; 3]; 2],
-    /// How many along each.
+    /// The number of tiles along each edge.
     pub(super) counts: [u32; 2],
-    /// Part of a tile's side that is joint.
+    /// The fraction of a tile's side that is joint.
     pub(super) joint: f32,
-    /// Other numbers give other patterns.
+    /// The seed of the pattern.
     pub(super) pattern: u64,
 }
 
 impl Tiles {
-    /// The tiles of each shade, and below them the ground of the joints.
+    /// The tiles of each shade, and the ground below them that shows in the joints.
     pub(super) fn meshes<const SHADES: usize>(&self) -> ([Mesh; SHADES], Mesh) {
         let [u, v] = self.edges.map(Vec3::from);
         let [columns, rows] = self.counts;

@@ -5,16 +5,16 @@ use super::furniture::{BOARDS, SHELF};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 
-/// How many colours there are; pages come after them.
+/// The number of colours; the pages come after them.
 pub(super) const COLOURS: usize = 6;
 
-/// All books of one shelf, which is the `number`-th: a mesh for every colour, then one of all pages.
+/// All books of the shelf with this `number`: a mesh for every colour, then one of all pages.
 pub(super) fn books(number: u32, n: u32) -> Vec<Mesh> {
     let mut parts: Vec<Vec<Mesh>> = vec![Vec::new(); COLOURS + 1];
     for (row, &board) in BOARDS[..5].iter().enumerate() {
         let (mut x, end) = (0.02 - 0.5 * SHELF[0], 0.5 * SHELF[0] - 0.02);
         let mut k = (number * 5 + row as u32) * 1000;
-        // Rows end where somebody stopped.
+        // Each row ends at a random point.
         let end = end - 0.5 * chance(90, k) * chance(91, k);
         loop {
             k += 1;
@@ -29,7 +29,7 @@ pub(super) fn books(number: u32, n: u32) -> Vec<Mesh> {
             let inset = 0.275 - 0.05 * chance(97, k);
             let [cover, pages] = book([thick, high, deep], n);
             let turn = (Vec3::Z, lean);
-            // Leaning to the left, a book stands on its left lower edge's way to the right.
+            // A book that leans to the left stands on its lower left edge, so move it to the right.
             let at = [x + if lean > 0.0 { high * 0.142 } else { 0.0 }, board + 0.0005, inset];
             parts[(chance(98, k) * COLOURS as f32) as usize].push(placed(&cover, turn, at));
             parts[COLOURS].push(placed(&pages, turn, at));
@@ -39,7 +39,7 @@ pub(super) fn books(number: u32, n: u32) -> Vec<Mesh> {
     parts.into_iter().map(joined).collect()
 }
 
-/// Cover and pages; the spine's left lower edge is the origin, the front is +z.
+/// Cover and pages; the origin is the lower left edge of the spine, and the front is +z.
 fn book([thick, high, deep]: [f32; 3], n: u32) -> [Mesh; 2] {
     const BOARD: f32 = 0.002;
     let side = |x: f32| sharp(between([x, 0.0, -deep], [x + BOARD, high, -0.001]));

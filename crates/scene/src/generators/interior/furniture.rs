@@ -1,13 +1,13 @@
-//! Tables, chairs, shelves, an armchair and lamps. Each stands on y = 0 around its own axis.
+//! Tables, chairs, shelves, an armchair and lamps. Each stands on y = 0, centred on its own axis.
 
 use super::super::parts::{between, joined, moved, placed, rounded, turned};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 
-/// Height of the table.
+/// The height of the table.
 pub(super) const TABLE: f32 = 0.75;
 
-/// 1.9 m by 0.95 m, on four turned legs.
+/// A table, 1.9 m by 0.95 m, on four turned legs.
 pub(in crate::generators) fn table(n: u32) -> Mesh {
     let leg = turned(
         &[
@@ -39,7 +39,7 @@ pub(in crate::generators) fn table(n: u32) -> Mesh {
     joined(legs.into_iter().chain(apron.map(|b| rounded(b, 0.004, n))).chain([top]))
 }
 
-/// Its back is towards -z.
+/// A chair, whose back is towards -z.
 pub(in crate::generators) fn chair(n: u32) -> Mesh {
     let leg = turned(
         &[[0.0, 0.44], [0.017, 0.44], [0.019, 0.30], [0.015, 0.16], [0.012, 0.01], [0.0, 0.0]],
@@ -68,11 +68,11 @@ pub(in crate::generators) fn cushion(n: u32) -> Mesh {
     rounded(between([-0.19, 0.462, -0.18], [0.19, 0.515, 0.20]), 0.026, 3 * n)
 }
 
-/// Heights of the boards of a shelf, and its width and depth.
+/// The heights of a shelf's boards, and its width and depth.
 pub(super) const BOARDS: [f32; 6] = [0.08, 0.46, 0.82, 1.16, 1.50, 1.86];
 pub(super) const SHELF: [f32; 2] = [1.3, 0.3];
 
-/// Open to the front, which is +z; its back is at z = 0.
+/// A shelf, open to the front, which is +z; its back is at z = 0.
 pub(in crate::generators) fn shelf(n: u32) -> Mesh {
     let [width, depth] = SHELF;
     let (half, top) = (0.5 * width, BOARDS[5] + 0.02);
@@ -85,7 +85,7 @@ pub(in crate::generators) fn shelf(n: u32) -> Mesh {
     joined(sides.into_iter().chain(boards).chain([back]))
 }
 
-/// Soft, facing +z.
+/// A soft armchair, facing +z.
 pub(in crate::generators) fn armchair(n: u32) -> Mesh {
     let n = 3 * n;
     let arm = rounded(between([-0.085, 0.12, -0.38], [0.085, 0.60, 0.38]), 0.075, n);
@@ -105,7 +105,7 @@ pub(in crate::generators) fn feet(n: u32) -> Mesh {
     joined([[-0.36, -0.3], [0.36, -0.3], [-0.36, 0.3], [0.36, 0.3]].map(|[x, z]| moved(&foot, [x, 0.0, z])))
 }
 
-/// Foot and pole of a lamp whose bulb is 1.48 up.
+/// The foot and pole of a lamp whose bulb is 1.48 m up.
 pub(in crate::generators) fn lamp_stand(n: u32) -> Mesh {
     let outline = [
         [0.0, 1.46],
@@ -125,7 +125,7 @@ pub(in crate::generators) fn lamp_stand(n: u32) -> Mesh {
     turned(&outline, 12 * n, n)
 }
 
-/// A cone of cloth, open above and below, around a bulb at the origin.
+/// A cone of cloth, open at the top and bottom, around a bulb at the origin.
 pub(in crate::generators) fn shade(n: u32) -> Mesh {
     let outline = [
         [0.118, 0.16],
@@ -139,7 +139,7 @@ pub(in crate::generators) fn shade(n: u32) -> Mesh {
     turned(&outline, 20 * n, 2 * n)
 }
 
-/// A bell of metal with its cord up to 1 m above, around a bulb at the origin.
+/// A metal bell with a cord reaching 1 m above, around a bulb at the origin.
 pub(in crate::generators) fn pendant(n: u32) -> Mesh {
     let bell = [
         [0.0, 0.17],

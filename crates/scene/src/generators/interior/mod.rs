@@ -1,5 +1,4 @@
-//! A furnished room by daylight, most of it lit indirectly: triangles of every size, from walls to the pages of
-//! books.
+//! A furnished room in daylight, mostly lit indirectly: triangles of every size, from walls to the pages of books.
 
 mod books;
 pub(super) mod furniture;
@@ -72,14 +71,14 @@ const MATERIALS: &[(&str, [f32; 3], f32, f32)] = &[
     ("paper", [0.78, 0.74, 0.64], 0.0, 1.0),
 ];
 
-/// Of the books, in the order that `books` gives them.
+/// The materials of the books, in the order in which `books` returns the meshes.
 const CLOTHS: [&str; books::COLOURS + 1] =
     ["red cloth", "blue cloth", "green cloth", "black cloth", "ochre cloth", "grey cloth", "paper"];
 
 /// Half the room's width and depth, and its height.
 const HALF: [f32; 2] = [3.0, 2.4];
 const HEIGHT: f32 = 2.7;
-/// The window in the wall at -x: from and to, along z and up.
+/// The window in the wall at -x: its extent along z, then upwards.
 const WINDOW: [[f32; 2]; 2] = [[-1.0, 1.0], [0.75, 2.25]];
 
 fn material(&(name, kd, ks, exponent): &(&str, [f32; 3], f32, f32)) -> Spec {
@@ -201,7 +200,7 @@ impl Room {
         }
     }
 
-    /// The table, laid for tea, with its chairs, on a rug, under a lamp.
+    /// The table laid for tea, with its chairs, on a rug, under a lamp.
     fn dining(&mut self, n: u32) {
         let (x, z) = (0.35, -0.15);
         self.put("rug", "wool", moved(&soft::rug(n), [x, 0.0, z]));

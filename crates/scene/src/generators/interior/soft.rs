@@ -1,4 +1,4 @@
-//! Curtains, a rug and a plant: sheets that bend.
+//! Curtains, a rug and a plant: curved sheets.
 
 use super::super::parts::{chance, joined, placed, sheet};
 use crate::mesh::Mesh;
@@ -6,7 +6,7 @@ use bilux_math::Vec3;
 use bilux_math::transcendental::sin_cos;
 use std::f32::consts::{PI, TAU};
 
-/// Hangs from y = 0 down to -2.25 and is 0.75 wide along z, in folds towards x.
+/// A curtain, hanging from y = 0 down to -2.25, 0.75 wide along z, with folds along x.
 pub(in crate::generators) fn curtain(n: u32) -> Mesh {
     sheet(112 * n, 16 * n, |u, v| {
         let phase = TAU * 6.5 * u + 0.7 * sin_cos(3.0 * v + 9.0 * u).0;
@@ -21,7 +21,7 @@ pub(in crate::generators) fn curtain(n: u32) -> Mesh {
     })
 }
 
-/// 2.6 m by 1.8 m and as rough as wool.
+/// A rug, 2.6 m by 1.8 m, with the rough surface of wool.
 pub(in crate::generators) fn rug(n: u32) -> Mesh {
     let (columns, rows) = (56 * n, 40 * n);
     sheet(columns, rows, |u, v| {
@@ -32,7 +32,7 @@ pub(in crate::generators) fn rug(n: u32) -> Mesh {
     })
 }
 
-/// Leaves on stalks, from the middle of a pot up and outwards.
+/// Leaves on stalks, growing upwards and outwards from the middle of a pot.
 pub(in crate::generators) fn leaves(n: u32) -> Mesh {
     const LEAVES: u32 = 72;
     let leaf = |k: u32| {

@@ -1,11 +1,11 @@
-//! What stands on the table. Each stands on y = 0 around its own axis.
+//! Tableware. Each piece stands on y = 0, centred on its own axis.
 
 use super::super::parts::{joined, moved, placed, turned};
 use super::super::shapes::{torus, uv_sphere};
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 
-/// 26 cm wide.
+/// A plate, 26 cm wide.
 pub(in crate::generators) fn plate(n: u32) -> Mesh {
     let outline = [
         [0.0, 0.006],
@@ -19,11 +19,11 @@ pub(in crate::generators) fn plate(n: u32) -> Mesh {
         [0.078, 0.0],
         [0.0, 0.0],
     ];
-    // The outline runs from the middle above round the rim to the middle below.
+    // The outline runs from the centre of the top, around the rim, to the centre of the bottom.
     turned(&outline, 14 * n, 2 * n)
 }
 
-/// With a handle.
+/// A cup with a handle.
 pub(in crate::generators) fn cup(n: u32) -> Mesh {
     let outline = [
         [0.0, 0.008],
@@ -56,7 +56,7 @@ pub(in crate::generators) fn bowl(n: u32) -> Mesh {
     turned(&outline, 16 * n, 2 * n)
 }
 
-/// Oranges that fill the bowl.
+/// Oranges to fill the bowl.
 pub(in crate::generators) fn oranges(n: u32) -> Mesh {
     let lower = [[0.045, 0.0], [-0.022, 0.04], [-0.022, -0.04]].map(|[x, z]| [x, 0.072, z]);
     let rim = [[0.085, 0.035], [0.0, 0.092], [-0.085, 0.035], [-0.06, -0.07], [0.06, -0.07]];
@@ -81,7 +81,7 @@ pub(in crate::generators) fn vase(n: u32) -> Mesh {
     turned(&outline, 14 * n, 3 * n)
 }
 
-/// A stick with a candle in it.
+/// A candlestick, and a candle.
 pub(in crate::generators) fn candle(n: u32) -> [Mesh; 2] {
     let stick = [
         [0.0, 0.166],

@@ -1,10 +1,10 @@
-//! The figure: a coiled dragon as a field, about a metre high, below zero inside.
+//! The statue: a coiled dragon as a field, about a metre high, negative inside.
 
 use super::noise::{pebbles, rough};
 use bilux_math::transcendental::sin_cos;
 use bilux_math::{Aabb, Vec3};
 
-/// Two balls and all that lies between them.
+/// A round cone: two balls and the hull between them.
 #[derive(Clone, Copy)]
 struct Cone {
     from: Vec3,
@@ -13,7 +13,7 @@ struct Cone {
 }
 
 impl Cone {
-    /// Distance to the surface, near enough for thickness that changes slowly.
+    /// Distance to the surface, accurate enough where the thickness changes slowly.
     fn distance(&self, p: Vec3) -> f32 {
         let along = self.to - self.from;
         let t = ((p - self.from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
@@ -21,14 +21,14 @@ impl Cone {
     }
 }
 
-/// The figure.
+/// The statue.
 pub(super) struct Dragon {
     cones: Vec<Cone>,
 }
 
-/// How softly parts run into each other, metres.
+/// The width over which parts blend into each other, metres.
 const SOFTNESS: f32 = 0.02;
-/// The skin's greatest distance from the smooth figure, metres.
+/// The maximum distance of the skin from the smooth figure, metres.
 const SKIN: f32 = 0.016;
 
 impl Dragon {
@@ -45,15 +45,16 @@ impl Dragon {
         Dragon { cones }
     }
 
-    /// A box with the figure well inside.
+    /// A bounding box with some margin.
     pub(super) fn bounds(&self) -> Aabb {
         let ends = self.cones.iter().flat_map(|c| [(c.from, c.radius[0]), (c.to, c.radius[1])]);
         let boxes = ends.map(|(p, r)| Aabb::of_points([p]).grown(r));
         boxes.fold(Aabb::EMPTY, Aabb::union).grown(2.0 * (SKIN + SOFTNESS))
     }
 
-    /// The parts that matter within `radius` of a point; none where the surface does not come so near. The sign
-    /// there is the second result.
+    /// The parts that matter within `radius` of a point, or none where the surface is further away.
+    ///
+    /// The sign of the second result is the sign of the field there.
     pub(super) fn near(&self, p: Vec3, radius: f32) -> (Dragon, f32) {
         let distance = |c: &Cone| c.distance(p);
         let least = self.cones.iter().map(distance).fold(f32::INFINITY, f32::min);
@@ -66,7 +67,7 @@ impl Dragon {
         self.cones.is_empty()
     }
 
-    /// The field: smooth parts, then scales, wear and grain.
+    /// The field: smooth parts, then scales, wear and noise.
     pub(super) fn field(&self, p: Vec3) -> f32 {
         let smooth = self.cones.iter().fold(f32::INFINITY, |d, cone| soft_min(d, cone.distance(p)));
         if smooth.abs() > SKIN {
@@ -78,13 +79,13 @@ impl Dragon {
     }
 }
 
-/// The lesser of two, rounded where they are nearly equal.
+/// A smooth minimum of two numbers.
 fn soft_min(a: f32, b: f32) -> f32 {
     let overlap = (SOFTNESS - (a - b).abs()).max(0.0);
     a.min(b) - overlap * overlap / (4.0 * SOFTNESS)
 }
 
-/// From the tail's tip, round and round, and up the neck: degrees around, distance from the axis, height,
+/// From the tip of the tail, around the coil, and up the neck: degrees around, distance from the axis, height,
 /// thickness.
 const COIL: [[f32; 4]; 17] = [
     [-30.0, 0.66, 0.05, 0.008],
@@ -106,7 +107,7 @@ const COIL: [[f32; 4]; 17] = [
     [360.0, 0.04, 1.00, 0.074],
 ];
 
-/// Head: brow, snout, nostril, lower jaw, cheek, eye, horn in three, whisker, ear; from, to, radii. Each stands on
+/// Head: brow, snout, nostril, lower jaw, cheek, eye, horn in three, whisker, ear; from, to, radii. Each appears on
 /// both sides.
 const HEAD: [[[f32; 3]; 3]; 11] = [
     [[0.04, 1.0, 0.0], [0.17, 0.99, 0.022], [0.074, 0.062, 0.0]],
@@ -122,7 +123,7 @@ const HEAD: [[[f32; 3]; 3]; 11] = [
     [[0.03, 1.01, 0.065], [-0.05, 1.01, 0.140], [0.024, 0.005, 0.0]],
 ];
 
-/// Places and thicknesses along the back, close together.
+/// Closely spaced positions and thicknesses along the back.
 fn spine() -> Vec<(Vec3, f32)> {
     let knots = COIL.map(|[degrees, radius, y, thickness]| {
         let (sin, cos) = sin_cos(degrees.to_radians());
@@ -144,7 +145,7 @@ fn spine() -> Vec<(Vec3, f32)> {
     points.chain([at(knots.len() - 1)]).collect()
 }
 
-/// Thorns along the back, away from the axis and up.
+/// Thorns along the back, pointing away from the axis and upwards.
 fn crest(spine: &[(Vec3, f32)]) -> impl Iterator<Item = Cone> {
     spine.iter().skip(4).step_by(2).map(|&(p, r)| {
         let away = Vec3::new(p.x, 0.0, p.z).normalize_or(Vec3::NEG_X);

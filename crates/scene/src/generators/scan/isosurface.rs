@@ -1,20 +1,21 @@
-//! The surface where a field is zero, closed by construction: marching tetrahedra. [Doi 1991]
+//! The zero isosurface of a field, closed by construction: marching tetrahedra. [Doi 1991]
 
 use crate::mesh::Mesh;
 use bilux_math::Vec3;
 use bilux_math::glam::UVec3;
 use std::collections::HashMap;
 
-/// A field sampled at the corners of `cells.x · cells.y · cells.z` boxes, below zero inside.
+/// A field sampled at the corners of `cells.x · cells.y · cells.z` boxes, negative inside.
 pub(super) struct Samples {
-    /// Boxes along each axis; there is one more corner than boxes.
+    /// The number of boxes along each axis; there is one more corner than boxes.
     pub(super) cells: UVec3,
-    /// At every corner, x first, then y.
+    /// The field at every corner, x fastest, then y.
     pub(super) values: Vec<f32>,
 }
 
-/// The six tetrahedra around a box's long diagonal, by corners: bit 0 is x, bit 1 y, bit 2 z. Faces of
-/// neighbouring boxes are cut along the same diagonal, so that what comes out has no gaps.
+/// The six tetrahedra around a box's long diagonal, by corners: bit 0 is x, bit 1 y, bit 2 z.
+///
+/// The faces of neighbouring boxes are cut along the same diagonal, so that the surface has no gaps.
 const TETRAHEDRA: [[u32; 4]; 6] =
     [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 
@@ -25,14 +26,15 @@ impl Samples {
         (at.z * row.y + at.y) * row.x + at.x
     }
 
-    /// The place of a corner in boxes.
+    /// The grid coordinates of a corner.
     pub(super) fn place(cells: UVec3, corner: u32) -> UVec3 {
         let row = cells + 1;
         UVec3::new(corner % row.x, corner / row.x % row.y, corner / (row.x * row.y))
     }
 
-    /// The surface, counter-clockwise from outside, `position(corner)` being where the field was sampled. A vertex
-    /// belongs to one edge between two samples and is made once, whichever tetrahedra share it.
+    /// The surface, counter-clockwise from outside; `position(corner)` is where the field was sampled.
+    ///
+    /// A vertex belongs to one edge between two samples and is created once, whichever tetrahedra share it.
     pub(super) fn surface(&self, position: impl Fn(UVec3) -> Vec3) -> Mesh {
         let mut maker = Maker { samples: self, position, made: HashMap::new(), mesh: Mesh::default() };
         let UVec3 { x, y, z } = self.cells;
@@ -57,10 +59,10 @@ struct Maker<'a, P> {
 }
 
 impl<P: Fn(UVec3) -> Vec3> Maker<'_, P> {
-    /// The triangles of one tetrahedron; the corners come in an order that is positive by volume.
+    /// The triangles of one tetrahedron; the corners are in an order of positive volume.
     fn cut(&mut self, corners: [u32; 4]) {
         let is_inside = |c: u32| self.samples.values[c as usize] < 0.0;
-        // Even permutations that bring the odd corner, or the pair inside, to the front keep the orientation.
+        // Even permutations move the odd corner, or the inside pair, to the front and keep the orientation.
         let [a, b, c, d] = corners;
         let inside = corners.map(is_inside);
         match inside {
@@ -82,13 +84,13 @@ impl<P: Fn(UVec3) -> Vec3> Maker<'_, P> {
         }
     }
 
-    /// One corner on one side.
+    /// One corner on one side, three on the other.
     fn tip(&mut self, [a, b, c, d]: [u32; 4], outside: bool) {
         let [p, q, r] = [b, c, d].map(|other| self.vertex(a, other));
         self.mesh.triangles.push(if outside { [p, r, q] } else { [p, q, r] });
     }
 
-    /// The first two corners inside, the others outside.
+    /// The first two corners inside, the other two outside.
     fn wedge(&mut self, [a, b, c, d]: [u32; 4]) {
         let [p, q, r, s] = [(a, c), (a, d), (b, d), (b, c)].map(|(i, o)| self.vertex(i, o));
         self.mesh.triangles.extend([[p, q, r], [p, r, s]]);
@@ -99,7 +101,7 @@ impl<P: Fn(UVec3) -> Vec3> Maker<'_, P> {
         let (samples, position, mesh) = (self.samples, &self.position, &mut self.mesh);
         *self.made.entry((a, b)).or_insert_with(|| {
             let [fa, fb] = [a, b].map(|c| samples.values[c as usize]);
-            // Away from the ends, where vertices of several edges would fall into one.
+            // Keep away from the ends, where the vertices of several edges would coincide.
             let t = (fa / (fa - fb)).clamp(0.02, 0.98);
             let [pa, pb] = [a, b].map(|c| position(Samples::place(samples.cells, c)));
             mesh.positions.push(pa + (pb - pa) * t);

@@ -1,5 +1,5 @@
-//! A fine and uneven closed mesh, like a statue from a scanner: a coiled dragon, worn and scaly, cut into triangles
-//! whose sizes and shapes vary as those of scans do, slivers included.
+//! A fine, irregular closed mesh, like a scanned statue: a coiled dragon, worn and scaly, made of triangles whose sizes
+//! and shapes vary as those of scans do, including slivers.
 
 mod dragon;
 mod isosurface;
@@ -50,13 +50,13 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     },
 };
 
-/// The statue, closed, sunk a little into y = 0 so that it stands firmly, with smooth normals.
+/// The statue, closed, sunk slightly into y = 0 so that it stands firmly, with smooth normals.
 fn statue(detail: u32) -> Mesh {
     let dragon = Dragon::new();
     let bounds = dragon.bounds();
     let side = bounds.extent().y / detail as f32;
     let cells = (bounds.extent() / side).ceil().as_uvec3() + 1;
-    // Scanners see some parts better than others: towards the top and the front samples lie closer.
+    // Scanners sample some parts more densely: here the samples lie closer towards the top and the front.
     let position = |corner: UVec3| {
         let s = corner.as_vec3() / cells.as_vec3();
         let warp = |s: f32, strength: f32| s + strength * sin_cos(PI * s).0 / PI;
@@ -70,7 +70,7 @@ fn statue(detail: u32) -> Mesh {
     mesh
 }
 
-/// The field at every corner. Far from the surface, block by block, only its sign.
+/// The field at every corner. In blocks far from the surface, only its sign.
 fn sampled(dragon: &Dragon, cells: UVec3, position: &impl Fn(UVec3) -> Vec3) -> Vec<f32> {
     const BLOCK: u32 = 4;
     let corners = cells + 1;

@@ -1,9 +1,9 @@
-//! Roughness by formula: noise in space, the same everywhere and always.
+//! Procedural roughness: deterministic noise in space.
 
 use bilux_math::Vec3;
 use bilux_math::hash::{hash_words, unit_f32};
 
-/// A number in 0..1 for a cell of space.
+/// A pseudo-random number in 0..1 for a cell of space.
 fn cell(at: [i32; 3], salt: u64) -> f32 {
     unit_f32(hash_words([at[0] as u64, at[1] as u64, at[2] as u64, salt]) as u32)
 }
@@ -22,13 +22,13 @@ fn value(p: Vec3, salt: u64) -> f32 {
     2.0 * (along_y(0) + (along_y(1) - along_y(0)) * s.z) - 1.0
 }
 
-/// Noise of several sizes, each half as large and half as strong as the one before; in -2..2.
+/// Several octaves of noise, each with half the size and half the amplitude of the previous one; in -2..2.
 pub(super) fn rough(p: Vec3, octaves: u32) -> f32 {
     let octave = |n: u32| value(p * (1u32 << n) as f32, u64::from(n)) / (1u32 << n) as f32;
     (0..octaves).map(octave).sum()
 }
 
-/// Distance to the nearest of points scattered one to a cell of side 1: scales and pebbles. At most about 1.2.
+/// Distance to the nearest of points scattered one per cell of side 1: scales and pebbles. At most about 1.2.
 pub(super) fn pebbles(p: Vec3) -> f32 {
     let floor = p.floor();
     let [x, y, z] = floor.to_array().map(|c| c as i32);

@@ -1,4 +1,4 @@
-//! The parameters over a surface.
+//! The parameters as they vary over a surface.
 
 use super::super::normal_map::{self, NormalMap};
 use super::super::{MaterialInputs, colour_map, number_map};
@@ -22,10 +22,10 @@ pub(super) struct Maps {
     pub(super) rotation: NumberMap,
     pub(super) transmission_weight: NumberMap,
     pub(super) transmission_color: ColourMap,
-    /// True where transmission_color is of the surface, and not of what is inside.
+    /// True if transmission_color tints the surface rather than the interior.
     pub(super) tints_surface: bool,
     pub(super) thin: bool,
-    /// 1 over Abbe's number of what is clear; 0 where light does not go into it.
+    /// 1 over the Abbe number of the clear part; 0 if light does not enter it.
     pub(super) dispersion: f32,
     pub(super) coat_weight: NumberMap,
     pub(super) coat_color: ColourMap,
@@ -80,7 +80,7 @@ impl Maps {
         })
     }
 
-    /// True where no texture changes anything over the surface.
+    /// True if no texture varies over the surface.
     pub(super) fn are_even(&self) -> bool {
         let colours = [
             &self.base_color,
@@ -151,7 +151,7 @@ impl Maps {
     }
 }
 
-/// True where a weight is above 0, or may be somewhere.
+/// True if a weight is above 0, or may be somewhere.
 pub(super) fn is_there(weight: &NumberMap) -> bool {
     weight.texture.is_some() || weight.number > 0.0
 }

@@ -1,8 +1,8 @@
-//! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: plastic, metal, glass, or
-//! a mixture, below a clear coat, below fuzz.
+//! `principled`: one surface for nearly everything, in the terms of OpenPBR 1.1: plastic, metal, glass, or a mixture,
+//! below a clear coat, below fuzz.
 //!
-//! Below is what scatters diffusely, or metal; at the surface, microfacets reflect by Fresnel's equations. What they reflect
-//! the diffuse part lacks, and no more: a white surface loses nothing. [OpenPBR 1.1; Kulla 2017]
+//! The base scatters diffusely, or is metal; at the surface, microfacets reflect by Fresnel's equations. The diffuse
+//! part loses exactly what they reflect, so that a white surface loses no light. [OpenPBR 1.1; Kulla 2017]
 
 mod maps;
 mod point;
@@ -158,7 +158,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
 };
 
-/// What is clear lets this much through at least, or no number would tell how much it absorbs.
+/// The minimum transmission colour: a smaller one would need an absorption beyond the range of numbers.
 const DARKEST: f32 = 1e-6;
 
 const fn index(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
@@ -174,7 +174,7 @@ const fn number(name: &'static str, summary: &'static str, max: f64, default: &'
 
 struct Principled {
     maps: Maps,
-    /// What it comes to where it is the same everywhere.
+    /// The precomputed BSDF, if no texture varies over the surface.
     even: Option<Bsdf>,
     sigma_a: Rgb,
     priority: u32,
@@ -184,12 +184,12 @@ impl Principled {
     fn point(&self, surface: &Surface) -> Point {
         let vertex = surface.vertex_kd.unwrap_or(Rgb::WHITE);
         let point = self.maps.at(surface.uvs());
-        // Turned from u towards v, on whichever side of u that is.
+        // The rotation is from u towards v, whichever side of u that is on.
         let rotation = point.rotation * surface.handedness;
         Point { base_color: (point.base_color * vertex).clamp(0.0, 1.0), rotation, ..point }
     }
 
-    /// [`Material::bsdf`], with a coat about a normal of its own.
+    /// [`Material::bsdf`] where the coat has its own normal.
     #[inline(never)]
     fn below_coat(&self, surface: &Surface, n: Vec3) -> Bsdf {
         let frame = Frame::from_normal(surface.n_shade).along(surface.tangent);

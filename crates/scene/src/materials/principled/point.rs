@@ -1,4 +1,4 @@
-//! The parameters at a point, and the lobes that they come to.
+//! The parameters at a point, and the lobes made from them.
 
 use crate::bsdf::{
     Albedo, CoatedDielectric, CoatedDiffuse, Coating, Fresnel, Fuzz, FuzzAlbedo, Ggx, Lambert, Lobe,
@@ -26,12 +26,12 @@ pub(super) struct Point {
     pub(super) coat_color: Rgb,
     pub(super) coat_roughness: f32,
     pub(super) coat_ior: f32,
-    /// Its normal, where that of the rest is the z axis.
+    /// The coat's normal, in a frame where the normal of the rest is the z axis.
     pub(super) coat_up: Vec3,
     pub(super) fuzz: f32,
     pub(super) fuzz_color: Rgb,
     pub(super) fuzz_roughness: f32,
-    /// How much of the diffuse part comes out behind.
+    /// The fraction of the diffuse part that is transmitted to the back.
     pub(super) passing: f32,
     pub(super) passing_color: Rgb,
     pub(super) film: ThinFilm,
@@ -62,7 +62,7 @@ impl Point {
             if is_bare {
                 return Lobe::Lambert(Lambert { albedo });
             }
-            // What a film reflects at its brightest colour does not get in at any.
+            // What a film reflects at its brightest colour is withheld from the base at every colour.
             let most = if self.film.weight > 0.0 { self.film.most(eta) } else { eta };
             let matt = CoatedDiffuse::sheet(albedo, passing, Albedo::new(&ggx, most), cover);
             Lobe::CoatedDiffuse(if self.base_roughness > 0.0 {
@@ -80,7 +80,7 @@ impl Point {
         [fuzz, coat, gloss, base, clear]
     }
 
-    /// How much of the surface is neither metal nor clear.
+    /// The fraction of the surface that is neither metal nor clear.
     pub(super) fn opaque(&self) -> f32 {
         (1.0 - self.metalness) * (1.0 - self.transmission)
     }
@@ -89,15 +89,15 @@ impl Point {
         (1.0 - self.metalness) * self.transmission
     }
 
-    /// The index of the boundary of what is neither metal nor clear. Below a coat it is over that of the coat; where
-    /// that is greater it is taken the other way round, or too much would be reflected totally. [OpenPBR 1.1]
+    /// The index of the boundary of the opaque base. Below a coat it is relative to the coat's index; if that is
+    /// larger, the ratio is inverted, or there would be too much total internal reflection. [OpenPBR 1.1]
     fn eta(&self) -> f32 {
         let ratio = self.ior / self.coat_ior;
         let eta = self.ior + (ratio.max(1.0 / ratio) - self.ior) * self.coat;
         weakened(eta, self.specular_weight)
     }
 
-    /// Fibres, and what they cover.
+    /// The fuzz lobe, and the coating that it forms.
     fn fuzz_and_cover(&self) -> (Option<Lobe>, Coating) {
         if self.fuzz == 0.0 {
             return (None, Coating::NONE);
@@ -107,7 +107,7 @@ impl Point {
         (Some(Lobe::Fuzz(fuzz)), Coating::NONE.below(self.fuzz, albedo))
     }
 
-    /// A coat below what covers that, and all of it together.
+    /// The coat below the layers `above`, and the coating of all of them together.
     fn coat_and_cover(&self, above: Coating) -> (Option<Lobe>, Coating) {
         if self.coat == 0.0 || self.coat_ior <= 1.0 {
             return (None, above);
@@ -120,13 +120,13 @@ impl Point {
         (Some(Lobe::MicrofacetReflection(coat.from_below(self.outside()))), cover)
     }
 
-    /// Who is inside of what is clear sees neither coat nor fuzz: how much of them is seen from below.
+    /// How much of the coat and fuzz is visible from below: a viewer inside the clear part sees neither.
     fn outside(&self) -> f32 {
         if self.thin { 1.0 } else { 1.0 - self.clear() }
     }
 }
 
-/// The index of a boundary that reflects `weight` times what this one does, straight on. [OpenPBR 1.1, eq. 27]
+/// The index of a boundary that reflects `weight` times as much at normal incidence. [OpenPBR 1.1, eq. 27]
 fn weakened(eta: f32, weight: f32) -> f32 {
     let amplitude = weight.sqrt() * (eta - 1.0) / (eta + 1.0);
     (1.0 + amplitude) / (1.0 - amplitude)

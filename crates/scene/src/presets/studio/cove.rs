@@ -1,4 +1,4 @@
-//! What a photographer puts a product on: a floor that bends up into a wall, so that no edge is seen behind it.
+//! A cyclorama: a floor that curves up into a wall, so that no edge is visible behind the model.
 
 use super::framing::Framing;
 use crate::mesh::Mesh;
@@ -11,18 +11,18 @@ const WIDE: f64 = 20.0;
 const BEHIND: f64 = 3.0;
 const BEND: f64 = 4.0;
 const WALL: f64 = 10.0;
-/// Strips of the bend.
+/// The number of strips in the bend.
 const STRIPS: u32 = 48;
 
-/// Half the width of a level floor, in radii of the model and as much again as the camera is away.
+/// Half of the width of a level floor, in units of the model's radius plus the distance of the camera.
 const LEVEL: f64 = 60.0;
 
-/// The ground's height: a little below, so that a model with a floor of its own keeps that.
+/// The height of the ground: slightly below the model, so that a floor of its own stays visible.
 fn height(framing: &Framing) -> f64 {
     framing.lowest - framing.radius * 1e-3
 }
 
-/// A level floor below a model. Its front is above, or below where it `faces_down`.
+/// A level floor below a model. Its front faces up, or down if `faces_down`.
 pub(super) fn level(framing: &Framing, faces_down: bool) -> Mesh {
     let half = LEVEL * (framing.radius + framing.distance);
     let middle = DVec3::new(framing.middle.x, height(framing), framing.middle.z);
@@ -33,7 +33,7 @@ pub(super) fn level(framing: &Framing, faces_down: bool) -> Mesh {
     Mesh { name: super::GROUND.to_owned(), positions, triangles, ..Mesh::default() }
 }
 
-/// The cove behind a model, as seen by the studio's camera; it reaches behind that too.
+/// The cove behind a model, as seen by the studio's camera; it also extends behind the camera.
 pub(super) fn cove(framing: &Framing) -> Mesh {
     let radius = framing.radius;
     let [right, ..] = framing.axes;

@@ -1,4 +1,4 @@
-//! Where a model is, and from where it is seen whole.
+//! The position of a model, and the camera position that frames it whole.
 
 use super::Studio;
 use crate::builder::SceneBuilder;
@@ -7,29 +7,29 @@ use crate::parameters::Spec;
 use bilux_math::DVec3;
 use bilux_math::transcendental::{atan, sin_cos_f64, tan};
 
-/// Share of the picture's width and height that the model may take.
+/// The maximum fraction of the image's width and height that the model covers.
 const FILL: f64 = 0.88;
-/// Beyond this the squares of lengths overflow in f32.
+/// Beyond this distance the squares of lengths overflow in f32.
 const FARTHEST: f64 = 1e17;
 
-/// Where a model is, and where it has to be seen from.
+/// The position of a model, and the viewpoint that frames it.
 pub(super) struct Framing {
     pub(super) middle: DVec3,
-    /// Never zero, and never so small beside the distance from the origin that f32 could not tell.
+    /// Never zero, and never too small for f32 relative to the distance from the origin.
     pub(super) radius: f64,
     pub(super) lowest: f64,
-    /// Right, up, and into the picture.
+    /// Right, up, and into the image.
     pub(super) axes: [DVec3; 3],
     eye: DVec3,
     /// Vertical field of view, in degrees.
     fov: f32,
-    /// From the eye to the middle of what it sees.
+    /// Distance from the eye to the centre of its view.
     pub(super) distance: f64,
 }
 
 impl Framing {
     pub(super) fn of(scene: &SceneBuilder, studio: &Studio) -> Framing {
-        // What moves is seen from where all of its movement is seen.
+        // Frame an animated model by all of its movement.
         let scene = scene.inventory.movement.as_deref().unwrap_or(scene);
         let limit = |p: DVec3| p.clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST));
         let bounds = scene.bounds(0.0);
@@ -49,11 +49,13 @@ impl Framing {
         framing
     }
 
-    /// Finds the nearest eye that sees all vertices within the middle `FILL` of a picture, `aspect` times as wide as high.
+    /// Finds the nearest eye that sees all vertices within the central `FILL` of an image, `aspect` times as wide as
+    /// high.
     ///
-    /// A point at (x, y, z) from the middle, along the axes, is seen from a shift of `s` and a distance of `d`
-    /// when |x - s| ≤ (d + z) k. So `d` has to be at least the greatest of x/k - z, less s/k, and the greatest
-    /// of -x/k - z, plus s/k: least where both are equal. Upwards k is of the height, and across it of the width.
+    /// A point at (x, y, z) from the centre, along the axes, is visible from a shift of `s` and a distance of `d` when
+    /// |x - s| ≤ (d + z) k. So `d` has to be at least the maximum of x/k - z, minus s/k, and the maximum of -x/k - z,
+    /// plus s/k; it is smallest where both are equal. Vertically k belongs to the height, and horizontally to the
+    /// width.
     fn stand_back(&mut self, scene: &SceneBuilder, aspect: f64) {
         let k = f64::from(tan(self.fov.to_radians() * 0.5)) * FILL;
         let across = k * aspect;
@@ -79,7 +81,7 @@ impl Framing {
         self.eye = self.middle + shift - self.axes[2] * distance;
     }
 
-    /// True where the eye is not above all of the model's lowest point.
+    /// True when the eye is no higher than the lowest point of the model.
     pub(super) fn is_below(&self) -> bool {
         self.eye.y <= self.lowest
     }
@@ -93,7 +95,7 @@ impl Framing {
     }
 }
 
-/// Right, up, and into the picture, for who looks at the middle from this azimuth and elevation.
+/// Right, up, and into the image, for a view of the centre from this azimuth and elevation.
 fn axes([azimuth, elevation]: [f32; 2]) -> [DVec3; 3] {
     let (sin_azimuth, cos_azimuth) = sin_cos_f64(f64::from(azimuth).to_radians());
     let (sin, cos) = sin_cos_f64(f64::from(elevation).to_radians());
@@ -102,7 +104,7 @@ fn axes([azimuth, elevation]: [f32; 2]) -> [DVec3; 3] {
     [right, right.cross(forward), forward]
 }
 
-/// Vertical field of view, in degrees, of a lens before a picture of 24 mm height.
+/// The vertical field of view, in degrees, of a lens for an image 24 mm high.
 fn field_of_view(focal: f32) -> f32 {
     (2.0 * atan(12.0 / focal)).to_degrees()
 }

@@ -1,4 +1,4 @@
-//! `studio`: any model, framed and lit well. What [`complete`] gives to scenes without a camera or a light.
+//! `studio`: any model, well framed and lit. [`complete`] gives it to scenes without a camera or a light.
 
 mod cove;
 mod framing;
@@ -27,56 +27,57 @@ pub(super) const ENTRY: PresetEntry = PresetEntry {
     apply,
 };
 
-/// What a model stands on.
+/// The ground below a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
-    /// A matt cove, which takes the model's shadow; of a picture without surroundings, the shadow alone.
+    /// A diffuse cove that receives the model's shadow; in an image without surroundings, the shadow alone.
     Shadow,
     /// A level mirror.
     Mirror,
-    /// Nothing.
+    /// No ground.
     None,
 }
 
 impl Ground {
-    /// As users name them.
+    /// Their names in the user interface.
     pub const NAMES: &'static [&'static str] = &["shadow", "mirror", "none"];
 
-    /// By its name.
+    /// The ground of a name.
     pub fn named(name: &str) -> Option<Ground> {
         let all = [Ground::Shadow, Ground::Mirror, Ground::None];
         Ground::NAMES.iter().position(|n| *n == name).map(|i| all[i])
     }
 }
 
-/// How a model is photographed. What is `None` is made up for only where a scene says nothing of it.
+/// How a model is photographed. A field that is `None` gets a default only where the scene does not specify it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Studio {
-    /// What it stands on.
+    /// The ground below the model.
     pub ground: Option<Ground>,
-    /// From where it is seen: degrees to the right of its front (+z), and above it.
+    /// The view direction: degrees to the right of its front (+z), and above it.
     pub orbit: Option<[f32; 2]>,
-    /// Which of the model's axes is up.
+    /// The model's up axis.
     pub up: Option<Axis>,
-    /// Which of them is its front.
+    /// The model's front axis.
     pub front: Option<Axis>,
-    /// Focal length in mm, for a picture 24 mm high.
+    /// Focal length in mm, for an image 24 mm high.
     pub focal: Option<f32>,
-    /// Width of the picture over its height, if it is not square.
+    /// Width of the image over its height, if it is not square.
     pub aspect: Option<f32>,
-    /// It is cut out of its surroundings, so that nothing is put around it unasked.
+    /// The model is cut out of its surroundings, so nothing is put around it by default.
     pub cut_out: bool,
-    /// Whether the scene's own light lights what is seen, as measured; `None` to go by whether there is any.
+    /// Whether the scene's own light illuminates the visible objects, as measured; `None` means that having any is
+    /// enough.
     pub lit: Option<bool>,
 }
 
 impl Studio {
-    /// A little from the right and above.
+    /// Slightly from the right and from above.
     pub const ORBIT: [f32; 2] = [26.5, 17.8];
-    /// The lens of portraits, or a little more.
+    /// The lens of a portrait, or slightly longer.
     pub const FOCAL: f32 = 45.0;
 
-    /// True where the studio's own camera is asked for, whatever cameras the scene has.
+    /// True when the user asked for the studio's own camera, whatever cameras the scene has.
     fn has_camera(&self) -> bool {
         self.orbit.is_some() || self.focal.is_some() || self.up.is_some() || self.front.is_some()
     }
@@ -85,10 +86,10 @@ impl Studio {
 /// The light behind the model.
 const RIM: &str = "rim";
 
-/// What is around it.
+/// The environment around it.
 const ROOM: &str = "room";
 
-/// What the ground's object and material are called.
+/// The name of the ground's object and material.
 const GROUND: &str = "studio floor";
 
 fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
@@ -103,17 +104,19 @@ fn apply(scene: &mut SceneBuilder) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Gives a scene what it lacks to be seen: a camera that frames everything, the lights of a studio; and the whole
-/// studio where it has neither. Lamps of a format that has no word for surroundings stand in those of the studio: metal would
-/// mirror nothing. What is asked for in `studio` is there in any case: its camera is the first one then.
-/// Does nothing to a scene that has both where nothing is asked for. Gives how the model was turned, if it was.
+/// Adds what a scene lacks to be visible: a camera that frames everything, and studio lights.
+///
+/// A scene with neither gets the whole studio. If a scene has light sources but its format cannot describe an
+/// environment, they get the studio's environment, or metal would have nothing to reflect. Anything that `studio` asks
+/// for is added in any case, with its camera as the first one. A scene that has both stays as it is unless `studio`
+/// asks for something. Returns the orientation of the model, if it was rotated.
 pub fn complete(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
     let orientation = standing::set_upright(scene, studio);
     add_missing(scene, studio);
     orientation
 }
 
-/// Does what [`complete`] does, to a scene that stands upright already ([`set_upright`]).
+/// Like [`complete`], for a scene that is upright already ([`set_upright`]).
 pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
@@ -129,14 +132,14 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     if lit && seen && !asked && ground == Ground::None {
         return;
     }
-    // A camera that is there looks at the studio from in front.
+    // An existing camera sees the studio from the front.
     let looks = Studio { orbit: studio.orbit.or_else(|| orbit_of(scene)), ..*studio };
     let framing = Framing::of(scene, &looks);
     if !seen || asked {
         scene.cameras.insert(0, framing.camera());
     }
     if !lit {
-        // It may be close, and have in view what stands behind the model; a mirror shows that.
+        // An existing camera may be close, and show what is behind the model; so does a mirror.
         let is_in_view = |spec: &Spec| spec.name == RIM && (seen && !asked || ground == Ground::Mirror);
         let is_wanted = |spec: &Spec| if has_lamps_alone { spec.name == ROOM } else { !is_in_view(spec) };
         scene.lights.extend(lights(&framing, ground).into_iter().filter(is_wanted));
@@ -147,8 +150,9 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     furnish(scene, &framing, ground, studio.cut_out);
 }
 
-/// True where a scene has light of its own, and its format no word for what else is around it: whether that light is meant
-/// to light the scene is told by measure alone.
+/// True when a scene has its own light, but its format cannot describe the environment.
+///
+/// Only measurement can show whether that light is meant to illuminate the scene.
 pub fn may_be_lit(scene: &SceneBuilder) -> bool {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let emission = |o: &Object| scene.materials.get(o.material).and_then(|m| m.parameters.find("emission"));
@@ -156,13 +160,13 @@ pub fn may_be_lit(scene: &SceneBuilder) -> bool {
     scene.surroundings_unsaid && !has_surroundings(scene) && (has_lights || glows())
 }
 
-/// True where a scene has lamps, or parts that are at least as bright as the white of a screen.
+/// True when a scene has light sources, or surfaces that are at least as bright as the white of a screen.
 pub fn seems_lit(scene: &SceneBuilder) -> bool {
     scene.lights.iter().any(|light| !light.is_backdrop())
         || scene.objects.iter().any(|o| gives_light(scene, o))
 }
 
-/// Gives a scene the camera that [`complete`] would give it, and nothing else.
+/// Adds only the camera that [`complete`] would add.
 pub fn frame(scene: &mut SceneBuilder, studio: &Studio) {
     if scene.cameras.is_empty() || studio.has_camera() {
         let camera = Framing::of(scene, studio).camera();
@@ -170,7 +174,7 @@ pub fn frame(scene: &mut SceneBuilder, studio: &Studio) {
     }
 }
 
-/// From where a scene's own camera looks; `None` where it has none.
+/// The view direction of a scene's own camera; `None` if it has none.
 fn orbit_of(scene: &SceneBuilder) -> Option<[f32; 2]> {
     let camera = cameras::build(scene.cameras.first()?, 1.0).ok()?;
     let middle = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 };
@@ -178,7 +182,7 @@ fn orbit_of(scene: &SceneBuilder) -> Option<[f32; 2]> {
     Some([atan2(towards.x, towards.z).to_degrees(), asin(towards.y.clamp(-1.0, 1.0)).to_degrees()])
 }
 
-/// Makes of clay what nobody has said a word about; of ink, to be seen on pale ground, what is lines or a few points alone.
+/// Gives objects without a material one of clay, or of ink on pale ground if they are only lines or a few points.
 fn of_clay(scene: &mut SceneBuilder) {
     const FEW: usize = 5000;
     let is_drawing = |object: &Object| {
@@ -195,9 +199,9 @@ fn of_clay(scene: &mut SceneBuilder) {
     }
 }
 
-/// Puts something under the model.
+/// Puts the ground under the model.
 fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out: bool) {
-    // Who looks up from below would see nothing else.
+    // A camera below the ground would see nothing else.
     if ground == Ground::None || scene.objects.is_empty() || framing.is_below() {
         return;
     }
@@ -206,7 +210,7 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out:
         Ground::Mirror => {
             (Spec::new(GROUND, "mirror").with("reflectance", 0.85f32), cove::level(framing, false))
         }
-        // It is there for light alone: the camera looks through its back, and the picture is given the shadow on it.
+        // It only receives light: the camera sees through its back, and the image keeps the shadow on it.
         _ if cut_out => (paper.with("visible_sides", "front"), cove::level(framing, true)),
         _ => (paper, cove::cove(framing)),
     };
@@ -214,25 +218,25 @@ fn furnish(scene: &mut SceneBuilder, framing: &Framing, ground: Ground, cut_out:
     scene.objects.push(Object::new(GROUND, Arc::new(mesh), material));
 }
 
-/// The number of the object that catches the shadow in a scene that was completed for a picture without surroundings.
+/// The index of the object that catches the shadow in a scene completed for an image without surroundings.
 pub fn shadow_catcher(scene: &SceneBuilder, studio: &Studio) -> Option<usize> {
     let is_wanted = studio.cut_out && studio.ground == Some(Ground::Shadow);
     let last = scene.objects.len().checked_sub(1).filter(|_| is_wanted)?;
     (scene.objects[last].name == GROUND).then_some(last)
 }
 
-/// True where something lights a scene from all around.
+/// True when a light illuminates the scene from all around.
 fn has_surroundings(scene: &SceneBuilder) -> bool {
     let is_around = |light: &Spec| matches!(light.kind.as_str(), "environment" | "sky" | "ambient");
     scene.lights.iter().any(|light| is_around(light) && !light.is_backdrop())
 }
 
-/// True for what lights a scene: what is less bright than the white of a screen is a sign, no lamp.
+/// True for an object that illuminates the scene: one less bright than the white of a screen is a sign, not a light.
 fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
     let bright = |value: &Value| match value {
         Value::Integer(i) => *i >= 1,
         Value::Number(x) => *x >= 1.0,
-        // So are pictures.
+        // Textures count as signs too.
         _ => false,
     };
     let emission = scene.materials.get(object.material).and_then(|m| m.parameters.find("emission"));
@@ -242,8 +246,9 @@ fn gives_light(scene: &SceneBuilder, object: &Object) -> bool {
     })
 }
 
-/// A large panel from the left and above, a weaker one from behind on the right, and a pale room.
-/// Without a cove, which sends on what it gets, the room is brighter.
+/// A large key light from the upper left, a weaker rim light from behind on the right, and a pale environment.
+///
+/// Without a cove, which reflects light, the environment is brighter.
 fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
     let bright = if ground == Ground::None { 1.7 } else { 1.0 };
     let [right, up, forward] = framing.axes;
@@ -261,7 +266,7 @@ fn lights(framing: &Framing, ground: Ground) -> [Spec; 3] {
     ]
 }
 
-/// A panel five radii away; its size is given for a distance of 1.
+/// A panel at a distance of five radii; its size is given for a distance of 1.
 struct Lamp {
     name: &'static str,
     towards: DVec3,
@@ -271,8 +276,8 @@ struct Lamp {
 impl Lamp {
     fn spec(&self, framing: &Framing, radiance: Rgb) -> Spec {
         let towards = self.towards.normalize();
-        // Light from a panel depends on the angles under which it is seen, so that a tiny model may have one
-        // that is large beside it; its area has to be a number in f32. For huge models no panel does.
+        // The light of a panel depends only on its solid angle, so a tiny model may have a relatively large panel,
+        // whose area has to be representable in f32. For huge models no panel's area is.
         let away = 5.0 * framing.radius.max(1e-6);
         if away > 1e8 {
             return Spec::new(self.name, "directional")

@@ -1,4 +1,4 @@
-//! A model set up before it is photographed: turned upright, its front to +z, in metres, and near the origin.
+//! Prepares a model for the camera: rotated upright, its front to +z, in metres, and near the origin.
 
 use super::super::{affine, move_all};
 use super::Studio;
@@ -7,11 +7,12 @@ use crate::orientation::{Orientation, UpHint};
 use bilux_math::{DMat3, DVec3};
 use std::sync::Arc;
 
-/// Models farther from the origin than so many times their own size are moved there.
+/// Models farther from the origin than this many times their own size are moved there.
 const FAR: f64 = 32.0;
 
-/// Turns a scene as it is asked for, and where nothing is, as its format or its shape says; `None` where it stays as it is. A
-/// scene with a camera of its own stays, unless it is asked for; one with a camera or a light stays where it is.
+/// Rotates a scene as the user asks, or otherwise by its format or its shape; `None` if it stays as it is.
+///
+/// A scene with its own camera is only rotated if the user asks; one with a camera or a light is not translated.
 pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientation> {
     let is_asked = studio.up.is_some() || studio.front.is_some();
     let is_bare = scene.cameras.is_empty() && scene.lights.is_empty();
@@ -26,7 +27,7 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
         let middle = (bounds.min.as_dvec3() + bounds.max.as_dvec3()) * 0.5;
         let size = (bounds.max.as_dvec3() - bounds.min.as_dvec3()).length();
         if !bounds.is_empty() && middle.is_finite() && middle.length() > FAR * size {
-            // As an f32 has it, so that coordinates less that are exact.
+            // Rounded to f32, so that subtracting it from coordinates is exact.
             shift = linear * -middle.as_vec3().as_dvec3();
         } else if scene.unit > 0.0 && scene.unit.is_finite() {
             linear *= scene.unit;
@@ -41,7 +42,7 @@ pub fn set_upright(scene: &mut SceneBuilder, studio: &Studio) -> Option<Orientat
     if let Some(movement) = &mut scene.inventory.movement {
         move_all(Arc::make_mut(movement), &by).ok()?;
     }
-    // So that nobody turns it twice.
+    // Nothing may rotate it a second time.
     (scene.up, scene.unit) = (UpHint::default(), 0.0);
     Some(orientation)
 }

@@ -1,4 +1,4 @@
-//! Squares of two colours, as on a board.
+//! A checkerboard of two colours.
 
 use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry, tone};
@@ -42,14 +42,14 @@ impl Pattern for Checker {
         if is_even { self.a.at(uv) } else { self.b.at(uv) }
     }
 
-    /// Two squares by two, repeated.
+    /// Two by two squares, repeated.
     fn picture(&self) -> Option<Texture> {
         if self.a.texture.is_some() || self.b.texture.is_some() {
             return None;
         }
         let (a, b) = (self.a.colour, self.b.colour);
         let UvPlacement { scale, shift } = self.place;
-        // Rows go downwards, and v upwards.
+        // Rows go downwards, but v goes upwards.
         let offset = [0.5 * shift.x, 0.5 * (scale.y + shift.y)];
         let transform = Some(UvTransform::new(offset, 0.0, [0.5 * scale.x, -0.5 * scale.y]));
         let squares = Texture::new("", 2, 2, vec![a, b, b, a], true);

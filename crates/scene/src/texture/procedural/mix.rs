@@ -1,4 +1,4 @@
-//! Something of two.
+//! A mixture of two textures.
 
 use super::{Pattern, TextureEntry, tone};
 use crate::texture::{ColourMap, NumberMap};

@@ -1,4 +1,5 @@
-//! Procedural textures: worked out where they are looked up. To add one: a file with its `ENTRY`, and a line in the table.
+//! Procedural textures, evaluated where they are looked up. To add one: a file with its `ENTRY`, and a line in the
+//! table.
 
 mod checker;
 mod mix;
@@ -14,7 +15,7 @@ use bilux_math::{Rgb, Vec2};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Every kind of procedural texture.
+/// All kinds of procedural textures.
 pub const TEXTURES: &[TextureEntry] = &[checker::ENTRY, ramp::ENTRY, noise::ENTRY, mix::ENTRY, scale::ENTRY];
 
 /// A row of [`TEXTURES`].
@@ -22,24 +23,24 @@ pub const TEXTURES: &[TextureEntry] = &[checker::ENTRY, ramp::ENTRY, noise::ENTR
 pub struct TextureEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
-    /// Makes one from its parameters and the textures that these name by their index.
+    /// Makes one from its parameters and the textures to which these refer by index.
     pub build: BuildPattern,
 }
 
-/// How a texture is made from its parameters and the textures among these.
+/// Builds a texture from its parameters and the textures among these.
 pub type BuildPattern = fn(&Reader, &Parts) -> Result<Arc<dyn Pattern>, SceneError>;
 
-/// What a surface looks like at its texture coordinates.
+/// A pattern over texture coordinates.
 pub trait Pattern: Debug + Send + Sync {
     /// The colour at texture coordinates, v upwards.
     fn at(&self, uv: Vec2) -> Rgb;
-    /// The very same as a picture, where there is one.
+    /// The identical image, if there is one.
     fn picture(&self) -> Option<Texture> {
         None
     }
 }
 
-/// A procedural texture: what was said of it, and what that makes.
+/// A procedural texture: its description, and the pattern built from it.
 #[derive(Clone, Debug)]
 pub struct Formula {
     spec: Spec,
@@ -54,16 +55,16 @@ impl PartialEq for Formula {
     }
 }
 
-/// More formulas than anybody writes within one, and so few that a surface is not slow.
+/// The maximum number of nested procedural textures: more than anybody writes, but few enough to stay fast.
 const MAX_FORMULAS: usize = 256;
-/// Texels on the sides of a picture of a formula.
+/// The minimum and maximum side of an image of a procedural texture, in texels.
 const SIDES: [usize; 2] = [1024, 4096];
 
 impl Formula {
-    /// What a spec describes. Where it says a texture, it means one of the `parts`.
+    /// Builds what a spec describes. A texture in it is an index into `parts`.
     ///
     /// # Errors
-    /// When no row has its kind, a parameter is wrong, or hundreds of formulas are parts of it.
+    /// When no row has its kind, a parameter is wrong, or it contains hundreds of procedural textures.
     pub fn new(spec: Spec, parts: Vec<Arc<Texture>>) -> Result<Formula, SceneError> {
         let names = TEXTURES.iter().map(|row| row.entry.name);
         let row = TEXTURES.iter().find(|row| row.entry.name == spec.kind);
@@ -78,22 +79,22 @@ impl Formula {
         Ok(Formula { spec, parts, pattern, cost })
     }
 
-    /// What was said of it; textures are indices of its parts.
+    /// Its description; textures are indices into its parts.
     pub fn spec(&self) -> &Spec {
         &self.spec
     }
 
-    /// The textures that it is made of.
+    /// The textures that it uses.
     pub fn parts(&self) -> impl Iterator<Item = &Arc<Texture>> {
         self.parts.iter()
     }
 
-    /// One of them.
+    /// One of the textures that it uses.
     pub fn part(&self, index: usize) -> Option<&Arc<Texture>> {
         self.parts.get(index)
     }
 
-    /// How many formulas are worked out for one look at it, itself among them.
+    /// The number of procedural textures evaluated per look-up, including itself.
     pub fn cost(&self) -> usize {
         self.cost
     }
@@ -103,7 +104,7 @@ impl Formula {
         self.pattern.at(uv)
     }
 
-    /// Texels on each side that show what there is to see.
+    /// The number of texels per side that show all of its detail.
     fn side(&self) -> usize {
         let sides = self.parts.iter().map(|part| part.width().max(part.height()));
         sides.max().unwrap_or(0).clamp(SIDES[0], SIDES[1])
@@ -122,7 +123,7 @@ impl Texture {
         Ok(Texture::of(&name, Arc::new(image), is_data))
     }
 
-    /// The formula that it is, if it is one.
+    /// Its procedural texture, if it is one.
     pub fn formula(&self) -> Option<&Formula> {
         match &self.image.texels {
             Texels::Formula(formula) => Some(formula),
@@ -130,8 +131,9 @@ impl Texture {
         }
     }
 
-    /// A picture of a formula, and whether it is the very same everywhere: it may be where a picture may lie elsewhere
-    /// than from 0 to 1 (`may_move`). None of what is a picture already.
+    /// An image of a procedural texture, and whether it is identical everywhere; `None` for an image.
+    ///
+    /// It can be identical if the image may be placed elsewhere than from 0 to 1 (`may_move`).
     pub fn pictured(&self, may_move: bool) -> Option<(Texture, bool)> {
         let formula = self.formula()?;
         let kept = |picture: Texture| Texture {
@@ -149,8 +151,9 @@ impl Texture {
         Some((Texture { transform: self.transform, ..kept(self.sampled(formula)) }, false))
     }
 
-    /// What is seen at so many places across and up, evenly spread from 0 to 1: for sums and extremes of formulas, which
-    /// have more texels than these need.
+    /// Values at `side` by `side` uniformly spaced positions from 0 to 1, for sums and extremes of procedural textures.
+    ///
+    /// Those have more texels than such uses need.
     pub fn spread(&self, side: usize) -> impl Iterator<Item = Rgb> + '_ {
         (0..side * side).map(move |i| self.at_one(centre(i, side, side)))
     }
@@ -162,13 +165,13 @@ impl Texture {
     }
 }
 
-/// The texture coordinates of the middle of a texel.
+/// The texture coordinates of the centre of a texel.
 pub(super) fn centre(index: usize, width: usize, height: usize) -> Vec2 {
     let (x, y) = ((index % width) as f32 + 0.5, (index / width) as f32 + 0.5);
     Vec2::new(x / width as f32, 1.0 - y / height as f32)
 }
 
-/// The textures that the parameters of a formula name by their index.
+/// The textures to which the parameters of a procedural texture refer by index.
 #[derive(Clone, Copy, Debug)]
 pub struct Parts<'a>(&'a [Arc<Texture>]);
 
@@ -190,7 +193,7 @@ impl Parts<'_> {
     }
 }
 
-/// A colour of a formula, or another texture.
+/// A colour of a procedural texture, or another texture.
 const fn tone(name: &'static str, summary: &'static str, default: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::ColourTexture { min: 0.0, max: 1e12 }, default }
 }

@@ -1,4 +1,4 @@
-//! Clouds: noise of several sizes on top of each other. [Perlin 2002]
+//! Clouds: several octaves of gradient noise. [Perlin 2002]
 
 use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry, tone};
@@ -55,7 +55,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
             octaves.push(weight);
             weight *= strength;
         }
-        // The same spread for any number of octaves.
+        // The same standard deviation for any number of octaves.
         let spread = octaves.iter().map(|w| w * w).sum::<f32>().sqrt();
         octaves.iter_mut().for_each(|weight| *weight *= SQRT_2 / spread);
         let seed = reader.integer("seed") as u64;
@@ -67,7 +67,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
 struct Noise {
     a: ColourMap,
     b: ColourMap,
-    /// What each is multiplied by.
+    /// The weight of each octave.
     octaves: Vec<f32>,
     seed: u64,
     place: UvPlacement,
@@ -78,26 +78,26 @@ impl Pattern for Noise {
         let mut at = self.place.of(uv);
         let mut sum = 0.0;
         for (octave, weight) in self.octaves.iter().enumerate() {
-            // Far beyond where there are numbers for places between corners.
+            // Far away, f32 has no numbers for positions between grid corners.
             if !at.is_finite() {
                 break;
             }
             sum += weight * noise(at, hash_words([self.seed, octave as u64]));
-            // The shift keeps the zeros of all octaves from falling together.
+            // The shift keeps the zeros of the octaves from coinciding.
             at = at * 2.0 + Vec2::new(0.37, 0.71);
         }
         self.a.at(uv).lerp(self.b.at(uv), (0.5 + 0.5 * sum).clamp(0.0, 1.0))
     }
 }
 
-/// Directions of length 1, all around.
+/// Unit vectors in all directions.
 static DIRECTIONS: LazyLock<[Vec2; 64]> = LazyLock::new(|| {
     let angle = |i: usize| (i as f32 + 0.5) / 64.0 * TAU;
     std::array::from_fn(|i| Vec2::new(cos(angle(i)), sin(angle(i))))
 });
 
-/// Slopes at the corners of a grid, blended so that the second derivative has no jumps: 0 at corners, and between
-/// -1/√2 and 1/√2. [Perlin 2002]
+/// Gradients at the corners of a grid, blended with a continuous second derivative: 0 at corners, and between -1/√2 and
+/// 1/√2. [Perlin 2002]
 fn noise(at: Vec2, seed: u64) -> f32 {
     let corner = at.floor();
     let inside = at - corner;

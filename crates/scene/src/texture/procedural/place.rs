@@ -1,4 +1,4 @@
-//! Where a formula lies: what is done to texture coordinates before it is worked out.
+//! Placement of a procedural texture: the transform of texture coordinates before it is evaluated.
 
 use crate::Reader;
 use bilux_math::Vec2;

@@ -1,4 +1,4 @@
-//! From colour to colour.
+//! Gradients from colour to colour.
 
 use super::place::{U_OFFSET, UvPlacement, V_OFFSET, u_scale, v_scale};
 use super::{Pattern, TextureEntry};
@@ -54,7 +54,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
 
 #[derive(Debug)]
 struct Ramp {
-    /// At least one; positions never fall.
+    /// At least one; positions never decrease.
     stops: Vec<(f32, Rgb)>,
     along: Along,
     place: UvPlacement,

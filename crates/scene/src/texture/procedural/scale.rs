@@ -1,4 +1,4 @@
-//! Two, multiplied.
+//! The product of two textures.
 
 use super::{Pattern, TextureEntry, tone};
 use crate::texture::ColourMap;

@@ -78,11 +78,11 @@ fn ramps_go_from_stop_to_stop() {
         ramp(&[("u_scale", number(2.0)), ("u_offset", number(-0.5))]).at(Vec2::new(0.5, 0.0)),
         [0.5, 0.5, 0.0],
     );
-    // Where two stops share a place, there is an edge.
+    // Two stops at the same position make an edge.
     let edge = Value::List(vec![stop(0.5, [0.0; 3]), stop(0.5, [1.0; 3])]);
     let edge = texture("ramp", &[("stops", edge)], &[]);
     assert_eq!([0.4999, 0.5].map(|u| edge.at(Vec2::new(u, 0.0)).r), [0.0, 1.0]);
-    // Another texture says where.
+    // Another texture gives the position.
     let steps =
         Texture { filter: Filter::Nearest, ..Texture::new("", 2, 1, vec![Rgb::grey(0.5), Rgb::WHITE], true) };
     let led = texture("ramp", &[("stops", red_green()), ("input", Value::Texture(0))], &[steps]);
@@ -115,7 +115,7 @@ fn noise_is_even_smooth_and_of_its_seed() {
         assert!(ends * 200 < all.len(), "{octaves}: {ends}");
     }
     let clouds = noise(1, 3);
-    // Slopes are 0 at corners, and steps between neighbours are small.
+    // The noise is 0 at grid corners, and steps between neighbours are small.
     near(clouds.at(Vec2::new(5.0, -7.0)), [0.5; 3]);
     for i in 0..4000 {
         let at = Vec2::new(i as f32 * 0.001 - 2.0, 0.3);
@@ -125,7 +125,7 @@ fn noise_is_even_smooth_and_of_its_seed() {
     let at = Vec2::new(0.3, 0.6);
     assert_eq!(clouds.at(at), noise(1, 3).at(at));
     assert!((0..20).filter(|seed| noise(1, *seed).at(at) == clouds.at(at)).count() == 1);
-    // Far away nothing overflows.
+    // Nothing overflows far away.
     assert!([1e9, -1e30, f32::MAX].iter().all(|x| noise(6, 1).at(Vec2::splat(*x)).is_finite()));
 }
 
@@ -155,7 +155,7 @@ fn what_is_done_to_pictures_is_done_to_formulas() {
     assert_eq!(part.number(Vec2::new(0.5, 0.5)), 0.25);
     let cut = Texture { threshold: Some(0.4), ..part };
     assert_eq!(cut.number(Vec2::new(0.9, 0.5)), 1.0);
-    // A quarter further, as pictures are shifted; downwards where they grow downwards.
+    // Shifted by a quarter, as images are; downwards where their coordinates point down.
     let moved = Texture { transform: Some(UvTransform::new([0.25, 0.25], 0.0, [1.0; 2])), ..ramp };
     near(moved.at(Vec2::new(0.25, 0.5)), [0.5, 0.5, 0.0]);
     let upwards = texture("ramp", &[("stops", red_green()), ("along", "v".into())], &[]);
@@ -186,7 +186,7 @@ fn what_is_wrong_is_told() {
         let told = refusal("ramp", &[("stops", stops)]);
         assert!(told.contains("whose positions never fall"), "{told}");
     }
-    // One that is made of itself twice, again and again, would take hours.
+    // A texture that contains itself twice, again and again, would take hours.
     let mut doubled = texture("checker", &[], &[]);
     let twice = [("a", Value::Texture(0)), ("b", Value::Texture(0))];
     let told = (0..20).find_map(|_| {
