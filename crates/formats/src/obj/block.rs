@@ -1,4 +1,4 @@
-//! The lines of one block of an OBJ file, read by themselves: what earlier blocks say is added when they are joined.
+//! Parses one block of lines of an OBJ file by itself; results of earlier blocks are added when blocks are joined.
 
 use super::index::{Index, index};
 use super::strokes::Stroke;
@@ -13,49 +13,49 @@ use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
 
-/// What a block of lines says. Lines and faces are counted from its own beginning.
+/// The contents of a block of lines. Line and face numbers are relative to its start.
 #[derive(Debug, Default)]
 pub(super) struct Block {
     pub(super) positions: Vec<Vec3>,
-    /// As many as positions, or none where none has a colour.
+    /// One per position, or none if no position has a colour.
     pub(super) colours: Vec<Rgb>,
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) corners: Vec<Corner>,
-    /// Where each face's corners end.
+    /// The end of each face's corners.
     pub(super) ends: Vec<u32>,
     pub(super) places: Vec<TextPosition>,
-    /// Corners that count backwards from where they stand.
+    /// Corners with indices that count backwards.
     pub(super) backward: Vec<Backward>,
     /// Points and lines.
     pub(super) strokes: Vec<Stroke>,
-    /// What changes between faces, in order.
+    /// State changes between faces, in order.
     pub(super) turns: Vec<(usize, StateChange)>,
     pub(super) oddities: Oddities,
-    /// How many line ends there are.
+    /// The number of line ends.
     pub(super) lines: u32,
-    /// What reading the block has taken of the budget.
+    /// The memory that reading the block took from the budget.
     pub(super) spent: u64,
-    /// The first element that is left out because of what is wrong with it.
+    /// The fault of the first element that is left out.
     pub(super) fault: Option<FormatError>,
-    /// What ended it early.
+    /// The error that ended the block early.
     pub(super) failure: Option<FormatError>,
 }
 
-/// A part of a corner that counts backwards.
+/// A part of a corner with an index that counts backwards.
 #[derive(Debug)]
 pub(super) struct Backward {
-    /// Which corner; none for one of a face that is left out.
+    /// The corner; `None` if its face is left out.
     pub(super) corner: Option<u32>,
-    /// Which of position, uv and normal.
+    /// The part: position, uv or normal.
     pub(super) part: u8,
-    /// How far behind the first of the block it lies.
+    /// Its index relative to the first element of the block.
     pub(super) index: i64,
-    /// Where in the block the corner is written.
+    /// The offset of the corner in the block.
     pub(super) offset: usize,
 }
 
-/// What changes between two faces.
+/// A state change between two faces.
 #[derive(Debug)]
 pub(super) enum StateChange {
     Name(String),
@@ -65,11 +65,11 @@ pub(super) enum StateChange {
     Libraries(String, TextPosition),
 }
 
-/// A face of more corners than this asks for room while it is read.
+/// A face with more corners than this reserves memory while it is read.
 const MANY: usize = 4096;
 
 impl Block {
-    /// An empty one that keeps the room of its lists: large ones that come and go leave holes in memory.
+    /// An empty block that keeps the capacity of its lists: repeated large allocations would fragment memory.
     pub(super) fn emptied(mut self) -> Block {
         self.positions.clear();
         self.colours.clear();
@@ -85,7 +85,7 @@ impl Block {
     }
 }
 
-/// Reads a block of whole lines into one that is empty.
+/// Reads a block of whole lines into an empty one.
 pub(super) fn read_block(
     text: &[u8],
     (file, origin): (&Arc<str>, DVec3),
@@ -99,7 +99,7 @@ pub(super) fn read_block(
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
 }
 
-/// What is wrong with a corner.
+/// The message about a malformed corner.
 #[cold]
 pub(super) fn bad_corner(word: &[u8]) -> String {
     format!(
@@ -109,17 +109,17 @@ pub(super) fn bad_corner(word: &[u8]) -> String {
     )
 }
 
-/// What becomes of elements that cannot be read.
+/// What happens to elements that cannot be read.
 const VERTEX_LEFT_OUT: &str = ": this vertex is left out, and with it the faces that it is a corner of";
 const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is taken as 0";
 const FACE_LEFT_OUT: &str = ": this face is left out";
-/// Of these it is known only when blocks are joined.
+/// This is known only when blocks are joined.
 pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
 
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
     pub(super) file: &'a Arc<str>,
-    /// What positions are counted from.
+    /// The origin that positions are relative to.
     origin: DVec3,
     pub(super) budget: Budget,
     pub(super) block: Block,
