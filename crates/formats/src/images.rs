@@ -42,7 +42,7 @@ fn image_of(mut picture: Picture, means: Means) -> Option<Image> {
             return Some(Image { width, height, texels: Texels::Bytes(bytes(planes, picture.channel("A"))) });
         }
     }
-    // Texels hold straight colours; materials use the alpha separately.
+    // Texels hold the colours without their alpha, which materials apply separately.
     picture.alpha = Alpha::Premultiplied;
     let picture = if is_data { picture } else { picture.into_linear() };
     let alpha = alpha(&picture).unwrap_or_default();

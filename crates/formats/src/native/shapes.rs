@@ -1,4 +1,4 @@
-//! Built-in shapes, which need no file. All are centred on the origin.
+//! Built-in shapes, which need no file. All are placed around the origin.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Vec3};

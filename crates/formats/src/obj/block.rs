@@ -159,12 +159,12 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Goes to the line's end, so that a backslash there continues nothing.
+    /// Skips to the end of the line, so that a backslash there continues nothing.
     fn pass_line(&mut self) {
         self.cursor.rest_of_line();
     }
 
-    /// Where a byte of this line stands.
+    /// The location of an offset on this line.
     pub(super) fn at(&self, offset: usize) -> Span {
         self.cursor.place(offset).in_file(self.file)
     }
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
     fn turn(&mut self, turn: StateChange) {
         let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
         let is_drawn_with = self.block.strokes.last().is_some_and(|stroke| stroke.turns == turns.len());
-        // Of several of a kind that no face stands between the last one counts.
+        // Of several changes of one kind without a face between them, the last one counts.
         if let Some((before, last)) = turns.last_mut()
             && *before == faces
             && !is_drawn_with
@@ -196,10 +196,10 @@ impl<'a> Reader<'a> {
         let mut again = (self.origin != DVec3::ZERO).then(|| self.cursor.clone());
         let mut count = self.numbers(&mut numbers, 3, VERTEX_LEFT_OUT);
         if count == 0 {
-            // Its number is kept, so that the faces after it name the right ones.
+            // The vertex keeps its number, so that later faces refer to the right vertices.
             (numbers, count) = ([f32::NAN; 8], 3);
         } else if let Some(again) = &mut again {
-            // With all of their digits.
+            // Parses again as f64 to keep all digits.
             for (number, origin) in numbers.iter_mut().zip(self.origin.to_array()) {
                 let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
                 *number = (wide - origin) as f32;
@@ -236,7 +236,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The numbers of a statement, `least` of them or more; how many there are, or 0 where they cannot be read.
+    /// Parses the numbers of a statement, at least `least` of them; returns their count, or 0 on failure.
     #[inline]
     fn numbers(&mut self, numbers: &mut [f32], least: usize, left_out: &str) -> usize {
         let mut count = 0;
@@ -273,7 +273,7 @@ impl<'a> Reader<'a> {
         count
     }
 
-    /// Notes that an element is left out, and why.
+    /// Records that an element is left out, and why.
     #[cold]
     pub(super) fn fault(&mut self, message: String, left_out: &str, at: Span) {
         if self.block.fault.is_none() {
@@ -341,7 +341,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Notes a part of a corner that counts backwards, and gives what stands in its place until it is known.
+    /// Records a part of a corner that counts backwards; returns a placeholder until the index is known.
     fn backward(&mut self, word: &[u8], part: usize, back: i64) -> u32 {
         let block = &mut self.block;
         let known = [block.positions.len(), block.uvs.len(), block.normals.len()][part];
@@ -354,7 +354,7 @@ impl<'a> Reader<'a> {
         0
     }
 
-    /// `s off` and `s 0` are flat, any other number is a group that is smooth.
+    /// `s off` and `s 0` are flat; any other number is a smoothing group.
     fn smoothing_group(&mut self, start: TextPosition) -> Result<(), FormatError> {
         let word = self.cursor.word();
         let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<u32>().ok());
