@@ -1,4 +1,4 @@
-//! What can be wrong with a scene file.
+//! Errors of scene files.
 
 use bilux_pictures::{PictureError, reason};
 use bilux_scene::{SceneError, Span, Warning};

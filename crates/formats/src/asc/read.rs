@@ -1,4 +1,4 @@
-//! Reading `.asc`.
+//! Reads `.asc`.
 
 use crate::FormatError;
 use crate::float::parse_f32;

@@ -1,4 +1,4 @@
-//! Writing `.asc`.
+//! Writes `.asc`.
 
 use crate::FormatError;
 use crate::bake::{corners, flat_normal, in_place, name_of, warn_of_scene};

@@ -1,4 +1,4 @@
-//! Reading LAS.
+//! Reads LAS.
 
 use super::header::{Header, read_header, u16_at, u32_at};
 use crate::FormatError;

@@ -1,4 +1,4 @@
-//! The directives before WorldBegin: film, filter, sampler and integrator, as settings that a render may follow.
+//! The directives before `WorldBegin`: film, filter, sampler and integrator, as settings that a render may follow.
 
 use super::reader::{Entity, Pbrt};
 use super::state::Matrices;

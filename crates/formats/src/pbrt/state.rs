@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// The transforms from the current space to world space, at the start and the end time.
 ///
-/// Before WorldBegin, they map from it to camera space.
+/// Before `WorldBegin`, they map from it to camera space.
 pub(super) type Matrices = [DMat4; 2];
 
 /// The material of a shape.

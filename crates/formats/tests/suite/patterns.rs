@@ -45,7 +45,7 @@ fn formulas_are_read_within_each_other_and_come_back() {
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert_eq!(warnings(&scene), "");
     let reflectance = texture(&scene, "reflectance");
-    // Halfway along the radius, b contributes nothing, and a is the tinted image.
+    // At the centre of the radial ramp, b contributes nothing, and a is the tinted image.
     let a = reflectance.at(Vec2::new(0.5, 0.25));
     let middle = bilux_math::colour::srgb_decode(bilux_math::colour::srgb_encode(0.5));
     assert!((a.g - 0.5 * (middle + 0.125)).abs() < 0.01 && (a.r - 0.25).abs() < 0.01, "{a:?}");

@@ -1,4 +1,4 @@
-//! Writes the directives before WorldBegin: film, camera, filter, samples and depth.
+//! Writes the directives before `WorldBegin`: film, camera, filter, samples and depth.
 
 use super::{Document, float, numbers, point};
 use crate::values::{number, vector};
@@ -12,7 +12,7 @@ use bilux_scene::{Spec, Value};
 const QUIET: [&str; 4] = ["size", "max_depth", "filter", "camera"];
 
 impl Document<'_> {
-    /// Writes everything before WorldBegin.
+    /// Writes everything before `WorldBegin`.
     pub(super) fn view(&mut self, writing: &mut Writing) {
         let settings = &self.scene.settings;
         let text = |key: &str| match settings.find(key) {
