@@ -59,7 +59,7 @@ struct Made {
     images: HashMap<(usize, bool), Option<Named>>,
 }
 
-/// The number of intervals into which the animation is divided to find the bounds of its motion.
+/// The number of intervals into which the animation is divided to find where objects move.
 const MOMENTS: u32 = 8;
 
 /// All objects at times from 0 to `end`, in seconds; meshes that do not deform are shared.
