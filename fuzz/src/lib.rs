@@ -1,6 +1,6 @@
-//! What the targets have in common: read any bytes, within bounded memory, without a panic.
+//! Shared code of the fuzz targets: read any bytes, within bounded memory, without a panic.
 
-/// Meshes and rays, for every structure to agree on.
+/// Meshes and rays, on which all acceleration structures must agree.
 #[path = "../../crates/accel/tests/support/fuzzed.rs"]
 pub mod rays;
 
@@ -10,12 +10,14 @@ use bilux_scene::{AccelChoice, SceneBuilder};
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-/// What a picture may take while it is decoded. With `-rss_limit_mb` and `-malloc_limit_mb` a little above
-/// it, the fuzzer finds whatever goes beyond.
+/// The memory limit for decoding a picture.
+///
+/// With `-rss_limit_mb` and `-malloc_limit_mb` slightly above it, the fuzzer detects any excess.
 const LIMITS: Limits = Limits::new(64 << 20);
 
-/// Reads the bytes as this picture format, whatever they begin with. What is read has to be whole: within
-/// the limits, every plane of the picture's size.
+/// Reads the bytes as this picture format, whatever they begin with.
+///
+/// The result must be consistent: within the limits, with every plane of the picture's size.
 pub fn read_picture(format: &str, bytes: &[u8]) {
     let row = format_named(format).expect("a format of the table");
     let Ok(picture) = (row.read)(bytes, &LIMITS) else { return };
@@ -27,13 +29,13 @@ pub fn read_picture(format: &str, bytes: &[u8]) {
     assert!((planes.len() * pixels * 4) as u64 <= LIMITS.max_bytes);
 }
 
-/// Reads the bytes as this scene format, from no folder, so that no other file is opened; and builds what
-/// was read, which may be refused.
+/// Reads the bytes as this scene format, without a folder, so that no other file is opened; then builds the scene,
+/// which may fail.
 pub fn read_scene(format: &str, bytes: &[u8]) {
     build(bilux_formats::read_bytes(bytes, format, None, "scene", &options()));
 }
 
-/// Reads the bytes as the materials of a triangle, from a folder that holds one picture, `t.ppm`.
+/// Reads the bytes as the materials of a triangle, in a folder with one picture, `t.ppm`.
 pub fn read_materials(bytes: &[u8]) {
     static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
         let folder = std::env::temp_dir().join(format!("bilux-fuzz-{}", std::process::id()));
@@ -56,7 +58,7 @@ fn build(read: Result<SceneBuilder, FormatError>) {
     let scene = match read {
         Ok(scene) => scene,
         Err(error) => {
-            // Whoever reads the message needs one.
+            // Every error must have a message.
             assert!(!error.to_string().is_empty());
             return;
         }

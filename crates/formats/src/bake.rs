@@ -1,4 +1,4 @@
-//! Objects as formats hold them that know neither transforms nor motion.
+//! Conversions for formats that support neither transforms nor motion nor procedural textures.
 
 use crate::normals::unit_face_normal;
 use crate::reading::plain_material;
@@ -8,7 +8,7 @@ use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// The scene with pictures in place of procedural textures, where a format holds none of these.
+/// Replaces procedural textures by images if the format does not support them.
 pub(crate) fn with_pictures<'a>(
     scene: &'a SceneBuilder,
     capabilities: &[&str],
@@ -22,7 +22,7 @@ pub(crate) fn with_pictures<'a>(
     let mut scene = scene.clone();
     let SceneBuilder { textures, materials, .. } = &mut scene;
     for (index, texture) in textures.iter_mut().enumerate() {
-        // What lies elsewhere than the other pictures of its material cannot be packed with them.
+        // A texture with its own placement cannot be packed with the other textures of its material.
         let may_move = can("moved textures") && materials.iter().all(|spec| is_only_texture(spec, index));
         let Some((picture, is_same)) = texture.pictured(may_move) else { continue };
         if !is_same {
@@ -37,7 +37,7 @@ pub(crate) fn with_pictures<'a>(
     Cow::Owned(scene)
 }
 
-/// True where no other texture is beside this one, or it is not there itself.
+/// True if the material uses no other texture next to this one, or does not use this one.
 fn is_only_texture(spec: &Spec, index: usize) -> bool {
     let all = || {
         spec.parameters.0.iter().filter_map(|(_, value, _)| match value {
@@ -48,7 +48,7 @@ fn is_only_texture(spec: &Spec, index: usize) -> bool {
     all().all(|other| other != index) || all().count() == 1
 }
 
-/// An object's mesh moved to its place at time 0.
+/// An object's mesh, transformed to its position at time 0.
 pub(crate) fn in_place<'a>(object: &'a Object, writing: &mut Writing) -> Cow<'a, Mesh> {
     if !object.motion.is_still() {
         writing.warn("the format holds no motion: objects are written where they are at 0 seconds");
@@ -60,7 +60,7 @@ pub(crate) fn in_place<'a>(object: &'a Object, writing: &mut Writing) -> Cow<'a,
     Cow::Owned(transformed(&object.mesh, &transform))
 }
 
-/// A mesh with its vertices moved.
+/// A copy of the mesh with its vertices transformed.
 pub(crate) fn transformed(mesh: &Mesh, transform: &Transform) -> Mesh {
     let mut mesh = mesh.clone();
     for p in &mut mesh.positions {
@@ -81,23 +81,23 @@ pub(crate) fn transformed(mesh: &Mesh, transform: &Transform) -> Mesh {
     mesh
 }
 
-/// The name of an object, or else of its mesh.
+/// The name of the object, or of its mesh if the object has none.
 pub(crate) fn name_of(object: &Object) -> &str {
     if object.name.is_empty() { &object.mesh.name } else { &object.name }
 }
 
-/// The corners' positions of a triangle, if it has them.
+/// The positions of a triangle's corners, if its indices are valid.
 pub(crate) fn corners(mesh: &Mesh, triangle: [u32; 3]) -> Option<[Vec3; 3]> {
     let [a, b, c] = triangle.map(|i| mesh.positions.get(i as usize).copied());
     Some([a?, b?, c?])
 }
 
-/// The unit normal of a triangle of points, by the right-hand rule; zero where it has none.
+/// The unit normal of the triangle by the right-hand rule; zero for a degenerate triangle.
 pub(crate) fn flat_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     unit_face_normal(&[a, b, c])
 }
 
-/// Warns of all that a format of bare meshes leaves out.
+/// Warns about everything that a format of bare meshes leaves out.
 pub(crate) fn warn_of_scene(scene: &SceneBuilder, format: &str, writing: &mut Writing) {
     let parts = [
         ("lights", scene.lights.len()),
@@ -109,7 +109,7 @@ pub(crate) fn warn_of_scene(scene: &SceneBuilder, format: &str, writing: &mut Wr
     }
 }
 
-/// Warns of materials where a format holds none: all but the plain ones.
+/// Warns about materials if the format supports none: all except the plain ones.
 pub(crate) fn warn_of_materials(scene: &SceneBuilder, format: &str, writing: &mut Writing) {
     let is_plain = |object: &Object| {
         let (kd, ks) = (!object.mesh.vertex_kd.is_empty(), !object.mesh.vertex_ks.is_empty());

@@ -1,33 +1,36 @@
-//! A text in blocks of whole lines, so that no more of a large file is held than is being read.
+//! Splits a text into blocks of whole lines, so that only the part of a large file that is being read is in
+//! memory.
 
 use std::io::{self, Read};
 
-/// Cuts a text into blocks.
+/// Splits a text into blocks.
 pub(crate) struct Blocks<'r> {
     from: &'r mut dyn Read,
-    /// What has been read beyond the last block.
+    /// Bytes read beyond the end of the last block.
     rest: Vec<u8>,
     size: usize,
     ended: bool,
-    /// Blocks that have been read, to be filled again.
+    /// Buffers of finished blocks, for reuse.
     spare: Vec<Vec<u8>>,
 }
 
 impl<'r> Blocks<'r> {
-    /// Blocks of about `size` bytes, or longer where a line is.
+    /// Creates blocks of about `size` bytes, or longer if a line is longer.
     pub(crate) fn new(from: &'r mut dyn Read, size: usize) -> Blocks<'r> {
         Blocks { from, rest: Vec::new(), size: size.max(1), ended: false, spare: Vec::new() }
     }
 
-    /// The next block; none at the end. Each ends where a line does, but for the last, and for one of more than `most` bytes, which
-    /// is cut there: nobody wants it then.
+    /// The next block; `None` at the end.
+    ///
+    /// Each block ends at the end of a line, except the last one and one of more than `most` bytes, which is cut
+    /// there: the caller refuses it anyway.
     pub(crate) fn next(&mut self, most: u64) -> io::Result<Option<Vec<u8>>> {
         let mut block = self.spare.pop().unwrap_or_default();
         block.clear();
         block.append(&mut self.rest);
         let mut searched = 0;
         loop {
-            // Twice as many where a line does not end, so that what is searched stays in proportion.
+            // Doubles the read while a line does not end, so that the search stays proportional to the input.
             let wanted = self.size.max(searched);
             self.ended =
                 self.ended || (&mut *self.from).take(wanted as u64).read_to_end(&mut block)? < wanted;
@@ -42,19 +45,21 @@ impl<'r> Blocks<'r> {
             if block.len() as u64 > most {
                 return Ok(Some(block));
             }
-            // The last byte is looked at again, when it is known what follows.
+            // The last byte is searched again once the byte after it is known.
             searched = block.len().saturating_sub(1);
         }
     }
 
-    /// Takes a block back that has been read.
+    /// Returns a finished block for reuse.
     pub(crate) fn give_back(&mut self, block: Vec<u8>) {
         self.spare.push(block);
     }
 }
 
-/// Where the last whole line ends, from a place on. One that a backslash may continue, and one of which it is not known
-/// whether CR is followed by LF, do not count.
+/// The end of the last whole line at or after `from`.
+///
+/// A line end does not count after a backslash, which continues the line, nor after a final CR, which a LF may
+/// follow.
 fn last_end(block: &[u8], from: usize) -> Option<usize> {
     (from..block.len().saturating_sub(1)).rev().find_map(|i| {
         let before = match block[i] {

@@ -1,8 +1,8 @@
-//! How much memory reading may still take.
+//! How much more memory a reader may use.
 
 use crate::FormatError;
 
-/// Counts what a reader holds against what it may hold.
+/// Counts the memory that a reader holds against its limit.
 #[derive(Clone, Debug)]
 pub(crate) struct Budget {
     limit: u64,
@@ -14,18 +14,18 @@ impl Budget {
         Budget { limit, spent: 0 }
     }
 
-    /// What is left, in bytes.
+    /// The remaining memory, in bytes.
     pub(crate) fn left(&self) -> u64 {
         self.limit - self.spent
     }
 
-    /// Takes bytes for what a file decodes to. Lists grow by doubling, so each counts twice.
+    /// Takes the memory of `count` decoded elements. Lists grow by doubling, so each element counts twice.
     #[inline]
     pub(crate) fn take<T>(&mut self, count: usize, file: &str) -> Result<(), FormatError> {
         self.take_bytes(2 * count as u64 * size_of::<T>() as u64, file)
     }
 
-    /// Takes as many bytes as it says.
+    /// Takes this many bytes.
     #[inline]
     pub(crate) fn take_bytes(&mut self, bytes: u64, file: &str) -> Result<(), FormatError> {
         match self.spent.checked_add(bytes).filter(|&spent| spent <= self.limit) {
@@ -37,12 +37,12 @@ impl Budget {
         }
     }
 
-    /// What is taken.
+    /// The bytes taken so far.
     pub(crate) fn spent(&self) -> u64 {
         self.spent
     }
 
-    /// Gives back what is no longer held.
+    /// Returns bytes that are no longer held.
     pub(crate) fn give_back(&mut self, bytes: u64) {
         self.spent = self.spent.saturating_sub(bytes);
     }

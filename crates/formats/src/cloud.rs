@@ -1,5 +1,5 @@
-//! Clouds of points, whose coordinates may be large beside their size: they are counted from an origin of their own, so that
-//! 32-bit floats hold them.
+//! Point clouds. Their coordinates may be large compared with their extent, so they are stored relative to an
+//! origin of their own, where 32-bit floats suffice.
 
 use crate::FormatError;
 use crate::budget::Budget;
@@ -8,31 +8,32 @@ use bilux_math::{DVec3, Rgb, Vec3};
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;
 
-/// Points while they are read.
+/// A point cloud while it is being read.
 #[derive(Default)]
 pub(crate) struct Cloud {
     origin: Option<DVec3>,
     pub(crate) positions: Vec<Vec3>,
-    /// As many as positions, or none. Linear.
+    /// One colour per position, or none. Linear.
     pub(crate) colours: Vec<Rgb>,
 }
 
-/// Coordinates beyond this are counted from an origin: below, 32-bit floats tell a tenth of a millimetre of a metre.
+/// Coordinates beyond this are stored relative to an origin. Below it, 32-bit floats resolve a tenth of a
+/// millimetre if the unit is the metre.
 const FAR: f64 = 1024.0;
 
-/// The origin for coordinates like these: whole, and zero where they are small.
+/// The origin for coordinates such as these: whole numbers, and zero where they are small.
 pub(crate) fn origin_for(p: DVec3) -> DVec3 {
     let of = |c: f64| if c.is_finite() && c.abs() >= FAR { c.round() } else { 0.0 };
     DVec3::new(of(p.x), of(p.y), of(p.z))
 }
 
 impl Cloud {
-    /// One whose points lie about here.
+    /// An empty cloud whose points lie near this one.
     pub(crate) fn around(p: DVec3) -> Cloud {
         Cloud { origin: Some(origin_for(p)), ..Cloud::default() }
     }
 
-    /// Makes room for points, with or without colours, which are paid for.
+    /// Reserves memory for points, with or without colours, and charges the budget for it.
     pub(crate) fn reserve(
         &mut self,
         count: u64,
@@ -55,7 +56,7 @@ impl Cloud {
         self.positions.push((p - origin).as_vec3());
     }
 
-    /// The scene of it.
+    /// Builds the scene of the cloud.
     pub(crate) fn into_scene(self, name: String) -> SceneBuilder {
         let mut scene = SceneBuilder { origin: self.origin.unwrap_or_default(), ..SceneBuilder::default() };
         let material = scene.add_material(plain_material(!self.colours.is_empty(), false));

@@ -1,42 +1,42 @@
-//! What can be wrong with a scene file.
+//! Errors of scene files.
 
 use bilux_pictures::{PictureError, reason};
 use bilux_scene::{SceneError, Span, Warning};
 use std::path::PathBuf;
 
-/// Why a scene file cannot be read or written. Every message says what, where and what to do.
+/// Why a scene file cannot be read or written. Every message states what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormatError {
     /// A file cannot be opened, read or written.
     #[error("{}: cannot {action}: {}", .path.display(), reason(.source))]
     Io {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What was tried, such as `open it`.
+        /// The attempted action, such as `open it`.
         action: &'static str,
-        /// What the machine says.
+        /// The operating system's error.
         source: std::io::Error,
     },
-    /// The file is not what its format says.
+    /// The file violates its format.
     #[error("{at}: {message}")]
     Malformed {
         /// What is wrong and what to do.
         message: String,
-        /// Where.
+        /// Where it is.
         at: Span,
     },
-    /// A file that another one names is not there.
+    /// A file that another file refers to does not exist.
     #[error("{at}: there is no file '{name}' in {}; put it there, or correct its name", .folder.display())]
     MissingFile {
         /// The name as written.
         name: String,
-        /// Where it was looked for.
+        /// The folder that was searched.
         folder: PathBuf,
-        /// Where it is named.
+        /// Where it is referred to.
         at: Span,
     },
-    /// A file that another one names is not in the scene's folder.
+    /// A file that another file refers to lies outside the scene's folder.
     #[error(
         "{at}: '{name}' lies outside the scene's folder, and only files in it are opened: copy it there, or \
          allow files outside"
@@ -44,36 +44,36 @@ pub enum FormatError {
     Outside {
         /// The name as written.
         name: String,
-        /// Where it is named.
+        /// Where it is referred to.
         at: Span,
     },
-    /// More memory is needed than is allowed.
+    /// Reading needs more memory than is allowed.
     #[error(
         "{file}: reading this takes more than the {limit} bytes that are allowed: raise the memory limit if you trust it"
     )]
     TooLarge {
-        /// Which file.
+        /// The file.
         file: String,
         /// How many bytes are allowed.
         limit: u64,
     },
-    /// No format goes by this name.
+    /// No format has this name.
     #[error(
         "{name}: this is not a scene format that can be {wanted}{}; known are {}",
         .nearest.as_ref().map(|n| format!(" (did you mean '{n}'?)")).unwrap_or_default(),
         .known.join(", ")
     )]
     UnknownFormat {
-        /// The extension, name or file.
+        /// The extension, the name or the file.
         name: String,
         /// `read` or `written`.
         wanted: &'static str,
-        /// The nearest known name, when one is near.
+        /// The closest known name, if one is similar.
         nearest: Option<String>,
-        /// All that are known.
+        /// All known names.
         known: Vec<String>,
     },
-    /// A picture stands where a scene should.
+    /// The file is a picture, not a scene.
     #[error(
         "{name}: this is a picture ({format}), not a scene: name a scene file; a picture can be its surroundings (--env) \
          or a texture in it"
@@ -81,7 +81,7 @@ pub enum FormatError {
     IsPicture {
         /// The file.
         name: String,
-        /// Which format of pictures it has.
+        /// Its picture format.
         format: &'static str,
     },
     /// A name or a value in a scene file is wrong.
@@ -90,13 +90,13 @@ pub enum FormatError {
     /// A texture cannot be written.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// Something odd, where strictness was asked for.
+    /// A warning, which strict reading turns into an error.
     #[error("{0} (with strict reading, warnings are errors)")]
     Strict(Warning),
 }
 
 impl FormatError {
-    /// The message without the place in front, for warnings, which have their own.
+    /// The message without its leading location, for warnings, which have their own.
     pub(crate) fn without_place(&self) -> String {
         let text = self.to_string();
         match self {

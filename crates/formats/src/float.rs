@@ -1,12 +1,12 @@
-//! Decimal numbers, exactly: the nearest f32 of a text, and the shortest text of an f32.
+//! Exact conversion of decimal numbers: text to the nearest f32, and f32 to the shortest text.
 
 use std::io::Write;
 
-/// The f32 nearest to a decimal number; `nan`, `inf` and what C compilers print for them count as numbers.
+/// The f32 nearest to a decimal number; `nan`, `inf` and C compilers' spellings of them count as numbers.
 ///
-/// Digits and power of ten that fit an f64 exactly give the nearest f64 by one rounding
-/// [Clinger 1990]; its nearest f32 is that of the decimal too, unless it lies exactly between two of them.
-/// Everything else goes to the standard library.
+/// If the digits and the power of ten are exact in an f64, one rounding gives the nearest f64 [Clinger 1990].
+/// Rounding that to f32 gives the f32 nearest to the decimal, unless the f64 lies exactly midway between two f32s.
+/// The standard library handles all other cases.
 #[inline]
 pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     match quick(word) {
@@ -15,9 +15,9 @@ pub(crate) fn parse_f32(word: &[u8]) -> Option<f32> {
     }
 }
 
-/// The f64 nearest to a decimal number; for coordinates that are large beside what they differ by.
+/// The f64 nearest to a decimal number; for coordinates that are large compared with their differences.
 pub(crate) fn parse_f64(word: &[u8]) -> Option<f64> {
-    // What is no decimal number as files have them is none here either.
+    // A word that is not a number to `parse_f32` is not a number here either.
     parse_f32(word)?;
     std::str::from_utf8(word).ok()?.parse().ok().or_else(|| parse_f32(word).map(f64::from))
 }
@@ -81,7 +81,7 @@ fn small_integer(text: &[u8]) -> Option<i32> {
 fn thorough(word: &[u8]) -> Option<f32> {
     let text = std::str::from_utf8(word).ok()?;
     text.parse().ok().or_else(|| {
-        // What C runtimes print: 1.#QNAN, -1.#IND00, nan(ind).
+        // The spellings of C runtimes: 1.#QNAN, -1.#IND00, nan(ind).
         let bare = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
         let is_nan = bare.starts_with("nan(") || bare.starts_with("1.#qnan") || bare.starts_with("1.#ind");
         match bare.starts_with("1.#inf") {
@@ -91,17 +91,17 @@ fn thorough(word: &[u8]) -> Option<f32> {
     })
 }
 
-/// Appends the shortest text that reads back as the same f32.
+/// Appends the shortest text that parses back to the same f32.
 pub(crate) fn push_f32(out: &mut Vec<u8>, value: f32) {
     let start = out.len();
-    // Writing to a list cannot fail.
+    // Writing to a Vec cannot fail.
     let _ = write!(out, "{value:?}");
     if out[start..].ends_with(b".0") {
         out.truncate(out.len() - 2);
     }
 }
 
-/// Appends numbers with blanks between.
+/// Appends numbers separated by spaces.
 pub(crate) fn push_f32s(out: &mut Vec<u8>, values: &[f32]) {
     for (i, &value) in values.iter().enumerate() {
         if i > 0 {

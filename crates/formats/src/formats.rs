@@ -1,4 +1,4 @@
-//! The table of formats, and reading and writing by it.
+//! The table of formats, and reading and writing with it.
 
 use crate::bake::with_pictures;
 use crate::reading::{Reading, Source, open};
@@ -15,7 +15,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Every format that there is.
+/// All scene formats.
 pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
     asc::ENTRY,
     gltf::ENTRY,
@@ -32,15 +32,15 @@ pub const SCENE_FORMATS: &[SceneFormatEntry] = &[
 /// A row of [`SCENE_FORMATS`].
 #[derive(Clone, Copy, Debug)]
 pub struct SceneFormatEntry {
-    /// Name, summary, source, parameters.
+    /// Its name, summary, source and parameters.
     pub entry: Entry,
-    /// Extensions in lower case without the dot, the usual one first.
+    /// Its extensions in lower case without the dot, the usual one first.
     pub extensions: &'static [&'static str],
-    /// What of a scene a file of this format can hold.
+    /// The features of a scene that a file of this format can hold.
     pub capabilities: &'static [&'static str],
-    /// Which way is up in its files.
+    /// The up axis of its files.
     pub up: UpHint,
-    /// True when bytes look like this format.
+    /// True if the bytes look like this format.
     pub(crate) sniff: fn(&[u8]) -> bool,
     pub(crate) read: Option<ReadFormat>,
     pub(crate) write: Option<WriteFormat>,
@@ -49,45 +49,45 @@ pub struct SceneFormatEntry {
 /// Turns bytes into a scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ReadFormat {
-    /// From all of them.
+    /// From the whole file in memory.
     Whole(fn(&mut Reading, &Source) -> Result<SceneBuilder, FormatError>),
-    /// As they come; the source has only their beginning, which comes with them too.
+    /// From a stream. The source holds only the beginning of the file; the stream repeats it.
     Flowing(fn(&mut Reading, &Source, &mut dyn Read) -> Result<SceneBuilder, FormatError>),
 }
 /// Turns a scene into bytes.
 pub(crate) type WriteFormat = fn(&SceneBuilder, &mut Writing) -> Result<(), FormatError>;
 
 impl SceneFormatEntry {
-    /// Whether files of this format can be read.
+    /// True if files of this format can be read.
     pub fn reads(&self) -> bool {
         self.read.is_some()
     }
 
-    /// Whether files of this format can be written.
+    /// True if files of this format can be written.
     pub fn writes(&self) -> bool {
         self.write.is_some()
     }
 }
 
-/// The format of a name or an extension, in any case.
+/// The format with this name or extension, ignoring case.
 pub fn format_named(name: &str) -> Option<&'static SceneFormatEntry> {
     let name = name.to_lowercase();
     SCENE_FORMATS.iter().find(|row| row.entry.name == name || row.extensions.contains(&&*name))
 }
 
-/// The format that a path's extension says, for writing; so that a command line can be refused before the work.
+/// The format to write to a path, by its extension; lets a caller refuse a command line before the work.
 ///
 /// # Errors
-/// When no format that can be written has this extension; with the nearest one.
+/// If no format that can be written has this extension; the error suggests the closest one.
 pub fn format_of_path(path: &Path) -> Result<&'static SceneFormatEntry, FormatError> {
     let found = extension(path).and_then(|e| format_named(&e)).filter(|row| row.writes());
     found.ok_or_else(|| unknown(path, "written", SceneFormatEntry::writes))
 }
 
-/// Reads a scene file. Its extension says which format it is; where that is unknown, its first bytes do.
+/// Reads a scene file. Its extension selects the format; if that is unknown, its first bytes do.
 ///
 /// # Errors
-/// What is wrong, with its place; see [`FormatError`].
+/// A [`FormatError`] with its location.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatError> {
     let mut reading = Reading::new(options, path.parent());
     let row = extension(path).and_then(|e| format_named(&e));
@@ -96,7 +96,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
     read_file(row, &mut reading, path, &name)
 }
 
-/// Reads a file with a row, or else with that which its first bytes tell; messages call it by the name.
+/// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.
 pub(crate) fn read_file(
     row: Option<&SceneFormatEntry>,
     reading: &mut Reading,
@@ -114,7 +114,7 @@ pub(crate) fn read_file(
     again.map(|scene| SceneBuilder { origin, ..scene })
 }
 
-/// Where a model is, if it is so far from zero that its coordinates have lost digits which the file may have.
+/// The origin of a model so far from zero that f32 coordinates have lost digits that the file may hold.
 fn far_origin(row: Option<&SceneFormatEntry>, scene: &SceneBuilder) -> Option<DVec3> {
     const FAR: f64 = 1024.0;
     row.filter(|row| matches!(row.entry.name, "obj" | "ply"))?;
@@ -149,14 +149,16 @@ fn read_file_once(
     Ok(scene)
 }
 
-/// So much of a file as its reader looks at before it reads it.
+/// The length of a file's beginning that a streaming reader can inspect first.
 const BEGINNING: u64 = 4096;
 
-/// Reads a scene from memory. `format` is a name or an extension, or empty to go by the bytes; `base` the
-/// folder of files that it names; `name` what messages call it.
+/// Reads a scene from memory.
+///
+/// `format` is a name or an extension, or empty to detect it from the bytes; `base` is the folder of the files
+/// that the scene refers to; `name` is what messages call it.
 ///
 /// # Errors
-/// What is wrong, with its place; see [`FormatError`].
+/// A [`FormatError`] with its location.
 pub fn read_bytes(
     bytes: &[u8],
     format: &str,
@@ -172,11 +174,13 @@ pub fn read_bytes(
     read_source(row, &mut reading, &Source { bytes, name: &Arc::from(name), folder: base })
 }
 
-/// Writes a scene in the format of the path's extension, files beside it included, each in one step: beside
-/// its place first, then renamed over it. Gives what the format could not hold.
+/// Writes a scene and its accompanying files, in the format of the path's extension.
+///
+/// Each file is written under a temporary name in its folder first, then renamed, so that it appears in one step.
+/// Returns a warning for everything that the format could not hold.
 ///
 /// # Errors
-/// When the format is unknown, or a file cannot be written.
+/// If the format is unknown, or a file cannot be written.
 pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Result<Vec<Warning>, FormatError> {
     let row = format_of_path(path)?;
     let mut writing = Writing::new(path, options);
@@ -194,7 +198,7 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
     write_all(path, writing)
 }
 
-/// Reads with a row that was found, and holds the result against the options.
+/// Reads with a known format, and checks the result against the options.
 pub(crate) fn read_source(
     row: &SceneFormatEntry,
     reading: &mut Reading,
@@ -203,7 +207,7 @@ pub(crate) fn read_source(
     flow(row, reading, source, &mut &source.bytes[..])
 }
 
-/// The same where the source may have only the beginning of its bytes, for a reader that takes them as they come.
+/// The same for a source that may hold only the beginning of its bytes, with a reader that streams them.
 fn flow(
     row: &SceneFormatEntry,
     reading: &mut Reading,
@@ -229,7 +233,7 @@ fn flow(
     }
 }
 
-/// What is said of a picture that stands where a scene should.
+/// The error for a picture in place of a scene.
 fn picture(path: &Path, bytes: &[u8]) -> Option<FormatError> {
     let by_bytes = PICTURE_FORMATS.iter().find(|row| (row.sniff)(bytes));
     let row = by_bytes.or_else(|| bilux_pictures::format_named(&extension(path)?))?;

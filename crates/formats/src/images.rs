@@ -1,21 +1,21 @@
-//! Decoded pictures as the texels of textures.
+//! Converts decoded pictures to the texels of textures.
 
 use bilux_math::Rgb;
 use bilux_pictures::{Alpha, ColourSpace, Limits, Picture, PictureError, Rgba8, read_bytes, read_rgba8};
 use bilux_scene::texture::{Image, Texels};
 
-/// What the samples of a picture file mean.
+/// How to interpret the samples of a picture file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Means {
-    /// Colours, encoded as the file says.
+    /// Colours, encoded as the file states.
     Colours,
-    /// Colours by the sRGB curve, whatever the file says.
+    /// Colours with the sRGB curve, whatever the file states.
     SrgbColours,
-    /// Numbers as they are.
+    /// Raw numbers.
     Numbers,
 }
 
-/// The texels of a picture file; `None` where it has no colours.
+/// The texels of a picture file; `None` if it has no colour channels.
 pub(crate) fn decoded(
     bytes: &[u8],
     hint: Option<&str>,
@@ -28,7 +28,7 @@ pub(crate) fn decoded(
     Ok(image_of(read_bytes(bytes, hint, limits)?, means))
 }
 
-/// The texels of a picture, in bytes where it came in bytes; `None` where it has no colours.
+/// The texels of a picture, as bytes if it was 8-bit; `None` if it has no colour channels.
 fn image_of(mut picture: Picture, means: Means) -> Option<Image> {
     let is_data = means == Means::Numbers;
     if means == Means::SrgbColours && matches!(picture.colour_space, ColourSpace::Gamma(_)) {
@@ -42,7 +42,7 @@ fn image_of(mut picture: Picture, means: Means) -> Option<Image> {
             return Some(Image { width, height, texels: Texels::Bytes(bytes(planes, picture.channel("A"))) });
         }
     }
-    // Texels are the colours beneath their alpha, which materials use on its own.
+    // Texels hold the colours without their alpha, which materials apply separately.
     picture.alpha = Alpha::Premultiplied;
     let picture = if is_data { picture } else { picture.into_linear() };
     let alpha = alpha(&picture).unwrap_or_default();
@@ -54,7 +54,7 @@ fn are_bytes(samples: &[f32]) -> bool {
     samples.iter().all(|&sample| f32::from(byte(sample)) / 255.0 == sample)
 }
 
-/// The nearest step of 256.
+/// The nearest of the 256 steps.
 fn byte(sample: f32) -> u8 {
     (sample * 255.0 + 0.5) as u8
 }
@@ -68,7 +68,7 @@ fn bytes([r, g, b]: [&[f32]; 3], alpha: Option<&[f32]>) -> Vec<[u8; 4]> {
     }
 }
 
-/// True for what no picture in bytes can hold.
+/// True for texels that do not fit into an 8-bit image.
 pub(crate) fn is_bright(texel: Rgb) -> bool {
     !texel.is_finite() || texel.max_channel() > 1.0
 }
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
     use bilux_pictures::{BitDepth, WriteOptions, write_bytes};
 
-    /// Every form of PNG that is in bytes, and those that are not.
+    /// Covers every 8-bit form of PNG, and those that are not 8-bit.
     #[test]
     fn bytes_decoded_at_once_are_those_by_way_of_planes() {
         let plane =
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// In eight bits and in sixteen, and so in either way of holding texels.
+    /// Covers eight and sixteen bits, and thus both representations of texels.
     #[test]
     fn colours_are_what_they_are_beneath_their_alpha() {
         let mut picture = Picture::new(1, 1).unwrap();

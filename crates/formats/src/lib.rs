@@ -1,9 +1,9 @@
-//! Scene files in and out. One format a folder; the table is [`SCENE_FORMATS`].
+//! Reads and writes scene files. Each format has its own folder; the table is [`SCENE_FORMATS`].
 //!
-//! A reader turns bytes into a [`bilux_scene::SceneBuilder`], which is plain data: nothing is checked
-//! against the scene's tables here and nothing is rendered. Whatever the bytes, a reader gives a scene or
-//! a [`FormatError`] that says where and what to do; it holds no more memory than
-//! [`ReadOptions::max_memory`], and opens nothing outside the folder of the scene unless allowed.
+//! A reader converts bytes to a [`bilux_scene::SceneBuilder`], which is plain data: this crate does not validate
+//! it against the scene's tables, and renders nothing. For any input, a reader returns a scene, or a
+//! [`FormatError`] that states the location and the remedy. It uses no more memory than
+//! [`ReadOptions::max_memory`], and opens no file outside the scene's folder unless allowed.
 
 mod asc;
 mod bake;

@@ -1,39 +1,39 @@
-//! Normals for meshes that bring none.
+//! Computes normals for meshes without them.
 
 use bilux_math::transcendental::cos;
 use bilux_math::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// How a face joins its neighbours: [`FLAT`], [`BY_ANGLE`], or the number of a group that is smooth.
+/// How a face is smoothed with its neighbours: [`FLAT`], [`BY_ANGLE`], or the number of a smoothing group.
 pub(crate) type Smoothing = u32;
-/// A face that is flat whatever its neighbours.
+/// The face is flat, whatever its neighbours.
 pub(crate) const FLAT: Smoothing = 0;
-/// A face that is smooth towards neighbours at less than the crease angle.
+/// The face is smooth towards neighbours within the crease angle.
 pub(crate) const BY_ANGLE: Smoothing = u32::MAX;
 
-/// Polygons over shared positions.
+/// Polygons that share positions.
 pub(crate) struct Faces<'a> {
     pub(crate) positions: &'a [Vec3],
-    /// The position of each corner, one face after another; must be within `positions`.
+    /// The position index of each corner, face after face; must be within `positions`.
     pub(crate) corners: Vec<u32>,
-    /// Where each face's corners end; empty where all are triangles.
+    /// The end of each face's corners; empty if all faces are triangles.
     pub(crate) ends: Vec<u32>,
-    /// How each face joins its neighbours; one for all where all do it alike.
+    /// The smoothing of each face; a single entry if all faces share it.
     pub(crate) smoothing: Vec<Smoothing>,
 }
 
-/// Normals that corners share, and which each has.
+/// Normals that corners share, and the index for each corner.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct CornerNormals {
     pub(crate) normals: Vec<Vec3>,
-    /// For each corner an index into the normals.
+    /// For each corner, its index into the normals.
     pub(crate) of_corner: Vec<u32>,
 }
 
-/// Where more faces meet than this, all are averaged: looking at every pair would take too long.
+/// At positions with more faces than this all are averaged: comparing every pair would take too long.
 const MAX_PAIRED: usize = 256;
 
-/// Positions that one thread looks at in one go.
+/// The number of positions that a thread processes at a time.
 const PIECE: usize = 1 << 14;
 
 /// The normal of a face, and its area.
@@ -43,13 +43,13 @@ struct Facing {
     area: f32,
 }
 
-/// Up to which angle faces that go by it are smooth towards each other, as cosines.
+/// The cosines of the angle up to which faces are smooth towards each other, and of half of it.
 struct Crease {
     whole: f32,
     half: f32,
 }
 
-/// The normals of some positions, and the index among them for each corner there.
+/// The normals of some positions, and the index of the normal for each corner there.
 #[derive(Default)]
 struct PositionNormals {
     normals: Vec<Vec3>,
@@ -58,14 +58,15 @@ struct PositionNormals {
 }
 
 impl Faces<'_> {
-    /// A normal for each corner: the area-weighted mean of the faces around its position that it is smooth
-    /// towards. `None` where that is each face's own normal everywhere, so that none are needed.
+    /// The normal of each corner: the area-weighted mean of the faces at its position that it is smooth towards.
+    ///
+    /// `None` if every corner would get its own face's normal, so that none are needed.
     pub(crate) fn corner_normals(self, crease_angle: f32) -> Option<CornerNormals> {
         let (normals, any_smooth) = self.normals_and_whether_needed(crease_angle);
         any_smooth.then_some(normals)
     }
 
-    /// The same, needed or not.
+    /// The same, whether or not they are needed.
     pub(crate) fn all_corner_normals(self, crease_angle: f32) -> CornerNormals {
         self.normals_and_whether_needed(crease_angle).0
     }
@@ -78,7 +79,7 @@ impl Faces<'_> {
         let around = Around::of(&self.corners, self.positions.len());
         let mut all = CornerNormals { normals: Vec::new(), of_corner: std::mem::take(&mut self.corners) };
         let mut any_smooth = false;
-        // In batches, so that little is kept beside what comes of it.
+        // Works in batches, to hold few intermediate results.
         let count = self.positions.len();
         let batch = PIECE * rayon::current_num_threads();
         for start in (0..count).step_by(batch) {
@@ -112,14 +113,14 @@ impl Faces<'_> {
         (all, any_smooth)
     }
 
-    /// The normals of the corners at a position, which are of these faces.
+    /// Adds the normals of the corners of these faces at one position.
     fn add_position(&self, here: &[u32], facing: &[Facing], crease: &Crease, found: &mut PositionNormals) {
         let first = found.normals.len();
         let weighted = |&face: &u32| facing[face as usize].unit * facing[face as usize].area;
         let sum: Vec3 = here.iter().map(weighted).sum();
         let is_crowd = here.len() > MAX_PAIRED;
         let middle = sum.normalize_or_zero();
-        // Who is within half of the angle of the middle is within it of all others.
+        // Faces within half of the crease angle of the mean are within the whole angle of each other.
         let near = |&face: &u32| facing[face as usize].unit.dot(middle) > crease.half + 1e-5;
         let goes_by_angle = |&face: &u32| self.smoothing_of(face) == BY_ANGLE;
         if !is_crowd && here.iter().all(near) && here.iter().all(goes_by_angle) {
@@ -146,7 +147,7 @@ impl Faces<'_> {
         }
     }
 
-    /// The normal of a face at a position, among the faces there.
+    /// The normal of a face at a position, given all faces there.
     fn normal_at(&self, here: &[u32], face: u32, facing: &[Facing], limit: f32) -> Vec3 {
         let own = facing[face as usize];
         let smoothing = self.smoothing_of(face);
@@ -182,7 +183,7 @@ impl Faces<'_> {
         faces.map(|face| facing(&self.corners[start(face)..self.ends[face] as usize])).collect()
     }
 
-    /// The face of each corner; none where all are triangles.
+    /// The face of each corner; empty if all faces are triangles.
     fn face_of(&self) -> Vec<u32> {
         let mut face_of = Vec::with_capacity(if self.ends.is_empty() { 0 } else { self.corners.len() });
         for (face, &end) in self.ends.iter().enumerate() {
@@ -192,9 +193,9 @@ impl Faces<'_> {
     }
 }
 
-/// For each position the corners there.
+/// The corners at each position.
 struct Around {
-    /// Where each position's corners start.
+    /// The start of each position's corners.
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
@@ -221,22 +222,22 @@ impl Around {
         &self.corners[self.starts[position] as usize..self.starts[position + 1] as usize]
     }
 
-    /// Those of a position and of all behind it.
+    /// The corners of a position and of all positions after it.
     fn corners_from(&self, position: usize) -> &[u32] {
         &self.corners[self.starts[position] as usize..]
     }
 }
 
-/// A cosine from which on two directions count as one: about a twelfth of a degree.
+/// Directions with a cosine above this count as equal: about a twelfth of a degree.
 const ALIKE: f32 = 1.0 - 1e-6;
 
-/// The normal of a polygon, as long as twice its area, by the right-hand rule. [Newell 1972]
+/// The normal of a polygon by the right-hand rule, whose length is twice the area. [Newell 1972]
 pub(crate) fn newell(points: impl Iterator<Item = Vec3>) -> DVec3 {
     let mut points = points.map(Vec3::as_dvec3);
     let Some(first) = points.next() else { return DVec3::ZERO };
     let (mut previous, mut sum) = (DVec3::ZERO, DVec3::ZERO);
     for point in points {
-        // Relative to the first point, so that what is far away keeps its digits.
+        // Relative to the first point, to keep the precision of polygons far from the origin.
         let point = point - first;
         sum += previous.cross(point);
         previous = point;
@@ -253,7 +254,7 @@ pub(crate) fn unit_face_normal(points: &[Vec3]) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// Two unit squares that share the edge x = 0, the second turned up by an angle.
+    /// Two unit squares that share the edge x = 0, the second one folded up by an angle.
     fn hinge(degrees: f32, smoothing: [Smoothing; 2]) -> Option<Vec<Vec3>> {
         let angle = degrees.to_radians();
         let (s, c) = (bilux_math::transcendental::sin(angle), cos(angle));

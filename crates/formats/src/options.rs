@@ -1,40 +1,43 @@
-//! What a reader may do and how a writer should.
+//! Options for reading and writing scenes.
 
 use std::path::PathBuf;
 
-/// What reading a scene may take and open, and what is chosen where a file leaves a choice.
+/// Limits and choices for reading a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {
-    /// The most bytes that the files and what they decode to may take together.
+    /// The maximum number of bytes for the files and their decoded contents together.
     pub max_memory: u64,
-    /// Whether files outside the scene's own folder may be opened.
+    /// If true, files outside the scene's own folder may be opened.
     pub allow_outside: bool,
-    /// Where files that a pbrt scene names are looked for too, when they are not in its folder: pbrt looks in the working
-    /// directory. They may be opened if they lie in this folder.
+    /// A second folder to search for the files of a pbrt scene, as pbrt searches its working directory. Files in
+    /// this folder may be opened.
     pub working_folder: Option<PathBuf>,
-    /// Whether what would be a warning is an error.
+    /// If true, warnings become errors.
     pub strict: bool,
-    /// Whether all that a file holds is checked, shown or not, and each fault becomes a warning (glTF).
+    /// If true, validates the whole file, shown or not, and reports each fault as a warning (glTF).
     pub validate: bool,
-    /// Faces of a mesh without normals look smooth where they meet at less than this angle, in degrees;
-    /// at 0 nothing is added to the mesh, and its faces look flat.
+    /// The crease angle in degrees: faces of a mesh without normals that meet at a smaller angle are smooth.
+    ///
+    /// At 0 no normals are added, and the faces are flat.
     pub crease_angle: f32,
-    /// When, in seconds, in formats whose movements bend meshes (glTF): everything stands as it does then.
+    /// The time in seconds at which the scene is posed, in formats whose animations deform meshes (glTF).
     pub time: f32,
-    /// Whether to look too where everything stands from the beginning to the end ([`bilux_scene::Inventory::movement`]).
+    /// If true, also samples the whole animation, to find where objects move
+    /// ([`bilux_scene::Inventory::movement`]).
     pub whole_movement: bool,
-    /// The animation to follow, by its name or counted from 0; else the first, and those that move other things.
+    /// The animation to play, by name or by number from 0; by default the first, and those that animate other
+    /// targets.
     pub animation: Option<String>,
-    /// The variant of materials to show, by its name or counted from 0; else the materials that meshes name.
+    /// The material variant to show, by name or by number from 0; by default the materials of the meshes.
     pub variant: Option<String>,
-    /// What clear materials are that say nothing of a thickness.
+    /// How to interpret transmissive materials without a thickness.
     pub glass: Glass,
-    /// Lights from points get this radius, in metres, where it is above 0.
+    /// The radius of point lights in metres, if above 0.
     pub light_radius: f32,
 }
 
 impl Default for ReadOptions {
-    /// 4 GiB, nothing outside, warnings, creases at 40 degrees, time 0, and what files choose themselves.
+    /// 4 GiB, no files outside, warnings, a crease angle of 40 degrees, time 0, and the choices of the files.
     fn default() -> ReadOptions {
         ReadOptions {
             max_memory: 4 << 30,
@@ -53,21 +56,21 @@ impl Default for ReadOptions {
     }
 }
 
-/// What clear materials are that say nothing of a thickness.
+/// How to interpret transmissive materials without a thickness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Glass {
-    /// Solid where the mesh is closed, else walls without thickness.
+    /// Solid if the mesh is closed, otherwise thin walls.
     #[default]
     Auto,
-    /// Walls without thickness.
+    /// Thin walls.
     Thin,
     /// Solid.
     Solid,
 }
 
-/// How a scene is written.
+/// Options for writing a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WriteOptions {
-    /// Text where a format has both text and binary (PLY, STL).
+    /// If true, writes text in formats that have both text and binary (PLY, STL).
     pub ascii: bool,
 }

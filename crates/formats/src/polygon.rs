@@ -1,10 +1,10 @@
-//! Polygons into triangles.
+//! Triangulates polygons.
 
 use crate::normals::newell;
 use bilux_math::{DVec2, DVec3, Vec3};
 use earcut::Earcut;
 
-/// Cuts polygons; keeps its buffers between them.
+/// Triangulates polygons, reusing its buffers.
 #[derive(Default)]
 pub(crate) struct Triangulator {
     points: Vec<Vec3>,
@@ -13,13 +13,13 @@ pub(crate) struct Triangulator {
     ears: Vec<u32>,
 }
 
-/// Cutting a hollow polygon takes the square of its corners at worst; one with more corners than this is
-/// taken as convex.
+/// Triangulating a concave polygon takes quadratic time at worst; one with more corners is treated as convex.
 const MAX_EARS: usize = 4096;
 
 impl Triangulator {
-    /// Triples of corners (counted from 0) that cover a polygon, wound as it is. `None` when the polygon is
-    /// hollow and has too many corners to cut.
+    /// Emits triples of corners, from 0, that cover a polygon with the same winding.
+    ///
+    /// `None` if the polygon is concave and has too many corners.
     pub(crate) fn triangulate(
         &mut self,
         points: impl Iterator<Item = Vec3>,
@@ -36,7 +36,7 @@ impl Triangulator {
             return Some(());
         }
         if count == 4 {
-            // Both triangles of a hollow quadrilateral share the corner that turns right.
+            // The two triangles of a concave quadrilateral share its reflex corner.
             fan((0..4).find(|&i| self.turns_right(i as usize)).unwrap_or(0));
             return Some(());
         }
@@ -55,7 +55,8 @@ impl Triangulator {
         Some(())
     }
 
-    /// Cuts; leaves nothing, and says so, where the outline crosses itself so that ears would miss a part.
+    /// Clips ears; returns false, without triangles, if the outline intersects itself so that ears would miss a
+    /// part.
     fn cut_ears(&mut self) -> bool {
         self.ears.clear();
         self.earcut.earcut(self.flat.iter().map(|p| p.to_array()), &[], &mut self.ears);
@@ -75,7 +76,7 @@ impl Triangulator {
         covers
     }
 
-    /// Looks at the polygon along its normal, so that it runs counter-clockwise; false where it has none.
+    /// Projects the polygon along its normal, so that it is counter-clockwise; false if it has no normal.
     fn flatten(&mut self) -> bool {
         let normal = newell(self.points.iter().copied());
         if !(normal.is_finite() && normal != DVec3::ZERO) {
@@ -93,19 +94,19 @@ impl Triangulator {
         true
     }
 
-    /// True when the outline turns right at a corner.
+    /// True if the outline turns right at a corner.
     fn turns_right(&self, corner: usize) -> bool {
         let n = self.flat.len();
         let [before, at, after] = [corner + n - 1, corner, corner + 1].map(|i| self.flat[i % n]);
         (at - before).perp_dot(after - at) < 0.0
     }
 
-    /// True when the polygon turns left at every corner, and once around in all.
+    /// True if the polygon turns left at every corner and winds around only once.
     fn is_convex(&self) -> bool {
         let n = self.flat.len();
         let at = |i: usize| self.flat[i % n];
         let turns_left = (0..n).all(|i| !self.turns_right(i));
-        // A star turns left everywhere too, but goes up and down more than once.
+        // A pentagram also turns left everywhere, but rises and falls more than once.
         let rises = |i: usize| at(i + 1).y > at(i).y || (at(i + 1).y == at(i).y && at(i + 1).x > at(i).x);
         let changes = (0..n).filter(|&i| rises(i) != rises(i + 1)).count();
         turns_left && changes <= 2
@@ -129,7 +130,7 @@ mod tests {
 
     #[test]
     fn hollow_polygons_are_covered_once_in_every_plane() {
-        // An L: a fan around its first corner would leave it.
+        // An L shape, which a fan around its first corner would leave.
         let ell = [[1.0, 1.0], [1.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0], [2.0, 1.0]];
         let planes: [fn([f32; 2]) -> Vec3; 6] = [
             |[a, b]| Vec3::new(a, b, 5.0),

@@ -1,4 +1,4 @@
-//! One job of reading: what is allowed, what has been used, which files belong to it.
+//! The shared state of one read: the options, the memory used, and the files involved.
 
 use crate::budget::Budget;
 use crate::images::{Means, decoded};
@@ -14,14 +14,14 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The bytes that a reader reads.
+/// The input of a reader.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Source<'a> {
-    /// The whole file; of one that is read in blocks, its beginning.
+    /// The whole file, or only its beginning if the file is read in blocks.
     pub(crate) bytes: &'a [u8],
     /// Its name, for messages.
     pub(crate) name: &'a Arc<str>,
-    /// Its folder, in which the files that it names lie; `None` when it came from no file.
+    /// The folder of the file, which relative names refer to; `None` if the bytes came from no file.
     pub(crate) folder: Option<&'a Path>,
 }
 
@@ -32,38 +32,38 @@ impl Source<'_> {
     }
 }
 
-/// What the texels of a texture are.
+/// How the texels of a texture are interpreted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Texels {
-    /// Colours, in linear light.
+    /// Colours, converted to linear light.
     Colours,
-    /// Numbers, as the file has them: of all channels, or of one.
+    /// Raw numbers, of all channels or of one.
     Numbers(Option<Channel>),
 }
 
-/// What all readers of one job share.
+/// The state that all readers of one read share.
 pub(crate) struct Reading<'o> {
     pub(crate) options: &'o ReadOptions,
     pub(crate) budget: Budget,
     /// [`ReadOptions::crease_angle`], unless a scene has its own.
     pub(crate) crease_angle: f32,
-    /// What positions of the file are counted from, where they are far from zero beside what they differ by.
+    /// The origin of positions, if the file's coordinates are large compared with their differences.
     pub(crate) origin: DVec3,
-    /// Nothing outside this folder is opened, but for what is found in [`Reading::working_folder`].
+    /// Nothing outside this folder is opened, except files in [`Reading::working_folder`].
     root: Option<PathBuf>,
-    /// Where the format that is being read looks for files too.
+    /// A second folder where the current format looks for files.
     pub(crate) working_folder: Option<PathBuf>,
     textures: HashMap<(PathBuf, Texels), Arc<Texture>>,
     texture_bytes: u64,
-    /// Scenes put into other scenes, each read once.
+    /// Scenes inserted into other scenes, each read once.
     pub(crate) models: HashMap<PathBuf, Arc<SceneBuilder>>,
-    /// Meshes that are counted in the budget for good.
+    /// Meshes that already count against the budget for good.
     counted: HashSet<*const Mesh>,
-    /// The chain of scenes put into each other, from the first to the one that is read.
+    /// The chain of nested scenes, from the first one to the current one.
     pub(crate) open: Vec<PathBuf>,
 }
 
-/// Longer chains of scenes put into each other are refused: each takes a part of the stack.
+/// Longer chains of nested scenes are refused, since each level uses some of the stack.
 const LONGEST_CHAIN: usize = 16;
 
 impl<'o> Reading<'o> {
@@ -84,7 +84,7 @@ impl<'o> Reading<'o> {
         }
     }
 
-    /// Counts what a file has become in place of what reading it took; textures are held on their own.
+    /// Replaces the memory charged for reading a file by that of its result; textures are charged separately.
     pub(crate) fn settle(&mut self, spent_before: u64, textures_before: u64, scene: &SceneBuilder) {
         let mut held = self.texture_bytes - textures_before;
         for object in &scene.objects {
@@ -98,14 +98,14 @@ impl<'o> Reading<'o> {
         self.budget.give_back(self.budget.spent().saturating_sub(now));
     }
 
-    /// Takes memory for texels, for good.
+    /// Charges memory for texels, for good.
     pub(crate) fn hold_image(&mut self, image: &Image, file: &str) -> Result<(), FormatError> {
         self.budget.take_bytes(image.size(), file)?;
         self.texture_bytes += image.size();
         Ok(())
     }
 
-    /// A picture decoded within what memory is left. It counts as held until the end.
+    /// Decodes a picture within the remaining memory, and charges it for good.
     pub(crate) fn decode(
         &mut self,
         bytes: &[u8],
@@ -113,7 +113,7 @@ impl<'o> Reading<'o> {
         means: Means,
         (name, at): (&str, &Span),
     ) -> Result<Image, FormatError> {
-        // The decoder's planes and the texels are held side by side for a moment.
+        // The decoder's planes and the texels exist at the same time for a moment.
         let limits = Limits::new(self.budget.left() / 2);
         let image = decoded(bytes, hint, means, &limits).map_err(|e| {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
@@ -125,12 +125,12 @@ impl<'o> Reading<'o> {
         Ok(image)
     }
 
-    /// Bytes of all textures that were read.
+    /// The size in bytes of all textures read.
     pub(crate) fn texture_bytes(&self) -> u64 {
         self.texture_bytes
     }
 
-    /// Begins to read a scene that is put into another.
+    /// Enters a nested scene.
     pub(crate) fn enter(&mut self, path: &Path, at: &Span) -> Result<(), FormatError> {
         if self.open.len() >= LONGEST_CHAIN {
             let message = format!("scenes are put into each other more than {LONGEST_CHAIN} deep");
@@ -140,12 +140,12 @@ impl<'o> Reading<'o> {
         Ok(())
     }
 
-    /// Ends what [`Reading::enter`] began.
+    /// Leaves the scene that [`Reading::enter`] entered.
     pub(crate) fn leave(&mut self) {
         self.open.pop();
     }
 
-    /// The file that a file names, if it is there and may be opened.
+    /// Finds a referenced file, if it exists and may be opened.
     pub(crate) fn locate(
         &self,
         folder: Option<&Path>,
@@ -155,7 +155,7 @@ impl<'o> Reading<'o> {
         self.locate_besides(folder, name, &[], at)
     }
 
-    /// The same; one of `open`, the files that are being read, is found only where it is named with its folder.
+    /// The same, but finds the files in `open`, which are being read, only under their full names.
     pub(crate) fn locate_besides(
         &self,
         folder: Option<&Path>,
@@ -169,7 +169,7 @@ impl<'o> Reading<'o> {
         };
         let missing =
             || FormatError::MissingFile { name: name.to_owned(), folder: folder.to_owned(), at: at.clone() };
-        // Files from other machines name folders of those; then what they mean often lies beside.
+        // Files from other machines refer to folders there; the file itself often lies next to the scene.
         let portable = name.replace('\\', "/");
         let beside = portable.rsplit('/').next().unwrap_or_default();
         if beside.is_empty() || name.contains('\0') {
@@ -184,7 +184,7 @@ impl<'o> Reading<'o> {
         }
         let found = named
             .or_else(|| there(folder.join(beside)).filter(|path| !open.contains(path)))
-            // Whatever else it may be, a pipe would never end.
+            // This excludes pipes, which might never end.
             .filter(|path| path.is_file())
             .ok_or_else(missing)?;
         match &self.root {
@@ -194,18 +194,18 @@ impl<'o> Reading<'o> {
         }
     }
 
-    /// A file of this name in the working folder, or below it.
+    /// A file with this name in or below the working folder.
     fn in_working_folder(&self, name: &str) -> Option<PathBuf> {
         let folder = fs::canonicalize(non_empty(self.working_folder.as_deref()?)).ok()?;
         let found = fs::canonicalize(folder.join(name)).ok()?;
         (found.starts_with(&folder) && found.is_file()).then_some(found)
     }
 
-    /// A file's bytes. They count as held until [`Reading::release`].
+    /// The bytes of a file. They count as held until [`Reading::release`].
     pub(crate) fn load(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
         let (file, length) = open(path)?;
         let limit = self.budget.left();
-        // At once, where the system tells how long it is.
+        // Reserves the memory at once if the system reports a length.
         let mut bytes = Vec::new();
         let stated = length.min(limit).saturating_add(1);
         let _ = usize::try_from(stated).map(|stated| bytes.try_reserve_exact(stated));
@@ -215,12 +215,12 @@ impl<'o> Reading<'o> {
         Ok(bytes)
     }
 
-    /// Gives back the bytes of a loaded file.
+    /// Releases the bytes of a loaded file.
     pub(crate) fn release(&mut self, bytes: Vec<u8>) {
         self.budget.give_back(bytes.len() as u64);
     }
 
-    /// A picture as a texture; decoded once however often it is named.
+    /// A picture as a texture, decoded only once.
     pub(crate) fn texture(
         &mut self,
         folder: Option<&Path>,
@@ -245,7 +245,7 @@ impl<'o> Reading<'o> {
     }
 }
 
-/// A file to be read, and how long the system says that it is.
+/// Opens a file for reading; also returns the length that the system reports.
 pub(crate) fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
     let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
     let file = fs::File::open(path).map_err(failed)?;
@@ -261,12 +261,12 @@ fn non_empty(folder: &Path) -> &Path {
     if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
-/// The material of files that say nothing about it.
+/// The material of files that do not describe any.
 pub(crate) fn default_material() -> Spec {
     Spec::new("default", "phong")
 }
 
-/// The same where vertices bring kd or ks: these are the constants themselves, so that the material's own
+/// The default material for vertices with kd or ks. These are the reflectances themselves, so the material's own
 /// factors are 1.
 pub(crate) fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
     let mut spec = default_material();
@@ -277,7 +277,7 @@ pub(crate) fn plain_material(vertex_kd: bool, vertex_ks: bool) -> Spec {
     spec
 }
 
-/// Counts odd things by kind, so that a file with a million of them gives one warning.
+/// Counts oddities by kind, so that a file with a million of them gives one warning.
 #[derive(Debug, Default)]
 pub(crate) struct Oddities {
     kinds: Vec<Oddity>,
@@ -285,19 +285,19 @@ pub(crate) struct Oddities {
 
 #[derive(Debug)]
 struct Oddity {
-    /// What all of the kind share.
+    /// The text that all of this kind share.
     what: String,
-    /// What of the first stands in front of it in a message.
+    /// The text about the first one, which precedes it in the message.
     first: String,
     count: u64,
     at: Span,
 }
 
-/// Kinds beyond this are not told apart: a file of garbage has thousands.
+/// The number of kinds that are distinguished: a file of garbage has thousands.
 const MAX_KINDS: usize = 40;
 
 impl Oddities {
-    /// Takes over what was noted in a part of the file before which so many lines stand.
+    /// Merges the oddities of a later part of the file, which begins after this many lines.
     pub(crate) fn append(&mut self, part: Oddities, lines: u32) {
         for Oddity { what, first, count, mut at } in part.kinds {
             at.line = at.line.saturating_add(lines);
@@ -308,12 +308,12 @@ impl Oddities {
         }
     }
 
-    /// Notes one more of a kind; `at` is asked only for the first.
+    /// Counts one of a kind; evaluates `at` only for the first.
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
         self.note_first(what, String::new, at);
     }
 
-    /// The same with words about the first of the kind, which stand in front of what all share.
+    /// The same with text about the first of the kind, which precedes the common text.
     pub(crate) fn note_first(
         &mut self,
         what: &str,
@@ -332,7 +332,7 @@ impl Oddities {
         }
     }
 
-    /// Turns them into warnings, each with its count and the place of the first.
+    /// Converts them to warnings, each with its count and the location of the first.
     pub(crate) fn into_warnings(mut self, scene: &mut SceneBuilder) {
         self.kinds.sort_by_key(|kind| (kind.at.line, kind.at.column));
         for Oddity { what, first, count, at } in self.kinds {

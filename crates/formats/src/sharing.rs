@@ -1,13 +1,13 @@
-//! What stands in a scene many times is kept once.
+//! Shares acceleration structures between repeated meshes.
 
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Meshes whose copies would have more triangles, points and lines than this keep one tree for all of them.
+/// Meshes whose copies would total more triangles, points and lines than this share one acceleration structure.
 const MAX_COPIED: usize = 1 << 18;
 
-/// Keeps one tree for meshes that stand in the scene often.
+/// Marks frequently repeated meshes to share one acceleration structure.
 pub(crate) fn share_trees(scene: &mut SceneBuilder) {
     let mut uses: HashMap<*const Mesh, usize> = HashMap::new();
     for object in &scene.objects {

@@ -1,4 +1,4 @@
-//! Points and lines for formats that hold triangles alone: little balls and tubes in their places.
+//! Replaces points and lines by small spheres and tubes, for formats that support only triangles.
 
 use crate::writing::Writing;
 use bilux_math::transcendental::{cos, sin};
@@ -9,12 +9,12 @@ use std::borrow::Cow;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// Sides of a tube.
+/// The number of sides of a tube.
 const SIDES: u32 = 8;
-/// Up to so many balls they have twenty triangles, and beyond eight.
+/// Up to this many spheres have twenty triangles each; more have eight.
 const FEW_BALLS: usize = 20_000;
 
-/// The scene with triangles in place of points and lines, where a format does not hold these.
+/// Replaces points and lines by triangles if the format does not support them.
 pub(crate) fn as_triangles<'a>(
     scene: Cow<'a, SceneBuilder>,
     capabilities: &[&str],
@@ -53,10 +53,10 @@ pub(crate) fn as_triangles<'a>(
     Cow::Owned(scene)
 }
 
-/// What formats say that hold points and lines.
+/// The capability of formats that support points and lines.
 pub(crate) const CAPABILITY: &str = "points and lines";
 
-/// Adds a mesh that was made of the same.
+/// Appends a mesh with the same attributes.
 fn append(mesh: &mut Mesh, mut more: Mesh) {
     let first = mesh.positions.len() as u32;
     mesh.positions.append(&mut more.positions);
@@ -68,7 +68,7 @@ fn append(mesh: &mut Mesh, mut more: Mesh) {
     mesh.triangles.extend(more.triangles.iter().map(|t| t.map(|i| first + i)));
 }
 
-/// Balls at the vertices that are named, and tubes between pairs of them, with what `bare` says of its vertices.
+/// Spheres at the given vertices and tubes between the given pairs, with the vertex attributes of `bare`.
 fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
     let mut made = Made { bare, mesh: Mesh { name: bare.name.clone(), ..Mesh::default() }, radius };
     let ball = if balls.len() > FEW_BALLS { octahedron() } else { shapes::icosphere(Vec3::ZERO, 1.0, 0) };
@@ -81,7 +81,7 @@ fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
     made.mesh
 }
 
-/// The coarsest of balls.
+/// The coarsest sphere.
 fn octahedron() -> Mesh {
     Mesh {
         positions: [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]).collect(),
@@ -106,7 +106,7 @@ struct Made<'m> {
 }
 
 impl Made<'_> {
-    /// A vertex on the surface around one of the bare ones, in a direction from it.
+    /// Adds a vertex at the radius around a vertex of `bare`, in this direction.
     fn push(&mut self, vertex: u32, direction: Vec3) {
         fn again<T: Copy>(from: &[T], to: &mut Vec<T>, vertex: u32) {
             to.extend(from.get(vertex as usize));
@@ -129,7 +129,7 @@ impl Made<'_> {
 
     fn tube(&mut self, [a, b]: [u32; 2]) {
         let along = self.bare.positions[b as usize] - self.bare.positions[a as usize];
-        // Between equal ends there is only the ball.
+        // Coinciding ends leave only the sphere.
         let Some(along) = along.try_normalize() else { return };
         let (u, v) = along.any_orthonormal_pair();
         let first = self.mesh.positions.len() as u32;

@@ -1,4 +1,4 @@
-//! Lines and words of a text file, with their places. Lines end at CR, LF or both.
+//! Lines and words of a text file with their locations. Lines end at CR, LF or both.
 
 use crate::FormatError;
 use crate::reading::Source;
@@ -6,18 +6,18 @@ use bilux_scene::Span;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Walks through a text word by word, line by line.
+/// Iterates over a text word by word and line by line.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     pos: usize,
-    /// How many lines have been passed, and where this one begins.
+    /// The number of lines passed, and the start of the current line.
     line: (u32, usize),
-    /// Whether a backslash at a line's end continues it.
+    /// True if a backslash at the end of a line continues it.
     joins_lines: bool,
 }
 
-/// Line and column in a file, from 1.
+/// A line and a column in a file, from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct TextPosition {
     pub(crate) line: u32,
@@ -29,12 +29,12 @@ impl TextPosition {
         TextPosition { line: (key >> 32) as u32, column: key as u32 }
     }
 
-    /// Both numbers in one, rising as one reads.
+    /// Both numbers in one, in reading order.
     pub(crate) fn key(self) -> u64 {
         u64::from(self.line) << 32 | u64::from(self.column)
     }
 
-    /// The same where so many lines stand before.
+    /// The position after this many more lines.
     pub(crate) fn after(self, lines: u32) -> TextPosition {
         TextPosition { line: self.line.saturating_add(lines), ..self }
     }
@@ -57,25 +57,25 @@ impl<'a> Cursor<'a> {
         Cursor { bytes, pos: 0, line: (0, 0), joins_lines: false }
     }
 
-    /// The same for formats in which a backslash at a line's end continues it.
+    /// A cursor for formats in which a backslash at the end of a line continues it.
     pub(crate) fn joining_lines(bytes: &'a [u8]) -> Cursor<'a> {
         Cursor { joins_lines: true, ..Cursor::new(bytes) }
     }
 
-    /// How many bytes have been passed.
+    /// The number of bytes passed.
     #[inline]
     pub(crate) fn offset(&self) -> usize {
         self.pos
     }
 
-    /// Where a byte of the line stands that the cursor is in; not to be asked after [`Cursor::go_to`].
+    /// The position of an offset on the current line; not valid after [`Cursor::go_to`].
     pub(crate) fn place(&self, offset: usize) -> TextPosition {
         let (lines, start) = self.line;
         let column = u32::try_from(offset - start + 1).unwrap_or(u32::MAX);
         TextPosition { line: lines.saturating_add(1), column }
     }
 
-    /// How many line ends have been passed.
+    /// The number of line ends passed.
     pub(crate) fn lines(&self) -> u32 {
         self.line.0
     }
@@ -84,7 +84,7 @@ impl<'a> Cursor<'a> {
         self.line = (self.line.0.saturating_add(1), self.pos);
     }
 
-    /// Goes to an offset.
+    /// Moves to an offset.
     pub(crate) fn go_to(&mut self, offset: usize) {
         self.pos = offset.min(self.bytes.len());
     }
@@ -93,7 +93,7 @@ impl<'a> Cursor<'a> {
         self.pos >= self.bytes.len()
     }
 
-    /// Passes blanks, and line ends after a backslash, which continue a line.
+    /// Skips spaces, and line ends after a backslash, which continues a line.
     #[inline]
     pub(crate) fn skip_blanks(&mut self) {
         while let Some(&byte) = self.bytes.get(self.pos) {
@@ -112,7 +112,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next word of this line; empty at its end.
+    /// The next word of the line; empty at its end.
     #[inline]
     pub(crate) fn word(&mut self) -> &'a [u8] {
         self.skip_blanks();
@@ -127,13 +127,13 @@ impl<'a> Cursor<'a> {
         &rest[..length]
     }
 
-    /// The same without passing it.
+    /// The next word without consuming it.
     #[inline]
     pub(crate) fn peek_word(&self) -> &'a [u8] {
         self.clone().word()
     }
 
-    /// The rest of this line without blanks around it; continued lines are not joined.
+    /// The rest of the line, trimmed; continued lines are not joined.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.pos..];
         let length = rest.iter().position(|&b| is_newline(b)).unwrap_or(rest.len());
@@ -144,7 +144,7 @@ impl<'a> Cursor<'a> {
         &line[start..end]
     }
 
-    /// Goes to the start of the next line, with continued lines passed as one.
+    /// Moves to the start of the next line, treating continued lines as one.
     #[inline]
     pub(crate) fn end_line(&mut self) {
         loop {
@@ -163,12 +163,12 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// Where in a file a byte stands. Asking in rising order passes over the file once in all.
+/// Locates offsets in a file. Queries in increasing order scan the file only once in total.
 #[derive(Clone, Debug)]
 pub(crate) struct Places<'a> {
     file: Arc<str>,
     bytes: &'a [u8],
-    /// Offset, line and start of line last asked for.
+    /// The offset, the line and the line's start of the last query.
     last: Cell<(usize, u32, usize)>,
 }
 
@@ -177,7 +177,7 @@ impl<'a> Places<'a> {
         Places { file: file.clone(), bytes, last: Cell::new((0, 1, 0)) }
     }
 
-    /// Line and column of a byte.
+    /// The line and column of an offset.
     pub(crate) fn at(&self, offset: usize) -> Span {
         let offset = offset.min(self.bytes.len());
         let (mut pos, mut line, mut start) =
@@ -200,16 +200,16 @@ impl<'a> Places<'a> {
         self.bytes
     }
 
-    /// The place of the file as a whole.
+    /// The location of the file as a whole.
     pub(crate) fn whole(&self) -> Span {
         whole_file(&self.file)
     }
 }
 
-/// The trouble with a file that should be text; where its bytes are none, that is the trouble.
+/// The error for a file that should be text; reports binary data as such.
 pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
     match error {
-        // Zeros behind the text, as some programs leave them, are passed as blanks.
+        // Trailing zeros, which some programs leave, count as spaces.
         FormatError::Malformed { message, at } if source.bytes.iter().take(4096).any(|&b| b == 0) => {
             let message = format!(
                 "this file is not plain text: it is binary, or text with 16 bits a character ({message})"
@@ -220,12 +220,12 @@ pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
     }
 }
 
-/// The place of a file as a whole.
+/// The location of a file as a whole.
 pub(crate) fn whole_file(file: &Arc<str>) -> Span {
     Span { file: file.clone(), line: 0, column: 0 }
 }
 
-/// A piece of a file in quotes for a message: short, and without control characters.
+/// Part of a file in quotes for a message: short, and without control characters.
 pub(crate) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text: String = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)])
@@ -237,7 +237,7 @@ pub(crate) fn quoted(bytes: &[u8]) -> String {
     format!("'{text}{more}'")
 }
 
-/// Text of a file as a name, whatever its encoding.
+/// Bytes of a file as a name, in any encoding.
 pub(crate) fn name_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }

@@ -1,16 +1,16 @@
-//! What the parameters of a spec say, for writers.
+//! Reads parameters of a spec, for writers.
 
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::materials::straight_on;
 use bilux_scene::{MATERIALS, Spec, Value};
 
-/// A number, if one is given.
+/// The number under a key, if there is one.
 pub(crate) fn number(spec: &Spec, key: &str) -> Option<f32> {
     as_number(spec.parameters.find(key)?.0)
 }
 
-/// A colour, if one is given; white for a texture.
+/// The colour under a key, if there is one; white for a texture.
 pub(crate) fn colour(spec: &Spec, key: &str) -> Option<Rgb> {
     match spec.parameters.find(key)?.0 {
         Value::List(list) => {
@@ -22,7 +22,7 @@ pub(crate) fn colour(spec: &Spec, key: &str) -> Option<Rgb> {
     }
 }
 
-/// A point or a direction, if one is given.
+/// The point or direction under a key, if there is one.
 pub(crate) fn vector(spec: &Spec, key: &str) -> Option<Vec3> {
     match spec.parameters.find(key)?.0 {
         Value::List(_) => colour(spec, key).map(|c| Vec3::from_array(c.to_array())),
@@ -30,7 +30,7 @@ pub(crate) fn vector(spec: &Spec, key: &str) -> Option<Vec3> {
     }
 }
 
-/// The index of a texture, if one is given.
+/// The index of the texture under a key, if there is one.
 pub(crate) fn texture(spec: &Spec, key: &str) -> Option<usize> {
     match spec.parameters.find(key)?.0 {
         Value::Texture(index) => Some(*index),
@@ -38,19 +38,19 @@ pub(crate) fn texture(spec: &Spec, key: &str) -> Option<usize> {
     }
 }
 
-/// What a format holds of materials.
+/// The material parameters that a format supports.
 pub(crate) struct MaterialSupport<'a> {
     pub(crate) format: &'static str,
-    /// The parameters of each kind; other kinds are told elsewhere.
+    /// The parameters of each kind; other kinds are reported elsewhere.
     pub(crate) of_kinds: &'a [(&'a str, &'a [&'a str])],
-    /// Those of every kind.
+    /// The parameters that every kind has.
     pub(crate) of_any: &'a [&'a str],
-    /// Of which of all these it holds pictures; `None` where that is told elsewhere.
+    /// The parameters that may be textures; `None` if that is reported elsewhere.
     pub(crate) pictured: Option<&'a [&'a str]>,
 }
 
 impl MaterialSupport<'_> {
-    /// Tells of what a material says that is not held.
+    /// Warns about parameters of a material that the format does not support.
     pub(crate) fn tell(&self, spec: &Spec, writing: &mut Writing) {
         let MaterialSupport { format, of_kinds, of_any, pictured } = self;
         let Some((kind, of_kind)) = of_kinds.iter().find(|(kind, _)| *kind == spec.kind) else { return };
@@ -65,7 +65,7 @@ impl MaterialSupport<'_> {
     }
 }
 
-/// A metal of any name or index as one of a colour: what `out` is with it.
+/// Sets `out` to a metal with the colour of a named metal or of its index of refraction.
 pub(crate) fn coloured_metal(out: Spec, metal: &Spec) -> Spec {
     let shade = Value::from(straight_on(metal).unwrap_or(Rgb::grey(0.9)));
     let taken = |key: &str, default| metal.parameters.find(key).map_or(default, |(value, _)| value.clone());

@@ -1,4 +1,4 @@
-//! One job of writing: files are made in memory, and reach the disk only when all are done.
+//! The state of one write: files are built in memory, and reach the disk only when all are complete.
 
 use crate::images::is_bright;
 use crate::{FormatError, WriteOptions};
@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The files of a scene while they are made.
+/// The files of a scene under construction.
 pub(crate) struct Writing<'o> {
     pub(crate) options: &'o WriteOptions,
     /// The main file's name without folder and extension.
@@ -17,11 +17,11 @@ pub(crate) struct Writing<'o> {
     pub(crate) extension: String,
     /// The main file.
     pub(crate) main: Vec<u8>,
-    /// Files beside it, by name.
+    /// Accompanying files, by name.
     pub(crate) beside: Vec<(String, Vec<u8>)>,
     /// Textures written so far, and the files of each.
     textures: Vec<(Texture, String)>,
-    /// What the format could not hold.
+    /// Everything that the format could not hold.
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -40,8 +40,9 @@ impl<'o> Writing<'o> {
         }
     }
 
-    /// The name of a file beside the scene that holds a texture; made when it is first asked for. Samples of
-    /// 8-bit pictures come back as they were; what is brighter than white goes into an EXR.
+    /// The file name of a texture next to the scene, written on first use.
+    ///
+    /// 8-bit samples are preserved exactly; a texture with texels brighter than white becomes an EXR.
     pub(crate) fn texture(
         &mut self,
         scene: &SceneBuilder,
@@ -50,7 +51,7 @@ impl<'o> Writing<'o> {
         scene.textures.get(index).map(|texture| self.texture_file(texture)).transpose()
     }
 
-    /// The same of a texture that may be a part of another.
+    /// The same for a texture that may be nested in another.
     pub(crate) fn texture_file(&mut self, texture: &Texture) -> Result<String, FormatError> {
         if let Some((_, name)) = self.textures.iter().find(|(known, _)| have_one_file(known, texture)) {
             return Ok(name.clone());
@@ -60,7 +61,7 @@ impl<'o> Writing<'o> {
         let name = format!("{}-texture-{}.{format}", self.stem, self.textures.len() + 1);
         let mut picture = Picture::from_rgb(texture.width(), texture.height(), texture.texels().collect())?;
         if texture.is_data && !bright {
-            // As the file holds them, so that no curve is laid over numbers.
+            // Texels are written as stored, so that no transfer curve is applied to numbers.
             picture.colour_space = ColourSpace::Srgb;
         }
         let bytes = bilux_pictures::write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
@@ -69,7 +70,7 @@ impl<'o> Writing<'o> {
         Ok(name)
     }
 
-    /// Tells what could not be held, once.
+    /// Adds a warning unless it exists already.
     pub(crate) fn warn(&mut self, message: impl Into<String>) {
         let warning = Warning { message: message.into(), at: Span::default() };
         if !self.warnings.contains(&warning) {
@@ -78,13 +79,13 @@ impl<'o> Writing<'o> {
     }
 }
 
-/// True for textures of the same texels, wherever these lie.
+/// True for textures with the same texels, whatever their placement.
 fn have_one_file(a: &Texture, b: &Texture) -> bool {
     let of = |t: &Texture| (t.is_data, t.channel, t.factor, t.threshold);
     Arc::ptr_eq(&a.image, &b.image) && of(a) == of(b)
 }
 
-/// Writes the files beside first, so that the main file never names one that is not there.
+/// Writes the accompanying files first, so that the main file never refers to a missing one.
 pub(crate) fn write_all(path: &Path, writing: Writing) -> Result<Vec<Warning>, FormatError> {
     for (name, bytes) in &writing.beside {
         let beside = path.with_file_name(name);
@@ -94,11 +95,11 @@ pub(crate) fn write_all(path: &Path, writing: Writing) -> Result<Vec<Warning>, F
     Ok(writing.warnings)
 }
 
-/// Gives names that were not given before: a number goes behind one that was.
+/// Generates unique names by appending a number.
 #[derive(Debug, Default)]
 pub(crate) struct UnusedNames {
     taken: HashSet<String>,
-    /// The next number of each name.
+    /// The next number for each name.
     next: HashMap<String, u64>,
 }
 

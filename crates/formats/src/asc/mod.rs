@@ -1,4 +1,4 @@
-//! `.asc`: one keyword, then three vertices, and again. See `docs/formats/asc.md`.
+//! The `.asc` format: a keyword line, then three vertices, repeated. See `docs/formats/asc.md`.
 
 mod read;
 mod write;
@@ -30,7 +30,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// A line that begins with a word, then three of which each is all numbers, 8 at least.
+/// True if a line that begins with a word precedes three lines of numbers only, at least 8 each.
 fn sniff(bytes: &[u8]) -> bool {
     let mut cursor = Cursor::new(&bytes[..bytes.len().min(4096)]);
     let mut vertices = 0;
@@ -47,7 +47,7 @@ fn sniff(bytes: &[u8]) -> bool {
         match (numbers, others) {
             (0, 0) => {}
             (8.., 0) => vertices += 1,
-            // As in the second line of an OFF file: here numbers stand in vertices alone.
+            // In an OFF file the second line looks like this; in `.asc` only vertices hold numbers.
             (1.., 0) => return false,
             _ if vertices > 0 => return false,
             _ => {}

@@ -1,4 +1,4 @@
-//! Reading `.asc`.
+//! Reads `.asc`.
 
 use crate::FormatError;
 use crate::float::parse_f32;
@@ -9,13 +9,13 @@ use bilux_scene::{Mesh, Object, SceneBuilder, Spec, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Numbers of a vertex: position, normal, uv; then what else there is.
+/// Numbers of a plain vertex: position, normal and uv. The other strides add to these.
 const PLAIN: usize = 8;
-/// The same and an integer of which nobody knows the meaning.
+/// A plain vertex followed by an integer whose meaning is unknown.
 const NINTH: usize = 9;
-/// The same as [`PLAIN`], and kd and ks.
+/// A plain vertex followed by kd and ks.
 const COLOURED: usize = 14;
-/// The most numbers that a line may hold: three coloured vertices.
+/// The maximum count of numbers on a line: three coloured vertices.
 const MAX: usize = 3 * COLOURED;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
@@ -48,11 +48,11 @@ struct Asc<'a, 'o, 'r> {
     scene: SceneBuilder,
     oddities: Oddities,
     group: Group,
-    /// Index of each material, by its values.
+    /// Index of each material, keyed by its values.
     materials: HashMap<String, usize>,
 }
 
-/// Triangles that belong together, until the next `object` line.
+/// The triangles of one object, collected until the next `object` line.
 #[derive(Default)]
 struct Group {
     name: String,
@@ -60,7 +60,7 @@ struct Group {
     config: Option<Spec>,
 }
 
-/// Some of a line's words as numbers.
+/// The words of a line, parsed as numbers.
 struct Numbers {
     values: [f32; MAX],
     count: usize,
@@ -68,7 +68,7 @@ struct Numbers {
 
 impl Asc<'_, '_, '_> {
     fn groups(&mut self) -> Result<(), FormatError> {
-        // What the line before said, if it was no vertex.
+        // Start of the previous line, if that was a keyword line.
         let mut keyword = None;
         loop {
             self.skip_empty_lines();
@@ -105,7 +105,7 @@ impl Asc<'_, '_, '_> {
         self.finish_group()
     }
 
-    /// Ordinary files have none but `object`, `config` and comments.
+    /// Ordinary files have no such lines except `object`, `config` and comments.
     fn note_line_without_triangle(&mut self, start: usize) {
         let mut line = Cursor::new(&self.places.bytes()[start..]);
         let word = line.word();
@@ -119,7 +119,7 @@ impl Asc<'_, '_, '_> {
         parse_f32(self.cursor.peek_word()).is_some()
     }
 
-    /// A keyword's line: any text, or numbers of the triangle behind the keyword.
+    /// Reads the rest of a keyword line: arbitrary text, or the numbers of the triangle after the keyword.
     fn after_keyword(&mut self, start: usize) -> Result<(), FormatError> {
         let mut ahead = self.cursor.clone();
         let mut count = 0;
@@ -138,7 +138,7 @@ impl Asc<'_, '_, '_> {
         Ok(())
     }
 
-    /// `object NAME`: what follows belongs together. A name that starts with `-` is a comment.
+    /// `object NAME`: starts a new object. A name that begins with `-` is a comment.
     fn begin_group(&mut self) -> Result<(), FormatError> {
         self.finish_group()?;
         let name = self.cursor.rest_of_line();
@@ -175,7 +175,8 @@ impl Asc<'_, '_, '_> {
         Ok(())
     }
 
-    /// Three vertices. The first line says how many numbers each has; lines may also be broken anywhere.
+    /// Reads three vertices. The first line determines how many numbers each has; later lines may be broken
+    /// anywhere.
     fn triangle(&mut self) -> Result<(), FormatError> {
         let start = self.cursor.offset();
         let mut numbers = self.line_of_numbers()?;
@@ -227,7 +228,7 @@ impl Asc<'_, '_, '_> {
         }
     }
 
-    /// All words up to the line's end, as numbers.
+    /// Parses all words up to the end of the line as numbers.
     fn line_of_numbers(&mut self) -> Result<Numbers, FormatError> {
         let mut numbers = Numbers { values: [0.0; MAX], count: 0 };
         loop {
@@ -256,7 +257,7 @@ impl Asc<'_, '_, '_> {
     fn push(&mut self, values: &[f32], stride: usize) -> Result<(), FormatError> {
         let mesh = &self.group.mesh;
         if !mesh.positions.is_empty() && mesh.vertex_kd.is_empty() == (stride == COLOURED) {
-            // All vertices of a mesh have kd and ks, or none: the rest becomes an object of its own.
+            // Either all vertices of a mesh have kd and ks, or none: the rest becomes an object of its own.
             let (name, config) = (self.group.name.clone(), self.group.config.clone());
             self.finish_group()?;
             (self.group.name, self.group.config) = (name, config);
@@ -281,7 +282,7 @@ impl Asc<'_, '_, '_> {
         Ok(())
     }
 
-    /// Makes an object of what was gathered, if that is anything.
+    /// Makes an object of the collected triangles, if there are any.
     fn finish_group(&mut self) -> Result<(), FormatError> {
         let Group { name, mut mesh, config } = std::mem::take(&mut self.group);
         if mesh.triangles.is_empty() {
@@ -294,7 +295,7 @@ impl Asc<'_, '_, '_> {
         Ok(())
     }
 
-    /// The material of a group.
+    /// The index of a group's material.
     fn material(&mut self, config: Option<Spec>, coloured: bool) -> usize {
         let spec = config.unwrap_or_else(|| plain_material(coloured, coloured));
         let key = format!("{:?}", spec.parameters.0.iter().map(|(_, value, _)| value).collect::<Vec<_>>());
@@ -303,7 +304,7 @@ impl Asc<'_, '_, '_> {
     }
 }
 
-/// Numbers per vertex of a line that holds a whole vertex, or a whole triangle.
+/// The count of numbers per vertex of a line that holds a whole vertex or a whole triangle.
 fn stride_of(count: usize) -> Option<usize> {
     let strides = [PLAIN, NINTH, COLOURED];
     strides.into_iter().find(|&stride| count == stride || count == 3 * stride)

@@ -1,4 +1,4 @@
-//! Writing `.asc`.
+//! Writes `.asc`.
 
 use crate::FormatError;
 use crate::bake::{corners, flat_normal, in_place, name_of, warn_of_scene};
@@ -29,7 +29,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     Ok(())
 }
 
-/// `object NAME`.
+/// Writes the `object NAME` line.
 fn heading(object: &Object, out: &mut Vec<u8>) {
     let name = name_of(object).replace(['\n', '\r'], " ");
     out.extend_from_slice(b"object");
@@ -40,11 +40,11 @@ fn heading(object: &Object, out: &mut Vec<u8>) {
     out.push(b'\n');
 }
 
-/// ks, kd and reflectivity.
+/// The values of a `config` line: ks, kd and reflectivity.
 struct Config([f32; 7]);
 
 impl Config {
-    /// `None` where reading gives the same material without.
+    /// `None` if a reader arrives at the same material without the line.
     fn of(spec: &Spec, mesh: &Mesh, writing: &mut Writing) -> Option<Config> {
         if spec.kind == "phong" && spec.parameters.0.is_empty() && mesh.vertex_kd.is_empty() {
             return None;

@@ -1,23 +1,24 @@
-//! Typed elements in buffers: every component type, normalised or not, interleaved, sparse.
+//! Accessors: typed elements in buffers. They cover every component type, normalised or not, interleaved or
+//! sparse.
 
 use super::document::Document;
 use super::json::JsonNode;
 use crate::FormatError;
 use crate::budget::Budget;
 
-/// A list of elements, checked to lie within its buffer.
+/// A list of elements that is known to lie within its buffer.
 pub(super) struct Accessor<'d> {
     pub(super) node: JsonNode<'d>,
     pub(super) count: usize,
     component: Component,
     shape: Shape,
     is_normalised: bool,
-    /// None where all is zero but for what is sparse.
+    /// `None` if all elements are zero except the sparse ones.
     data: Option<Strided<'d>>,
     sparse: Option<Sparse<'d>>,
 }
 
-/// What numbers are made of.
+/// The component type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Component {
     I8,
@@ -28,21 +29,21 @@ enum Component {
     F32,
 }
 
-/// How many numbers an element has, in columns.
+/// The number of components of an element, in columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shape {
     columns: usize,
     rows: usize,
 }
 
-/// Elements at even distances, the first at the first byte.
+/// Elements at a constant stride, the first one at the first byte.
 #[derive(Clone, Copy)]
 struct Strided<'d> {
     bytes: &'d [u8],
     stride: usize,
 }
 
-/// Elements that stand in place of others.
+/// Elements that replace others.
 struct Sparse<'d> {
     indices: Vec<u32>,
     values: Strided<'d>,
@@ -113,7 +114,7 @@ impl<'d> Accessor<'d> {
         Ok(accessor)
     }
 
-    /// Elements of exactly `N` numbers.
+    /// The elements as arrays of exactly `N` numbers.
     pub(super) fn floats<const N: usize>(&self, budget: &mut Budget) -> Result<Vec<[f32; N]>, FormatError> {
         if self.width() != N {
             let have = self.width();
@@ -125,7 +126,7 @@ impl<'d> Accessor<'d> {
         let mut all = vec![[0.0; N]; self.count];
         if let Some(data) = self.data.filter(|_| self.component == Component::F32 && self.shape.columns == 1)
         {
-            // By far the most, and no choice within the loop.
+            // By far the most common case, without a branch in the loop.
             for (element, bytes) in all.iter_mut().zip(data.bytes.chunks(data.stride)) {
                 let numbers = bytes[..4 * N].chunks_exact(4);
                 element
@@ -144,7 +145,7 @@ impl<'d> Accessor<'d> {
         Ok(all)
     }
 
-    /// All numbers of all elements, one after the other.
+    /// All numbers of all elements, in order.
     pub(super) fn numbers(&self, budget: &mut Budget) -> Result<Vec<f32>, FormatError> {
         let width = self.width();
         let total = self.count.saturating_mul(width);
@@ -161,7 +162,7 @@ impl<'d> Accessor<'d> {
         Ok(all)
     }
 
-    /// Whole numbers, as indices are.
+    /// The elements as whole numbers, such as indices.
     pub(super) fn indices(&self, budget: &mut Budget) -> Result<Vec<u32>, FormatError> {
         if self.width() != 1 || !matches!(self.component, Component::U8 | Component::U16 | Component::U32) {
             return Err(self.node.error("indices must be SCALAR, of 8, 16 or 32 bits without a sign"));
@@ -183,7 +184,7 @@ impl<'d> Accessor<'d> {
         Ok(all)
     }
 
-    /// True when elements begin at multiples of what their numbers take, within the view and within the buffer.
+    /// True if elements begin at multiples of their component size, within the view and within the buffer.
     pub(super) fn is_aligned(&self, document: &'d Document<'d>) -> Result<bool, FormatError> {
         let Some(view) = self.node.get("bufferView") else { return Ok(true) };
         let view = document.named("bufferViews", view)?;
@@ -194,7 +195,7 @@ impl<'d> Accessor<'d> {
         Ok(inside % size == 0 && (inside + outside) % size == 0 && !(is_matrix && inside % 4 != 0))
     }
 
-    /// Numbers of an element.
+    /// The number of components of an element.
     pub(super) fn width(&self) -> usize {
         self.shape.columns * self.shape.rows
     }
@@ -210,7 +211,7 @@ impl<'d> Accessor<'d> {
         }
     }
 
-    /// Bytes from one column to the next: those of matrices begin at multiples of 4.
+    /// Bytes from one column to the next: matrix columns begin at multiples of 4.
     fn column_size(&self) -> usize {
         let bytes = self.shape.rows * self.component.size();
         if self.shape.columns > 1 { bytes.next_multiple_of(4) } else { bytes }
@@ -221,7 +222,7 @@ impl<'d> Accessor<'d> {
     }
 }
 
-/// Elements that lie within a view, or else an error at the node that says they do.
+/// Elements within a view, or else an error at the node that claims they are there.
 fn strided<'d>(
     document: &'d Document<'d>,
     node: JsonNode<'d>,
@@ -307,7 +308,7 @@ impl Component {
         }
     }
 
-    /// The number at the first bytes. Normalised ones go from 0 or -1 to 1. [glTF 2.0, 3.6.2.2]
+    /// The number at the start of the bytes. Normalised ones range from 0 or -1 to 1. [glTF 2.0, 3.6.2.2]
     #[inline]
     fn number(self, bytes: &[u8], is_normalised: bool) -> f32 {
         let (x, greatest) = match self {

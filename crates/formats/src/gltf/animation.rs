@@ -1,4 +1,4 @@
-//! Animation: where nodes are, and how morph targets weigh, at a moment. [glTF 2.0, 3.11 and appendix C]
+//! Animation: node transforms and morph target weights at a given time. [glTF 2.0, 3.11 and appendix C]
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
@@ -10,13 +10,13 @@ use bilux_scene::error::nearest_name;
 use bilux_scene::{Animation, Span};
 use std::collections::{HashMap, HashSet};
 
-/// What of nodes differs from what the file says of them at rest.
+/// The animated values of nodes, which replace those of the rest pose.
 #[derive(Default)]
 pub(super) struct Pose {
     moved: HashMap<(usize, Moves), Vec<f64>>,
 }
 
-/// What of a node a channel moves.
+/// The property of a node that a channel animates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Moves {
     Translation,
@@ -25,7 +25,7 @@ pub(super) enum Moves {
     Weights,
 }
 
-/// How one gets from key to key.
+/// How a sampler interpolates between keys.
 #[derive(Clone, Copy, PartialEq)]
 enum Between {
     Step,
@@ -34,26 +34,26 @@ enum Between {
 }
 
 impl Pose {
-    /// Three or four numbers of a node, if they are moved.
+    /// Three or four numbers of a node, if they are animated.
     pub(super) fn numbers<const N: usize>(&self, node: usize, moves: Moves) -> Option<[f64; N]> {
         self.moved.get(&(node, moves))?.as_slice().try_into().ok()
     }
 
-    /// The weights of a node's morph targets, if they are moved.
+    /// The weights of a node's morph targets, if they are animated.
     pub(super) fn weights(&self, node: usize) -> Option<&[f64]> {
         self.moved.get(&(node, Moves::Weights)).map(Vec::as_slice)
     }
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Every animation of the file, and the pose that those which play give at the time that was asked for.
+    /// Reads every animation of the file, and poses the nodes at the requested time by those that play.
     pub(super) fn pose(&mut self) -> Result<(), FormatError> {
         let list = self.document.root.list("animations")?;
         let chosen = self.chosen_animation(&list)?;
         let mut taken = HashSet::new();
         for (i, node) in list.into_iter().enumerate() {
             let targets: Vec<_> = node.list("channels")?.iter().filter_map(target).collect();
-            // The first plays, and with it all that move something else.
+            // The first animation plays, and with it all that animate other targets.
             let plays = match chosen {
                 Some(chosen) => i == chosen,
                 None => !targets.is_empty() && targets.iter().all(|target| !taken.contains(target)),
@@ -72,14 +72,14 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// The index of the animation that the options name.
+    /// The index of the animation that the options select.
     fn chosen_animation(&self, list: &[JsonNode<'d>]) -> Result<Option<usize>, FormatError> {
         let Some(wanted) = &self.reading.options.animation else { return Ok(None) };
         let names: Vec<String> = list.iter().map(|node| node.name().to_owned()).collect();
         named_or_numbered("animation", wanted, &names, &self.document.root.at_key("animations")).map(Some)
     }
 
-    /// Adds what an animation says to the pose, if it plays; gives when it ends.
+    /// Adds an animation to the pose if it plays; returns its end time.
     fn play(&mut self, animation: JsonNode<'d>, plays: bool) -> Result<f32, FormatError> {
         let samplers = animation.list("samplers")?;
         let mut end = 0f32;
@@ -114,7 +114,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(end)
     }
 
-    /// A sampler's value at the time that was asked for, and the time of its last key.
+    /// A sampler's value at the requested time, and the time of its last key.
     fn sample(
         &mut self,
         sampler: JsonNode<'d>,
@@ -164,7 +164,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 }
 
-/// What a channel moves; none where that is nothing that moves here.
+/// The target of a channel; `None` if this reader does not animate it.
 fn target(channel: &JsonNode) -> Option<(usize, Moves)> {
     let target = channel.get("target")?;
     let moves = match target.get("path")?.as_text().ok()? {
@@ -177,7 +177,7 @@ fn target(channel: &JsonNode) -> Option<(usize, Moves)> {
     Some((target.get("node")?.as_count().ok()?, moves))
 }
 
-/// The index of what a user has named, or counted from 0.
+/// The index of an item that the user selected by name or by number, from 0.
 pub(super) fn named_or_numbered(
     what: &str,
     wanted: &str,
@@ -196,18 +196,18 @@ pub(super) fn named_or_numbered(
     })
 }
 
-/// Keys in order of time: `width` numbers each, and for cubic ones the tangents before and behind them.
+/// Keys in order of time: `width` numbers each; cubic keys also have an in-tangent and an out-tangent.
 struct Keys<'a> {
     times: &'a [f32],
     values: &'a [f32],
     width: usize,
     between: Between,
-    /// They are quaternions.
+    /// True if the values are quaternions.
     turns: bool,
 }
 
 impl Keys<'_> {
-    /// The value at a time; before the first and behind the last key it rests.
+    /// The value at a time; constant before the first key and after the last.
     fn at(&self, time: f64) -> Vec<f64> {
         let next = self.times.partition_point(|&t| f64::from(t) <= time);
         let Some(key) = next.checked_sub(1) else { return self.value(0) };
@@ -223,7 +223,7 @@ impl Keys<'_> {
         if self.turns { slerp(&a, &b, t) } else { a.iter().zip(b).map(|(a, b)| a + (b - a) * t).collect() }
     }
 
-    /// Cubic Hermite between a key and the next. [glTF 2.0, C.5]
+    /// Cubic Hermite interpolation between a key and the next. [glTF 2.0, C.5]
     fn hermite(&self, key: usize, span: f64, t: f64) -> Vec<f64> {
         let (t2, t3) = (t * t, t * t * t);
         let weights =
@@ -238,14 +238,14 @@ impl Keys<'_> {
         self.part(key, 1).iter().map(|&x| f64::from(x)).collect()
     }
 
-    /// Of a cubic key the tangent before it (0), its value (1) and the tangent behind it (2); of others the value.
+    /// For a cubic key, its in-tangent (0), value (1) or out-tangent (2); for others, the value.
     fn part(&self, key: usize, part: usize) -> &[f32] {
         let index = if self.between == Between::Cubic { 3 * key + part } else { key };
         &self.values[index * self.width..][..self.width]
     }
 }
 
-/// Along the shorter great arc at constant speed. [Shoemake 1985]
+/// Interpolates along the shorter great arc at constant speed. [Shoemake 1985]
 fn slerp(a: &[f64], b: &[f64], t: f64) -> Vec<f64> {
     let quaternion = |q: &[f64]| DQuat::from_xyzw(q[0], q[1], q[2], q[3]).normalize();
     let (a, mut b) = (quaternion(a), quaternion(b));
@@ -274,8 +274,8 @@ mod tests {
         assert_eq!([0.0, 1.0, 2.9, 3.0, 7.0].map(|t| step.at(t)[0]), [5.0, 5.0, 5.0, 9.0, 9.0]);
         let line = keys(&times, &[5.0, 9.0], 1, Between::Linear);
         assert_eq!([0.0, 1.5, 2.0, 3.0].map(|t| line.at(t)[0]), [5.0, 6.0, 7.0, 9.0]);
-        // In tangent, value, out tangent of each key; at the middle of two seconds:
-        // (5 + 9) / 2 + 2 (1/8 · 3 - 1/8 · (-1)) = 8.
+        // Each key is in-tangent, value, out-tangent; the keys are two seconds apart, and midway (5 + 9) / 2 + 2
+        // (1/8 · 3 - 1/8 · (-1)) = 8.
         let cubic = keys(&times, &[0.0, 5.0, 3.0, -1.0, 9.0, 0.0], 1, Between::Cubic);
         assert_eq!([0.0, 1.0, 2.0, 3.0].map(|t| cubic.at(t)[0]), [5.0, 5.0, 8.0, 9.0]);
     }
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn rotations_take_the_shorter_way() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        // A quarter turn about z, written as its negative.
+        // A quarter turn about z, written as the negated quaternion.
         let turned = slerp(&[0.0, 0.0, 0.0, 1.0], &[0.0, 0.0, -half, -half], 1.0 / 3.0);
         let expected = 15f64.to_radians();
         assert!((2.0 * atan2_f64(turned[2], turned[3]) - 2.0 * expected).abs() < 1e-12, "{turned:?}");

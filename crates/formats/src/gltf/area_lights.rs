@@ -1,4 +1,4 @@
-//! `EXT_lights_area`: flat panels and discs that give light on one side, in nits.
+//! `EXT_lights_area`: flat panels and discs that emit from one side, in nits.
 
 use super::graph::Placed;
 use super::json::JsonNode;
@@ -10,11 +10,11 @@ use bilux_scene::{Mesh, Object, Spec};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Corners of a disc.
+/// Number of vertices around a disc.
 const AROUND: u32 = 64;
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// A light at its node, shining along its -z.
+    /// Places a light at its node, shining along the node's -z.
     pub(super) fn area_light(&mut self, user: JsonNode<'d>, placed: &Placed<'d>) -> Result<(), FormatError> {
         let index = user.need("light")?;
         let list = self.document.root.extension("EXT_lights_area");
@@ -62,7 +62,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 }
 
-/// A disc that is seen to turn counter-clockwise from where `v × u` points.
+/// A disc whose vertices run counter-clockwise as seen from the side that `v × u` points to.
 fn disc(middle: DVec3, u: DVec3, v: DVec3) -> Mesh {
     let rim = |i: u32| -> Vec3 {
         let (sin, cos) = sin_cos_f64(f64::from(i) / f64::from(AROUND) * TAU);

@@ -1,4 +1,4 @@
-//! Cameras, which look along their node's -z.
+//! Cameras, which look along the -z axis of their node.
 
 use super::json::JsonNode;
 use crate::FormatError;
@@ -7,7 +7,7 @@ use bilux_math::{DMat4, DVec3};
 use bilux_scene::Spec;
 use bilux_scene::cameras::CameraSpec;
 
-/// A camera at its node; none, with a warning, where its node leaves it no direction.
+/// A camera at its node; `None`, with a warning, if the node's transform leaves it no direction.
 pub(super) fn camera(
     camera: JsonNode,
     node: JsonNode,
@@ -31,7 +31,7 @@ pub(super) fn camera(
         return Ok(None);
     };
     let position = world.w_axis.truncate();
-    // Far from the origin one metre may be less than what 32 bits tell apart.
+    // Far from the origin, 32-bit floats may not resolve one metre.
     let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
     let mut spec = Spec::new(name, kind.as_text()?)
         .with("position", position.as_vec3())

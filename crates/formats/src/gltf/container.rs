@@ -1,10 +1,10 @@
-//! The binary container, GLB: a header and chunks, of which the first is JSON and the second may be a buffer.
+//! GLB, the binary container: a header and chunks. The first chunk is JSON, and the second may be a buffer.
 
 use crate::FormatError;
 use crate::reading::Source;
 use crate::text::whole_file;
 
-/// What every GLB file begins with.
+/// The first bytes of every GLB file.
 pub(super) const MAGIC: &[u8] = b"glTF";
 const JSON: u32 = u32::from_le_bytes(*b"JSON");
 const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
@@ -12,13 +12,13 @@ const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
 /// The parts of a file.
 pub(super) struct Container<'a> {
     pub(super) json: &'a [u8],
-    /// The buffer that a GLB file brings.
+    /// The buffer in a GLB file's binary chunk.
     pub(super) binary: Option<&'a [u8]>,
-    /// What was odd.
+    /// Warnings about the container.
     pub(super) warnings: Vec<String>,
 }
 
-/// Takes a file apart; one that is no GLB is all JSON.
+/// Splits a file into its parts; a file that is not GLB is all JSON.
 pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError> {
     let fail = |message: String| Err(FormatError::malformed(message, whole_file(source.name)));
     let bytes = source.bytes;
@@ -94,7 +94,7 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
     Ok(container)
 }
 
-/// A 32-bit number, least byte first.
+/// A little-endian 32-bit number.
 fn word(bytes: &[u8], at: usize) -> Option<u32> {
     let four = bytes.get(at..at.checked_add(4)?)?;
     Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]))

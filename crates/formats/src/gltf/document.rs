@@ -1,4 +1,4 @@
-//! The document as a whole: its JSON and the bytes of its buffers.
+//! The whole document: its JSON and the bytes of its buffers.
 
 use super::container::Container;
 use super::json::JsonNode;
@@ -8,32 +8,32 @@ use crate::reading::{Oddities, Reading, Source};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// JSON and buffers.
+/// The JSON and the buffers.
 pub(super) struct Document<'a> {
     pub(super) root: JsonNode<'a>,
     buffers: Vec<Cow<'a, [u8]>>,
-    /// The bytes of views that are packed in the file, by their index.
+    /// The bytes of compressed views after decompression, by index.
     unpacked: HashMap<usize, Vec<u8>>,
-    /// The data of accessors whose primitives are packed as a whole, by their index.
+    /// The data of accessors whose primitives are compressed as a whole (Draco), by index.
     drawn: HashMap<usize, Drawn>,
-    /// Bytes of all buffers and of the file itself.
+    /// The size in bytes of all buffers and of the file itself.
     size: usize,
-    /// The file brings a buffer of its own.
+    /// True if the file contains a buffer of its own.
     has_binary: bool,
 }
 
-/// The data of an accessor that lies in no buffer, its elements one after the other.
+/// The data of an accessor that lies in no buffer, as consecutive elements.
 pub(super) struct Drawn {
     pub(super) bytes: Vec<u8>,
-    /// Elements.
+    /// The number of elements.
     pub(super) count: usize,
 }
 
-/// A part of a buffer.
+/// A slice of a buffer.
 #[derive(Clone, Copy)]
 pub(super) struct BufferView<'d> {
     pub(super) bytes: &'d [u8],
-    /// Bytes from one element to the next, where it says so.
+    /// Bytes from one element to the next, if the view states it.
     pub(super) stride: Option<usize>,
 }
 
@@ -56,7 +56,7 @@ impl<'a> Document<'a> {
             let bytes: Cow<[u8]> = match (node.get("uri"), container.binary) {
                 (Some(uri), _) => Cow::Owned(uri::load(reading, source, uri)?),
                 (None, Some(binary)) if i == 0 => Cow::Borrowed(binary),
-                // What only a decoder fills; it is an error to look into it.
+                // Only a decoder fills this buffer; reading from it is an error.
                 (None, _) => Cow::Borrowed(&[]),
             };
             if bytes.len() < wanted && !bytes.is_empty() {
@@ -94,30 +94,30 @@ impl<'a> Document<'a> {
         Ok(unpacked)
     }
 
-    /// The data of an accessor that was packed with its whole primitive.
+    /// The data of an accessor that was compressed with its whole primitive.
     pub(super) fn drawn(&self, accessor: usize) -> Option<&Drawn> {
         self.drawn.get(&accessor)
     }
 
-    /// Bytes of all that was read: a bound on what an honest file can describe without data.
+    /// The size in bytes of all that was read: a bound on what an honest file can describe without data.
     pub(super) fn size(&self) -> usize {
         self.size
     }
 
-    /// True where the file brings a buffer of its own, as GLB may.
+    /// True if the file contains a buffer of its own, as GLB may.
     pub(super) fn has_binary(&self) -> bool {
         self.has_binary
     }
 
-    /// How many bytes a buffer has.
+    /// The length of a buffer in bytes.
     pub(super) fn buffer_length(&self, index: usize) -> usize {
         self.buffers.get(index).map_or(0, |bytes| bytes.len())
     }
 
-    /// What is odd about a buffer view that can be read.
+    /// A warning about a buffer view that can still be read.
     ///
     /// # Errors
-    /// What is wrong with one that cannot be.
+    /// If the view cannot be read.
     pub(super) fn check_view(&self, view: JsonNode<'a>) -> Result<Option<&'static str>, FormatError> {
         if view.extension(meshopt::NAME).is_some() {
             return Ok(None);
@@ -131,7 +131,7 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// The item of a list of the document that `index` names.
+    /// The item that `index` refers to in a list of the document.
     pub(super) fn named(&self, list: &'a str, index: JsonNode<'a>) -> Result<JsonNode<'a>, FormatError> {
         let number = index.as_count()?;
         self.root.item(list, number).ok_or_else(|| {
@@ -147,7 +147,7 @@ impl<'a> Document<'a> {
         Ok(&self.buffers[index.as_count()?])
     }
 
-    /// The bytes of the buffer view that `index` names.
+    /// The bytes of the buffer view that `index` refers to.
     pub(super) fn view(&self, index: JsonNode<'a>) -> Result<BufferView<'_>, FormatError> {
         let node = self.named("bufferViews", index)?;
         let buffer = self.buffer(node.need("buffer")?)?;
@@ -157,7 +157,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The part of a buffer that a view says.
+    /// The slice of a buffer that a view describes.
     fn part<'s>(&'s self, node: JsonNode<'a>, buffer: &'s [u8]) -> Result<BufferView<'s>, FormatError> {
         let offset = node.count("byteOffset")?.unwrap_or(0);
         let length = node.need("byteLength")?.as_count()?;

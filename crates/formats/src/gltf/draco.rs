@@ -1,5 +1,5 @@
-//! `KHR_draco_mesh_compression`: primitives whose attributes and indices are packed together. What comes out stands in for the
-//! data of their accessors.
+//! `KHR_draco_mesh_compression`: primitives whose attributes and indices are compressed together. The decoded data
+//! replaces that of their accessors.
 
 use super::document::{Document, Drawn};
 use super::json::JsonNode;
@@ -14,11 +14,11 @@ use std::collections::HashMap;
 
 pub(super) const NAME: &str = "KHR_draco_mesh_compression";
 
-/// What the decoder's tables take beside what comes out, at most: bytes of a triangle and of a corner.
+/// Upper bounds on the decoder's tables in addition to its output, in bytes per triangle and per corner.
 const BYTES_PER_FACE: u64 = 256;
 const BYTES_PER_POINT: u64 = 64;
 
-/// The data of all accessors of packed primitives, by their number.
+/// The data of all accessors of compressed primitives, by accessor index.
 pub(super) fn unpack(document: &Document, budget: &mut Budget) -> Result<HashMap<usize, Drawn>, FormatError> {
     let mut drawn = HashMap::new();
     for mesh in document.root.list("meshes")? {
@@ -42,7 +42,7 @@ pub(super) fn unpack(document: &Document, budget: &mut Budget) -> Result<HashMap
     Ok(drawn)
 }
 
-/// Accessors of a primitive and the attributes that fill them; none fills that of the indices.
+/// The accessors of a primitive and the attributes that fill them; no attribute fills the indices.
 fn wanted<'d>(
     primitive: JsonNode<'d>,
     extension: JsonNode<'d>,
@@ -85,14 +85,14 @@ fn decoded(document: &Document, extension: JsonNode, budget: &mut Budget) -> Res
         }
         Some(Err(error)) => Err(broken(fault(error.kind()))),
         Some(Ok(mesh)) => {
-            // Counted for good, although it is gone soon: that bounds how often a short file can ask for it.
+            // Never given back, although it is freed soon: this bounds how often a short file can demand it.
             budget.take_bytes(mesh.num_faces() as u64 * 12, &extension.at().file)?;
             Ok(mesh)
         }
     }
 }
 
-/// What a kind of error of the decoder means.
+/// Describes a kind of decoder error.
 fn fault(kind: ErrorKind) -> &'static str {
     match kind {
         ErrorKind::LimitExceeded => "they become more than there is memory for",
@@ -103,7 +103,7 @@ fn fault(kind: ErrorKind) -> &'static str {
     }
 }
 
-/// What an accessor holds: an attribute of all points, or the corners of all triangles.
+/// The data of an accessor: an attribute of all points, or the corners of all triangles.
 fn of_accessor(
     document: &Document,
     number: usize,
@@ -142,7 +142,7 @@ fn of_accessor(
     Ok(Drawn { bytes, count })
 }
 
-/// The values of all points, one after the other, as they are.
+/// The raw values of all points, in order.
 fn raw(packed: &PointAttribute, count: usize) -> Option<Vec<u8>> {
     let size = packed.data_type().byte_length() * usize::from(packed.num_components());
     let stride = usize::try_from(packed.byte_stride()).ok()?;

@@ -1,11 +1,11 @@
-//! Which extensions are understood.
+//! The supported extensions.
 
 use super::json::JsonNode;
 use crate::FormatError;
 use crate::reading::Oddities;
 use bilux_scene::error::nearest_name;
 
-/// Extensions that are read, in whole or with a warning that says what is not.
+/// Extensions that are read, either fully or with a warning about what is not.
 const KNOWN: &[&str] = &[
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
@@ -35,10 +35,10 @@ const KNOWN: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that carry no part of the picture.
+/// Extensions that do not affect the rendered image.
 const NOTHING_TO_SEE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
 
-/// Refuses what a file cannot be drawn without, and warns of all else that is not understood.
+/// Refuses a file that requires an unsupported extension, and warns about all others that are not supported.
 pub(super) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), FormatError> {
     for name in root.list("extensionsRequired")? {
         let text = name.as_text()?;
@@ -57,7 +57,7 @@ pub(super) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), Forma
     Ok(())
 }
 
-/// Looks for extensions wherever they are used. The JSON is no deeper than its parser allows.
+/// Looks for extensions at every place where they are used. The parser limits the nesting of the JSON.
 fn note_unknown(node: JsonNode, oddities: &mut Oddities) {
     for (key, value) in node.entries() {
         if key == "extras" {

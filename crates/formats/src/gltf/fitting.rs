@@ -1,15 +1,16 @@
-//! What is asked of a surface, as far as our materials can show it.
+//! Fits the requested surface to what the renderer's materials support.
 
 use super::reader::Gltf;
 use bilux_math::Rgb;
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::{MATERIALS, Span, Spec, Value};
 
-/// The one material that glTF is mapped to.
+/// The one material that glTF materials map to.
 const KIND: &str = "principled";
 
 impl Gltf<'_, '_, '_> {
-    /// Puts a material into the scene, within the ranges of its row; what the row has no word for is told.
+    /// Adds a material to the scene, clamped to the ranges of its table row; warns about parameters that the row
+    /// lacks.
     pub(super) fn fitted(&mut self, draft: Spec) -> usize {
         let spec = self.principled(draft);
         self.scene.add_material(spec)
@@ -34,7 +35,7 @@ impl Gltf<'_, '_, '_> {
         fitted
     }
 
-    /// A value within its range; none, with a warning, where a picture cannot stand.
+    /// A value clamped to its range; `None`, with a warning, if a texture is not supported there.
     fn within(&mut self, parameter: &Parameter, value: Value, at: &Span) -> Option<Value> {
         let takes_pictures = matches!(
             parameter.kind,
@@ -74,7 +75,7 @@ fn clamped(value: &Value, min: f64, max: f64) -> Value {
     }
 }
 
-/// True for values that are as good as none.
+/// True for values that can be dropped without a warning.
 fn says_nothing(key: &str, value: &Value) -> bool {
     match key {
         "opacity" => *value == Value::from(1.0f32),

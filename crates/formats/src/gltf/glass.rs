@@ -1,4 +1,4 @@
-//! What clear materials are that say nothing of a thickness: walls in glTF, solid here where a mesh has an inside.
+//! Transmissive materials without a thickness: thin walls in glTF, solid here if the mesh is closed.
 
 use super::json::JsonNode;
 use super::reader::Gltf;
@@ -7,7 +7,7 @@ use crate::{FormatError, Glass};
 use bilux_scene::Mesh;
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Whether a mesh is of glass that says nothing of a thickness, and that is solid here.
+    /// True if a mesh is of glass that states no thickness and that is to be solid.
     pub(super) fn is_solid_glass(
         &mut self,
         index: Option<JsonNode<'d>>,

@@ -1,7 +1,7 @@
-//! `KHR_materials_pbrSpecularGlossiness`, in terms of metalness and roughness.
+//! `KHR_materials_pbrSpecularGlossiness`, converted to metalness and roughness.
 //!
-//! What reflects as strongly as nothing but metal does is metal. As much of it, and in the colour, as gives the same
-//! diffuse and specular reflectance together, as far as both can be had.
+//! A surface whose specular reflectance only a metal reaches is metal. The metalness and the base colour are those
+//! that give the same diffuse and the same specular reflectance together, as far as both are possible.
 
 use super::json::JsonNode;
 use super::material::Draft;
@@ -14,11 +14,11 @@ use bilux_scene::Texture;
 use bilux_scene::texture::{Channel, Image, Texels};
 use std::sync::Arc;
 
-/// What is not metal reflects straight on, for an index of 1.5.
+/// The reflectance of a dielectric at normal incidence, for an index of refraction of 1.5.
 const DIELECTRIC: f32 = 0.04;
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Base colour, metalness, roughness and opacity of a material of this extension.
+    /// Sets base colour, metalness, roughness and opacity of a material with this extension.
     pub(super) fn glossy(
         &mut self,
         node: JsonNode<'d>,
@@ -60,7 +60,8 @@ impl<'d> Gltf<'d, '_, '_> {
         self.opacity(node, of_diffuse, alpha, draft)
     }
 
-    /// Pictures of the base colour, and of roughness and metalness, that lie as the larger of those that they are made of.
+    /// Bakes an image of the base colour and one of roughness and metalness, with the size and placement of the
+    /// larger source.
     fn baked(
         &mut self,
         (diffuse, diffuse_map): (Rgb, Option<&Texture>),
@@ -98,10 +99,12 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 }
 
-/// The base colour and the metalness of what reflects so much diffusely, and so much straight on.
+/// The base colour and metalness of a surface with the given diffuse reflectance and specular reflectance at
+/// normal incidence.
 ///
-/// With base colour c and metalness m, diffuse is c (1 - m) (1 - 0.04) / (1 - s), where s is the greatest specular
-/// reflectance, and specular is 0.04 (1 - m) + c m. Eliminating c, by brightness, leaves a quadratic equation for m.
+/// With base colour c and metalness m, diffuse is c (1 - m) (1 - 0.04) / (1 - s), where s is the maximum specular
+/// reflectance, and specular is 0.04 (1 - m) + c m. Eliminating c, by brightness, leaves a quadratic equation for
+/// m.
 fn as_metal(diffuse: Rgb, specular: Rgb) -> (Rgb, f32) {
     let left = 1.0 - specular.to_array().into_iter().fold(0.0, f32::max).min(1.0);
     let (d, s) = (brightness(diffuse) * left / (1.0 - DIELECTRIC), brightness(specular));
@@ -113,11 +116,11 @@ fn as_metal(diffuse: Rgb, specular: Rgb) -> (Rgb, f32) {
     };
     let from_diffuse = diffuse * (left / (1.0 - DIELECTRIC) / (1.0 - metalness).max(1e-6));
     let from_specular = specular.map(|c| (c - DIELECTRIC * (1.0 - metalness)) / metalness.max(1e-6));
-    // Each tells the colour where it has something of it.
+    // Each reflectance determines the colour to the degree that it contributes.
     (from_diffuse.lerp(from_specular, metalness * metalness).clamp(0.0, 1.0), metalness)
 }
 
-/// How bright a colour looks, as the root of its weighted mean square.
+/// The perceived brightness of a colour, as the root of its weighted mean square.
 fn brightness(colour: Rgb) -> f32 {
     let [r, g, b] = colour.to_array();
     (0.299 * r * r + 0.587 * g * g + 0.114 * b * b).sqrt()

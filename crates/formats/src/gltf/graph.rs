@@ -1,4 +1,4 @@
-//! The nodes of the scene, each with its place in the world.
+//! The nodes of the scene with their transforms to world space.
 
 use super::SURROUNDINGS;
 use super::json::JsonNode;
@@ -7,21 +7,21 @@ use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::DMat4;
 
-/// A node that is in the scene.
+/// A node of the scene.
 #[derive(Clone, Copy)]
 pub(super) struct Placed<'d> {
     pub(super) node: JsonNode<'d>,
-    /// Its number in the file.
+    /// Its index in the file.
     pub(super) index: usize,
-    /// From its space to the world.
+    /// The transform from its space to world space.
     pub(super) world: DMat4,
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// All nodes below the scene's, parents first, in the order of the file.
+    /// All nodes of the scene, parents first, in the order of the file.
     ///
     /// # Errors
-    /// When a node is reached twice, from two parents or from itself.
+    /// If a node is reached twice, from two parents or from itself.
     pub(super) fn nodes(&mut self) -> Result<Vec<Placed<'d>>, FormatError> {
         let root = self.document.root;
         let count = root.list("nodes")?.len();
@@ -49,7 +49,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(placed)
     }
 
-    /// The indices of the scene's own nodes, as the file has them.
+    /// The indices of the scene's root nodes, as the file lists them.
     fn roots(&mut self) -> Result<Vec<JsonNode<'d>>, FormatError> {
         let root = self.document.root;
         let scenes = root.list("scenes")?;
@@ -62,7 +62,7 @@ impl<'d> Gltf<'d, '_, '_> {
             let what = format!("the file has {} scenes: {chosen} is shown", scenes.len());
             self.oddities.note(&what, || root.at_key("scenes"));
         }
-        // Where we have written it, it holds all that is around.
+        // A scene that Bilux wrote records all of its surroundings.
         let around = scene.as_ref().and_then(|scene| scene.get("extras")?.get(SURROUNDINGS));
         self.scene.surroundings_unsaid = around.is_none();
         match scene {

@@ -1,4 +1,4 @@
-//! `EXT_mesh_gpu_instancing`: one node, many places.
+//! `EXT_mesh_gpu_instancing`: one node with many instances.
 
 use super::accessor::Accessor;
 use super::graph::Placed;
@@ -7,7 +7,7 @@ use super::reader::Gltf;
 use crate::FormatError;
 use bilux_math::DMat4;
 
-/// The places of one mesh, each made when it is asked for.
+/// The transforms of a mesh's instances, each computed on demand.
 pub(super) struct Instances {
     count: usize,
     node: DMat4,
@@ -17,7 +17,7 @@ pub(super) struct Instances {
 }
 
 impl Instances {
-    /// One place.
+    /// A single instance.
     pub(super) fn once(node: DMat4) -> Instances {
         Instances { count: 1, node, translations: None, rotations: None, scales: None }
     }
@@ -34,14 +34,14 @@ impl Instances {
             let rotation =
                 self.rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |list| list[i].map(f64::from));
             let local = compose(pick3(&self.translations, i, 0.0), rotation, pick3(&self.scales, i, 1.0));
-            // What is broken is told where it is placed.
+            // A degenerate transform is reported where the instance is placed.
             self.node * local.unwrap_or(DMat4::ZERO)
         })
     }
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Where a node's mesh stands in the world: once, or as often as the extension says.
+    /// The world transforms of a node's mesh: one, or as many as the extension lists.
     pub(super) fn instances(&mut self, placed: &Placed<'d>) -> Result<Instances, FormatError> {
         let Some(extension) = placed.node.extension("EXT_mesh_gpu_instancing") else {
             return Ok(Instances::once(placed.world));

@@ -1,4 +1,4 @@
-//! A value of the document together with where it stands, as a JSON pointer. [Bryan 2013]
+//! A value of the document together with its location, as a JSON pointer. [Bryan 2013]
 
 use crate::FormatError;
 use bilux_scene::Span;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// A value and its place. Cheap to copy.
+/// A value and its location. Cheap to copy.
 #[derive(Clone, Copy)]
 pub(super) struct JsonNode<'a> {
     value: &'a Value,
@@ -21,7 +21,7 @@ enum Step<'a> {
     Index(usize),
 }
 
-/// Deeper places are told as that of what holds them.
+/// Deeper values are reported at the location of the value that contains them.
 const LONGEST_PATH: usize = 10;
 
 impl<'a> JsonNode<'a> {
@@ -39,11 +39,11 @@ impl<'a> JsonNode<'a> {
         next
     }
 
-    /// Where it stands: the file, and behind `#` the pointer.
+    /// Its location: the file, and after `#` the pointer.
     pub(super) fn at(&self) -> Span {
         let mut place = format!("{}#", self.file);
         for step in &self.path[..self.length] {
-            // Writing into a string does not fail.
+            // Writing to a String cannot fail.
             let _ = match step {
                 Step::Key(key) => write!(place, "/{}", key.replace('~', "~0").replace('/', "~1")),
                 Step::Index(index) => write!(place, "/{index}"),
@@ -52,12 +52,12 @@ impl<'a> JsonNode<'a> {
         Span { file: place.into(), line: 0, column: 0 }
     }
 
-    /// The same place, one key further, whether there is anything or not.
+    /// The location of a key of this value, whether or not the key exists.
     pub(super) fn at_key(&self, key: &'a str) -> Span {
         self.step(self.value, Step::Key(key)).at()
     }
 
-    /// A refusal at this place.
+    /// An error at this location.
     pub(super) fn error(&self, message: impl Into<String>) -> FormatError {
         FormatError::malformed(message, self.at())
     }
@@ -66,7 +66,7 @@ impl<'a> JsonNode<'a> {
         self.error(format!("this is {}, but must be {wanted}", self.shortened()))
     }
 
-    /// The value as it is written, cut where it is long.
+    /// The value as JSON text, truncated if it is long.
     pub(super) fn shortened(&self) -> String {
         let found = self.value.to_string();
         if found.len() > 40 { format!("{}…", found.chars().take(40).collect::<String>()) } else { found }
@@ -77,7 +77,7 @@ impl<'a> JsonNode<'a> {
         self.value
     }
 
-    /// Where it stands in the list that holds it.
+    /// Its index in the list that contains it.
     pub(super) fn number_in_list(&self) -> Option<usize> {
         match self.path[..self.length].last() {
             Some(Step::Index(index)) => Some(*index),
@@ -85,7 +85,7 @@ impl<'a> JsonNode<'a> {
         }
     }
 
-    /// The same for what holds the list: of a primitive, the number of its mesh.
+    /// The index of the item that contains its list: for a primitive, the index of its mesh.
     pub(super) fn number_of_parent(&self) -> Option<usize> {
         match self.path[..self.length] {
             [.., Step::Index(index), Step::Key(_), Step::Index(_)] => Some(index),
@@ -93,22 +93,22 @@ impl<'a> JsonNode<'a> {
         }
     }
 
-    /// The value of a key, if there is one.
+    /// The value of a key, if it exists.
     pub(super) fn get(&self, key: &'a str) -> Option<JsonNode<'a>> {
         self.value.get(key).map(|value| self.step(value, Step::Key(key)))
     }
 
-    /// The value of a key that has to be there.
+    /// The value of a required key.
     pub(super) fn need(&self, key: &'a str) -> Result<JsonNode<'a>, FormatError> {
         self.get(key).ok_or_else(|| self.error(format!("'{key}' is missing here")))
     }
 
-    /// An extension, if it is used here.
+    /// An extension, if it is used on this value.
     pub(super) fn extension(&self, name: &'a str) -> Option<JsonNode<'a>> {
         self.get("extensions")?.get(name)
     }
 
-    /// Keys with their values.
+    /// The keys with their values.
     pub(super) fn entries(&self) -> impl Iterator<Item = (&'a str, JsonNode<'a>)> + use<'a> {
         let here = *self;
         let entries = self.value.as_object().into_iter().flatten();
@@ -124,19 +124,19 @@ impl<'a> JsonNode<'a> {
         Ok(items.iter().enumerate().map(move |(i, value)| here.step(value, Step::Index(i))))
     }
 
-    /// The items of a list; none where it is no list.
+    /// The items of a list; none if this is not a list.
     pub(super) fn children(&self) -> impl Iterator<Item = JsonNode<'a>> + use<'a> {
         let here = *self;
         let items = self.value.as_array().into_iter().flatten().enumerate();
         items.map(move |(i, value)| here.step(value, Step::Index(i)))
     }
 
-    /// The items of the list under a key; none where there is no such key.
+    /// The items of the list under a key; none if the key does not exist.
     pub(super) fn list(&self, key: &'a str) -> Result<Vec<JsonNode<'a>>, FormatError> {
         self.get(key).map_or(Ok(Vec::new()), |list| Ok(list.items()?.collect()))
     }
 
-    /// One item of the list under a key, such as a mesh of the document.
+    /// One item of the list under a key, such as one mesh of the document.
     pub(super) fn item(&self, key: &'a str, index: usize) -> Option<JsonNode<'a>> {
         let list = self.get(key)?;
         let value = list.value.as_array()?.get(index)?;
@@ -147,13 +147,13 @@ impl<'a> JsonNode<'a> {
         self.value.is_object()
     }
 
-    /// This as a finite number.
+    /// The value as a finite number.
     pub(super) fn as_number(&self) -> Result<f64, FormatError> {
         let number = self.value.as_f64().filter(|x| (*x as f32).is_finite());
         number.ok_or_else(|| self.wrong("a number that is finite in 32 bits"))
     }
 
-    /// This as an index or a count, from 0. `3.0` counts as 3.
+    /// The value as an index or a count, from 0. `3.0` counts as 3.
     pub(super) fn as_count(&self) -> Result<usize, FormatError> {
         let whole = |x: &f64| x.fract() == 0.0 && (0.0..9e15).contains(x);
         let count = self.value.as_u64().or_else(|| self.value.as_f64().filter(whole).map(|x| x as u64));
@@ -182,7 +182,7 @@ impl<'a> JsonNode<'a> {
         self.get(key).map_or(Ok(false), read)
     }
 
-    /// A list of exactly so many numbers.
+    /// A list of exactly `N` numbers.
     pub(super) fn numbers<const N: usize>(&self, key: &'a str) -> Result<Option<[f64; N]>, FormatError> {
         let Some(node) = self.get(key) else { return Ok(None) };
         let wrong = || node.wrong(&format!("a list of {N} numbers"));
@@ -197,7 +197,7 @@ impl<'a> JsonNode<'a> {
         Ok(Some(numbers))
     }
 
-    /// What things are called in the file; empty where they are not.
+    /// The name of the item in the file; empty if it has none.
     pub(super) fn name(&self) -> &'a str {
         self.value.get("name").and_then(Value::as_str).unwrap_or_default()
     }

@@ -1,4 +1,4 @@
-//! `KHR_lights_punctual`: candela and lux are taken one to one as W/sr and W/m².
+//! `KHR_lights_punctual`: candela and lux become W/sr and W/m² with a factor of one.
 
 use super::graph::Placed;
 use super::json::JsonNode;
@@ -7,7 +7,9 @@ use crate::reading::Oddities;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::Spec;
 
-/// A light at its node, with a radius where that is above 0; none, with a warning, where its node leaves it no direction.
+/// A light at its node, with a radius if that is above 0.
+///
+/// `None`, with a warning, if the node's transform leaves it no direction.
 pub(super) fn light<'d>(
     root: JsonNode<'d>,
     user: JsonNode<'d>,

@@ -1,4 +1,4 @@
-//! Materials and their extensions, in the terms of our `principled`.
+//! Materials and their extensions, mapped to the `principled` material.
 
 use super::json::JsonNode;
 use super::reader::Gltf;
@@ -9,27 +9,27 @@ use bilux_scene::texture::Channel;
 use bilux_scene::{Span, Spec, Value};
 use std::f64::consts::TAU;
 
-/// A material as primitives use it.
+/// A material with what its primitives need to know.
 #[derive(Clone, Copy)]
 pub(super) struct UsedMaterial {
     /// Its index in the scene.
     pub(super) index: usize,
-    /// The sets of texture coordinates that it is looked up by.
+    /// The sets of texture coordinates that its textures use.
     pub(super) uv_sets: UvSets,
-    /// Whether it matters which way these grow.
+    /// True if the material depends on the direction of the texture coordinates.
     pub(super) has_direction: bool,
-    /// Its normal map lies by the second of these sets.
+    /// True if its normal map uses the second of these sets.
     pub(super) normal_by_second: bool,
 }
 
-/// The first and the second set of texture coordinates of a mesh here, by their number in the file.
+/// The texture coordinate sets of the file that become the mesh's first and second set.
 pub(super) type UvSets = [Option<usize>; 2];
 
-/// A material while it is read: parameters of `principled`, whether or not that has them all.
+/// A material under construction: parameters of `principled`, whether or not that has them all.
 pub(super) struct Draft {
     pub(super) spec: Spec,
     pub(super) uv_sets: UvSets,
-    /// Transmission that says nothing of a thickness is of a solid.
+    /// True if transmission without a thickness means a solid.
     is_solid: bool,
 }
 
@@ -47,7 +47,7 @@ impl Draft {
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// The material that `index` names, or the default one.
+    /// The material that `index` refers to, or the default one.
     pub(super) fn material(
         &mut self,
         index: Option<JsonNode<'d>>,
@@ -131,7 +131,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.opacity(node, picture, alpha, draft)
     }
 
-    /// How much of a surface is there, by the alpha of the picture of its colour.
+    /// Sets the opacity from the alpha channel of the base colour texture.
     pub(super) fn opacity(
         &mut self,
         node: JsonNode<'d>,
@@ -163,7 +163,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// What light goes into is seen from within.
+    /// The back faces of transmissive surfaces are always visible, since light travels inside.
     fn sides(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let is_whole = draft.spec.parameters.find("transmission_weight").is_none();
         if is_whole && !node.switch("doubleSided")? {
@@ -191,7 +191,7 @@ impl<'d> Gltf<'d, '_, '_> {
     fn specular(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_specular") else { return Ok(()) };
         if draft.number("base_metalness") == Some(1.0) {
-            // It is of what is not metal.
+            // The extension applies only to dielectrics.
             return Ok(());
         }
         let at = extension.at();
@@ -201,7 +201,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let (mut shade, picture) = (Rgb::new(r, g, b), extension.get("specularColorTexture"));
         let greatest = shade.max_channel();
         if greatest > 1.0 && node.extension("KHR_materials_transmission").is_none() {
-            // More than the index has it: a greater one.
+            // A factor above 1 reflects more than the index of refraction allows, so the index is raised.
             let ior = draft.number("specular_ior").unwrap_or(1.5) as f32;
             let (root, most) = ((ior - 1.0) / (ior + 1.0) * greatest.sqrt(), 9.0 / 11.0);
             if root > most {
@@ -214,7 +214,8 @@ impl<'d> Gltf<'d, '_, '_> {
         self.colour(draft, "specular_color", shade, picture, &at)
     }
 
-    /// Theirs is rougher along a direction, and ours smoother across it, by the same ratio.
+    /// Converts the anisotropy. glTF increases the roughness along a direction; `principled` decreases it across
+    /// that direction, by the same ratio.
     fn anisotropy(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_anisotropy") else { return Ok(()) };
         let strength = extension.number("anisotropyStrength")?.unwrap_or(0.0).clamp(0.0, 1.0);
@@ -255,7 +256,8 @@ impl<'d> Gltf<'d, '_, '_> {
         let is_thin = thickness <= 0.0 && !draft.is_solid;
         draft.set("thin_walled", is_thin, at.clone());
         if let Some(dispersion) = node.extension("KHR_materials_dispersion").filter(|_| !is_thin) {
-            // 20 over Abbe's number. Ours is a part, at most all, of what a number says, which is 20 where nothing else is said.
+            // glTF states 20 / Abbe number. `principled` scales the dispersion of an Abbe number, 20 by default,
+            // by at most 1.
             let number = dispersion.number("dispersion")?.unwrap_or(0.0) as f32;
             draft.set("transmission_dispersion_scale", number.min(1.0), dispersion.at());
             if number > 1.0 {
@@ -266,7 +268,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let depth = volume.map_or(Ok(None), |volume| volume.number("attenuationDistance"))?;
         let (Some(volume), Some(depth)) = (volume.filter(|_| thickness > 0.0), depth.filter(|d| *d > 0.0))
         else {
-            // Light is tinted where it goes through the surface.
+            // The light is tinted as it crosses the surface.
             draft.set("transmission_color", base.unwrap_or(1.0.into()), at);
             return Ok(());
         };
@@ -333,7 +335,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.colour(draft, "diffuse_transmission_color", Rgb::new(r, g, b), picture, &at)
     }
 
-    /// A picture that is to look the same in any light gives light itself.
+    /// An unlit surface looks the same in any light, so its colour becomes emission.
     fn unlit(&mut self, unlit: JsonNode<'d>, draft: &mut Draft) {
         let what = "what is unlit gives light in its own colour, which falls on its surroundings too";
         self.oddities.note(what, || unlit.at());

@@ -1,4 +1,4 @@
-//! glTF 2.0, as JSON with files beside it and as GLB. See `docs/formats/gltf.md`.
+//! glTF 2.0, as GLB or as JSON with external files. See `docs/formats/gltf.md`.
 
 mod accessor;
 mod animation;
@@ -37,7 +37,8 @@ use crate::formats::{ReadFormat, SceneFormatEntry};
 use bilux_math::registry::Entry;
 use bilux_scene::{Axis, UpHint};
 
-/// In the extras of a scene that we write: what is around it besides what the file holds, which is "none".
+/// The key in the `extras` of a scene that Bilux writes which records its surroundings: "none" beyond the file's
+/// lights.
 const SURROUNDINGS: &str = "surroundings";
 
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
@@ -70,7 +71,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// The magic bytes, or a JSON object that speaks of its asset early on.
+/// True for the magic bytes, or for a JSON object with an "asset" key near its start.
 fn sniff(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(4096)];
     let is_object = start.trim_ascii_start().starts_with(b"{");

@@ -1,4 +1,4 @@
-//! Where nodes are: matrices, or translation, rotation and scale.
+//! Node transforms: a matrix, or translation, rotation and scale.
 
 use super::animation::{Moves, Pose};
 use super::json::JsonNode;
@@ -6,7 +6,7 @@ use crate::FormatError;
 use bilux_math::glam::{DQuat, DVec4};
 use bilux_math::{DMat4, DVec3};
 
-/// From the space of a node with this index to its parent's, as it is posed.
+/// The transform from the space of the node with this index to its parent's, as it is posed.
 pub(super) fn local(node: JsonNode, index: usize, pose: &Pose) -> Result<DMat4, FormatError> {
     if let Some(columns) = node.numbers::<16>("matrix")? {
         let matrix = DMat4::from_cols_array(&columns);
@@ -27,7 +27,7 @@ pub(super) fn local(node: JsonNode, index: usize, pose: &Pose) -> Result<DMat4, 
     })
 }
 
-/// Scale, then rotation (x, y, z, w), then translation; none where the rotation is zero.
+/// Scale, then rotation (x, y, z, w), then translation; `None` if the rotation is zero.
 pub(super) fn compose(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> Option<DMat4> {
     let rotation = DVec4::from(rotation).try_normalize()?;
     let (scale, rotation) = (DVec3::from(scale), DQuat::from_vec4(rotation));

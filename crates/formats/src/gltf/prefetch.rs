@@ -1,4 +1,5 @@
-//! The pictures of a file ahead of whoever asks for them, on all cores: to decode them is most of what a textured model takes.
+//! Decodes a file's images in advance, on all cores: decoding them is most of the work of reading a textured
+//! model.
 
 use super::json::JsonNode;
 use super::reader::Gltf;
@@ -11,10 +12,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Decodes what textures name. What goes wrong is told where it is asked for, and what is not in bytes is decoded there.
+    /// Decodes the images that textures refer to.
+    ///
+    /// An image that fails is reported where it is used, and one without 8-bit texels is decoded there.
     ///
     /// # Errors
-    /// When the decoded pictures take more memory than there may be.
+    /// If the decoded images exceed the remaining memory.
     pub(super) fn decode_ahead(&mut self) -> Result<(), FormatError> {
         let document = self.document;
         let textures = document.root.list("textures").unwrap_or_default();
@@ -30,7 +33,7 @@ impl<'d> Gltf<'d, '_, '_> {
             .into_iter()
             .filter_map(|(number, image)| Some((number, self.encoded(image).ok()?)))
             .collect();
-        // Decoders' buffers and texels are held side by side for a moment, all at once.
+        // Each decoder holds its own buffers as well as the texels, and all decoders run at once.
         let share = Limits::new(self.reading.budget.left() / (2 * encoded.len().max(1) as u64));
         let decode = |bytes: &[u8]| read_rgba8(bytes, None, &share).ok().flatten();
         let decoded: Vec<_> = encoded.par_iter().map(|(_, (_, bytes))| decode(bytes)).collect();

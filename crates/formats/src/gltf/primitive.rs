@@ -1,4 +1,4 @@
-//! Primitives of meshes: attributes and indices become triangles.
+//! Mesh primitives: converts attributes and indices to triangles.
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
@@ -13,27 +13,27 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Mesh;
 use std::sync::Arc;
 
-/// What one primitive has become.
+/// The result of one primitive.
 #[derive(Clone)]
 pub(super) struct Part {
     pub(super) mesh: Arc<Mesh>,
-    /// Index of its material in the scene.
+    /// The index of its material in the scene.
     pub(super) material: usize,
 }
 
-/// What a node makes of the mesh that it has.
+/// What a node adds to its mesh.
 pub(super) struct NodeMesh<'a> {
     pub(super) name: &'a str,
-    /// Of morph targets.
+    /// The weights of the morph targets.
     pub(super) weights: &'a [f64],
     pub(super) joints: Option<&'a Joints>,
 }
 
-/// Attributes that are read, or told of elsewhere.
+/// Attributes that are read here, or reported elsewhere.
 const ATTRIBUTES: [&str; 4] = ["POSITION", "NORMAL", "TANGENT", "COLOR_0"];
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// A primitive of a mesh; none where there is nothing to draw.
+    /// Reads a primitive of a mesh; `None` if there is nothing to render.
     pub(super) fn primitive(
         &mut self,
         node: JsonNode<'d>,
@@ -80,7 +80,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(Some(Part { mesh: Arc::new(mesh), material: material.index }))
     }
 
-    /// Normals, and tangents where the material tells directions apart.
+    /// Reads normals, and tangents if the material depends on a direction.
     fn directions(
         &mut self,
         attributes: JsonNode<'d>,
@@ -105,7 +105,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// The sets of texture coordinates that the material asks for.
+    /// Reads the sets of texture coordinates that the material uses.
     fn coordinates(
         &mut self,
         attributes: JsonNode<'d>,
@@ -113,14 +113,14 @@ impl<'d> Gltf<'d, '_, '_> {
         mesh: &mut Mesh,
     ) -> Result<(), FormatError> {
         let count = mesh.positions.len();
-        // Where no texture asks, the first set is kept for what may be put on the mesh later.
+        // If no texture uses any, the first set is kept for a texture that may be applied later.
         let sets = [material.uv_sets[0].or(Some(0)), material.uv_sets[1]];
         for (slot, set) in sets.into_iter().enumerate() {
             let Some(set) = set else { continue };
             let key = format!("TEXCOORD_{set}");
             let found = attributes.entries().find(|(name, _)| *name == key);
             let uvs = match found {
-                // Ours grow upwards.
+                // In Bilux, v points up.
                 Some((_, uv)) => self
                     .attribute::<2>(uv, Some(count))?
                     .into_iter()
@@ -139,18 +139,18 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// Tangents where they are needed and the file brings none.
+    /// Generates tangents if they are needed and the file has none.
     fn add_tangents(&mut self, material: UsedMaterial, mesh: &mut Mesh) -> Result<(), FormatError> {
         if !material.has_direction || !mesh.tangents.is_empty() || mesh.uvs.is_empty() {
             return Ok(());
         }
-        // Lists that the generator makes of every corner.
+        // Lists that the generator makes for every corner.
         self.reading.budget.take_bytes(mesh.triangles.len() as u64 * 400, &self.file)?;
         tangents::add(mesh, material.normal_by_second);
         Ok(())
     }
 
-    /// An attribute's elements, as many as there are vertices.
+    /// The elements of an attribute, one per vertex.
     pub(super) fn attribute<const N: usize>(
         &mut self,
         index: JsonNode<'d>,
@@ -176,7 +176,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(colours.into_iter().map(|[r, g, b, _]| Rgb::new(r, g, b)).collect())
     }
 
-    /// Adds what the morph targets move. [glTF 2.0, 3.7.2.2]
+    /// Adds the weighted displacements of the morph targets. [glTF 2.0, 3.7.2.2]
     fn morph(&mut self, node: JsonNode<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
         let targets = node.list("targets")?;
         if targets.len() != weights.len() && !weights.is_empty() {
@@ -217,21 +217,21 @@ impl<'d> Gltf<'d, '_, '_> {
         };
         for (key, node) in attributes.entries() {
             let is_skin = key.starts_with("JOINTS_") || key.starts_with("WEIGHTS_");
-            // What programs keep for themselves begins with an underscore.
+            // Application-specific attributes begin with an underscore.
             let is_used = ATTRIBUTES.contains(&key) || used_uv(key) || is_skin || key.starts_with('_');
-            // Sets of texture coordinates that nothing looks up change nothing.
+            // Unused sets of texture coordinates have no effect.
             if !is_used && !key.starts_with("TEXCOORD_") {
                 self.oddities.note("an attribute of a mesh is ignored", || node.at());
             }
         }
     }
 
-    /// The points or the lines of a primitive.
+    /// Reads the points or the lines of a primitive.
     fn add_strokes(&mut self, node: JsonNode<'d>, mode: Mode, mesh: &mut Mesh) -> Result<(), FormatError> {
         let corners = self.corners(node, mesh.positions.len())?;
         self.reading.budget.take_bytes(corners.len() as u64 * 8, &self.file)?;
         (mesh.points, mesh.lines) = mode.points_and_lines(corners);
-        // They are round, so that these say nothing.
+        // Points and lines are round, so normals and tangents have no meaning.
         (mesh.normals, mesh.tangents) = (Vec::new(), Vec::new());
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! From the document to a scene.
+//! Converts the document to a scene.
 
 use super::animation::Pose;
 use super::container;
@@ -52,17 +52,17 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(scene)
 }
 
-/// What one reading of a file has made, for the next.
+/// The results of one pass over a file that the next pass can reuse.
 struct Made {
     meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
     materials: HashMap<(Option<usize>, bool), UsedMaterial>,
     images: HashMap<(usize, bool), Option<Named>>,
 }
 
-/// Moments at which one looks where things are, from the beginning to the end.
+/// The number of intervals into which the animation is divided to find where objects move.
 const MOMENTS: u32 = 8;
 
-/// All objects at moments from 0 to `end`, in seconds; what does not bend is shared.
+/// All objects at times from 0 to `end`, in seconds; meshes that do not deform are shared.
 fn movement<'r>(
     document: &Document<'_>,
     source: &'r Source<'r>,
@@ -75,7 +75,7 @@ fn movement<'r>(
         let time = end * moment as f32 / MOMENTS as f32;
         let mut gltf = Gltf::new(document, source, &mut *reading, Oddities::default(), time);
         (gltf.meshes, gltf.materials, gltf.images) = (made.meshes, made.materials, made.images);
-        // The keys of these do not tell when it was.
+        // The keys of skinned meshes do not include the time.
         gltf.meshes.retain(|(_, _, skin), _| skin.is_none());
         gltf.scene()?;
         let Gltf { scene, meshes, materials, images, .. } = gltf;
@@ -85,13 +85,13 @@ fn movement<'r>(
     Ok(all)
 }
 
-/// A picture with its name.
+/// An image with its name.
 pub(super) type Named = (String, Arc<Image>);
 
-/// A mesh with the bits of its weights and its skin.
+/// A mesh, the bits of its weights, and its skin.
 type PosedMesh = (usize, Vec<u64>, Option<usize>);
 
-/// A file on its way to a scene.
+/// The state while a file is converted to a scene.
 pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) document: &'d Document<'d>,
     pub(super) source: &'r Source<'r>,
@@ -99,21 +99,22 @@ pub(super) struct Gltf<'d, 'o, 'r> {
     pub(super) reading: &'r mut Reading<'o>,
     pub(super) scene: SceneBuilder,
     pub(super) oddities: Oddities,
-    /// For each node of the file its number in the scene, once it is placed.
+    /// For each node of the file its index in `nodes`, once it is placed.
     pub(super) order: Vec<Option<usize>>,
-    /// When, in seconds.
+    /// The time, in seconds.
     pub(super) time: f32,
-    /// What differs then from what the nodes say.
+    /// The animated values at that time.
     pub(super) pose: Pose,
-    /// The index of the variant that is shown.
+    /// The index of the selected variant.
     pub(super) variant: Option<usize>,
     /// All nodes of the scene, parents first.
     pub(super) nodes: Vec<Placed<'d>>,
-    /// The parts of each mesh, by its index, the weights of its morph targets and its skin.
+    /// The parts of each mesh, keyed by its index, the weights of its morph targets and its skin.
     meshes: HashMap<PosedMesh, Arc<Vec<Part>>>,
-    /// By index in the file, none for the default one, and whether glass is solid.
+    /// Materials by their index in the file (`None` for the default one) and by whether glass is solid.
     pub(super) materials: HashMap<(Option<usize>, bool), UsedMaterial>,
-    /// Pictures with their names, by index in the file and whether they are numbers; none where one cannot be had.
+    /// Images with their names, by their index in the file and by whether they hold numbers; `None` for one that
+    /// failed.
     pub(super) images: HashMap<(usize, bool), Option<Named>>,
 }
 
@@ -188,7 +189,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         let name =
             if node.name().is_empty() { parts.first().map(|p| &*p.mesh.name) } else { Some(node.name()) };
         let name = name.unwrap_or_default().to_owned();
-        // What is bent by a skin stands in the world: the place of its own node says nothing. [glTF 2.0, 3.7.3.3]
+        // A skinned mesh is in world space: its own node's transform is ignored. [glTF 2.0, 3.7.3.3]
         let places = match node.get("skin") {
             Some(_) => Instances::once(DMat4::IDENTITY),
             None => self.instances(placed)?,
@@ -209,7 +210,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         Ok(())
     }
 
-    /// The parts of a mesh, made once for each choice of weights and skin.
+    /// The parts of a mesh, made once for each combination of weights and skin.
     fn mesh(&mut self, index: JsonNode<'d>, user: &Placed<'d>) -> Result<Arc<Vec<Part>>, FormatError> {
         let mesh = self.document.named("meshes", index)?;
         let holder = if user.node.get("weights").is_some() { user.node } else { mesh };
@@ -234,16 +235,16 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         Ok(parts)
     }
 
-    /// True when a picture has been read, as numbers or as colours.
+    /// True if an image has been read, as numbers or as colours.
     pub(super) fn has_read(&self, image: usize, is_data: bool) -> bool {
         self.images.contains_key(&(image, is_data))
     }
 }
 
-/// The JSON, if there is memory for what it becomes.
+/// Parses the JSON if the memory limit allows for the result.
 fn parse(reading: &mut Reading, bytes: &[u8], source: &Source) -> Result<serde_json::Value, FormatError> {
     let values = bytes.iter().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
-    // A key with its value, in tables that may be half full; texts are as long as in the file.
+    // A key with its value, in tables that may be half full; strings are as long as in the file.
     reading.budget.take_bytes(values as u64 * 160 + bytes.len() as u64, source.name)?;
     serde_json::from_slice(bytes).map_err(|error| {
         let (line, column) = (error.line() as u32, error.column() as u32);
@@ -254,7 +255,7 @@ fn parse(reading: &mut Reading, bytes: &[u8], source: &Source) -> Result<serde_j
     })
 }
 
-/// Reports of the JSON parser, by a part of each, and what they mean.
+/// Fragments of the JSON parser's errors, and what they mean.
 const SYNTAX_FAULTS: &[(&str, &str)] = &[
     ("EOF", "the file ends in the middle of it, and was cut off"),
     ("expected value", "a value should stand here"),
@@ -279,7 +280,7 @@ fn syntax_fault(report: &str) -> &'static str {
     found.map_or("it has a mistake here", |(_, meaning)| meaning)
 }
 
-/// Major versions change the meaning of files, minor ones add to it.
+/// Major versions change the meaning of files; minor ones only extend it.
 fn check_version(root: JsonNode) -> Result<(), FormatError> {
     let asset = root.need("asset")?;
     let parse = |node: JsonNode, key: &'static str| -> Result<Option<(u32, u32)>, FormatError> {

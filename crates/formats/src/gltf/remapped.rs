@@ -1,4 +1,4 @@
-//! Textures whose texels mean something else here: directions that become angles, and thicknesses from a least one on.
+//! Textures whose texels are converted: directions to angles, and thin-film thicknesses to micrometres.
 
 use super::json::JsonNode;
 use super::material::{Draft, UvSets};
@@ -13,7 +13,7 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Theirs is in nm, between two thicknesses where a picture tells.
+    /// Reads a thin film. glTF states the thickness in nm; a texture interpolates between a minimum and a maximum.
     pub(super) fn film(&mut self, node: JsonNode<'d>, draft: &mut Draft) -> Result<(), FormatError> {
         let Some(extension) = node.extension("KHR_materials_iridescence") else { return Ok(()) };
         let weight = extension.number("iridescenceFactor")?.unwrap_or(0.0);
@@ -35,7 +35,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// Directions along the surface, in red and green, as turns from 0 to 1, to which `turns` are added.
+    /// Converts directions along the surface, in red and green, to turns from 0 to 1, offset by `turns`.
     pub(super) fn angles(
         &mut self,
         info: JsonNode<'d>,
@@ -47,14 +47,14 @@ impl<'d> Gltf<'d, '_, '_> {
             let (x, y) = (texel.r * 2.0 - 1.0, texel.g * 2.0 - 1.0);
             (atan2(y, x) / TAU + turns as f32).rem_euclid(1.0)
         };
-        // Between one turn and none lies no half turn.
+        // Interpolating between one turn and zero would give half a turn.
         let nearest = |texture| Texture { filter: Filter::Nearest, ..texture };
         let texture = self.looked_up(info, taken, uv_sets)?;
         let texture = nearest(self.remapped(texture, angle)?);
         self.add_texture(texture)
     }
 
-    /// Thicknesses in nm, from the first to the second as green grows, in our µm.
+    /// Thicknesses in µm that run from the first to the second, both in nm, as green goes from 0 to 1.
     fn thickness(
         &mut self,
         info: JsonNode<'d>,
@@ -73,7 +73,7 @@ impl<'d> Gltf<'d, '_, '_> {
         self.add_texture(texture)
     }
 
-    /// A texture of other numbers, from 0 to 1; one whose picture is missing stays as it is.
+    /// A texture with each texel replaced by a number from 0 to 1; a missing image stays as it is.
     fn remapped(&mut self, texture: Texture, number: impl Fn(Rgb) -> f32) -> Result<Texture, FormatError> {
         let byte = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
         let texels = match &texture.image.texels {

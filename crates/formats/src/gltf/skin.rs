@@ -1,4 +1,4 @@
-//! Skins: vertices that follow several nodes. [glTF 2.0, 3.7.3]
+//! Skins: vertices that several nodes move. [glTF 2.0, 3.7.3]
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
@@ -8,11 +8,11 @@ use crate::FormatError;
 use bilux_math::{DMat3, DMat4};
 use bilux_scene::Mesh;
 
-/// What a vertex is moved by: for each joint the matrix from the mesh at rest to the world.
+/// For each joint of a skin, the matrix from the mesh in its rest pose to world space.
 pub(super) struct Joints(Vec<DMat4>);
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// The joints of a skin as they are now; the place of the node that wears it does not matter.
+    /// The joints of a skin in the current pose; the transform of the skinned node itself is ignored.
     pub(super) fn joints(&mut self, index: JsonNode<'d>) -> Result<Joints, FormatError> {
         let skin = self.document.named("skins", index)?;
         let list = skin.need("joints")?.items()?;
@@ -43,7 +43,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(Joints(matrices))
     }
 
-    /// Moves a mesh from its rest to where its joints are, in the world.
+    /// Skins a mesh: moves it from its rest pose to its joints, in world space.
     pub(super) fn bend(
         &mut self,
         primitive: JsonNode<'d>,
@@ -65,7 +65,7 @@ impl<'d> Gltf<'d, '_, '_> {
             let indices = self.attribute::<4>(index, Some(count))?;
             for (vertex, (indices, weights)) in indices.into_iter().zip(weights).enumerate() {
                 for (joint, weight) in indices.into_iter().zip(weights) {
-                    // NaN weights are told as those that sum up to nothing.
+                    // Non-finite weights are skipped, so they are reported as weights that do not sum to one.
                     if weight == 0.0 || !weight.is_finite() {
                         continue;
                     }
@@ -97,7 +97,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 }
 
-/// Moves each vertex by its own matrix.
+/// Transforms each vertex by its own matrix.
 fn moved(mesh: &mut Mesh, by: &[DMat4]) {
     for (p, m) in mesh.positions.iter_mut().zip(by) {
         *p = m.transform_point3(p.as_dvec3()).as_vec3();
@@ -109,13 +109,13 @@ fn moved(mesh: &mut Mesh, by: &[DMat4]) {
         let along = m.transform_vector3(t.truncate().as_dvec3()).normalize_or_zero();
         *t = along.as_vec3().extend(if m.determinant() < 0.0 { -t.w } else { t.w });
     }
-    // What is turned inside out winds the other way. [glTF 2.0, 3.7.4]
+    // A mirrored mesh has the opposite winding. [glTF 2.0, 3.7.4]
     if by.first().is_some_and(|m| m.determinant() < 0.0) {
         mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
 }
 
-/// Moves normals: the inverse transpose, up to a positive factor, and finite where that is not.
+/// The matrix for normals: the inverse transpose up to a positive factor, and finite if the inverse is not.
 fn cofactors(m: &DMat4) -> DMat3 {
     let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.truncate());
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };

@@ -1,5 +1,5 @@
-//! What is broken in a file though nothing that is shown needs it, or though one can make do: told, since what is meant
-//! may be another picture.
+//! Faults in a file that do not affect the scene or can be worked around. They are reported, since the author may
+//! have meant another image.
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
@@ -8,7 +8,7 @@ use super::reader::Gltf;
 use crate::FormatError;
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Tells of buffers, views and accessors that are not as the specification has them. [glTF 2.0, 3.6]
+    /// Warns about buffers, views and accessors that violate the specification. [glTF 2.0, 3.6]
     pub(super) fn check_data(&mut self) -> Result<(), FormatError> {
         let root = self.document.root;
         for buffer in root.list("buffers")? {

@@ -1,4 +1,4 @@
-//! Tangents where a file brings none: those that normal maps are baked by. [Mikkelsen 2008]
+//! Generates tangents for meshes without them, as normal map bakers do. [Mikkelsen 2008]
 
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use bilux_math::glam::Vec4;
@@ -7,8 +7,10 @@ use bilux_math::{Vec2, Vec3};
 use bilux_scene::Mesh;
 use std::collections::HashMap;
 
-/// Gives a mesh tangents by its first or second set of texture coordinates. Vertices are split where the two sides of a
-/// seam have tangents of their own. Nothing is done where there are no coordinates, or what is no number.
+/// Adds tangents to a mesh from its first or second set of texture coordinates.
+///
+/// Splits vertices where the two sides of a seam have different tangents. Does nothing without texture
+/// coordinates, or if any number is not finite.
 pub(super) fn add(mesh: &mut Mesh, second_uv: bool) {
     let uvs = if second_uv && !mesh.uvs2.is_empty() { &mesh.uvs2 } else { &mesh.uvs };
     let is_whole = mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite())
@@ -26,13 +28,13 @@ pub(super) fn add(mesh: &mut Mesh, second_uv: bool) {
     split(mesh, &tangents);
 }
 
-/// Gives each corner's tangent to its vertex, and a copy of the vertex to all that differ from the first.
+/// Assigns each corner's tangent to its vertex, and copies the vertex for tangents that differ from the first.
 fn split(mesh: &mut Mesh, tangents: &[Option<[f32; 4]>]) {
     let unset = Vec4::ZERO;
     mesh.tangents = vec![unset; mesh.positions.len()];
     let mut copies: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
     for (i, tangent) in tangents.iter().enumerate() {
-        // Where nothing says anything any tangent does.
+        // A corner without a defined tangent gets an arbitrary one.
         let tangent = Vec4::from(tangent.unwrap_or([1.0, 0.0, 0.0, 1.0]));
         let vertex = mesh.triangles[i / 3][i % 3];
         let own = &mut mesh.tangents[vertex as usize];
@@ -65,7 +67,7 @@ fn copy_of(mesh: &mut Mesh, vertex: usize, tangent: Vec4) -> u32 {
     index
 }
 
-/// A mesh as the generator sees it: corners, each with all that is known of it.
+/// A mesh as the generator sees it: corners with all of their attributes.
 struct Corners<'m> {
     mesh: &'m Mesh,
     uvs: &'m [Vec2],
@@ -108,7 +110,7 @@ impl Geometry<Exact> for Corners<'_> {
     }
 }
 
-/// The same on every machine.
+/// Arithmetic that gives the same result on every machine.
 struct Exact;
 
 impl Ops for Exact {
@@ -125,7 +127,7 @@ impl Ops for Exact {
 mod tests {
     use super::*;
 
-    /// A square of two triangles with texture coordinates as they are given.
+    /// A square of two triangles with the given texture coordinates.
     fn square(uvs: [[f32; 2]; 4]) -> Mesh {
         Mesh {
             positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y],
@@ -144,7 +146,7 @@ mod tests {
         let mut mirrored = square([[1., 0.], [0., 0.], [0., 1.], [1., 1.]]);
         add(&mut mirrored, false);
         assert_eq!(mirrored.tangents, [Vec4::new(-1.0, 0.0, 0.0, -1.0); 4]);
-        // In the second set u grows upwards.
+        // In the second set, u increases upwards.
         plain.uvs2 = [[0., 0.], [0., 1.], [1., 1.], [1., 0.]].map(Vec2::from).to_vec();
         add(&mut plain, true);
         assert_eq!(plain.tangents, [Vec4::new(0.0, 1.0, 0.0, -1.0); 4]);
@@ -152,7 +154,7 @@ mod tests {
 
     #[test]
     fn vertices_are_split_where_hands_change() {
-        // The second triangle's picture is the mirror image of the first.
+        // The second triangle's texture is mirrored.
         let mut mesh = square([[0., 0.], [1., 0.], [1., 1.], [1., 0.]]);
         add(&mut mesh, false);
         assert_eq!((mesh.positions.len(), mesh.tangents.len(), mesh.uvs.len()), (6, 6, 6));

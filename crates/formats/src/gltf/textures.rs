@@ -1,4 +1,4 @@
-//! Textures: a picture, how it is looked up, and where it lies.
+//! Textures: an image, its sampler, and its placement.
 
 use super::json::JsonNode;
 use super::material::UvSets;
@@ -13,7 +13,7 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What of a picture's texels counts, and what they are multiplied by.
+/// The channels of an image that a texture uses, and the factor that multiplies them.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelSelection {
     pub(super) is_data: bool,
@@ -23,12 +23,12 @@ pub(super) struct ChannelSelection {
 }
 
 impl ChannelSelection {
-    /// Colours, encoded for a display.
+    /// Display-encoded colours.
     pub(super) fn colours(factor: Rgb) -> ChannelSelection {
         ChannelSelection { is_data: false, channel: None, factor, threshold: None }
     }
 
-    /// Numbers of one channel.
+    /// The numbers of one channel.
     pub(super) fn channel(channel: Channel, factor: f64) -> ChannelSelection {
         ChannelSelection {
             is_data: true,
@@ -38,14 +38,14 @@ impl ChannelSelection {
         }
     }
 
-    /// Numbers of all channels.
+    /// The numbers of all channels.
     pub(super) const VECTORS: ChannelSelection =
         ChannelSelection { is_data: true, channel: None, factor: Rgb::WHITE, threshold: None };
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// The texture that a material names, put into the scene. `uv_sets` are the sets of texture coordinates of the
-    /// material, told by the textures before.
+    /// Adds the texture that a material refers to. `uv_sets` are the texture coordinate sets in use by the
+    /// material so far.
     pub(super) fn texture(
         &mut self,
         info: JsonNode<'d>,
@@ -56,14 +56,14 @@ impl<'d> Gltf<'d, '_, '_> {
         self.add_texture(texture)
     }
 
-    /// A texture as one that is put into the scene.
+    /// Adds a texture to the scene.
     pub(super) fn add_texture(&mut self, texture: Texture) -> Result<Value, FormatError> {
         self.reading.budget.take_bytes(size_of::<[Texture; 2]>() as u64, &self.file)?;
         self.scene.textures.push(Arc::new(texture));
         Ok(Value::Texture(self.scene.textures.len() - 1))
     }
 
-    /// The texture that a material names.
+    /// The texture that a material refers to.
     pub(super) fn looked_up(
         &mut self,
         info: JsonNode<'d>,
@@ -110,7 +110,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(texture)
     }
 
-    /// The picture of a texture and its name; none, with a warning, where it cannot be had.
+    /// The image of a texture and its name; `None`, with a warning, if it cannot be read.
     fn picture(&mut self, texture: JsonNode<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
         let Some(index) = source(texture) else {
             let what = "a texture has no picture that can be read, and is replaced by a magenta checker";
@@ -120,7 +120,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let image = self.document.named("images", index)?;
         let number = index.as_count()?;
         let known = self.images.get(&(number, is_data)).or_else(|| {
-            // Bytes are the same picture whatever they mean.
+            // 8-bit texels are the same whether they hold colours or numbers.
             let other = self.images.get(&(number, !is_data));
             other.filter(|other| other.as_ref().is_none_or(|(_, image)| image.is_bytes()))
         });
@@ -153,7 +153,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok((name, Arc::new(decoded)))
     }
 
-    /// The name and the bytes of a picture, wherever they lie.
+    /// The name and the encoded bytes of an image, wherever they are stored.
     pub(super) fn encoded(&mut self, image: JsonNode<'d>) -> Result<(String, Cow<'d, [u8]>), FormatError> {
         if let Some(view) = image.get("bufferView") {
             let view = self.document.view(view)?;
@@ -171,7 +171,7 @@ impl<'d> Gltf<'d, '_, '_> {
         })
     }
 
-    /// Bytes of [`Gltf::encoded`] that are not needed any more.
+    /// Releases bytes from [`Gltf::encoded`].
     pub(super) fn let_go(&mut self, bytes: Cow<'d, [u8]>) {
         if let Cow::Owned(bytes) = bytes {
             self.reading.release(bytes);
@@ -179,7 +179,8 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 }
 
-/// The number of a texture's picture. That which all programs can read stands first: packed ones have lost more.
+/// The index of a texture's image. The format that all programs can read comes first: compressed ones have lost
+/// more.
 pub(super) fn source(texture: JsonNode) -> Option<JsonNode> {
     let of = |name| texture.extension(name).and_then(|extension| extension.get("source"));
     let packed = if cfg!(feature = "ktx2") { of("KHR_texture_basisu") } else { None };

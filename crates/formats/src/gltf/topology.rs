@@ -1,4 +1,4 @@
-//! How vertices make triangles, lines and points.
+//! How vertices form triangles, lines and points.
 
 use super::accessor::Accessor;
 use super::json::JsonNode;
@@ -7,7 +7,7 @@ use crate::FormatError;
 use bilux_scene::Mesh;
 use std::collections::HashMap;
 
-/// How a primitive's corners belong together.
+/// The topology of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mode {
     Points,
@@ -37,7 +37,7 @@ impl Mode {
         })
     }
 
-    /// What of a mesh of points or lines is drawn: points at corners, and lines between pairs of them.
+    /// The points and lines of a primitive: points at corners, and lines between pairs of corners.
     pub(super) fn points_and_lines(self, corners: Vec<u32>) -> (Vec<u32>, Vec<[u32; 2]>) {
         let pairs = |step: usize| corners.windows(2).step_by(step).map(|pair| [pair[0], pair[1]]);
         let lines = match self {
@@ -51,7 +51,7 @@ impl Mode {
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// The corners of a primitive: its indices, or all vertices in their order.
+    /// The corners of a primitive: its indices, or all vertices in order.
     pub(super) fn corners(&mut self, node: JsonNode<'d>, vertices: usize) -> Result<Vec<u32>, FormatError> {
         let Ok(count) = u32::try_from(vertices) else {
             return Err(node.error("there are more than 4 billion vertices: cut the mesh into several"));
@@ -84,7 +84,7 @@ impl<'d> Gltf<'d, '_, '_> {
             self.oddities.note("the last corners of a list of triangles make none", || node.at());
         }
         self.reading.budget.take_bytes(n as u64 * 12, &self.file)?;
-        // The corners' order keeps all triangles of a strip on one side. [glTF 2.0, 3.7.2.1]
+        // This order of corners gives all triangles of a strip the same winding. [glTF 2.0, 3.7.2.1]
         let corner = |t: usize| match mode {
             Mode::Strip => [t, t + 1 + t % 2, t + 2 - t % 2],
             Mode::Fan => [t + 1, t + 2, 0],
@@ -94,12 +94,12 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 }
 
-/// True when a mesh has an inside: each of its edges is of two triangles, however many vertices stand in one place.
+/// True if a mesh is closed: two triangles share each edge, counting vertices at the same position as one.
 pub(super) fn is_closed(mesh: &Mesh) -> bool {
     let mut places = HashMap::new();
     let place = |p: &bilux_math::Vec3| {
         let next = places.len() as u32;
-        // -0 is where 0 is.
+        // -0 equals 0.
         *places.entry(p.to_array().map(|c| (c + 0.0).to_bits())).or_insert(next)
     };
     let places: Vec<u32> = mesh.positions.iter().map(place).collect();

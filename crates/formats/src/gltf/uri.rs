@@ -1,4 +1,4 @@
-//! Where buffers and images lie: in the text itself, or in a file beside it.
+//! Resolves the URIs of buffers and images: embedded data or external files.
 
 use crate::FormatError;
 use crate::gltf::json::JsonNode;
@@ -8,18 +8,18 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::{DecodeError, Engine};
 use std::borrow::Cow;
 
-/// What a URI stands for.
+/// What a URI refers to.
 pub(super) enum Resource {
-    /// Bytes that stand in the URI.
+    /// The bytes embedded in a data URI.
     Data(Vec<u8>),
     /// The name of a file, relative to the scene.
     File(String),
 }
 
-/// What a URI stands for. Nothing is opened.
+/// Resolves a URI without opening anything.
 ///
 /// # Errors
-/// When it is broken, or names something on a network.
+/// If it is malformed, or refers to a network.
 pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource, FormatError> {
     let uri = node.as_text()?;
     if let Some(data) = uri.strip_prefix("data:") {
@@ -48,7 +48,7 @@ pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource,
     name.map(Resource::File).map_err(|_| node.error("this name is not in UTF-8: rename the file"))
 }
 
-/// What is wrong with base64 that begins at this character of a URI.
+/// Describes an error in base64 data that begins at this character of a URI.
 fn fault(error: &DecodeError, payload: &str, start: usize) -> String {
     match *error {
         DecodeError::InvalidByte(at, _) | DecodeError::InvalidLastSymbol(at, _) => {
@@ -62,13 +62,13 @@ fn fault(error: &DecodeError, payload: &str, start: usize) -> String {
     }
 }
 
-/// Whether a data URI has a parameter without a name, as only broken programs write it.
+/// True if a data URI has a parameter without a name, which only faulty exporters write.
 pub(super) fn is_odd(uri: &str) -> bool {
     let kind = uri.strip_prefix("data:").and_then(|data| data.split_once(','));
     kind.is_some_and(|(kind, _)| kind.contains(";;"))
 }
 
-/// The bytes of a URI.
+/// Loads the bytes that a URI refers to.
 pub(super) fn load(reading: &mut Reading, source: &Source, node: JsonNode) -> Result<Vec<u8>, FormatError> {
     match resolve(reading, node)? {
         Resource::Data(bytes) => Ok(bytes),
@@ -79,7 +79,7 @@ pub(super) fn load(reading: &mut Reading, source: &Source, node: JsonNode) -> Re
     }
 }
 
-/// With or without `=` at the end, as writers differ.
+/// Accepts base64 with or without padding, as exporters differ.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new()
@@ -87,14 +87,14 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// What stands before the colon of an address. One letter is a drive of a machine, not a scheme. [Berners-Lee 2005, 3.1]
+/// The scheme of a URI. A single letter is a Windows drive, not a scheme. [Berners-Lee 2005, 3.1]
 fn scheme(uri: &str) -> Option<&str> {
     let (scheme, _) = uri.split_once(':')?;
     let is_letter = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
     (scheme.len() > 1 && scheme.chars().all(is_letter)).then_some(scheme)
 }
 
-/// `%20` and the like as the bytes that they stand for; what is broken stays as it is. [Berners-Lee 2005, 2.1]
+/// Decodes `%20` and the like; malformed escapes stay as they are. [Berners-Lee 2005, 2.1]
 fn percent_decoded(text: &str) -> Cow<'_, [u8]> {
     if !text.contains('%') {
         return Cow::Borrowed(text.as_bytes());

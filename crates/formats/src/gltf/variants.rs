@@ -1,4 +1,4 @@
-//! `KHR_materials_variants`: other materials for the same meshes.
+//! `KHR_materials_variants`: alternative materials for the same meshes.
 
 use super::animation::named_or_numbered;
 use super::json::JsonNode;
@@ -8,7 +8,7 @@ use crate::FormatError;
 const NAME: &str = "KHR_materials_variants";
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Finds the variants that the file has, and the one that the options name.
+    /// Reads the variants of the file, and selects the one that the options name.
     pub(super) fn variants(&mut self) -> Result<(), FormatError> {
         let root = self.document.root;
         let list = root.extension(NAME).map_or(Ok(Vec::new()), |extension| extension.list("variants"))?;
@@ -20,7 +20,7 @@ impl<'d> Gltf<'d, '_, '_> {
         Ok(())
     }
 
-    /// The material that a primitive has in the variant that is shown, if that says anything of it.
+    /// The material of a primitive in the selected variant, if the variant maps it.
     pub(super) fn variant_of(&self, primitive: JsonNode<'d>) -> Result<Option<JsonNode<'d>>, FormatError> {
         let (Some(wanted), Some(extension)) = (self.variant, primitive.extension(NAME)) else {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! Faces over separate lists of positions, uvs and normals, into meshes.
+//! Assembles meshes from faces with separate lists of positions, uvs and normals.
 
 use super::{Corner, FaceList, IndexedFaces, NONE, Run};
 use crate::FormatError;
@@ -10,10 +10,10 @@ use bilux_scene::{Mesh, Object, SceneBuilder, Span};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What a vertex takes while it is made: position, normal, uv, kd and what finds it again.
+/// The size of a vertex under construction: position, normal, uv, kd and its entry in the welder.
 type Vertex = [u32; 14];
 
-/// Makes an object of every run. `place` tells where the words of [`IndexedFaces::places`] are.
+/// Makes an object of every run. `place` converts the numbers in [`IndexedFaces::places`] to locations.
 pub(crate) fn assemble(
     reading: &mut Reading,
     source: &Source,
@@ -26,7 +26,7 @@ pub(crate) fn assemble(
     check_indices(&mut soup, place, oddities)?;
     add_normals(reading, source, &mut soup)?;
     reading.budget.take_bytes((soup.positions.len() * size_of::<Slot>()) as u64, source.name)?;
-    // A polygon has two triangles fewer than corners.
+    // A polygon has two triangles fewer than it has corners.
     let triangles = soup.faces.corner_count() - 2 * soup.faces.len();
     reading.budget.take::<[u32; 3]>(triangles, source.name)?;
     let faces = std::mem::take(&mut soup.faces);
@@ -41,7 +41,7 @@ pub(crate) fn assemble(
         let material = material_of(run, &soup, &mut materials, place, scene, oddities);
         scene.objects.push(Object::new(&name, Arc::new(mesh), material));
     };
-    // Corners are let go as triangles are made of them: both at once are the most that reading takes.
+    // Corners are freed as triangles are made from them: holding both would be the peak of memory.
     faces.consume(|face, corners| {
         if soup.runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
             let done = std::mem::replace(&mut piece, Piece::new(&soup, rooms.next()));
@@ -61,7 +61,7 @@ pub(crate) fn assemble(
     Ok(())
 }
 
-/// Corners and faces of a run.
+/// The number of corners and faces of a run.
 #[derive(Clone, Copy, Default)]
 struct Room {
     corners: usize,
@@ -79,8 +79,9 @@ fn rooms(soup: &IndexedFaces, faces: &FaceList) -> Vec<Room> {
     rooms
 }
 
-/// Indices may point forward, so they are looked at when everything has been read. Without its position a
-/// corner is nothing; it can do without the rest.
+/// Checks all indices after reading, since they may point forward.
+///
+/// A corner without a position is invalid; one without the rest is not.
 fn check_indices(
     soup: &mut IndexedFaces,
     place: &dyn Fn(u64) -> Span,
@@ -96,7 +97,7 @@ fn check_indices(
             if is_first {
                 left_out.push(face);
             }
-            // What has no index at all was reported where it stands.
+            // A corner without an index was reported where it was read.
             if corner[0] == NONE {
                 continue;
             }
@@ -124,7 +125,7 @@ fn check_indices(
     if left_out.len() == soup.faces.len() {
         return soup.first_fault.take().or(first_fault).map_or(Ok(()), Err);
     }
-    // A face whose corners are all one has no area.
+    // A face whose corners coincide has no area.
     let mut left_out = left_out.into_iter().peekable();
     for (face, corner) in soup.faces.corners_mut() {
         while left_out.next_if(|&gone| gone < face).is_some() {}
@@ -135,7 +136,7 @@ fn check_indices(
     Ok(())
 }
 
-/// Gives corners without a normal one by smoothing groups or the crease angle, if any of them needs one.
+/// Computes normals for corners without one, by smoothing groups or the crease angle.
 fn add_normals(reading: &mut Reading, source: &Source, soup: &mut IndexedFaces) -> Result<(), FormatError> {
     let lacking = soup.faces.iter().flatten().any(|corner| corner[2] == NONE);
     let mixed = lacking && !soup.normals.is_empty();
@@ -146,8 +147,8 @@ fn add_normals(reading: &mut Reading, source: &Source, soup: &mut IndexedFaces) 
     if angle <= 0.0 {
         soup.smoothing = vec![(0, FLAT)];
     }
-    // Each corner its position, its place among its neighbours, its face and at most a normal; each face its own, and each
-    // position its neighbours.
+    // Each corner takes its position, its neighbours' entry, its face and at most one normal; each face its own
+    // normal, and each position its neighbours.
     let needed = 24 * soup.faces.corner_count() + 24 * (soup.faces.len() + soup.positions.len());
     reading.budget.take_bytes(needed as u64, source.name)?;
     let mut corners = Vec::with_capacity(soup.faces.corner_count());
@@ -185,7 +186,7 @@ pub(crate) fn material_of(
         Some((name, offset)) => (name.as_str(), Some(*offset)),
         None => ("", None),
     };
-    // No library can have a material without a name.
+    // A library cannot define a material without a name.
     if let Some(&index) = materials.get(name) {
         return index;
     }
@@ -203,20 +204,20 @@ pub(crate) fn material_of(
     index
 }
 
-/// Finds again the vertex of a corner that was seen before in the same run.
+/// Finds the vertex of a corner that already occurred in the same run.
 struct Welder {
     slots: Vec<Slot>,
     run: u32,
 }
 
-/// The vertices made of a position in the run with this number: the first of a chain.
+/// The vertices made from a position in the run with this number: the head of a linked list.
 #[derive(Clone, Copy, Default)]
 struct Slot {
     run: u32,
     first: u32,
 }
 
-/// Chains longer than this are not searched: what a hostile file gains is vertices, not time.
+/// Longer chains are not searched: a hostile file costs vertices, not time.
 const LONGEST_CHAIN: usize = 32;
 
 impl Welder {
@@ -225,11 +226,11 @@ impl Welder {
     }
 }
 
-/// A mesh in the making.
+/// A mesh under construction.
 struct Piece<'s> {
     soup: &'s IndexedFaces,
     mesh: Mesh,
-    /// For each vertex: its uv and normal, and the next vertex of the same position.
+    /// For each vertex its uv, its normal, and the next vertex at the same position.
     made: Vec<[u32; 3]>,
     corners: Vec<u32>,
     has_uvs: bool,
@@ -237,7 +238,7 @@ struct Piece<'s> {
 }
 
 impl<'s> Piece<'s> {
-    /// With room for all triangles, and for as many vertices as there may well be; what of it is not needed costs nothing.
+    /// Reserves memory for all triangles and the likely number of vertices; unused memory costs nothing.
     fn new(soup: &'s IndexedFaces, room: Option<Room>) -> Piece<'s> {
         let Room { corners, faces } = room.unwrap_or_default();
         let longest = soup.positions.len().max(soup.uvs.len()).max(soup.normals.len());
@@ -256,7 +257,7 @@ impl<'s> Piece<'s> {
         Piece { soup, mesh, made, corners: Vec::new(), has_uvs: false, lacks_uvs: false }
     }
 
-    /// `None` when a polygon could not be cut properly.
+    /// Returns `None` if a polygon could not be triangulated properly.
     fn add_face(
         &mut self,
         corners: &[Corner],
@@ -278,7 +279,7 @@ impl<'s> Piece<'s> {
         triangulator.triangulate(points, |t| triangles.push(t.map(|i| corners[i as usize])))
     }
 
-    /// The vertex of a corner, made when it is new.
+    /// The vertex of a corner, created if it is new.
     #[inline]
     fn vertex(&mut self, [position, uv, normal]: Corner, welder: &mut Welder) -> u32 {
         let slot = &mut welder.slots[position as usize];
@@ -318,7 +319,7 @@ impl<'s> Piece<'s> {
         }
     }
 
-    /// A mesh has texture coordinates at all vertices or at none.
+    /// Finishes the mesh; it has texture coordinates at all vertices or at none.
     fn into_mesh(mut self, run: &Run, place: &dyn Fn(u64) -> Span, oddities: &mut Oddities) -> Mesh {
         if !self.has_uvs {
             self.mesh.uvs = Vec::new();

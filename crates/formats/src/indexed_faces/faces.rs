@@ -1,9 +1,8 @@
-//! Faces in a list that can be let go piece by piece, and what is told of each in few words.
+//! A list of faces that is freed chunk by chunk, and a compact list of one number per face.
 
 use super::Corner;
 
-/// Corners of faces, one face after another. They lie in pieces, so that whoever turns them into something else can
-/// let each piece go as soon as it has been read.
+/// The corners of faces, in chunks, so that a consumer can free each chunk once it has been read.
 #[derive(Debug, Default)]
 pub(crate) struct FaceList {
     pieces: Vec<Piece>,
@@ -11,19 +10,19 @@ pub(crate) struct FaceList {
     corners: usize,
 }
 
-/// Whole faces.
+/// A chunk of whole faces.
 #[derive(Debug, Default)]
 struct Piece {
     corners: Vec<Corner>,
-    /// Where each face's corners end, from the piece's first.
+    /// The end of each face's corners, relative to the chunk.
     ends: Vec<u32>,
 }
 
-/// A piece has about as many corners: large enough to be given back to the system when it is let go.
+/// The approximate number of corners of a chunk: large enough that the allocator returns its memory to the system.
 const PIECE: usize = 1 << 18;
 
 impl FaceList {
-    /// How many faces there are.
+    /// The number of faces.
     pub(crate) fn len(&self) -> usize {
         self.faces
     }
@@ -32,7 +31,7 @@ impl FaceList {
         self.faces == 0
     }
 
-    /// How many corners all faces have together.
+    /// The total number of corners of all faces.
     pub(crate) fn corner_count(&self) -> usize {
         self.corners
     }
@@ -43,11 +42,11 @@ impl FaceList {
         self.append(corners, [corners.len() as u32]);
     }
 
-    /// Adds faces that have these corners, each up to one of the ends.
+    /// Adds faces with these corners; each face runs up to one of the ends.
     pub(crate) fn append(&mut self, corners: &[Corner], ends: impl IntoIterator<Item = u32>) {
         let fits = |piece: &Piece| piece.corners.len() + corners.len() <= piece.corners.capacity();
         if !self.pieces.last().is_some_and(fits) {
-            // What is not used of it costs nothing until it is.
+            // Unused capacity costs nothing until it is touched.
             let corners = Vec::with_capacity(corners.len().max(PIECE));
             self.pieces.push(Piece { corners, ends: Vec::new() });
         }
@@ -60,14 +59,14 @@ impl FaceList {
         self.corners += corners.len();
     }
 
-    /// Each face's corners.
+    /// The corners of each face.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[Corner]> {
         self.pieces.iter().flat_map(|piece| {
             (0..piece.ends.len()).map(|face| &piece.corners[piece.start(face)..piece.ends[face] as usize])
         })
     }
 
-    /// All corners, with the face that each belongs to.
+    /// All corners, each with the index of its face.
     pub(crate) fn corners_mut(&mut self) -> impl Iterator<Item = (usize, &mut Corner)> {
         let mut face = 0;
         self.pieces.iter_mut().flat_map(move |piece| {
@@ -83,7 +82,7 @@ impl FaceList {
         })
     }
 
-    /// Calls `visit` with each face's number and corners, and lets go what has been visited.
+    /// Calls `visit` with each face's index and corners, and frees the chunks that have been visited.
     pub(crate) fn consume<E>(
         self,
         mut visit: impl FnMut(usize, &[Corner]) -> Result<(), E>,
@@ -105,14 +104,14 @@ impl Piece {
     }
 }
 
-/// A number for each face, where most differ from the last one by as much as that from the one before: places in a file.
+/// One number per face, compressed as runs of constant steps; used for locations in a file.
 #[derive(Debug, Default)]
 pub(crate) struct Steps {
     runs: Vec<Run>,
     count: usize,
 }
 
-/// Numbers at even steps.
+/// Numbers with a constant step.
 #[derive(Debug)]
 struct Run {
     first_face: u32,

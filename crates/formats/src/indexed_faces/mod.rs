@@ -1,4 +1,4 @@
-//! What OBJ and PLY files hold, and meshes made of it.
+//! The data model that OBJ and PLY share, and its conversion to meshes.
 
 mod assemble;
 mod faces;
@@ -10,47 +10,47 @@ use crate::FormatError;
 use crate::normals::Smoothing;
 use bilux_math::{Rgb, Vec2, Vec3};
 
-/// An index that is not given.
+/// A missing index.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Position, texture coordinates and normal of a corner, as indices from 0; or [`NONE`].
+/// Position, texture coordinates and normal of a corner, as indices from 0 or [`NONE`].
 pub(crate) type Corner = [u32; 3];
 
-/// Faces over lists of positions, texture coordinates and normals, before they are cut into objects.
+/// Faces with lists of positions, texture coordinates and normals, before they are split into objects.
 #[derive(Default)]
 pub(crate) struct IndexedFaces {
     pub(crate) positions: Vec<Vec3>,
-    /// As many as positions, or none.
+    /// One per position, or none.
     pub(crate) colours: Vec<Rgb>,
-    /// The same for specular colours.
+    /// Specular colours: one per position, or none.
     pub(crate) specular: Vec<Rgb>,
     pub(crate) uvs: Vec<Vec2>,
     pub(crate) normals: Vec<Vec3>,
     pub(crate) faces: FaceList,
-    /// Where in the file each face stands: in the words of whoever reads it, who turns them into a [`bilux_scene::Span`].
+    /// The location of each face in the file, as a number that the reader converts to a [`bilux_scene::Span`].
     pub(crate) places: Steps,
-    /// Where the smoothing changes: the first face that has it.
+    /// Changes of smoothing: the first face that each applies to.
     pub(crate) smoothing: Vec<(usize, Smoothing)>,
     pub(crate) runs: Vec<Run>,
-    /// What the format calls its first vertex: 1 in OBJ, 0 elsewhere.
+    /// The number of the first vertex in the format: 1 in OBJ, 0 elsewhere.
     pub(crate) first_vertex: u32,
-    /// Faces that name vertices which do not exist are left out, with a warning.
+    /// If true, faces that refer to missing vertices are left out with a warning.
     pub(crate) leaves_out: bool,
-    /// The first that is wrong with an element that is left out: the error, where no face is left.
+    /// The first fault of an element that was left out: the error if no face is left.
     pub(crate) first_fault: Option<FormatError>,
 }
 
-/// Faces one after another that have the same name and material.
+/// Consecutive faces with the same name and material.
 #[derive(Clone, Debug)]
 pub(crate) struct Run {
     pub(crate) first_face: usize,
     pub(crate) name: String,
-    /// The material's name and where it is asked for; `None` for a plain one.
+    /// The material's name and where it is used; `None` for a plain one.
     pub(crate) material: Option<(String, u64)>,
 }
 
 impl IndexedFaces {
-    /// Says how the faces from here on join their neighbours.
+    /// Sets the smoothing of the following faces.
     #[inline]
     pub(crate) fn smooth(&mut self, smoothing: Smoothing) {
         if self.smoothing.last().is_none_or(|(_, last)| *last != smoothing) {
@@ -58,7 +58,7 @@ impl IndexedFaces {
         }
     }
 
-    /// How each face joins its neighbours; one for all where all do it alike.
+    /// The smoothing of each face; a single entry if all faces share it.
     fn smoothing_of_each(&self) -> Vec<Smoothing> {
         if let [(_, all)] = self.smoothing[..] {
             return vec![all];

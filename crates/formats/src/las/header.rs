@@ -7,12 +7,12 @@ use bilux_math::DVec3;
 
 pub(super) const SIGNATURE: &[u8] = b"LASF";
 
-/// Bytes of the header of versions 1.0 to 1.2, the shortest.
+/// Bytes of the header of versions 1.0 to 1.2, the shortest one.
 const SHORTEST: usize = 227;
-/// Where version 1.4 has its number of points, in 64 bits.
+/// The offset of the 64-bit point count in version 1.4.
 const LONG_COUNT: usize = 247;
 
-/// Of each point format: the fewest bytes of a record, and where its colour stands. [LAS 1.4 R15, 2.6]
+/// For each point format, the minimum size of a record and the offset of its colour. [LAS 1.4 R15, 2.6]
 const FORMATS: [(usize, Option<usize>); 11] = [
     (20, None),
     (28, None),
@@ -27,15 +27,15 @@ const FORMATS: [(usize, Option<usize>); 11] = [
     (67, Some(30)),
 ];
 
-/// What of a header counts here.
+/// The parts of a header that the reader uses.
 #[derive(Debug)]
 pub(super) struct Header {
-    /// Where the points begin.
+    /// The offset of the points.
     pub(super) points: usize,
     pub(super) count: u64,
-    /// Bytes of a point.
+    /// The size of a point record in bytes.
     pub(super) record: usize,
-    /// Where in a record the colour stands.
+    /// The offset of the colour in a record.
     pub(super) colour: Option<usize>,
     pub(super) scale: DVec3,
     pub(super) offset: DVec3,
@@ -58,7 +58,7 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     if major != 1 || minor > 4 {
         return fail(format!("this is LAS {major}.{minor}, but 1.0 to 1.4 are read"));
     }
-    // The highest bits say that records are compressed.
+    // The highest bits mark compressed records.
     let format = bytes[104];
     if format & 0xc0 != 0 {
         let message =
@@ -100,7 +100,7 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     Ok(Header { points, count, record, colour, scale, offset })
 }
 
-/// Numbers at places that are known to be there; 0 where they are not.
+/// The number at an offset; 0 beyond the end.
 pub(super) fn u16_at(bytes: &[u8], at: usize) -> u16 {
     bytes.get(at..).and_then(<[u8]>::first_chunk).map_or(0, |b| u16::from_le_bytes(*b))
 }

@@ -1,4 +1,4 @@
-//! LAS, clouds of points from laser scanners. See `docs/formats/las.md`.
+//! LAS: point clouds from laser scanners. See `docs/formats/las.md`.
 
 mod header;
 mod read;
@@ -14,7 +14,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
         source: "",
         parameters: &[],
     },
-    // Compressed files come here too, to be refused in words that help.
+    // Compressed files are accepted here, and then refused with a helpful message.
     extensions: &["las", "laz"],
     capabilities: &["points", "vertex-kd"],
     sniff: |bytes| bytes.starts_with(header::SIGNATURE),

@@ -1,4 +1,4 @@
-//! Reading LAS.
+//! Reads LAS.
 
 use super::header::{Header, read_header, u16_at, u32_at};
 use crate::FormatError;
@@ -8,7 +8,7 @@ use bilux_math::colour::srgb_decode;
 use bilux_math::{DVec3, Rgb};
 use bilux_scene::SceneBuilder;
 
-/// Where the intensity of a point stands, in all formats.
+/// The offset of a point's intensity, in all formats.
 const INTENSITY: usize = 12;
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
@@ -29,11 +29,12 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(cloud.into_scene(source.stem()))
 }
 
-/// What gives a record its colour.
+/// Computes the colour of a record.
 type ColourOf = Box<dyn Fn(&[u8]) -> Rgb>;
 
-/// The colour of a record, where they have any; else its intensity as a grey, where these differ. Some programs write bytes into
-/// what should be 16 bits.
+/// The colours of the records if they have any; otherwise grey levels from their intensities, if these differ.
+///
+/// Some programs write 8-bit values into the 16-bit fields.
 fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn() -> I) -> Option<ColourOf> {
     let one_for = |greatest: u16| if greatest > 255 { 65535.0 } else { 255.0 };
     if let Some(at) = header.colour {
@@ -57,7 +58,7 @@ fn colours<'b, I: Iterator<Item = &'b [u8]>>(header: &Header, records: impl Fn()
         };
         histogram.iter().position(&mut reaches).unwrap_or(histogram.len() - 1) as f32
     };
-    // A few mirrors are brighter than all else.
+    // A few mirror reflections are brighter than everything else.
     let (dark, bright) = (place(0.02), place(0.98));
     (bright > dark).then(|| {
         let grey = move |record: &[u8]| {

@@ -1,4 +1,4 @@
-//! TOML with the place of every key and value.
+//! TOML with the location of every key and value.
 
 use crate::FormatError;
 use crate::text::{Places, whole_file};
@@ -6,7 +6,7 @@ use bilux_scene::{SceneError, Span};
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
-/// A value in a file.
+/// A TOML value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum TomlValue {
     Bool(bool),
@@ -17,21 +17,21 @@ pub(super) enum TomlValue {
     Table(Table),
 }
 
-/// A value with its place.
+/// A value with its location.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Item {
     pub(super) node: TomlValue,
     pub(super) at: Span,
 }
 
-/// Keys in the order written, each with its own place.
+/// Keys in file order, each with its own location.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Table {
     pub(super) entries: Vec<(String, Span, Item)>,
     pub(super) at: Span,
 }
 
-/// Bytes that a parsed byte takes at most: a number of one digit in a list.
+/// The maximum number of bytes in memory per byte of the file: a list of one-digit numbers.
 pub(super) const BYTES_PER_BYTE: u64 = 160;
 
 /// Parses a file.
@@ -50,7 +50,7 @@ pub(super) fn parse(bytes: &[u8], name: &Arc<str>) -> Result<Table, FormatError>
     table(document.get_ref(), Span { line: 1, column: 1, ..whole_file(name) }, &places)
 }
 
-/// A report of the parser with quotes as messages have them.
+/// The parser's message with quotes as in Bilux's other messages.
 fn syntax_fault(report: &str) -> String {
     report.replace("`\"`", "a double quote").replace('`', "'")
 }
@@ -61,7 +61,7 @@ fn table(source: &DeTable, at: Span, places: &Places) -> Result<Table, FormatErr
     let mut entries = Vec::with_capacity(rows.len());
     for (key, value) in rows {
         let key_at = places.at(key.span().start);
-        // Tables of tables have no place of their own that means much; the key has.
+        // The location of a nested table means little; that of its key is used instead.
         let value_at = if value.span().is_empty() { key_at.clone() } else { places.at(value.span().start) };
         entries.push((key.get_ref().to_string(), key_at, item(value.get_ref(), value_at, places)?));
     }
@@ -96,7 +96,7 @@ impl Table {
         self.entries.iter().find(|(k, ..)| k == key).map(|(.., item)| item)
     }
 
-    /// Refuses keys that are not among the known ones.
+    /// Refuses unknown keys.
     pub(super) fn check_keys<'k>(
         &self,
         what: &str,
@@ -108,12 +108,12 @@ impl Table {
         }
     }
 
-    /// Text under a key, if it is there.
+    /// The text under a key, if it exists.
     pub(super) fn text(&self, key: &str) -> Result<Option<&str>, FormatError> {
         self.find(key).map(|item| item.text(key)).transpose()
     }
 
-    /// A switch under a key; false if it is not there.
+    /// The switch under a key; false if it does not exist.
     pub(super) fn switch(&self, key: &str) -> Result<bool, FormatError> {
         match self.find(key) {
             None => Ok(false),
@@ -122,7 +122,7 @@ impl Table {
         }
     }
 
-    /// Tables under a key: one, or a list of them.
+    /// The tables under a key: a single one, or a list.
     pub(super) fn tables(&self, key: &str) -> Result<Vec<&Table>, FormatError> {
         let as_table = |item: &Item| match &item.node {
             TomlValue::Table(_) => Ok(()),
@@ -143,7 +143,7 @@ impl Table {
 }
 
 impl Item {
-    /// The refusal of a value of the wrong kind.
+    /// The error for a value of the wrong type.
     pub(super) fn wrong(&self, key: &str, wanted: &str) -> FormatError {
         SceneError::BadValue {
             what: key.to_owned(),
@@ -176,7 +176,7 @@ impl Item {
         }
     }
 
-    /// Numbers in a list of a certain length.
+    /// A list of exactly `N` numbers.
     pub(super) fn numbers<const N: usize>(&self, key: &str, wanted: &str) -> Result<[f64; N], FormatError> {
         let items: &[Item; N] = self.list(key, wanted)?.try_into().map_err(|_| self.wrong(key, wanted))?;
         let mut numbers = [0.0; N];

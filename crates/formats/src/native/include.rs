@@ -1,4 +1,4 @@
-//! A file together with those that it includes.
+//! Collects a file and the files that it includes.
 
 use super::document::{BYTES_PER_BYTE, Item, Table, TomlValue, parse};
 use crate::FormatError;
@@ -15,7 +15,7 @@ pub(super) struct Part {
     pub(super) folder: Option<PathBuf>,
 }
 
-/// The parts of a scene: what is included before what includes it, each file once.
+/// The parts of a scene: included files before those that include them, each file once.
 pub(super) fn gather(reading: &mut Reading, source: &Source) -> Result<Vec<Part>, FormatError> {
     let mut gathering = Gathering { reading, parts: Vec::new(), seen: HashSet::new(), open: Vec::new() };
     gathering.add(source.bytes, source.name, source.folder)?;
@@ -26,11 +26,11 @@ struct Gathering<'o, 'r> {
     reading: &'r mut Reading<'o>,
     parts: Vec<Part>,
     seen: HashSet<PathBuf>,
-    /// The chain of files from the first to the one that is read.
+    /// The chain of includes, from the first file to the current one.
     open: Vec<PathBuf>,
 }
 
-/// Longer chains of includes are refused: each takes a part of the stack.
+/// Longer chains of includes are refused, since each level uses some of the stack.
 const LONGEST_CHAIN: usize = 32;
 
 impl Gathering<'_, '_> {
@@ -86,7 +86,7 @@ fn is_of_another_format(file: &str) -> bool {
     extension.and_then(|extension| format_named(&extension)).is_some_and(|row| row.entry.name != "toml")
 }
 
-/// A scene of another format as the one model of a part, with its lights and cameras.
+/// Wraps a scene of another format as the only model of a part, with its lights and cameras.
 fn as_model(file: &str, at: &Span) -> Table {
     let entry = |key: &str, node: TomlValue| (key.to_owned(), at.clone(), Item { node, at: at.clone() });
     let list = |nodes: Vec<TomlValue>| {

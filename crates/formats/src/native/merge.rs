@@ -1,4 +1,4 @@
-//! One scene put into another.
+//! Merges one scene into another.
 
 use super::scene::Native;
 use crate::FormatError;
@@ -8,7 +8,7 @@ use bilux_scene::{Object, SceneBuilder, SceneError, Span, Spec, Value};
 use std::sync::Arc;
 
 impl Native<'_, '_> {
-    /// Adds a scene's textures and materials; gives the index that its first material has now.
+    /// Adds the textures and materials of a scene; returns the new index of its first material.
     pub(super) fn bring_materials(&mut self, model: &SceneBuilder) -> usize {
         let first = self.scene.materials.len();
         for spec in &model.materials {
@@ -19,7 +19,7 @@ impl Native<'_, '_> {
         first
     }
 
-    /// A spec of a scene whose textures come after ours, and whose materials begin at `first`.
+    /// A spec of a scene whose textures follow those of this scene, and whose materials begin at `first`.
     pub(super) fn moved(&self, spec: &Spec, first: usize) -> Spec {
         let mut spec = spec.clone();
         for (_, value, _) in &mut spec.parameters.0 {
@@ -33,7 +33,7 @@ impl Native<'_, '_> {
     }
 }
 
-/// An object moved by the model that it belongs to.
+/// An object transformed by the motion of its model.
 pub(super) fn moved(object: &Object, by: &Motion, at: &Span) -> Result<Object, FormatError> {
     let is_unmoved = |motion: &Motion| motion.is_still() && motion.at(0.0).is_identity();
     let object = object.clone();

@@ -1,7 +1,7 @@
 //! The native scene file, in TOML. See `docs/formats/scene-toml.md`.
 //!
-//! A file and its includes are parsed first; then settings, materials and models are taken from each in turn,
-//! so that their order in the files does not matter; at last materials are replaced.
+//! The reader first parses a file and its includes. It then collects settings, materials and models from each part
+//! in turn, so their order in the files does not matter. Finally it replaces materials.
 
 mod document;
 mod include;
@@ -50,7 +50,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// A line with one of the tables that only scenes have.
+/// True if a line opens one of the tables that only scenes have.
 fn sniff(bytes: &[u8]) -> bool {
     let tables =
         ["[[model]]", "[[material]]", "[[light]]", "[camera]", "[[camera]]", "[render]", "[[replace]]"];

@@ -17,7 +17,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Keys of every model, beside those that place it; what it is made of must be one of the first three.
+/// The keys of every model except those that place it; exactly one of the first three is its source.
 pub(super) const KEYS: [&str; 8] =
     ["file", "shape", "generate", "name", "material", "materials", "instance", "with"];
 
@@ -38,7 +38,7 @@ impl Native<'_, '_> {
         self.bring_with(table, &model)
     }
 
-    /// Adds the objects of a model. Without materials of its own it gets the plain one.
+    /// Adds the objects of a model; one without materials gets the plain one.
     fn place(
         &mut self,
         table: &Table,
@@ -50,7 +50,7 @@ impl Native<'_, '_> {
         let name = table.text("name")?;
         let given = table.find("material").map(|item| self.material_named(item)).transpose()?;
         let renamed = self.renamed_materials(table, model)?;
-        // Where the model's own materials begin here, once one of them is needed.
+        // The index of the model's first material in this scene, once one of its materials is needed.
         let mut first = origin.as_ref().and_then(|path| self.brought.get(path).copied());
         for object in &model.objects {
             self.reading.budget.take::<[Object; 2]>(1, &table.at.file)?;
@@ -76,7 +76,7 @@ impl Native<'_, '_> {
         Ok(())
     }
 
-    /// `materials = { NAME_IN_THE_FILE = "NAME_HERE" }`: for each of the model's materials ours, if it is replaced.
+    /// `materials = { NAME_IN_THE_FILE = "NAME_HERE" }`: for each material of the model its replacement, if any.
     fn renamed_materials(
         &self,
         table: &Table,
@@ -114,7 +114,7 @@ impl Native<'_, '_> {
         Ok(path)
     }
 
-    /// A file's scene; read once.
+    /// The scene of a file, which is read only once.
     fn file_model(
         &mut self,
         path: &Path,
@@ -134,7 +134,7 @@ impl Native<'_, '_> {
         let shown = Path::new(&*table.at.file).with_file_name(name).display().to_string();
         let mut model = read_file(Some(row), self.reading, path, &shown.into())?;
         self.reading.leave();
-        // Where it is placed its own coordinates count.
+        // A placed model keeps the coordinates of its file.
         let origin = std::mem::take(&mut model.origin);
         if let Some(origin) =
             Transform::from_matrix(DMat4::from_translation(origin)).filter(|t| !t.is_identity())
@@ -201,7 +201,7 @@ impl Native<'_, '_> {
         self.reading.budget.take_bytes(mesh.size(), &table.at.file)
     }
 
-    /// `with = ["lights", "cameras"]`: what else of a model's scene is wanted.
+    /// `with = ["lights", "cameras"]`: the other parts of a model's scene to add.
     fn bring_with(&mut self, table: &Table, model: &SceneBuilder) -> Result<(), FormatError> {
         let Some(item) = table.find("with") else { return Ok(()) };
         if place::KEYS.iter().any(|key| table.find(key).is_some()) {

@@ -1,4 +1,4 @@
-//! Pictures from files on surfaces: where they lie, and what is beyond their edges and between their texels.
+//! Image textures: their placement, wrapping and filtering.
 
 use super::document::Table;
 use super::specs::plain_value;
@@ -18,7 +18,7 @@ const WRAP_WORDS: &[&str] = &[WRAPS[0].0, WRAPS[1].0, WRAPS[2].0];
 const FILTERS: [(&str, Filter); 2] = [("linear", Filter::Linear), ("nearest", Filter::Nearest)];
 const FILTER_WORDS: &[&str] = &[FILTERS[0].0, FILTERS[1].0];
 
-/// What may be said of a picture beside its file and its channel.
+/// The keys of an image texture besides its file and its channel.
 pub(super) const PICTURE: Entry = Entry {
     name: "texture",
     summary: "a picture from a file",
@@ -40,7 +40,7 @@ pub(super) const PICTURE: Entry = Entry {
     ],
 };
 
-/// A texture as a table says that it lies.
+/// A texture placed as its table states.
 pub(super) fn placed(texture: &Texture, table: &Table) -> Result<Texture, FormatError> {
     let mut spec = Spec { span: table.at.clone(), ..Spec::new("", PICTURE.name) };
     for (key, at, item) in &table.entries {
@@ -67,7 +67,7 @@ pub(super) fn placed(texture: &Texture, table: &Table) -> Result<Texture, Format
     })
 }
 
-/// What is to be said of a texture for [`placed`] to make it of its file: keys with their values as TOML.
+/// The keys that make [`placed`] turn the plain file into this texture, with their values as TOML.
 pub(super) fn said_of(texture: &Texture) -> Vec<(&'static str, String)> {
     let mut said = Vec::new();
     if let Some(transform) = &texture.transform {
@@ -96,8 +96,9 @@ pub(super) fn said_of(texture: &Texture) -> Vec<(&'static str, String)> {
     said
 }
 
-/// Texture coordinates, v upwards, are scaled, turned (in radians) and shifted. [`UvTransform`] is of v downwards; both turn
-/// the same way, about other corners.
+/// Scales, rotates (in radians) and shifts texture coordinates, with v upwards.
+///
+/// [`UvTransform`] has v downwards; both rotate the same way, but about different corners.
 struct Placement {
     scale: [f32; 2],
     turn: f32,
@@ -105,7 +106,7 @@ struct Placement {
 }
 
 impl Placement {
-    /// Where the upper left corner comes to, from the lower left one.
+    /// The position of the upper left corner relative to the lower left one.
     fn corner(&self) -> Vec2 {
         Vec2::new(-sin(self.turn), cos(self.turn)) * self.scale[1]
     }

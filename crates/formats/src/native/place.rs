@@ -1,4 +1,4 @@
-//! Where a model stands: translation, rotation, scale, or a matrix; and keyframes of these.
+//! Placement of models: translation, rotation and scale, or a matrix; and keyframes of these.
 
 use super::document::{Item, Table, TomlValue};
 use super::specs::missing;
@@ -8,13 +8,13 @@ use bilux_math::transcendental::sin_cos_f64;
 use bilux_math::{DMat4, DVec3, Motion, MotionKey, Transform};
 use bilux_scene::{SceneError, Span};
 
-/// Keys that place a model.
+/// The keys that place a model.
 pub(super) const KEYS: [&str; 5] = ["translate", "rotate", "scale", "matrix", "keyframes"];
 
-/// Keys of a keyframe.
+/// The keys of a keyframe.
 pub(super) const KEYFRAME_KEYS: [&str; 4] = ["time", "translate", "rotate", "scale"];
 
-/// Where a model is, and when.
+/// The motion of a model.
 pub(super) fn motion(table: &Table) -> Result<Motion, FormatError> {
     let pose = Pose::default().changed_by(table)?;
     let frames = table.tables("keyframes")?;
@@ -52,7 +52,7 @@ pub(super) fn motion(table: &Table) -> Result<Motion, FormatError> {
     })
 }
 
-/// Scale, then rotation, then translation.
+/// A transform as scale, then rotation, then translation.
 #[derive(Clone, Debug)]
 struct Pose {
     translation: DVec3,
@@ -112,8 +112,10 @@ impl Pose {
         }
     }
 
-    /// In how many steps to go here from another pose. Between two keys of a motion rotation takes the shorter
-    /// way, on which a whole turn is none at all; in steps of a quarter turn it is what was written.
+    /// The number of steps from another pose to this one.
+    ///
+    /// Between two keys of a motion, rotation takes the shorter way, on which a whole turn vanishes; steps of a
+    /// quarter turn preserve the rotation as written.
     fn steps_from(&self, from: &Pose, at: &Span) -> Result<u32, FormatError> {
         let degrees = match (&from.rotation, &self.rotation) {
             (Rotation::Euler(a), Rotation::Euler(b)) => (*b - *a).abs().max_element(),
@@ -140,7 +142,7 @@ impl Pose {
     }
 }
 
-/// A hundred turns between two keyframes.
+/// The limit is a hundred turns between two keyframes.
 const MAX_STEPS: f64 = 400.0;
 
 impl Rotation {
@@ -178,7 +180,7 @@ fn vector(item: &Item, key: &str) -> Result<DVec3, FormatError> {
     Ok(DVec3::from(item.numbers::<3>(key, "three numbers [x, y, z]")?))
 }
 
-/// Four rows of four numbers, or 16 numbers row by row.
+/// Reads four rows of four numbers, or 16 numbers in row-major order.
 fn read_matrix(item: &Item) -> Result<Transform, FormatError> {
     let wanted = "four rows of four numbers, the last of them [0, 0, 0, 1]";
     let items = item.list("matrix", wanted)?;

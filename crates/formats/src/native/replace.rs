@@ -1,4 +1,4 @@
-//! `[[replace]]`: other materials for what models brought, by the names that these gave.
+//! `[[replace]]`: replaces materials of models by name.
 
 use super::document::Table;
 use super::scene::{MAX_NAMES, Native};
@@ -7,17 +7,17 @@ use crate::FormatError;
 use bilux_scene::SceneError;
 use std::collections::BTreeSet;
 
-/// Keys of a replacement: what it is about, and what comes in place.
+/// The keys of a replacement: what it selects, and the new material.
 pub(super) const KEYS: [&str; 3] = ["material", "object", "with"];
 
-/// Each is held against every object.
+/// The maximum number of replacements; each one is compared with every object.
 const MAX: usize = 1000;
 
-/// Longer patterns name nothing.
+/// Longer patterns match nothing.
 const LONGEST: usize = 1000;
 
 impl Native<'_, '_> {
-    /// Replaces materials of the objects so far. Where several tables are about an object, the last one counts.
+    /// Replaces materials of the objects so far. If several tables match an object, the last one wins.
     pub(super) fn replace(&mut self, tables: &[&Table]) -> Result<(), FormatError> {
         if let Some(table) = tables.get(MAX) {
             let message = format!("there are more than {MAX} replacements: use patterns, as in \"Glass*\"");
@@ -51,12 +51,12 @@ impl Native<'_, '_> {
         Ok(())
     }
 
-    /// A pattern means the materials of models; one that the scene file itself makes is meant by its name alone.
+    /// A pattern selects only materials of models; a material of the scene file itself must be named exactly.
     fn may_replace(&self, material: Option<&str>, index: usize) -> bool {
         index >= self.own_materials() || !material.is_some_and(|name| name.contains(['*', '?']))
     }
 
-    /// What is said where nothing goes by the names.
+    /// The error if nothing has the requested names.
     fn without_match(
         &self,
         table: &Table,
@@ -98,10 +98,10 @@ fn fits(pattern: Option<&str>, name: &str) -> bool {
     pattern.is_none_or(|pattern| matches(pattern, name))
 }
 
-/// True where a name is what a pattern says: `*` is any text, `?` any character, all else itself.
+/// True if a name matches a pattern: `*` is any text, `?` any character, and all else is literal.
 fn matches(pattern: &str, name: &str) -> bool {
     let (mut wanted, mut rest) = (pattern.chars(), name.chars());
-    // What stands behind the last star, and where it was tried last.
+    // The pattern after the last star, and the position where it was last tried.
     let mut retry = None;
     loop {
         let mut next = wanted.clone();

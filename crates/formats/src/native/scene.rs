@@ -10,13 +10,13 @@ use bilux_scene::{SceneBuilder, SceneError, Span};
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// So many names are told where one is unknown.
+/// The maximum number of names that an error about an unknown name lists.
 pub(super) const MAX_NAMES: usize = 100;
 
-/// More settings than any render has: each is held against all others.
+/// More settings than any render has; each one is compared with all others.
 const MAX_SETTINGS: usize = 1000;
 
-/// Keys of the top level.
+/// The keys of the top level.
 pub(super) const KEYS: [&str; 7] = ["include", "render", "camera", "light", "material", "model", "replace"];
 
 pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
@@ -36,7 +36,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     for part in &parts {
         native.materials(part)?;
     }
-    // Before those that models bring: the first camera is the default.
+    // Before the cameras of models: the first camera is the default.
     for part in &parts {
         native.lights_and_cameras(part)?;
     }
@@ -58,19 +58,19 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     Ok(scene)
 }
 
-/// A scene file on its way to a scene.
+/// The state while a scene file is converted to a scene.
 pub(super) struct Native<'o, 'r> {
     pub(super) reading: &'r mut Reading<'o>,
     pub(super) scene: SceneBuilder,
-    /// Index and place of each named material.
+    /// The index and location of each named material.
     materials: HashMap<String, (usize, Span)>,
     default_material: Option<usize>,
-    /// Where the materials begin that each model file brought.
+    /// The index of the first material of each model file.
     pub(super) brought: HashMap<PathBuf, usize>,
 }
 
 impl Native<'_, '_> {
-    /// `[render]`: handed on as they are.
+    /// `[render]`: passed on unchanged.
     fn settings(&mut self, root: &Table) -> Result<(), FormatError> {
         for table in root.tables("render")? {
             for (key, at, item) in &table.entries {
@@ -85,7 +85,7 @@ impl Native<'_, '_> {
         Ok(())
     }
 
-    /// Names come first, since materials may be made of others in any order.
+    /// Collects names first, since materials may refer to each other in any order.
     fn names_of_materials(&mut self, part: &Part) -> Result<(), FormatError> {
         for table in part.root.tables("material")? {
             let (name, at) = (table.text("name")?.unwrap_or_default(), table.at.clone());
@@ -123,7 +123,7 @@ impl Native<'_, '_> {
         Ok(())
     }
 
-    /// The index of a material by its name.
+    /// The index of the material with this name.
     pub(super) fn material_named(&self, item: &Item) -> Result<usize, FormatError> {
         let name = item.text("material")?;
         let known = || self.materials.keys().map(String::as_str).take(MAX_NAMES);
@@ -133,12 +133,12 @@ impl Native<'_, '_> {
         }
     }
 
-    /// So many materials, the first ones, are the scene file's own.
+    /// The number of materials, the first ones, that belong to the scene file itself.
     pub(super) fn own_materials(&self) -> usize {
         self.materials.len()
     }
 
-    /// The material of models that neither name nor bring one.
+    /// The material of models that neither select nor contain one.
     pub(super) fn default_material(&mut self) -> usize {
         let scene = &mut self.scene;
         *self.default_material.get_or_insert_with(|| scene.add_material(default_material()))

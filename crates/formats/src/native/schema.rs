@@ -1,4 +1,4 @@
-//! A JSON schema of scene files, for editors: made from the same tables that the reader reads.
+//! A JSON schema of scene files, for editors, generated from the tables that the reader uses.
 
 use super::pictures::PICTURE;
 use super::place::KEYFRAME_KEYS;
@@ -9,7 +9,7 @@ use bilux_scene::generators::GENERATORS;
 use bilux_scene::{CAMERAS, LIGHTS, MATERIALS, TEXTURES};
 use serde_json::{Map, Value, json};
 
-/// A JSON schema (draft 2020-12) of native scene files. `settings` are the keys of `[render]`.
+/// The JSON schema (draft 2020-12) of native scene files. `settings` are the keys of `[render]`.
 pub fn toml_schema(settings: &[Parameter]) -> Value {
     let rows = |entries: Vec<&Entry>, extra: &[(&str, Value)], kind_default: Option<&str>| {
         one_of(entries, "kind", extra, kind_default)
@@ -55,7 +55,7 @@ fn described(kind: &str, description: &str) -> Value {
     json!({ "type": kind, "description": description })
 }
 
-/// A table that is one of the rows, told apart by a key.
+/// A table that matches one of the rows, distinguished by a key.
 fn one_of(rows: Vec<&Entry>, key: &str, extra: &[(&str, Value)], default: Option<&str>) -> Value {
     let table = |entry: &Entry| {
         let mut all = properties(entry.parameters);
@@ -119,12 +119,12 @@ fn values(kind: ParameterKind) -> Value {
     }
 }
 
-/// A procedural texture; one may be made of others.
+/// A procedural texture, which may contain others.
 fn formula() -> Value {
     json!({ "$ref": "#/$defs/formula" })
 }
 
-/// A picture in place of a value.
+/// An image in place of a value.
 fn texture(extra: &[(&str, Value)]) -> Value {
     let mut all: Map<String, Value> =
         extra.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
@@ -138,7 +138,7 @@ fn vector() -> Value {
     json!({ "oneOf": [numbers, { "type": "number" }] })
 }
 
-/// A default as JSON has it; tables write them as text.
+/// A default value as JSON; the tables state it as text.
 fn default_value(parameter: &Parameter) -> Option<Value> {
     let text = parameter.default;
     let numbers: Vec<Value> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
@@ -164,7 +164,7 @@ fn camera_keyframes(cameras: &[&Entry]) -> Value {
     schema
 }
 
-/// `[[model]]`: a file, or one of the shapes, or one of the generators.
+/// `[[model]]`: a file, a shape or a generator.
 fn model() -> Value {
     let place = place();
     let common = common_of_models();
@@ -194,7 +194,7 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// `[[replace]]`: other materials for what models brought.
+/// `[[replace]]`: replaces materials of models.
 fn replacement() -> Value {
     json!({
         "type": "object",

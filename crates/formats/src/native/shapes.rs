@@ -1,4 +1,4 @@
-//! Shapes that need no file. All stand around the origin.
+//! Built-in shapes, which need no file. All are placed around the origin.
 
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Aabb, Vec3};
@@ -8,9 +8,9 @@ use bilux_scene::{Mesh, Reader};
 /// A row of [`SHAPES`].
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeEntry {
-    /// Name, summary, source, parameters.
+    /// Its name, summary, source and parameters.
     pub entry: Entry,
-    /// Makes one from its parameters.
+    /// Builds the mesh from its parameters.
     pub build: fn(&Reader) -> Mesh,
 }
 

@@ -1,4 +1,4 @@
-//! Materials, lights and cameras: a kind, and the parameters of its row.
+//! Materials, lights and cameras: a kind, and the parameters of its table row.
 
 use super::document::{Item, Table, TomlValue};
 use super::include::Part;
@@ -14,7 +14,7 @@ use bilux_scene::{
 };
 use std::sync::Arc;
 
-/// Keys that all of them have.
+/// The keys that all of them have.
 pub(super) const KEYS: [&str; 2] = ["name", "kind"];
 
 impl Native<'_, '_> {
@@ -23,7 +23,7 @@ impl Native<'_, '_> {
         self.spec(table, part, "material", None, &rows, &[])
     }
 
-    /// True for a key of a material that names another.
+    /// True if this key of a material refers to another material.
     fn names_material(row: &Entry, key: &str) -> bool {
         row.parameters.iter().any(|p| p.name == key && p.kind == ParameterKind::Material)
     }
@@ -53,7 +53,7 @@ impl Native<'_, '_> {
         Ok(CameraSpec { spec, keyframes })
     }
 
-    /// A spec that its row accepts.
+    /// Reads a spec that its table row accepts.
     fn spec(
         &mut self,
         table: &Table,
@@ -94,7 +94,7 @@ impl Native<'_, '_> {
         Ok(spec)
     }
 
-    /// A parameter's value; `None` for a texture that is missing, so that the default holds.
+    /// The value of a parameter; `None` for a missing texture, so that the default applies.
     fn value(
         &mut self,
         key: &str,
@@ -108,7 +108,8 @@ impl Native<'_, '_> {
         Ok(Some(Value::Texture(self.scene.textures.len() - 1)))
     }
 
-    /// A texture for a parameter of this kind; where that says nothing else, it holds what the one around it does.
+    /// Reads a texture for a parameter of this kind. If the kind does not determine colours or numbers, `around`
+    /// does.
     fn texture(
         &mut self,
         key: &str,
@@ -143,7 +144,7 @@ impl Native<'_, '_> {
             Ok(texture) => Ok(Some(Arc::new(placed(&texture, table)?))),
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
-                // Magenta light would colour all of the scene.
+                // Magenta light would tint the whole scene.
                 let (stands_in, texture) = match holds {
                     Texels::Colours if key == "radiance" => (
                         "a texture is replaced by an even grey of 0.5".to_owned(),
@@ -164,7 +165,7 @@ impl Native<'_, '_> {
         }
     }
 
-    /// A procedural texture, and those that it is made of.
+    /// A procedural texture with the textures that it contains.
     fn formula(
         &mut self,
         kind: &str,
@@ -197,10 +198,10 @@ impl Native<'_, '_> {
     }
 }
 
-/// The channels that a number can be read from.
+/// The channels that can provide a number.
 pub(super) const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
 
-/// `channel = "g"`: which one a number is read from.
+/// `channel = "g"`: the channel that provides a number.
 fn channel(table: &Table) -> Result<Option<Channel>, FormatError> {
     let Some(item) = table.find("channel") else { return Ok(None) };
     let name = item.text("channel")?;
@@ -210,7 +211,7 @@ fn channel(table: &Table) -> Result<Option<Channel>, FormatError> {
     }
 }
 
-/// A value without tables.
+/// A value that contains no table.
 pub(super) fn plain_value(key: &str, item: &Item) -> Result<Value, FormatError> {
     Ok(match &item.node {
         TomlValue::Bool(b) => Value::Bool(*b),
@@ -224,7 +225,7 @@ pub(super) fn plain_value(key: &str, item: &Item) -> Result<Value, FormatError> 
     })
 }
 
-/// The refusal of a table without something that it needs.
+/// The error for a table without a required key.
 pub(super) fn missing(what: &str, table: &Table) -> FormatError {
     SceneError::Missing { what: what.to_owned(), at: table.at.clone() }.into()
 }

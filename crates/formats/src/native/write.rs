@@ -1,4 +1,4 @@
-//! Writing the native scene file, its meshes beside it as PLY and its textures as PNG or EXR.
+//! Writes the native scene file, with its meshes as PLY files and its textures as PNG or EXR files.
 
 use super::pictures::said_of;
 use crate::FormatError;
@@ -38,7 +38,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     Ok(())
 }
 
-/// A name for each material, none of them twice.
+/// A unique name for each material.
 fn material_names(materials: &[Spec]) -> Vec<String> {
     let mut names = UnusedNames::default();
     let name = |spec: &Spec| names.unused(if spec.name.is_empty() { &spec.kind } else { &spec.name });
@@ -144,7 +144,7 @@ fn list(numbers: &[f32]) -> String {
     format!("[{}]", all.join(", "))
 }
 
-/// `None` for a texture that is not there.
+/// Returns `None` for a missing texture.
 fn value_text(
     value: &Value,
     scene: &SceneBuilder,
@@ -171,7 +171,7 @@ fn value_text(
     }))
 }
 
-/// A file, or a formula with all that it is made of.
+/// A file, or a procedural texture with the textures that it contains.
 fn texture_text(
     texture: &Arc<Texture>,
     scene: &SceneBuilder,
@@ -204,7 +204,7 @@ fn texture_text(
     Ok(out)
 }
 
-/// The shortest text of a number that reads back as the same, taken as an f32 where it is one.
+/// The shortest text of a number that parses back to the same value; as an f32 if it is one.
 fn number(x: f64) -> String {
     let narrow = x as f32;
     match x {
@@ -214,7 +214,7 @@ fn number(x: f64) -> String {
     }
 }
 
-/// Text in quotes as TOML has it.
+/// Text in quotes, as TOML requires.
 fn quoted(text: &str) -> String {
     let mut out = String::from('"');
     for letter in text.chars() {

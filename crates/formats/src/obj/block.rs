@@ -1,4 +1,4 @@
-//! The lines of one block of an OBJ file, read by themselves: what earlier blocks say is added when they are joined.
+//! Parses one block of lines of an OBJ file by itself; results of earlier blocks are added when blocks are joined.
 
 use super::index::{Index, index};
 use super::strokes::Stroke;
@@ -13,49 +13,49 @@ use bilux_math::{DVec3, Rgb, Vec2, Vec3};
 use bilux_scene::Span;
 use std::sync::Arc;
 
-/// What a block of lines says. Lines and faces are counted from its own beginning.
+/// The contents of a block of lines. Line and face numbers are relative to its start.
 #[derive(Debug, Default)]
 pub(super) struct Block {
     pub(super) positions: Vec<Vec3>,
-    /// As many as positions, or none where none has a colour.
+    /// One per position, or none if no position has a colour.
     pub(super) colours: Vec<Rgb>,
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) corners: Vec<Corner>,
-    /// Where each face's corners end.
+    /// The end of each face's corners.
     pub(super) ends: Vec<u32>,
     pub(super) places: Vec<TextPosition>,
-    /// Corners that count backwards from where they stand.
+    /// Corners with indices that count backwards.
     pub(super) backward: Vec<Backward>,
     /// Points and lines.
     pub(super) strokes: Vec<Stroke>,
-    /// What changes between faces, in order.
+    /// State changes between faces, in order.
     pub(super) turns: Vec<(usize, StateChange)>,
     pub(super) oddities: Oddities,
-    /// How many line ends there are.
+    /// The number of line ends.
     pub(super) lines: u32,
-    /// What reading the block has taken of the budget.
+    /// The memory that reading the block took from the budget.
     pub(super) spent: u64,
-    /// The first element that is left out because of what is wrong with it.
+    /// The fault of the first element that is left out.
     pub(super) fault: Option<FormatError>,
-    /// What ended it early.
+    /// The error that ended the block early.
     pub(super) failure: Option<FormatError>,
 }
 
-/// A part of a corner that counts backwards.
+/// A part of a corner with an index that counts backwards.
 #[derive(Debug)]
 pub(super) struct Backward {
-    /// Which corner; none for one of a face that is left out.
+    /// The corner; `None` if its face is left out.
     pub(super) corner: Option<u32>,
-    /// Which of position, uv and normal.
+    /// The part: position, uv or normal.
     pub(super) part: u8,
-    /// How far behind the first of the block it lies.
+    /// Its index relative to the first element of the block.
     pub(super) index: i64,
-    /// Where in the block the corner is written.
+    /// The offset of the corner in the block.
     pub(super) offset: usize,
 }
 
-/// What changes between two faces.
+/// A state change between two faces.
 #[derive(Debug)]
 pub(super) enum StateChange {
     Name(String),
@@ -65,11 +65,11 @@ pub(super) enum StateChange {
     Libraries(String, TextPosition),
 }
 
-/// A face of more corners than this asks for room while it is read.
+/// A face with more corners than this reserves memory while it is read.
 const MANY: usize = 4096;
 
 impl Block {
-    /// An empty one that keeps the room of its lists: large ones that come and go leave holes in memory.
+    /// An empty block that keeps the capacity of its lists: repeated large allocations would fragment memory.
     pub(super) fn emptied(mut self) -> Block {
         self.positions.clear();
         self.colours.clear();
@@ -85,7 +85,7 @@ impl Block {
     }
 }
 
-/// Reads a block of whole lines into one that is empty.
+/// Reads a block of whole lines into an empty one.
 pub(super) fn read_block(
     text: &[u8],
     (file, origin): (&Arc<str>, DVec3),
@@ -99,7 +99,7 @@ pub(super) fn read_block(
     Block { lines: reader.cursor.lines(), spent, failure, ..reader.block }
 }
 
-/// What is wrong with a corner.
+/// The message about a malformed corner.
 #[cold]
 pub(super) fn bad_corner(word: &[u8]) -> String {
     format!(
@@ -109,17 +109,17 @@ pub(super) fn bad_corner(word: &[u8]) -> String {
     )
 }
 
-/// What becomes of elements that cannot be read.
+/// What happens to elements that cannot be read.
 const VERTEX_LEFT_OUT: &str = ": this vertex is left out, and with it the faces that it is a corner of";
 const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is taken as 0";
 const FACE_LEFT_OUT: &str = ": this face is left out";
-/// Of these it is known only when blocks are joined.
+/// This is known only when blocks are joined.
 pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
 
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
     pub(super) file: &'a Arc<str>,
-    /// What positions are counted from.
+    /// The origin that positions are relative to.
     origin: DVec3,
     pub(super) budget: Budget,
     pub(super) block: Block,
@@ -159,12 +159,12 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Goes to the line's end, so that a backslash there continues nothing.
+    /// Skips to the end of the line, so that a backslash there continues nothing.
     fn pass_line(&mut self) {
         self.cursor.rest_of_line();
     }
 
-    /// Where a byte of this line stands.
+    /// The location of an offset on this line.
     pub(super) fn at(&self, offset: usize) -> Span {
         self.cursor.place(offset).in_file(self.file)
     }
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
     fn turn(&mut self, turn: StateChange) {
         let (faces, turns) = (self.block.ends.len(), &mut self.block.turns);
         let is_drawn_with = self.block.strokes.last().is_some_and(|stroke| stroke.turns == turns.len());
-        // Of several of a kind that no face stands between the last one counts.
+        // Of several changes of one kind without a face between them, the last one counts.
         if let Some((before, last)) = turns.last_mut()
             && *before == faces
             && !is_drawn_with
@@ -196,10 +196,10 @@ impl<'a> Reader<'a> {
         let mut again = (self.origin != DVec3::ZERO).then(|| self.cursor.clone());
         let mut count = self.numbers(&mut numbers, 3, VERTEX_LEFT_OUT);
         if count == 0 {
-            // Its number is kept, so that the faces after it name the right ones.
+            // The vertex keeps its number, so that later faces refer to the right vertices.
             (numbers, count) = ([f32::NAN; 8], 3);
         } else if let Some(again) = &mut again {
-            // With all of their digits.
+            // Parses again as f64 to keep all digits.
             for (number, origin) in numbers.iter_mut().zip(self.origin.to_array()) {
                 let wide = parse_f64(again.word()).unwrap_or(f64::NAN);
                 *number = (wide - origin) as f32;
@@ -236,7 +236,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// The numbers of a statement, `least` of them or more; how many there are, or 0 where they cannot be read.
+    /// Parses the numbers of a statement, at least `least` of them; returns their count, or 0 on failure.
     #[inline]
     fn numbers(&mut self, numbers: &mut [f32], least: usize, left_out: &str) -> usize {
         let mut count = 0;
@@ -273,7 +273,7 @@ impl<'a> Reader<'a> {
         count
     }
 
-    /// Notes that an element is left out, and why.
+    /// Records that an element is left out, and why.
     #[cold]
     pub(super) fn fault(&mut self, message: String, left_out: &str, at: Span) {
         if self.block.fault.is_none() {
@@ -341,7 +341,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// Notes a part of a corner that counts backwards, and gives what stands in its place until it is known.
+    /// Records a part of a corner that counts backwards; returns a placeholder until the index is known.
     fn backward(&mut self, word: &[u8], part: usize, back: i64) -> u32 {
         let block = &mut self.block;
         let known = [block.positions.len(), block.uvs.len(), block.normals.len()][part];
@@ -354,7 +354,7 @@ impl<'a> Reader<'a> {
         0
     }
 
-    /// `s off` and `s 0` are flat, any other number is a group that is smooth.
+    /// `s off` and `s 0` are flat; any other number is a smoothing group.
     fn smoothing_group(&mut self, start: TextPosition) -> Result<(), FormatError> {
         let word = self.cursor.word();
         let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<u32>().ok());

@@ -1,15 +1,15 @@
-//! Indices of an OBJ file: counted from 1, or backwards from -1.
+//! Indices of an OBJ file: they count from 1, or backwards from -1.
 
 use crate::indexed_faces::NONE;
 
-/// An index as OBJ counts, as one from 0, or how far back it lies.
+/// An index from 0, or the distance to count back.
 #[derive(Debug, PartialEq)]
 pub(super) enum Index {
     Forward(u32),
     Backward(i64),
 }
 
-/// An index as OBJ counts, from 1, or backwards from -1; whether it exists is looked at when that is known.
+/// Parses an index, which counts from 1 or backwards from -1; whether it exists is checked later.
 #[inline]
 pub(super) fn index(text: &[u8]) -> Option<Index> {
     let (negative, digits) = match text {

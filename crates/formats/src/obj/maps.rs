@@ -1,4 +1,4 @@
-//! Pictures that MTL names: their options, and what they are put in place of.
+//! Textures of MTL: their options, and the parameters that they replace.
 
 use super::mtl::{Draft, Library};
 use super::surface::NUMBERS;
@@ -11,21 +11,21 @@ use bilux_scene::texture::{Channel, Image, Texels as Held, UvTransform, Wrap};
 use bilux_scene::{SceneBuilder, Span, Spec, Texture, Value};
 use std::sync::Arc;
 
-/// A picture as a line names it.
+/// A texture as a line describes it.
 pub(super) struct Map {
     pub(super) file: String,
     pub(super) at: Span,
     offset: [f32; 2],
     scale: [f32; 2],
     is_clamped: bool,
-    /// Factor on bumps.
+    /// The bump multiplier.
     bump: f32,
-    /// The channel that is of use.
+    /// The selected channel.
     channel: Option<Channel>,
 }
 
 impl Map {
-    /// The texture as it lies: of texture coordinates with v upwards, scale first, then the shift.
+    /// Places the texture: scales texture coordinates, with v upwards, then shifts them.
     fn placed(&self, texture: Texture) -> Texture {
         let ([x, y], [u, v]) = (self.scale, self.offset);
         let lies = (self.scale, self.offset) != ([1.0; 2], [0.0; 2]);
@@ -36,7 +36,7 @@ impl Map {
 }
 
 impl Library<'_, '_, '_> {
-    /// A file's name behind its options.
+    /// Reads a file name and the options before it.
     pub(super) fn map(&mut self, start: usize) -> Map {
         let mut map = Map {
             file: String::new(),
@@ -68,7 +68,7 @@ impl Library<'_, '_, '_> {
             let pair = |default: f32| [0, 1].map(|i| given.get(i).copied().unwrap_or(default));
             match (option, word) {
                 (b"-o", _) => map.offset = pair(0.0),
-                // One number is of u alone.
+                // A single number applies to u only.
                 (b"-s", _) => map.scale = pair(1.0),
                 (b"-bm", _) => map.bump = given.first().copied().unwrap_or(1.0),
                 (b"-clamp", word) => map.is_clamped = word.eq_ignore_ascii_case(b"on"),
@@ -76,7 +76,7 @@ impl Library<'_, '_, '_> {
                 (b"-imfchan", b"g") => map.channel = Some(Channel::G),
                 (b"-imfchan", b"b") => map.channel = Some(Channel::B),
                 (b"-imfchan", b"m") => map.channel = Some(Channel::A),
-                // What is so by itself, or only makes it faster.
+                // These are the defaults, or only affect speed.
                 (b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-colorspace" | b"-texres", _) => {}
                 (option, _) => {
                     let (places, name) = (&self.places, String::from_utf8_lossy(option));
@@ -89,7 +89,7 @@ impl Library<'_, '_, '_> {
         map
     }
 
-    /// Puts the pictures of a material in place of its numbers and colours.
+    /// Replaces numbers and colours of a material by its textures.
     pub(super) fn put_maps(
         &mut self,
         draft: &Draft,
@@ -101,7 +101,7 @@ impl Library<'_, '_, '_> {
         let specular = Some("ks").filter(|key| known(key));
         for (word, tint, key) in [("map_Kd", "Kd", diffuse), ("map_Ks", "Ks", specular)] {
             if let (Some(map), Some(key)) = (draft.maps.get(word), key) {
-                // Black is taken as white: many programs write it beside every picture.
+                // Black counts as white: many exporters write it next to every texture.
                 let tint = draft.colour(tint).filter(|tint| !tint.is_black()).unwrap_or(Rgb::WHITE);
                 let picture = self.colours(map, tint, scene)?;
                 put(scene, spec, key, picture, map);
@@ -144,7 +144,7 @@ impl Library<'_, '_, '_> {
         Ok(())
     }
 
-    /// A picture of colours, tinted; a plain checker, with a warning, where it cannot be had.
+    /// A tinted texture of colours; a magenta checker, with a warning, if it cannot be read.
     fn colours(&mut self, map: &Map, tint: Rgb, scene: &mut SceneBuilder) -> Result<Texture, FormatError> {
         match self.reading.texture(self.source.folder, &map.file, Texels::Colours, &map.at) {
             Ok(texture) => Ok(Texture { factor: tint, ..(*texture).clone() }),
@@ -157,7 +157,7 @@ impl Library<'_, '_, '_> {
         }
     }
 
-    /// A picture of numbers; a warning, where it cannot be had.
+    /// A texture of numbers; `None`, with a warning, if it cannot be read.
     fn numbers(&mut self, map: &Map, scene: &mut SceneBuilder) -> Result<Option<Texture>, FormatError> {
         match self.reading.texture(self.source.folder, &map.file, Texels::Numbers(None), &map.at) {
             Ok(texture) => Ok(Some((*texture).clone())),
@@ -180,21 +180,21 @@ fn has_alpha(texture: &Texture) -> bool {
     Texture { channel: Some(Channel::A), ..texture.clone() }.texels().any(|alpha| alpha.r < 1.0)
 }
 
-/// True for a picture of normals, which many name as bumps: blue, with red and green in the middle.
+/// True for a normal map, which many files declare as a bump map: blue, with red and green near the middle.
 fn holds_normals(texture: &Texture) -> bool {
     let count = texture.texels().count().max(1) as f32;
     let mean = texture.texels().sum::<Rgb>() / count;
     mean.b > 0.65 && (mean.r - 0.5).abs() < 0.15 && (mean.g - 0.5).abs() < 0.15
 }
 
-/// Normals of a relief that is `bump` texels higher where the picture is white than where it is black.
+/// Converts a height map to a normal map; white is `bump` texels higher than black.
 fn normals_of_heights(texture: &Texture, bump: f32) -> Texture {
     let (width, height) = (texture.width(), texture.height());
     let at = |x: usize, y: usize| texture.texel(x % width, y % height).luminance() * bump;
     let mut bytes = Vec::with_capacity(width * height);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
         let along_u = 0.5 * (at(x + 1, y) - at(x + width - 1, y));
-        // Rows go down, and v goes up.
+        // Rows run downwards, but v points upwards.
         let along_v = 0.5 * (at(x, y + height - 1) - at(x, y + 1));
         let n = Vec3::new(-along_u, -along_v, 1.0).normalize();
         let [r, g, b] = (n * 0.5 + 0.5).to_array().map(|c| (c * 255.0).round() as u8);

@@ -39,7 +39,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// The first statement is one of the usual ones.
+/// True if the first statement is one of the usual ones.
 fn sniff(bytes: &[u8]) -> bool {
     let mut cursor = Cursor::new(&bytes[..bytes.len().min(4096)]);
     while !cursor.is_done() {

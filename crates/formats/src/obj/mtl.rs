@@ -1,4 +1,4 @@
-//! Reading MTL: materials of the 1990s, mapped to ours as `docs/formats/obj.md` says.
+//! Reads MTL: maps its materials, which date from the 1990s, to Bilux's as `docs/formats/obj.md` describes.
 
 use super::maps::Map;
 use super::surface::{material, unit};
@@ -10,7 +10,7 @@ use bilux_math::Rgb;
 use bilux_scene::{SceneBuilder, Span};
 use std::collections::HashMap;
 
-/// Adds every material of a library to the scene; `by_name` gets their indices, the first of a name wins.
+/// Adds every material of a library to the scene and its index to `by_name`; the first material of a name wins.
 pub(super) fn read_library(
     reading: &mut Reading,
     source: &Source,
@@ -54,7 +54,7 @@ pub(super) fn read_library(
     Ok(())
 }
 
-/// A material while its lines are read; `None` is what no line says.
+/// A material while its lines are read; `None` stands for what no line states.
 #[derive(Default)]
 pub(super) struct Draft {
     pub(super) name: String,
@@ -81,23 +81,23 @@ impl Draft {
         self.number("illum").map_or(2, |n| n as i32)
     }
 
-    /// 0..=1.
+    /// The opacity, from 0 to 1.
     pub(super) fn opacity(&self) -> f32 {
         self.number("d").or(self.number("Tr").map(|t| 1.0 - t)).unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
-    /// The refractive index, where one is said that can be.
+    /// The index of refraction, if a valid one is given.
     pub(super) fn eta(&self) -> Option<f32> {
         self.number("Ni").filter(|&n| n > 0.0).map(|n| n.clamp(0.1, 10.0))
     }
 
-    /// The diffuse colour; white below a picture of it.
+    /// The diffuse colour; white if there is only a texture.
     pub(super) fn diffuse(&self) -> Option<Rgb> {
         self.colour("Kd").map(unit).or(self.maps.contains_key("map_Kd").then_some(Rgb::WHITE))
     }
 }
 
-/// What is read, by the kind of what follows.
+/// The supported keywords, by the type of their values.
 const COLOURS: [&str; 6] = ["Kd", "Ks", "Ke", "Tf", "Kt", "Kr"];
 const NUMBERS: [&str; 12] =
     ["Ns", "Ni", "d", "Tr", "illum", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
@@ -105,10 +105,10 @@ const MAPS: [&str; 11] = [
     "map_Kd", "map_Ks", "map_Ke", "map_d", "map_Pr", "map_Pm", "map_Ps", "map_Pc", "map_Pcr", "norm",
     "map_bump",
 ];
-/// The same by other words.
+/// Other spellings of keywords.
 const ALIASES: [(&str, &str); 4] =
     [("bump", "map_bump"), ("map_opacity", "map_d"), ("map_Kn", "norm"), ("map_norm", "norm")];
-/// Ambient light follows kd here, and sharpness is of reflection maps.
+/// Ambient light follows kd in Bilux, and sharpness applies to reflection maps.
 const WITHOUT_USE: [&str; 3] = ["Ka", "map_Ka", "sharpness"];
 
 pub(super) struct Library<'a, 'o, 'r> {
@@ -153,7 +153,7 @@ impl Library<'_, '_, '_> {
         Ok(())
     }
 
-    /// Three numbers, or one for all; `None` for a spectral file or another colour space.
+    /// Three numbers, or one for all channels; `None` for a spectral file or another colour space.
     fn colour(&mut self) -> Result<Option<Rgb>, FormatError> {
         if [&b"spectral"[..], b"xyz"].contains(&self.cursor.peek_word()) {
             let (places, at) = (&self.places, self.cursor.offset());
@@ -175,7 +175,7 @@ impl Library<'_, '_, '_> {
         }
     }
 
-    /// A number; `None`, with a warning, when it is infinite or none.
+    /// A number; `None`, with a warning, if it is infinite or NaN.
     fn number(&mut self) -> Result<Option<f32>, FormatError> {
         let word = self.cursor.word();
         let offset = self.cursor.offset() - word.len();

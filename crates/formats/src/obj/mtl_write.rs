@@ -1,4 +1,4 @@
-//! Writing MTL, so that [`super::mtl`] reads the same material back.
+//! Writes MTL so that [`super::mtl`] reads the same material back.
 
 use super::surface::NUMBERS;
 use super::write::one_line;
@@ -11,7 +11,7 @@ use bilux_math::Rgb;
 use bilux_scene::materials::with_indices;
 use bilux_scene::{SceneBuilder, Spec, Value};
 
-/// Writes every material but the plain one into a library beside; gives the name of each.
+/// Writes all materials except the plain one to a library file; returns the name of each material.
 pub(super) fn write_library(
     scene: &SceneBuilder,
     writing: &mut Writing,
@@ -40,7 +40,7 @@ pub(super) fn write_library(
     Ok(names)
 }
 
-/// What MTL holds of materials.
+/// The parameters that MTL can store.
 const HOLDS: MaterialSupport = MaterialSupport {
     format: "OBJ",
     of_kinds: &[
@@ -138,7 +138,7 @@ fn write_material(
     push_map(out, &format!("norm -bm {lean}"), texture(spec, "normal"), scene, writing)
 }
 
-/// A line that names a picture, if there is one.
+/// Writes a line with a texture, if there is one.
 fn push_map(
     out: &mut Vec<u8>,
     word: &str,
@@ -160,7 +160,7 @@ fn push_map(
     Ok(())
 }
 
-/// In the words that other programs added.
+/// Writes `principled` with the keywords of the PBR extension.
 fn write_principled(
     spec: &Spec,
     scene: &SceneBuilder,
@@ -197,7 +197,7 @@ fn write_principled(
 fn write_phong(spec: &Spec, out: &mut Vec<u8>) {
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
     let kt = grey("kt", 0.0);
-    // What `d` leaves of kd was taken from it when it was read.
+    // Reading multiplied kd by the opacity `d`; this undoes it.
     let opacity = if spec.parameters.find("thin").is_some_and(|(v, _)| *v == Value::Bool(true)) {
         1.0 - kt.max_channel()
     } else {
@@ -224,7 +224,7 @@ fn write_phong(spec: &Spec, out: &mut Vec<u8>) {
     match number(spec, "reflectivity").unwrap_or(1.0) {
         0.0 => out.extend_from_slice(b"illum 2\n"),
         part => {
-            // Not of the format, but other programs write it too, and the rest pass over it.
+            // Not in the format, but other programs write it too, and the rest ignore it.
             push_number(out, "Kr", part);
             out.extend_from_slice(b"illum 3\n");
         }

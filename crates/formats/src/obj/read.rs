@@ -1,4 +1,4 @@
-//! Reading an OBJ file, block by block.
+//! Reads an OBJ file block by block.
 
 use super::block::{BACKWARD_LEFT_OUT, Block, StateChange, bad_corner, read_block};
 use super::mtl::read_library;
@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
-/// Bytes of a block: enough that what it costs to join them does not count.
+/// The size of a block in bytes: large enough that the cost of joining blocks is negligible.
 const BLOCK: usize = 1 << 20;
 
 pub(super) fn read(
@@ -27,7 +27,7 @@ pub(super) fn read(
     read_in_blocks(reading, source, from, BLOCK)
 }
 
-/// The text is held only while it is read: as many blocks as there are threads.
+/// Holds the text only while it is read: as many blocks as there are threads.
 fn read_in_blocks(
     reading: &mut Reading,
     source: &Source,
@@ -55,23 +55,24 @@ fn read_in_blocks(
 struct Obj<'a, 'o, 'r> {
     reading: &'r mut Reading<'o>,
     source: &'a Source<'a>,
-    /// Line ends before the block that is joined.
+    /// The number of lines before the block that is being joined.
     lines: u32,
     soup: IndexedFaces,
     scene: SceneBuilder,
-    /// Index of each material, by its name.
+    /// The index of each material by name.
     materials: HashMap<String, usize>,
     oddities: Oddities,
     name: String,
     material: Option<(String, u64)>,
     smoothing: Smoothing,
-    /// False when the next face begins a new run.
+    /// False if the next face begins a new run.
     in_run: bool,
     strokes: Strokes,
 }
 
 impl Obj<'_, '_, '_> {
-    /// Reads blocks side by side and joins them in order, so that it does not show how many threads there are.
+    /// Reads blocks in parallel and joins them in order, so that the result does not depend on the number of
+    /// threads.
     fn blocks(&mut self, blocks: &mut Blocks) -> Result<(), FormatError> {
         let file = self.source.name;
         let mut spare: Vec<Block> = Vec::new();
@@ -101,7 +102,7 @@ impl Obj<'_, '_, '_> {
         }
     }
 
-    /// Adds what a block says to what those before it said.
+    /// Appends the contents of a block to those of the earlier blocks.
     fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
         self.reading.budget.take_bytes(block.spent, self.source.name)?;
         self.turn_round(block, text);
@@ -123,7 +124,7 @@ impl Obj<'_, '_, '_> {
         }
         match block.failure.take() {
             Some(error) => Err(moved_down(error, before)),
-            // Indices are 32-bit numbers, and the last one means that there is none.
+            // Indices are 32-bit numbers, and the largest one stands for a missing index.
             None if most.iter().any(|&count| count as u64 >= u64::from(NONE)) => {
                 let message = "there are more than 4 billion vertices or corners: cut the file into several";
                 Err(FormatError::malformed(message, end.in_file(self.source.name)))
@@ -132,7 +133,7 @@ impl Obj<'_, '_, '_> {
         }
     }
 
-    /// Keeps the fault that stands first.
+    /// Keeps the fault that comes first in the file.
     fn set_fault(&mut self, fault: FormatError) {
         let line = |fault: &FormatError| match fault {
             FormatError::Malformed { at, .. } => at.line,
@@ -143,14 +144,14 @@ impl Obj<'_, '_, '_> {
         }
     }
 
-    /// Gives corners that count backwards their indices.
+    /// Resolves the corners with indices that count backwards.
     fn turn_round(&mut self, block: &mut Block, text: &[u8]) {
         let before = [self.soup.positions.len(), self.soup.uvs.len(), self.soup.normals.len()];
         let mut is_first = true;
         for backward in &block.backward {
             let index = before[backward.part as usize] as i64 + backward.index;
             let index = u32::try_from(index).ok().filter(|&index| index != NONE).unwrap_or_else(|| {
-                // Lines are counted once a block: a file may have as many of these as it has corners.
+                // Counts lines only once per block: a file may have as many of these faults as it has corners.
                 if !std::mem::take(&mut is_first) {
                     self.oddities.note(BACKWARD_LEFT_OUT, || whole_file(self.source.name));
                     return NONE;
@@ -164,7 +165,7 @@ impl Obj<'_, '_, '_> {
                 self.oddities.note_first(BACKWARD_LEFT_OUT, || message, || at);
                 NONE
             });
-            // A face that something was wrong with may have ended before its corner was there.
+            // A faulty face may have ended before this corner.
             let corner = backward.corner.and_then(|corner| block.corners.get_mut(corner as usize));
             if let Some(corner) = corner {
                 corner[backward.part as usize] = index;
@@ -172,7 +173,7 @@ impl Obj<'_, '_, '_> {
         }
     }
 
-    /// Where one vertex has a colour all have.
+    /// If one vertex has a colour, all vertices have one.
     fn add_colours(&mut self, block: &Block) -> Result<(), FormatError> {
         let soup = &mut self.soup;
         if !block.colours.is_empty() || !soup.colours.is_empty() {
@@ -185,7 +186,7 @@ impl Obj<'_, '_, '_> {
         Ok(())
     }
 
-    /// Adds faces, points and lines, which stand behind so many vertices of earlier blocks.
+    /// Adds faces, points and lines; `before` is the number of vertices in earlier blocks.
     fn add_faces(&mut self, block: &mut Block, before: usize) -> Result<(), FormatError> {
         let (mut next, mut strokes) = (0, block.strokes.iter().peekable());
         for (turns, (face, turn)) in std::mem::take(&mut block.turns).into_iter().enumerate() {
@@ -253,7 +254,7 @@ impl Obj<'_, '_, '_> {
         Ok(())
     }
 
-    /// `mtllib NAME…`: names with blanks are tried whole first.
+    /// `mtllib NAME…`: tries a name with spaces as a whole first.
     fn libraries(&mut self, line: String, at: &Span) -> Result<(), FormatError> {
         let folder = self.source.folder;
         let names = match self.reading.locate(folder, &line, at) {
@@ -289,7 +290,7 @@ impl Obj<'_, '_, '_> {
             return Err(FormatError::malformed(message, whole_file(source.name)));
         }
         if soup.faces.is_empty() && strokes.is_empty() {
-            // What has vertices alone is a cloud of points.
+            // A file of vertices only is a point cloud.
             reading.budget.take::<u32>(soup.positions.len(), source.name)?;
             strokes.add_all(soup.positions.len(), source.stem());
         }
@@ -305,7 +306,7 @@ impl Obj<'_, '_, '_> {
     }
 }
 
-/// The same error where so many lines stand before.
+/// The same error, moved down by a number of lines.
 fn moved_down(error: FormatError, lines: u32) -> FormatError {
     match error {
         FormatError::Malformed { message, mut at } => {
@@ -316,7 +317,7 @@ fn moved_down(error: FormatError, lines: u32) -> FormatError {
     }
 }
 
-/// Names with blanks between; a backslash keeps a blank in a name.
+/// Splits names at spaces; a backslash keeps a space in a name.
 fn split_names(line: &str) -> Vec<String> {
     let mut names = vec![String::new()];
     let mut letters = line.chars().peekable();
@@ -345,7 +346,7 @@ mod tests {
         assert_eq!(split_names(r"a.mtl b\ c.mtl  d\e.mtl"), ["a.mtl", "b c.mtl", r"d\e.mtl"]);
     }
 
-    /// All that is read, or what is wrong, in words.
+    /// Describes everything that was read, or the error, as text.
     fn read_with(text: &str, size: usize) -> String {
         let options = ReadOptions::default();
         let mut reading = Reading::new(&options, None);

@@ -14,9 +14,9 @@ use std::sync::Arc;
 /// A point, or a line between two vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stroke {
-    /// How many turns stand before it.
+    /// The number of state changes before it.
     pub(super) turns: usize,
-    /// Twice the same of a point.
+    /// Both ends are the same for a point.
     pub(super) ends: [End; 2],
     pub(super) is_point: bool,
     pub(super) place: TextPosition,
@@ -25,9 +25,9 @@ pub(super) struct Stroke {
 /// A vertex of a point or a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
-    /// Counted from 0.
+    /// An index from 0.
     Whole(u32),
-    /// From the first vertex of the block, negative before it.
+    /// An index relative to the first vertex of the block; negative for earlier blocks.
     OfBlock(i64),
 }
 
@@ -71,7 +71,7 @@ impl Reader<'_> {
     }
 }
 
-/// All of a file, those of one name and material together.
+/// All points and lines of a file, grouped by name and material.
 #[derive(Default)]
 pub(super) struct Strokes {
     groups: Vec<Group>,
@@ -81,7 +81,7 @@ struct Group {
     run: Run,
     points: Vec<u32>,
     lines: Vec<[u32; 2]>,
-    /// Where the first stands.
+    /// The location of the first one.
     place: u64,
 }
 
@@ -90,7 +90,7 @@ impl Strokes {
         self.groups.is_empty()
     }
 
-    /// Adds one of the name and material of a run; `None` where it names a vertex before the first.
+    /// Adds a point or line to the group of a run; `None` if it refers to a vertex before the first.
     pub(super) fn add(
         &mut self,
         stroke: &Stroke,
@@ -117,14 +117,14 @@ impl Strokes {
         Some(())
     }
 
-    /// Makes points of all vertices.
+    /// Makes a point of every vertex.
     pub(super) fn add_all(&mut self, vertices: usize, name: String) {
         let run = Run { first_face: 0, name, material: None };
         let points = (0..vertices as u32).collect();
         self.groups.push(Group { run, points, lines: Vec::new(), place: 0 });
     }
 
-    /// An object of each group, with the vertices that it names.
+    /// Makes an object of each group, with the vertices that it uses.
     #[allow(clippy::too_many_arguments)]
     pub(super) fn into_objects(
         self,

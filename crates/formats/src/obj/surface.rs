@@ -1,14 +1,14 @@
-//! What a material of MTL comes to as one of ours, as `docs/formats/obj.md` says.
+//! Converts MTL materials to those of Bilux, as `docs/formats/obj.md` describes.
 
 use super::mtl::Draft;
 use bilux_math::Rgb;
 use bilux_scene::{Spec, Value};
 
-/// Words that other programs added, of which any one makes a material `principled`.
+/// Keywords of the PBR extension; any one of them makes a material `principled`.
 const PBR: [&str; 6] = ["Pr", "Pm", "Ps", "Pc", "Pcr", "aniso"];
 const PBR_MAPS: [&str; 5] = ["map_Pr", "map_Pm", "map_Ps", "map_Pc", "map_Pcr"];
 
-/// The parameters of `principled` that are a number of MTL, or a picture of it, and that picture's word.
+/// Parameters of `principled` that come from a number or a texture: keyword, texture keyword, parameter.
 pub(super) const NUMBERS: [(&str, &str, &str); 5] = [
     ("Pm", "map_Pm", "base_metalness"),
     ("Pr", "map_Pr", "specular_roughness"),
@@ -17,12 +17,12 @@ pub(super) const NUMBERS: [(&str, &str, &str); 5] = [
     ("Pcr", "map_Pcr", "coat_roughness"),
 ];
 
-/// Light goes into it, and is bent.
+/// True if light enters the surface and is refracted.
 fn is_glass(draft: &Draft) -> bool {
     matches!(draft.illum(), 4 | 6 | 7 | 9)
 }
 
-/// Our material, without its pictures.
+/// The material without its textures.
 pub(super) fn material(draft: &Draft) -> Spec {
     let is_principled = PBR.iter().any(|word| draft.number(word).is_some())
         || PBR_MAPS.iter().any(|word| draft.maps.contains_key(word));
@@ -63,7 +63,7 @@ fn dielectric(draft: &Draft) -> Spec {
 fn phong(draft: &Draft, ks: Rgb) -> Spec {
     let mut spec = Spec::new(&draft.name, "phong");
     let mut set = |key: &str, value: Value| spec.parameters.set(key, value);
-    // A picture tells where there are holes; a number alone is of something clear.
+    // With a texture, opacity means cut-outs; a number alone means a transparent material.
     let opacity = if draft.maps.contains_key("map_d") { 1.0 } else { draft.opacity() };
     if let Some(kd) = draft.diffuse() {
         set("kd", (kd * opacity).into());
@@ -80,7 +80,7 @@ fn phong(draft: &Draft, ks: Rgb) -> Spec {
         .or((opacity < 1.0).then(|| draft.colour("Tf").map_or(Rgb::WHITE, unit) * (1.0 - opacity)));
     if let Some(kt) = through.filter(|kt| !kt.is_black()) {
         set("kt", kt.into());
-        // Opacity says nothing of refraction: light goes straight on.
+        // Opacity implies no refraction: light passes straight through.
         set("thin", (draft.colour("Kt").is_none()).into());
     }
     if let Some(eta) = draft.eta() {
@@ -95,7 +95,7 @@ fn principled(draft: &Draft) -> Spec {
     if let Some(kd) = draft.diffuse() {
         set("base_color", kd.into());
     }
-    // Of Blinn's exponent, where nothing better is said. [Walter 2007]
+    // From Blinn's exponent, if no roughness is given. [Walter 2007]
     let of_exponent = || Some((2.0 / (draft.number("Ns")?.max(0.0) + 2.0)).sqrt().sqrt());
     for (word, _, key) in NUMBERS {
         let number = draft.number(word).or_else(|| if word == "Pr" { of_exponent() } else { None });
@@ -107,7 +107,7 @@ fn principled(draft: &Draft) -> Spec {
         set("specular_roughness_anisotropy", aniso.clamp(0.0, 1.0).into());
         set("anisotropy_rotation", draft.number("anisor").unwrap_or(0.0).rem_euclid(1.0).into());
     }
-    // 1 is what programs write that have no index.
+    // Exporters write 1 for materials without an index of refraction.
     if let Some(eta) = draft.eta().filter(|eta| *eta > 1.0) {
         set("specular_ior", eta.into());
     }

@@ -1,4 +1,4 @@
-//! Writing OBJ.
+//! Writes OBJ.
 
 use super::mtl_write::write_library;
 use crate::FormatError;
@@ -30,14 +30,14 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     Ok(())
 }
 
-/// Indices that the next object starts at.
+/// The indices at which the next object starts.
 struct Counts {
     positions: usize,
     uvs: usize,
     normals: usize,
 }
 
-/// Names end at the line's end.
+/// A name on a single line, since names end at the end of the line.
 pub(super) fn one_line(name: &str) -> String {
     name.replace(['\n', '\r', '\0'], " ").trim().to_owned()
 }
@@ -61,7 +61,7 @@ fn vertices(mesh: &Mesh, out: &mut Vec<u8>) {
 
 fn faces(mesh: &Mesh, counts: &mut Counts, out: &mut Vec<u8>) {
     if mesh.normals.is_empty() {
-        // Without this readers smooth what was flat.
+        // Otherwise readers would smooth flat faces.
         out.extend_from_slice(b"s off\n");
     }
     let (uv, normal) = (!mesh.uvs.is_empty(), !mesh.normals.is_empty());
@@ -69,7 +69,7 @@ fn faces(mesh: &Mesh, counts: &mut Counts, out: &mut Vec<u8>) {
         out.push(b'f');
         for i in triangle.map(|i| i as usize) {
             let (v, t, n) = (counts.positions + i, counts.uvs + i, counts.normals + i);
-            // Writing to a list cannot fail.
+            // Writing to a Vec cannot fail.
             let _ = match (uv, normal) {
                 (true, true) => write!(out, " {v}/{t}/{n}"),
                 (true, false) => write!(out, " {v}/{t}"),

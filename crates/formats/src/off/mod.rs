@@ -1,4 +1,4 @@
-//! OFF, the object file format of Geomview, as text. See `docs/formats/off.md`.
+//! OFF, the object file format of Geomview, in its text form. See `docs/formats/off.md`.
 
 mod read;
 mod write;
@@ -25,5 +25,5 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// The comment that keeps faces without normals flat when we read what we wrote.
+/// The comment that keeps faces without normals flat when Bilux reads its own files.
 const FLAT_COMMENT: &[u8] = b"shading flat";

@@ -1,4 +1,4 @@
-//! Reading OFF.
+//! Reads OFF.
 
 use super::FLAT_COMMENT;
 use crate::FormatError;
@@ -30,7 +30,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     reader.finish()
 }
 
-/// What stands on the line of a vertex behind its position, in this order.
+/// The columns after the position on the line of a vertex, in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Columns {
     pub(super) normals: bool,
@@ -39,7 +39,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// What the first word says, `[ST][C][N]OFF`, and how long it is; counts may follow without a blank.
+    /// The columns that the first word `[ST][C][N]OFF` states, and its length; counts may follow without a space.
     pub(super) fn of_word(word: &[u8]) -> Option<(Columns, usize)> {
         let mut rest = word;
         let mut takes = |prefix: &[u8]| {
@@ -52,7 +52,7 @@ impl Columns {
         is_off.then_some((columns, word.len() - rest.len()))
     }
 
-    /// How many numbers a vertex has, without the opacity that its colour may have.
+    /// The count of numbers of a vertex, without the optional opacity of its colour.
     fn width(self) -> usize {
         3 + 3 * usize::from(self.normals) + 3 * usize::from(self.colours) + 2 * usize::from(self.uvs)
     }
@@ -64,12 +64,12 @@ struct Off<'a, 'o, 'r> {
     places: &'a Places<'a>,
     cursor: Cursor<'a>,
     soup: IndexedFaces,
-    /// How faces without normals look.
+    /// The smoothing of faces without normals.
     smoothing: Smoothing,
     oddities: Oddities,
 }
 
-/// The numbers of one line, the first of them; the rest is counted.
+/// The first numbers of a line; the others are only counted.
 struct Row {
     numbers: [f32; 12],
     count: usize,
@@ -96,7 +96,7 @@ impl<'a> Off<'a, '_, '_> {
         Ok(columns)
     }
 
-    /// Numbers of vertices and of faces; that of edges, which nobody needs, may be missing.
+    /// Reads the numbers of vertices and faces; the number of edges is not used and may be missing.
     fn counts(&mut self) -> Result<[u64; 2], FormatError> {
         let start = self.next_line("its numbers of vertices and faces")?;
         let mut counts = [0; 2];
@@ -115,7 +115,7 @@ impl<'a> Off<'a, '_, '_> {
     }
 
     fn vertices(&mut self, count: u64, columns: Columns) -> Result<(), FormatError> {
-        // Linear from 0 to 1, as the format has it, unless a number shows that they are bytes.
+        // Linear from 0 to 1 as the format requires, unless a number shows that they are bytes.
         let mut bytes = false;
         for _ in 0..count {
             self.reading.budget.take::<f32>(columns.width(), self.source.name)?;
@@ -212,7 +212,7 @@ impl<'a> Off<'a, '_, '_> {
         Ok(scene)
     }
 
-    /// Goes to the next line with anything on it but a comment, and gives where it begins.
+    /// Skips empty lines and comments; returns the start of the next line.
     fn next_line(&mut self, wanted: &str) -> Result<usize, FormatError> {
         loop {
             self.cursor.skip_blanks();
@@ -257,7 +257,7 @@ impl<'a> Off<'a, '_, '_> {
         index.ok_or_else(|| self.no_number(word, wanted))
     }
 
-    /// The trouble with the word that was just passed.
+    /// The error for the word that was just read.
     fn no_number(&self, word: &'a [u8], wanted: &str) -> FormatError {
         let message = match word {
             b"" => format!("the line ends too early: {wanted}"),

@@ -1,4 +1,4 @@
-//! Writing OFF.
+//! Writes OFF.
 
 use super::FLAT_COMMENT;
 use super::read::Columns;
@@ -51,7 +51,7 @@ fn push_header(columns: Columns, [vertices, faces]: [usize; 2], out: &mut Vec<u8
     let (uvs, colours) = (prefix(columns.uvs, "ST"), prefix(columns.colours, "C"));
     out.extend_from_slice(format!("{uvs}{colours}{}OFF\n", prefix(columns.normals, "N")).as_bytes());
     if !columns.normals {
-        // Without this our reader smooths what was flat.
+        // Otherwise Bilux's reader would smooth flat faces.
         out.extend_from_slice(&[b"# ", FLAT_COMMENT, b"\n"].concat());
     }
     out.extend_from_slice(format!("{vertices} {faces} 0\n").as_bytes());
@@ -65,9 +65,9 @@ fn push_vertex(columns: Columns, mesh: &Mesh, i: usize, out: &mut Vec<u8>) {
             push_f32s(out, values);
         }
     };
-    // Where one mesh has it, all do; a normal of zero stands for none.
+    // If one mesh has a column, all do; a zero normal stands for a missing one.
     more(columns.normals, &mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).to_array());
-    // Readers take what goes beyond 1 for bytes.
+    // Readers interpret colours as bytes if any is above 1.
     let kd = mesh.vertex_kd.get(i).copied().unwrap_or(Rgb::WHITE);
     more(columns.colours, &kd.map(|c| c.clamp(0.0, 1.0)).to_array());
     more(columns.uvs, &mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO).to_array());

@@ -1,4 +1,4 @@
-//! Cameras, which look along their own +z with +x to the right: left-handed, unless their matrix mirrors.
+//! Cameras, which look along +z with +x to the right: left-handed, unless their matrix mirrors.
 
 use super::parameters::ParameterList;
 use super::reader::{Entity, Pbrt};
@@ -10,18 +10,18 @@ use bilux_math::{DMat4, DVec3};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Parameters, Spec};
 
-/// All that is shown by one of ours.
+/// The known cameras, all shown by one of the renderer's own.
 const CAMERAS: [&str; 4] = ["perspective", "orthographic", "realistic", "spherical"];
 
 impl Pbrt<'_, '_> {
-    /// The camera, if there is one.
+    /// Adds the camera, if there is one.
     pub(super) fn place_camera(&mut self) -> Result<(), FormatError> {
         let Some((entity, matrices)) = self.options.camera.take() else { return Ok(()) };
         let list = &entity.parameters;
         let kind = match entity.kind.as_str() {
             "orthographic" => "orthographic",
             "perspective" => "perspective",
-            // The last is of version 3.
+            // `environment` is a name of version 3.
             "realistic" | "spherical" | "environment" => {
                 let what = format!(
                     "the camera '{}' is not there: a perspective one stands in its place",
@@ -52,7 +52,7 @@ impl Pbrt<'_, '_> {
         let place = |m: &DMat4| place(m, &entity);
         let mut spec = Spec { span: entity.at.clone(), ..Spec::new("", kind) };
         spec.parameters = place(&to_world[0])?;
-        // Ours are right-handed.
+        // Bilux's cameras are right-handed.
         if to_world[0].determinant() > 0.0 {
             spec.parameters.set("mirrored", true);
         }
@@ -95,7 +95,7 @@ impl Pbrt<'_, '_> {
             return Ok(());
         }
         if list.has("halffov") {
-            // Of version 2, and nowhere to be found any more.
+            // A parameter of version 2, no longer in use.
             self.oddities.note("'halffov' is not used: give 'fov'", || list.place("halffov"));
         }
         let half = half_height * half_tangent(fov.clamp(0.0, 179.9)) * sizes.y / sizes.z;
@@ -113,7 +113,7 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// Half the height of the screen, of which the shorter side goes from -1 to 1.
+    /// Half the height of the screen window, whose shorter side runs from -1 to 1.
     fn half_height(&mut self, list: &ParameterList) -> Result<f64, FormatError> {
         let [width, height] = self.options.size.map(|n| f64::from(n.max(1)));
         let film = width / height;
@@ -144,7 +144,7 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// Where a camera is.
+/// The placement of a camera.
 fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
     let position = to_world.w_axis.truncate();
     let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
@@ -152,7 +152,7 @@ fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
         let message = "this camera is scaled to nothing: mend the transforms before it";
         return Err(FormatError::malformed(message, entity.at.clone()));
     };
-    // Far from the origin one metre may be less than what 32 bits tell apart.
+    // Far from the origin, 32-bit floats may not resolve one metre.
     let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
     let mut parameters = Parameters::default();
     for (key, v) in [("position", position), ("look_at", ahead), ("up", up)] {

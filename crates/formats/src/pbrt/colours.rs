@@ -1,9 +1,9 @@
-//! Spaces that colours are given in, taken to linear Rec. 709.
+//! Converts RGB colour spaces to linear Rec. 709.
 
 use bilux_math::Rgb;
 use bilux_math::glam::{DMat3, DVec3};
 
-/// What the numbers of a colour mean.
+/// The colour space of an RGB value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum ColourSpace {
     /// Rec. 709 primaries, linear.
@@ -14,7 +14,7 @@ pub(super) enum ColourSpace {
     Aces,
 }
 
-/// Names, as directives have them.
+/// The names of the colour spaces in directives.
 pub(super) const SPACES: &[(&str, ColourSpace)] = &[
     ("srgb", ColourSpace::Srgb),
     ("rec709", ColourSpace::Srgb),
@@ -39,7 +39,7 @@ impl ColourSpace {
         }
     }
 
-    /// The colour of a light in Rec. 709: white is that of the space.
+    /// The colour of a light in Rec. 709; white becomes the white of the space.
     pub(super) fn light(self, colour: Rgb) -> Rgb {
         if self == ColourSpace::Srgb {
             return colour;
@@ -48,7 +48,7 @@ impl ColourSpace {
         clipped(c)
     }
 
-    /// The colour of a surface in Rec. 709: white stays white.
+    /// The colour of a surface in Rec. 709; white stays white.
     pub(super) fn surface(self, colour: Rgb) -> Rgb {
         if self == ColourSpace::Srgb {
             return colour;
@@ -60,7 +60,7 @@ impl ColourSpace {
     }
 }
 
-/// What Rec. 709 cannot show has no negative light.
+/// Clips negative components, which are outside the gamut of Rec. 709.
 fn clipped(c: DVec3) -> Rgb {
     Rgb::from_array(c.max(DVec3::ZERO).as_vec3().to_array())
 }
@@ -69,7 +69,7 @@ fn xyz([x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
-/// From a space's colours to XYZ, where white has Y = 1.
+/// The matrix from a space's RGB to XYZ, where white has Y = 1.
 fn to_xyz([r, g, b, white]: Primaries) -> DMat3 {
     let unit = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.0 - x - y);
     let columns = DMat3::from_cols(unit(r), unit(g), unit(b));
@@ -77,17 +77,17 @@ fn to_xyz([r, g, b, white]: Primaries) -> DMat3 {
     columns * DMat3::from_diagonal(scales)
 }
 
-/// From XYZ to linear Rec. 709; may be negative.
+/// Converts XYZ to linear Rec. 709; components may be negative.
 pub(super) fn from_xyz(c: DVec3) -> DVec3 {
     to_xyz(REC709).inverse() * c
 }
 
-/// The light of a chromaticity with luminance 1, in Rec. 709.
+/// The colour with this chromaticity and luminance 1, in Rec. 709.
 pub(super) fn of_chromaticity(xy: [f64; 2]) -> Rgb {
     clipped(from_xyz(xyz(xy)))
 }
 
-/// The light of an XYZ with luminance 1, in Rec. 709; black where it has none.
+/// An XYZ colour scaled to luminance 1, in Rec. 709; black if it has none.
 pub(super) fn of_unit_luminance(c: DVec3) -> Rgb {
     if c.y > 0.0 && c.is_finite() { clipped(from_xyz(c / c.y)) } else { Rgb::BLACK }
 }
@@ -106,7 +106,8 @@ mod tests {
         assert!((0..3).all(|i| (white[i] - 1.0).abs() < 1e-4), "{white:?}");
     }
 
-    /// By the matrix of the standard, not by primaries: X = 1.0985 and Z = 0.3558 of illuminant A. [IEC 61966-2-1; CIE 15]
+    /// Uses the standard's matrix instead of the primaries: X = 1.0985 and Z = 0.3558 of illuminant A. [IEC
+    /// 61966-2-1; CIE 15]
     #[test]
     fn the_light_of_a_bulb_has_the_colour_that_the_standard_says() {
         let bulb = of_chromaticity([0.44757, 0.40745]);

@@ -1,4 +1,4 @@
-//! Directives, one after another.
+//! Parses directives in order.
 
 use super::colours::SPACES;
 use super::lexer::{Lexer, Token, shown};
@@ -12,7 +12,7 @@ use bilux_math::DMat4;
 use bilux_scene::{SceneError, Span};
 use std::sync::Arc;
 
-/// Every directive; those of versions 2 and 3 among them.
+/// Every directive, including those of versions 2 and 3.
 const DIRECTIVES: &[&str] = &[
     "Accelerator",
     "ActiveTransform",
@@ -60,10 +60,11 @@ const DIRECTIVES: &[&str] = &[
     "WorldEnd",
 ];
 
-/// Deeper nests are refused: each level keeps a state.
+/// Deeper nesting is refused, since each level keeps a copy of the state.
 const DEEPEST: usize = 10_000;
 
-/// More attributes of a kind than any shape or light has parameters are refused: each is looked through for all.
+/// The maximum number of attributes of a kind: more than any shape or light has parameters, and each is searched
+/// linearly.
 const MAX_ATTRIBUTES: usize = 1000;
 
 /// Reads a file to its end.
@@ -109,7 +110,7 @@ pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError>
     Ok(())
 }
 
-/// A directive that is being read.
+/// A directive that is being parsed.
 pub(super) struct Directive<'d, 'a, 'o, 'r> {
     pub(super) pbrt: &'d mut Pbrt<'o, 'r>,
     pub(super) lexer: &'d mut Lexer<'a>,
@@ -121,7 +122,8 @@ impl Directive<'_, '_, '_, '_> {
         Err(FormatError::malformed(message, self.at.clone()))
     }
 
-    /// A kind and parameters; `what` says what they are of, and attributes for that are minded.
+    /// Reads a kind and its parameters; `what` names the entity in messages, `target` selects the attributes that
+    /// apply.
     fn entity(&mut self, what: &str, target: &str) -> Result<Entity, FormatError> {
         let (kind, _) = self.lexer.text(&format!("the kind of the {what}"))?;
         let list = self.parameters(format!("the {what} '{kind}'"), target)?;
@@ -141,7 +143,7 @@ impl Directive<'_, '_, '_, '_> {
         self.pbrt.include(&name, &at)
     }
 
-    /// As an include, but the state stays as it is.
+    /// Includes a file and then restores the state.
     fn import(&mut self) -> Result<(), FormatError> {
         let state = self.pbrt.state.clone();
         self.include()?;
@@ -162,13 +164,13 @@ impl Directive<'_, '_, '_, '_> {
             return self.error("nothing is open here that this could end: take it out");
         };
         if (began == Opened::Object) != (opened == Opened::Object) {
-            // Version 3 keeps one stack for both, and its own scenes have them crossed.
+            // Version 3 uses one stack for both, and its own scenes interleave them.
             let what =
                 "an object and attributes are not nested in each other: each end closes what began last";
             self.pbrt.oddities.note(what, || at);
         }
         if began == Opened::Transform {
-            // Of version 3: all but transforms stays.
+            // In version 3, TransformEnd restores only the transforms.
             (self.pbrt.state.matrices, self.pbrt.state.is_active) = (state.matrices, state.is_active);
         } else {
             self.pbrt.state = state;
@@ -229,7 +231,7 @@ impl Directive<'_, '_, '_, '_> {
         if all.len() + list.len() > MAX_ATTRIBUTES {
             return self.error(format!("there are more than {MAX_ATTRIBUTES} attributes of one kind"));
         }
-        // What comes later is minded first.
+        // Later attributes take precedence.
         all.splice(0..0, list);
         Ok(())
     }
@@ -245,7 +247,7 @@ impl Directive<'_, '_, '_, '_> {
                 self.pbrt.state.space = *space;
             }
             b"Option" => {
-                // How pbrt itself runs; some have the type before the name, as parameters do.
+                // Options of pbrt itself; some state the type before the name, as parameters do.
                 let (name, _) = self.lexer.text("the name of an option")?;
                 self.lexer.need("the value of an option")?;
                 let what = format!("the option '{name}' is pbrt's own and does nothing here");

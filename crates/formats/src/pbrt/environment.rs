@@ -1,4 +1,4 @@
-//! `infinite`: light from all around. Theirs lies on a square by an equal-area mapping, ours by longitude and latitude.
+//! `infinite` lights: environment maps. pbrt uses an equal-area mapping to a square, Bilux longitude and latitude.
 
 use super::lights::picture_name;
 use super::parameters::ParameterList;
@@ -27,7 +27,7 @@ pub(super) fn infinite(
     let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0);
     let Some((name, is_old)) = file else {
         let radiance = pbrt.shine(list, "L")?;
-        // Of an even sky the illuminance is π times its luminance.
+        // The illuminance of a uniform environment is π times its luminance.
         let radiance = illuminance.map_or(radiance, |lux| radiance * (lux * FRAC_1_PI as f32));
         return Ok(Some(Spec::new("", "environment").with("radiance", radiance)));
     };
@@ -54,17 +54,18 @@ pub(super) fn infinite(
     Ok(Some(spec.with("scale", Value::from(scale))))
 }
 
-/// How directions lie in a picture; z is up.
+/// How an image maps to directions; z is up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mapping {
-    /// The upper half of the sphere is the inner square, on its tip, and the lower half the four corners. [Clarberg 2008]
+    /// The upper hemisphere is the inner square, standing on its corner; the lower one fills the four corners.
+    /// [Clarberg 2008]
     Square,
-    /// By longitude and latitude, as version 3 has it.
+    /// Longitude and latitude, as in version 3.
     Latitudes,
 }
 
 impl Mapping {
-    /// Where a unit direction lies, 0..=1 from the left and from the top.
+    /// The image position of a unit direction, from 0 to 1 from the left and from the top.
     fn place(self, d: DVec3) -> [f64; 2] {
         if self == Mapping::Latitudes {
             let u = atan2_f64(d.y, d.x) / TAU;
@@ -79,7 +80,7 @@ impl Mapping {
     }
 }
 
-/// The direction of a place on the square. [Clarberg 2008]
+/// The direction at a position on the square. [Clarberg 2008]
 pub(super) fn on_the_sphere(u: f64, v: f64) -> DVec3 {
     let (u, v) = (2.0 * u - 1.0, 2.0 * v - 1.0);
     let (x, y) = (u.abs(), v.abs());
@@ -91,7 +92,7 @@ pub(super) fn on_the_sphere(u: f64, v: f64) -> DVec3 {
     DVec3::new(across * cos.copysign(u), across * sin.copysign(v), z.copysign(depth))
 }
 
-/// What a level surface gets from above.
+/// The illuminance of a horizontal surface from above.
 fn illuminance_of(picture: &Texture, mapping: Mapping) -> f32 {
     const SIDE: u32 = 256;
     let mut sum = 0.0;
@@ -104,7 +105,7 @@ fn illuminance_of(picture: &Texture, mapping: Mapping) -> f32 {
     (sum * TAU / f64::from(SIDE * SIDE)) as f32
 }
 
-/// The blend of the four texels around a direction.
+/// The bilinear interpolation of the four texels around a direction.
 fn looked_up(picture: &Texture, mapping: Mapping, d: DVec3) -> Rgb {
     let (width, height) = (picture.width() as i64, picture.height() as i64);
     let [u, v] = mapping.place(d);
@@ -118,12 +119,12 @@ fn looked_up(picture: &Texture, mapping: Mapping, d: DVec3) -> Rgb {
     texel(0, 0).lerp(texel(1, 0), fx).lerp(texel(0, 1).lerp(texel(1, 1), fx), fy)
 }
 
-/// The texel that lies beyond an edge, at most one off.
+/// The texel at a position at most one beyond an edge.
 fn wrapped(mapping: Mapping, [x, y]: [i64; 2], [width, height]: [i64; 2]) -> [usize; 2] {
     if mapping == Mapping::Latitudes {
         return [x.rem_euclid(width) as usize, y.clamp(0, height - 1) as usize];
     }
-    // Beyond an edge of the square lies the same edge, the other way round.
+    // Beyond an edge of the square, the same edge continues in the opposite direction.
     let (mut x, mut y) = (x, y);
     if x < 0 || x >= width {
         (x, y) = (x.clamp(0, width - 1), height - 1 - y);
@@ -135,7 +136,7 @@ fn wrapped(mapping: Mapping, [x, y]: [i64; 2], [width, height]: [i64; 2]) -> [us
 }
 
 impl Pbrt<'_, '_> {
-    /// The picture as ours lies, its middle towards -z and +y above, in the world.
+    /// Resamples the image to Bilux's mapping in world space: its middle at -z, and +y up.
     fn by_longitude(
         &mut self,
         name: &str,
@@ -144,7 +145,7 @@ impl Pbrt<'_, '_> {
         matrix: &DMat4,
         list: &ParameterList,
     ) -> Result<Texture, FormatError> {
-        /// Rows at most.
+        /// The maximum number of rows.
         const MAX: usize = 4096;
         if !picture.image.is_whole() {
             return Ok(picture.clone());
@@ -181,7 +182,7 @@ mod tests {
         let middle = Mapping::Square.place(DVec3::Z);
         assert_eq!(middle, [0.5, 0.5]);
         assert_eq!(Mapping::Square.place(DVec3::X), [1.0, 0.5]);
-        // Directions spread evenly over the sphere fill equal parts of the square alike.
+        // Uniformly distributed directions fill equal parts of the square equally.
         let mut counts = [0u32; 16];
         let (n, m) = (200, 200);
         for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
@@ -196,7 +197,7 @@ mod tests {
         assert!(counts.iter().all(|&c| (f64::from(c) / mean - 1.0).abs() < 0.03), "{counts:?}");
     }
 
-    /// Worked out by hand from the formulas in the book, so that no axis is mirrored or swapped. [pbrt 2023, 3.8.3]
+    /// Worked out by hand from the book's formulas, to detect mirrored or swapped axes. [pbrt 2023, 3.8.3]
     #[test]
     fn places_on_the_square_are_where_the_book_has_them() {
         let r = 0.661_438; // 0.5 √1.75
@@ -205,7 +206,7 @@ mod tests {
             ([0.5, 0.75], DVec3::new(0.0, r, 0.75)),
             ([0.25, 0.5], DVec3::new(-r, 0.0, 0.75)),
             ([0.5, 0.25], DVec3::new(0.0, -r, 0.75)),
-            // In a corner, and so below: r = 0.4, and 0.4 √1.84 / √2 is 0.383 667.
+            // In a corner, and so in the lower hemisphere: r = 0.4, and 0.4 √1.84 / √2 is 0.383 667.
             ([0.9, 0.9], DVec3::new(0.383_667, 0.383_667, -0.84)),
             ([0.9, 0.1], DVec3::new(0.383_667, -0.383_667, -0.84)),
         ] {
@@ -227,7 +228,7 @@ mod tests {
 
     #[test]
     fn beyond_an_edge_of_the_square_lies_what_is_beside_it_on_the_sphere() {
-        // The ends of an edge meet, and so do all places that lie alike on its halves.
+        // The two halves of an edge coincide, mirrored about its middle.
         let (beside, across) = (on_the_sphere(1.0 - 1e-9, 2.5 / 8.0), on_the_sphere(1.0 - 1e-9, 5.5 / 8.0));
         assert!((beside - across).length() < 1e-3, "{beside} {across}");
         assert_eq!(wrapped(Mapping::Square, [8, 2], [8, 8]), [7, 5]);

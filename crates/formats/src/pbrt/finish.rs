@@ -1,4 +1,4 @@
-//! When all files are read: names are looked up, and everything is put into the scene.
+//! Finishes a scene after all files are read: resolves names and adds everything to the scene.
 
 use super::lights::AreaEmission;
 use super::reader::{Alpha, Pbrt, Piece, ShapeGeometry, SurfaceAttributes, Use};
@@ -13,13 +13,13 @@ use bilux_scene::{MATERIALS, Mesh, Object, Span, Spec, Value};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What is made once for all pieces that share it.
+/// Results that pieces with the same attributes share.
 #[derive(Default)]
 pub(super) struct ResolvedAttributes {
-    /// By what is on the surface, and the bits of a radiance that depends on the shape.
+    /// Keyed by the surface attributes and the bits of a radiance that depends on the shape.
     materials: HashMap<(SurfaceAttributes, [u32; 3]), Option<usize>>,
     glows: HashMap<usize, AreaEmission>,
-    /// Meshes, by where they lie, and the same seen from their front by their corners.
+    /// Emissive meshes by address: the original, and the same with corners that agree with its normals.
     fronted: HashMap<*const Mesh, [Arc<Mesh>; 2]>,
 }
 
@@ -92,7 +92,7 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// What makes a piece give light; in objects nothing does.
+    /// The emission of a piece; pieces of object instances have none.
     fn glow_of(
         &mut self,
         piece: &Piece,
@@ -113,7 +113,7 @@ impl Pbrt<'_, '_> {
         Ok(Some(glow))
     }
 
-    /// A sphere that gives light outwards and reflects nothing is a lamp, round at every size.
+    /// Adds a sphere that emits outwards and reflects nothing as a sphere light, which is round at any size.
     fn place_lamp(
         &mut self,
         piece: &Piece,
@@ -147,7 +147,7 @@ impl Pbrt<'_, '_> {
         Ok(true)
     }
 
-    /// The material alone, made once.
+    /// The material without attributes, built once.
     fn base_material(&mut self, piece: &Piece) -> Result<Option<Spec>, FormatError> {
         if let Some(known) = self.made_materials.get(&piece.dress.material) {
             return Ok(known.clone());
@@ -157,7 +157,7 @@ impl Pbrt<'_, '_> {
         Ok(made)
     }
 
-    /// The index of what a piece is made of, with all that is on it; none for what is not there.
+    /// The index of a piece's material with all of its attributes; `None` for an interface that is invisible.
     fn modified_material(
         &mut self,
         piece: &Piece,
@@ -171,7 +171,7 @@ impl Pbrt<'_, '_> {
             Some(TextureOrValue::Picture(picture)) => picture.factor.to_array().map(f32::to_bits),
             None => [0; 3],
         };
-        // An object's light is none, so that it is another material there.
+        // In an object instance nothing emits, so its material differs.
         let key = (SurfaceAttributes { area_light: glow.and(dress.area_light), ..dress.clone() }, bits);
         if let Some(known) = dressed.materials.get(&key) {
             return Ok(*known);
@@ -219,7 +219,7 @@ impl Pbrt<'_, '_> {
         self.cut_out(spec, piece)
     }
 
-    /// A material that gives light.
+    /// Adds emission to a material.
     fn glowing(&mut self, spec: Spec, glow: &AreaEmission, radiance: TextureOrValue, piece: &Piece) -> Spec {
         let row = MATERIALS.iter().find(|row| row.entry.name == spec.kind);
         let can = row.is_some_and(|row| row.entry.parameters.iter().any(|p| p.name == "emission"));
@@ -246,7 +246,7 @@ impl Pbrt<'_, '_> {
         spec
     }
 
-    /// A material with holes, where alpha says so.
+    /// Adds an opacity mask to a material if the shape has an alpha.
     fn cut_out(&mut self, mut spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
         let share = match &piece.dress.alpha {
             Alpha::Whole => return Ok(Some(spec)),
@@ -272,7 +272,7 @@ impl Pbrt<'_, '_> {
         Ok(Some(spec))
     }
 
-    /// From two matrices to a motion; none, with a warning, for what is scaled to nothing.
+    /// Converts two matrices to a motion; `None`, with a warning, for a degenerate matrix.
     fn motion(&mut self, matrices: &Matrices, at: &Span) -> Option<Motion> {
         let Some(start) = Transform::from_matrix(matrices[0]) else {
             self.oddities.note("what is scaled to nothing is not drawn", || at.clone());
@@ -300,7 +300,7 @@ impl Pbrt<'_, '_> {
         Some(motion.unwrap_or(Motion::still(start)))
     }
 
-    /// Light is let in as long as the camera says, where anything moves.
+    /// Sets the shutter of the camera if anything moves.
     fn open_the_shutter(&mut self) {
         let moves = self.scene.objects.iter().any(|object| !object.motion.is_still())
             || self.scene.cameras.iter().any(|camera| !camera.keyframes.is_empty());
@@ -312,7 +312,7 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// By how much a matrix scales, if that is the same in all directions.
+/// The scale of a matrix, if it is uniform.
 fn even_scale(matrix: &DMat4) -> Option<f64> {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate());
     let scale = x.length();
@@ -326,7 +326,7 @@ fn even_scale(matrix: &DMat4) -> Option<f64> {
     (scale > 0.0 && off.iter().all(|o| o.abs() < 1e-5 * scale * scale)).then_some(scale)
 }
 
-/// The area of a mesh in the world.
+/// The area of a mesh in world space.
 fn area(mesh: &Mesh, matrix: &DMat4) -> f64 {
     let corner = |i: u32| matrix.transform_point3(mesh.positions[i as usize].as_dvec3());
     let one = |t: &[u32; 3]| {
@@ -336,8 +336,8 @@ fn area(mesh: &Mesh, matrix: &DMat4) -> f64 {
     mesh.triangles.iter().map(one).filter(|area| area.is_finite()).sum()
 }
 
-/// The same with corners that run counter-clockwise where its normals point to whoever looks, since that is the side from
-/// which it gives light.
+/// A copy of a mesh whose triangles are counter-clockwise as seen from the side of their normals, from which it
+/// emits.
 fn fronted(mesh: &Arc<Mesh>) -> Arc<Mesh> {
     if mesh.normals.is_empty() {
         return mesh.clone();

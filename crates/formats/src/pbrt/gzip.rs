@@ -1,4 +1,4 @@
-//! Files that are packed, as `.gz` beside scenes often are.
+//! Compressed files, such as the `.gz` files of many scenes.
 
 use crate::FormatError;
 use crate::reading::Reading;
@@ -7,8 +7,9 @@ use flate2::read::MultiGzDecoder;
 use std::io::Read;
 use std::path::Path;
 
-/// The bytes as they are, or unpacked where they begin as packed ones do, within what memory is left. They count as held
-/// until [`Reading::release`].
+/// Decompresses bytes if they begin with the gzip header, within the remaining memory.
+///
+/// The result counts against the budget until [`Reading::release`].
 pub(super) fn plain(
     bytes: Vec<u8>,
     reading: &mut Reading,

@@ -1,4 +1,4 @@
-//! Words, quoted texts and brackets, with their places. `#` begins a comment.
+//! Splits a file into words, quoted strings and brackets with their locations. `#` begins a comment.
 
 use crate::FormatError;
 use crate::float::parse_f32;
@@ -7,12 +7,12 @@ use bilux_scene::Span;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// A piece of a file.
+/// A token of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
     /// A directive, a number, or `true` and `false`.
     Word(&'a [u8]),
-    /// What stands between quotes.
+    /// The text between quotes.
     Quoted(Cow<'a, [u8]>),
     /// `[`
     Open,
@@ -20,7 +20,7 @@ pub(super) enum Token<'a> {
     Close,
 }
 
-/// Walks through a file.
+/// Iterates over the tokens of a file.
 pub(super) struct Lexer<'a> {
     bytes: &'a [u8],
     pos: usize,
@@ -38,17 +38,17 @@ impl<'a> Lexer<'a> {
         Lexer { bytes, pos, places: Places::new(file, bytes) }
     }
 
-    /// Where a byte stands.
+    /// The location of an offset.
     pub(super) fn place(&self, offset: usize) -> Span {
         self.places.at(offset)
     }
 
-    /// Trouble at a byte.
+    /// An error at an offset.
     pub(super) fn error(&self, message: impl Into<String>, offset: usize) -> FormatError {
         FormatError::malformed(message, self.place(offset))
     }
 
-    /// The next piece and where it begins; none at the end of the file.
+    /// The next token and its offset; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Result<Option<(Token<'a>, usize)>, FormatError> {
         self.skip_blanks();
         let at = self.pos;
@@ -70,7 +70,7 @@ impl<'a> Lexer<'a> {
         Ok(Some((token, at)))
     }
 
-    /// The same without passing it.
+    /// The next token without consuming it.
     pub(super) fn peek(&mut self) -> Result<Option<(Token<'a>, usize)>, FormatError> {
         let pos = self.pos;
         let next = self.next();
@@ -78,18 +78,18 @@ impl<'a> Lexer<'a> {
         next
     }
 
-    /// A walk of its own from here on.
+    /// A copy of the lexer that continues from here independently.
     pub(super) fn ahead(&self) -> Lexer<'a> {
         Lexer { bytes: self.bytes, pos: self.pos, places: self.places.clone() }
     }
 
-    /// The next piece, which has to be there; `wanted` says what it is.
+    /// The next token, which must exist; `wanted` describes it in the error.
     pub(super) fn need(&mut self, wanted: &str) -> Result<(Token<'a>, usize), FormatError> {
         let end = self.bytes.len();
         self.next()?.ok_or_else(|| self.error(format!("the file ends here, where {wanted} should be"), end))
     }
 
-    /// A text in quotes.
+    /// A quoted string.
     pub(super) fn text(&mut self, wanted: &str) -> Result<(String, usize), FormatError> {
         match self.need(wanted)? {
             (Token::Quoted(text), at) => Ok((String::from_utf8_lossy(&text).into_owned(), at)),
@@ -99,11 +99,11 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// A number that is one.
+    /// A finite number.
     pub(super) fn number(&mut self, wanted: &str) -> Result<f64, FormatError> {
         let (token, at) = self.need(wanted)?;
         let number = match &token {
-            // Matrices and angles take all digits that they have.
+            // Matrices and angles keep all of their digits.
             Token::Word(word) => std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()),
             _ => None,
         };
@@ -166,12 +166,12 @@ fn unescaped(text: &[u8]) -> Vec<u8> {
     plain
 }
 
-/// A number of a list: infinite ones and those that are none are kept.
+/// A number of a list, which may be infinite or NaN.
 pub(super) fn number_of(word: &[u8]) -> Option<f32> {
     parse_f32(word)
 }
 
-/// A piece for a message.
+/// A token for a message.
 pub(super) fn shown(token: &Token) -> String {
     match token {
         Token::Word(word) => quoted(word),

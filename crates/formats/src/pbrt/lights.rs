@@ -1,7 +1,7 @@
-//! Lights. Colours are radiance as they are written; other spectra shine with a luminance of 1, times their scale.
+//! Lights. A colour is the radiance as written; any other spectrum has a luminance of 1, times its scale.
 //!
-//! Theirs are divided by the luminance that their spectrum has, which for a colour is that of white alone; and their
-//! sensor, as it is by default, counts a luminance of 1 as 1. So `rgb L` is the radiance in Rec. 709 that the picture shows.
+//! pbrt divides a light by the luminance of its spectrum, which for a colour is the luminance of white alone, and
+//! its default sensor maps a luminance of 1 to 1. So `rgb L` is the Rec. 709 radiance that the image shows.
 
 use super::environment;
 use super::parameters::ParameterList;
@@ -16,10 +16,10 @@ use bilux_scene::{SceneError, Spec};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// What a light becomes; none, with a warning, for what is none.
+/// Builds a light; `None`, with a warning, if there is nothing to build.
 type Make = fn(&mut Pbrt, &ParameterList, &DMat4) -> Result<Option<Spec>, FormatError>;
 
-/// Every light that is shown.
+/// Every supported light.
 const LIGHTS: &[(&str, Make)] = &[
     ("distant", distant),
     ("goniometric", goniometric),
@@ -29,23 +29,23 @@ const LIGHTS: &[(&str, Make)] = &[
     ("spot", spot),
 ];
 
-/// Names of version 3.
+/// Names from version 3.
 const OLD: &[(&str, Make)] = &[("exinfinite", environment::infinite)];
 
-/// What lights can have.
+/// The maximum value of a light.
 const BRIGHTEST: f32 = 1e11;
 
-/// What makes a surface give light.
+/// The emission of a surface.
 #[derive(Clone, Debug)]
 pub(super) struct AreaEmission {
     pub(super) radiance: TextureOrValue,
     pub(super) both_sides: bool,
-    /// In all, per shape.
+    /// The total power, per shape.
     pub(super) power: Option<f32>,
 }
 
 impl Pbrt<'_, '_> {
-    /// All lights that are not surfaces.
+    /// Adds all lights that are not surfaces.
     pub(super) fn place_lights(&mut self) -> Result<(), FormatError> {
         for (entity, matrix) in std::mem::take(&mut self.lights) {
             let list = &entity.parameters;
@@ -60,7 +60,7 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// The colour under a name, white where there is none, times the factors of the light and of the film.
+    /// The colour of a parameter, white by default, times the scales of the light and of the film.
     pub(super) fn shine(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
         let colour = self.spectrum(list, name, Meaning::Light)?.unwrap_or(Rgb::WHITE);
         let shone = colour * self.light_scale(list)?;
@@ -70,7 +70,7 @@ impl Pbrt<'_, '_> {
         Ok(shone.clamp(0.0, BRIGHTEST))
     }
 
-    /// The factors of a light and of the film.
+    /// The scales of a light and of the film.
     pub(super) fn light_scale(&mut self, list: &ParameterList) -> Result<Rgb, FormatError> {
         // A colour in version 3.
         let is_number = list.find("scale").is_none_or(|p| p.kind == super::parameters::Kind::Float);
@@ -82,7 +82,7 @@ impl Pbrt<'_, '_> {
         Ok(scale.map(|c| c.max(0.0)) * self.options.gain)
     }
 
-    /// What makes a surface give light.
+    /// Reads the emission of a surface.
     pub(super) fn glow(&mut self, entity: &Entity) -> Result<AreaEmission, FormatError> {
         let list = &entity.parameters;
         if entity.kind != "diffuse" && entity.kind != "area" {
@@ -111,7 +111,7 @@ impl Pbrt<'_, '_> {
 }
 
 impl AreaEmission {
-    /// The radiance of a shape of this area.
+    /// The radiance of a shape with this area.
     pub(super) fn radiance_of(&self, area: f64) -> TextureOrValue {
         let Some(power) = self.power else { return self.radiance.clone() };
         let mean = match &self.radiance {
@@ -125,12 +125,12 @@ impl AreaEmission {
     }
 }
 
-/// A point of a light in the world.
+/// The position of a light in world space.
 fn from(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
     Ok(matrix.transform_point3(list.triple("from", Vec3::ZERO)?.as_dvec3()))
 }
 
-/// Where a light looks, in the world.
+/// The direction of a light in world space.
 fn forward(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
     let towards = list.triple("to", Vec3::Z)?.as_dvec3() - list.triple("from", Vec3::ZERO)?.as_dvec3();
     let direction = matrix.transform_vector3(towards).try_normalize();
@@ -139,7 +139,7 @@ fn forward(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
     })
 }
 
-/// The factor that brings an intensity to a power, where one is asked for; `all` is that of intensity 1.
+/// The factor that scales a light to its requested power, if any; `all` is the power at an intensity of 1.
 fn power(list: &ParameterList, all: f64) -> Result<f32, FormatError> {
     let power = list.number("power")?.filter(|power| *power > 0.0);
     Ok(power.map_or(1.0, |power| if all > 0.0 { (f64::from(power) / all) as f32 } else { 0.0 }))
@@ -150,7 +150,7 @@ fn at_point(position: DVec3, intensity: Rgb) -> Spec {
 }
 
 fn cone(position: DVec3, forward: DVec3, intensity: Rgb, [outer, inner]: [f32; 2]) -> Spec {
-    // Far from the origin one metre may be less than what 32 bits tell apart.
+    // Far from the origin, 32-bit floats may not resolve one metre.
     let ahead = position + forward * (1.0 + 1e-4 * position.abs().max_element());
     Spec::new("", "spot")
         .with("position", position.as_vec3())
@@ -168,7 +168,7 @@ fn point(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option
 fn distant(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
     let illuminance = list.number("illuminance")?.filter(|lux| *lux > 0.0).unwrap_or(1.0);
     let irradiance = pbrt.shine(list, "L")? * illuminance;
-    // Theirs goes from the one point to the other.
+    // In pbrt, light travels from `from` towards `to`.
     let to = list.triple("to", Vec3::Z)?.as_dvec3();
     let from = list.triple("from", Vec3::ZERO)?.as_dvec3();
     let direction = matrix.transform_vector3(to - from).try_normalize().ok_or_else(|| {
@@ -185,13 +185,13 @@ fn spot(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<
     let outer = list.finite("coneangle", 30.0)?;
     let inner = outer - list.finite("conedeltaangle", 5.0)?;
     let [cos_outer, cos_inner] = [outer, inner].map(|angle| cos_f64(f64::from(angle).to_radians()));
-    // The smooth edge has half of the light of its cosines' range.
+    // The smooth edge emits half of the light of its range of cosines.
     let all = TAU * (1.0 - 0.5 * (cos_inner + cos_outer));
     let intensity = pbrt.shine(list, "I")? * power(list, all)?;
     Ok(Some(cone(from(list, matrix)?, forward(list, matrix)?, intensity, [outer, inner])))
 }
 
-/// The name of a light's picture; version 3 calls it otherwise.
+/// The name of a light's image, which version 3 stores under another key.
 pub(super) fn picture_name(list: &ParameterList) -> Result<Option<(String, bool)>, FormatError> {
     for (name, is_old) in [("filename", false), ("mapname", true)] {
         if let Some(file) = list.text(name)? {
@@ -201,7 +201,7 @@ pub(super) fn picture_name(list: &ParameterList) -> Result<Option<(String, bool)
     Ok(None)
 }
 
-/// Equally bright in all directions, by the mean of its picture, which is one over the sphere too.
+/// A light of equal intensity in all directions: the mean of its image, which is also its mean over the sphere.
 fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
     let mean = match picture_name(list)? {
         None => 1.0,
@@ -217,7 +217,7 @@ fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<
     Ok(Some(at_point(from(list, matrix)?, intensity)))
 }
 
-/// A cone as wide as its picture is in the middle, with the picture's mean.
+/// A spot light as wide as the image at its middle, with the image's mean intensity.
 fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
     let what = "a projection light shines into a cone, by the mean of its picture";
     pbrt.oddities.note(what, || list.at.clone());
@@ -232,7 +232,7 @@ fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<O
     };
     let half_angle = 0.5 * list.finite("fov", 90.0)?.clamp(0.1, 179.0);
     let half = half_tangent(2.0 * half_angle);
-    // A square picture, seen from the point; see [pbrt 2023, 12.2.2].
+    // The power of a square image as seen from the point; see [pbrt 2023, 12.2.2].
     let all = 4.0 * half * half * f64::from(mean.luminance()) / (1.0 + half * half);
     let intensity = mean * pbrt.light_scale(list)? * power(list, all)?;
     let position = matrix.transform_point3(DVec3::ZERO);

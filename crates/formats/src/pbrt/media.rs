@@ -1,4 +1,4 @@
-//! What light goes through: only what it absorbs is used.
+//! Participating media, of which only the absorption is used.
 
 use super::parameters::ParameterList;
 use super::reader::Pbrt;
@@ -8,10 +8,10 @@ use crate::FormatError;
 use bilux_math::Rgb;
 use std::sync::Arc;
 
-/// A medium, as far as it is used.
+/// The supported properties of a medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Medium {
-    /// Per unit of length.
+    /// Absorption per unit of length.
     pub(super) absorption: Rgb,
 }
 
@@ -38,7 +38,7 @@ pub(super) fn measured(name: &str) -> Option<[Rgb; 2]> {
 }
 
 impl Pbrt<'_, '_> {
-    /// Takes note of a medium.
+    /// Defines a medium.
     pub(super) fn add_medium(&mut self, name: String, list: &ParameterList) -> Result<(), FormatError> {
         let kind = list.text("type")?.unwrap_or("homogeneous").to_owned();
         if kind != "homogeneous" {
@@ -81,7 +81,7 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// What is absorbed behind a surface; tells of media that are not there.
+    /// The absorption inside a surface; an error for an undefined medium.
     pub(super) fn absorption_of(
         &mut self,
         name: &Arc<str>,

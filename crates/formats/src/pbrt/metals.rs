@@ -1,11 +1,11 @@
-//! Refractive indices of metals as three channels.
+//! Reduces the spectral indices of metals to three channels.
 
 use super::spectra::{Spectrum, under_daylight};
 use bilux_math::Rgb;
 use bilux_scene::materials::metal_indices;
 
-/// Metals of which pbrt's spectra are other measurements than those of our table: the index and the extinction of each
-/// channel, as [`from_spectra`] has them of the spectra that pbrt brings.
+/// Metals for which pbrt's spectra come from other measurements than the table of Bilux: the index of refraction
+/// and the extinction of each channel, computed by [`from_spectra`] from the spectra that ship with pbrt.
 const MEASURED: [(&str, [Rgb; 2]); 4] = [
     ("aluminium", [Rgb::new(1.431, 0.929, 0.590), Rgb::new(7.748, 6.605, 5.352)]),
     ("copper", [Rgb::new(0.215, 0.975, 1.209), Rgb::new(4.158, 2.621, 2.364)]),
@@ -13,7 +13,7 @@ const MEASURED: [(&str, [Rgb; 2]); 4] = [
     ("silver", [Rgb::new(0.130, 0.124, 0.151), Rgb::new(4.118, 3.335, 2.411)]),
 ];
 
-/// The channels of one of pbrt's metals by the name that our table has for it; those of copper where it is none.
+/// The indices of one of pbrt's metals, by its name in the table of Bilux; those of copper for an unknown name.
 pub(super) fn indices(metal: &str) -> [Rgb; 2] {
     let measured =
         |metal: &str| MEASURED.iter().find(|(name, _)| *name == metal).map(|(_, indices)| *indices);
@@ -21,10 +21,10 @@ pub(super) fn indices(metal: &str) -> [Rgb; 2] {
     known.unwrap_or([Rgb::WHITE; 2])
 }
 
-/// Cosine of 82 degrees, where metals differ most from Schlick's law.
+/// The cosine of 82 degrees, where metals differ most from Schlick's approximation.
 const COS_82: f64 = 0.139_173_1;
 
-/// Reflected fraction of unpolarised light. [pbrt 2023, 9.3.6]
+/// The Fresnel reflectance for unpolarised light. [pbrt 2023, 9.3.6]
 fn reflectance(cos: f64, eta: f64, k: f64) -> f64 {
     let (cos2, sin2) = (cos * cos, 1.0 - cos * cos);
     let a = eta * eta - k * k - sin2;
@@ -35,7 +35,8 @@ fn reflectance(cos: f64, eta: f64, k: f64) -> f64 {
     0.5 * (across + across * (c - d) / (c + d))
 }
 
-/// What each channel reflects, straight on and at 82 degrees, of indices over that of what lies above.
+/// The reflectance of each channel at normal incidence and at 82 degrees, relative to the index of the medium
+/// above.
 pub(super) fn straight_and_grazing([eta, k]: [Rgb; 2], above: f32) -> [Rgb; 2] {
     [1.0, COS_82].map(|cos| {
         let channel = |c: usize| reflectance(cos, f64::from(eta[c] / above), f64::from(k[c] / above)) as f32;
@@ -43,17 +44,18 @@ pub(super) fn straight_and_grazing([eta, k]: [Rgb; 2], above: f32) -> [Rgb; 2] {
     })
 }
 
-/// What three channels make of the two spectra of a metal.
+/// The spectra of a metal, reduced to three channels.
 pub(super) struct Reduced {
-    /// The index and the extinction.
+    /// The index of refraction and the extinction.
     pub(super) indices: [Rgb; 2],
-    /// True when sRGB cannot hold the colour, straight on.
+    /// True if the colour at normal incidence is outside the gamut of sRGB.
     pub(super) is_cut: bool,
 }
 
-/// For each channel the one index whose reflectance, straight on and at 82 degrees, is that channel of the colour that the
-/// spectra reflect there under daylight. [Gulbrandsen 2014] A channel is at most what the metal reflects of any
-/// wavelength: sRGB's red of gold is above 1, and no index has such a reflectance.
+/// For each channel, the index whose reflectance matches that channel of the metal's colour under daylight.
+///
+/// The match is at normal incidence and at 82 degrees. [Gulbrandsen 2014] A channel is at most the metal's maximum
+/// reflectance at any wavelength: the red of gold in sRGB is above 1, and no index has such a reflectance.
 pub(super) fn from_spectra(eta: &Spectrum, k: &Spectrum) -> Reduced {
     let mut is_cut = false;
     let [straight, grazing] = [1.0, COS_82].map(|cos| {
@@ -67,16 +69,16 @@ pub(super) fn from_spectra(eta: &Spectrum, k: &Spectrum) -> Reduced {
     Reduced { indices: [0, 1].map(|i| Rgb::new(pairs[0][i], pairs[1][i], pairs[2][i])), is_cut }
 }
 
-/// Wavelengths in nm of which eyes see more than a two-hundredth.
+/// Wavelengths in nm at which the eye's response exceeds one two-hundredth.
 const VISIBLE: std::ops::RangeInclusive<u16> = 420..=700;
 
-/// Less is too little to tell of.
+/// Smaller deviations are not worth a warning.
 const TOLERANCE: f64 = 0.005;
 
-/// The greatest that a material may have.
+/// The maximum index that a material may have.
 const GREATEST_INDEX: f64 = 100.0;
 
-/// Of all indices that reflect so much straight on the one that is nearest at 82 degrees.
+/// Of all indices with the given reflectance at normal incidence, the one that is closest at 82 degrees.
 fn fitted(straight: f64, grazing: f64) -> [f32; 2] {
     let root = straight.sqrt();
     let least = (1.0 - straight) / (1.0 + straight);
@@ -113,7 +115,7 @@ mod tests {
         }
     }
 
-    /// Wavelength, index and extinction of gold as it was measured. [Johnson 1972]
+    /// Measured wavelength, index of refraction and extinction of gold. [Johnson 1972]
     const GOLD: [[f64; 3]; 12] = [
         [397.4, 1.47, 1.952],
         [413.3, 1.46, 1.958],
@@ -129,7 +131,7 @@ mod tests {
         [704.5, 0.13, 4.103],
     ];
 
-    /// In sRGB it is (1.037, 0.728, 0.365) of white, and no index reflects more than all.
+    /// In sRGB it is (1.037, 0.728, 0.365) of white, and no index reflects more than all of the light.
     #[test]
     fn gold_is_redder_than_colours_can_be_and_has_indices_all_the_same() {
         let part = |i: usize| Spectrum(GOLD.iter().map(|row| [row[0], row[i]]).collect());
@@ -144,7 +146,8 @@ mod tests {
         }
     }
 
-    /// What pbrt's metals reflect straight on, in linear sRGB. [Akenine-Möller 2018, table 9.2] Gold's red is 1.022 there.
+    /// Reflectance of pbrt's metals at normal incidence, in linear sRGB. [Akenine-Möller 2018, table 9.2] Gold's
+    /// red is 1.022 there.
     #[test]
     fn metals_by_name_have_the_colours_that_tables_have() {
         for (name, wanted) in [

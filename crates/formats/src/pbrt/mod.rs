@@ -1,4 +1,4 @@
-//! Scenes of pbrt-v4, with those names of version 3 that can mean only one thing. See `docs/formats/pbrt.md`.
+//! pbrt-v4 scenes, including those names of version 3 that are unambiguous. See `docs/formats/pbrt.md`.
 
 mod cameras;
 mod colours;
@@ -56,14 +56,13 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// A line that begins the world.
+/// True if a line begins the world.
 fn sniff(bytes: &[u8]) -> bool {
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(65536)]);
     start.lines().any(|line| line.trim() == "WorldBegin")
 }
 
-/// The refusal of a name that nothing goes by. Names come from strangers: however many and long they are, few and short
-/// ones are compared.
+/// The error for an unknown name. Names come from untrusted files, so only a few, shortened ones are compared.
 fn unknown<'n>(
     what: impl Into<String>,
     name: &str,

@@ -1,4 +1,4 @@
-//! What stands before the world: film, filter, sampler and integrator, as settings that a render may follow.
+//! The directives before `WorldBegin`: film, filter, sampler and integrator, as settings that a render may follow.
 
 use super::reader::{Entity, Pbrt};
 use super::state::Matrices;
@@ -6,20 +6,20 @@ use super::unknown;
 use crate::FormatError;
 use bilux_scene::{Span, Value};
 
-/// All of it, the last of each kind.
+/// All options, the last of each kind.
 pub(super) struct Options {
     pub(super) camera: Option<(Entity, Matrices)>,
     film: Option<Entity>,
     filter: Option<Entity>,
     sampler: Option<Entity>,
     integrator: Option<Entity>,
-    /// When the two matrices are, in seconds.
+    /// The times of the two matrices, in seconds.
     pub(super) times: [f64; 2],
-    /// When the shutter opens and closes, in seconds.
+    /// The times at which the shutter opens and closes, in seconds.
     pub(super) shutter: [f32; 2],
-    /// By how much the film brightens light.
+    /// The factor by which the film scales light.
     pub(super) gain: f32,
-    /// Columns and rows of the film.
+    /// The width and height of the film in pixels.
     pub(super) size: [i32; 2],
 }
 
@@ -40,7 +40,7 @@ impl Default for Options {
 }
 
 impl Pbrt<'_, '_> {
-    /// Takes note of one of them; how pbrt finds its triangles is nobody's business.
+    /// Records an option; accelerators are ignored, since they do not change the image.
     pub(super) fn option(&mut self, what: &str, entity: Entity) {
         match what {
             "camera" => {
@@ -67,7 +67,7 @@ impl Pbrt<'_, '_> {
         self.scene.settings.set_at(key, value, at.clone());
     }
 
-    /// Settings from all but the camera.
+    /// Adds the settings from all options except the camera.
     pub(super) fn settings(&mut self) -> Result<(), FormatError> {
         if let Some((camera, _)) = &self.options.camera {
             let list = &camera.parameters;
@@ -104,7 +104,7 @@ impl Pbrt<'_, '_> {
         let at = list.place("xresolution");
         self.set_option("size", Value::Text(String::new()), &at);
         if film.kind == "image" {
-            // Of version 3, which knows no sensors.
+            // A film of version 3, which has no sensors.
             self.options.gain = list.finite("scale", 1.0)?.max(0.0);
         } else {
             let speed = list.finite("iso", 100.0)?;
@@ -152,7 +152,7 @@ impl Pbrt<'_, '_> {
             return Ok(());
         };
         let list = &filter.parameters;
-        // Name, ours, and their default and our radius.
+        // pbrt's name, the name in Bilux, pbrt's default radius, and the radius in Bilux.
         let filters = [
             ("box", "box", 0.5, 0.5),
             ("gaussian", "gaussian", 1.5, 1.5),
@@ -170,7 +170,7 @@ impl Pbrt<'_, '_> {
             is_same &= given == *radius;
         }
         if *name == "gaussian" {
-            // The alpha of version 3 is another way to say it.
+            // In version 3, alpha expresses the same width.
             is_same &= list.finite("sigma", 0.5)? == 0.5 && list.finite("alpha", 2.0)? == 2.0;
         }
         for name in ["B", "C", "tau"] {
@@ -185,7 +185,7 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// How many samples there are. How they are spread changes no picture, only its noise.
+    /// Reads the number of samples. Their distribution affects only the noise of the image.
     fn sampler(&mut self, sampler: &Entity) -> Result<(), FormatError> {
         let list = &sampler.parameters;
         let side = |name| list.integer(name).map(|n| n.map(i64::from));
@@ -196,7 +196,7 @@ impl Pbrt<'_, '_> {
             }
             None => None,
         };
-        // One is what exporters leave where nobody has chosen: no picture is meant to be that noisy.
+        // Exporters write 1 if the user has chosen nothing: no image is meant to be that noisy.
         if let Some(samples) = samples.filter(|samples| *samples > 1) {
             self.set_option("spp", Value::Integer(samples.clamp(1, 1 << 31)), &list.at);
         }
@@ -206,7 +206,7 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// How deep paths go, and where that stands. Which algorithm finds them is left to who renders.
+    /// The maximum path depth and its location. The choice of the integrator is left to the renderer.
     fn integrator(&mut self, integrator: &Entity) -> Result<(i32, Span), FormatError> {
         let list = &integrator.parameters;
         if ["ao", "ambientocclusion", "function"].contains(&integrator.kind.as_str()) {

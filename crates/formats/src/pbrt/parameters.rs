@@ -1,4 +1,4 @@
-//! Lists of parameters: `"type name" [ values ]`, over and over.
+//! Parameter lists: any number of `"type name" [ values ]`.
 
 use super::colours::ColourSpace;
 use super::lexer::{Lexer, Token, number_of, shown};
@@ -12,7 +12,7 @@ use bilux_scene::error::nearest_name;
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
-/// What a parameter says it is.
+/// The declared type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Float,
@@ -20,7 +20,7 @@ pub(super) enum Kind {
     Bool,
     Text,
     Point2,
-    /// Points, vectors and normals of three numbers.
+    /// Points, vectors and normals, with three numbers each.
     Triple,
     Rgb,
     Xyz,
@@ -29,7 +29,7 @@ pub(super) enum Kind {
     Texture,
 }
 
-/// Their names; those of version 3 among them.
+/// The names of the types, including those of version 3.
 const KINDS: &[(&str, Kind)] = &[
     ("float", Kind::Float),
     ("integer", Kind::Integer),
@@ -51,7 +51,7 @@ const KINDS: &[(&str, Kind)] = &[
     ("texture", Kind::Texture),
 ];
 
-/// What stands behind a parameter's name.
+/// The values of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Values {
     Numbers(Vec<f32>),
@@ -60,28 +60,28 @@ pub(super) enum Values {
     Bools(Vec<bool>),
 }
 
-/// One of a list.
+/// One parameter of a list.
 #[derive(Clone, Debug)]
 pub(super) struct Parameter {
     pub(super) kind: Kind,
     pub(super) name: String,
     pub(super) values: Values,
     pub(super) at: Span,
-    /// What its colours are of.
+    /// The colour space of its colours.
     pub(super) space: ColourSpace,
     used: Cell<bool>,
 }
 
-/// The parameters of something.
+/// The parameters of an entity.
 #[derive(Clone, Debug)]
 pub(super) struct ParameterList {
-    /// What they belong to, for messages: `shape 'sphere'`.
+    /// The owner of the list, for messages: `shape 'sphere'`.
     pub(super) what: String,
     pub(super) at: Span,
     list: Vec<Parameter>,
-    /// What attributes say, where the list itself says nothing.
+    /// Attributes, which apply where the list itself has no such parameter.
     attributes: Arc<Vec<Parameter>>,
-    /// Names that were looked for.
+    /// The names that were looked up.
     asked: RefCell<Vec<&'static str>>,
 }
 
@@ -97,7 +97,7 @@ impl Parameter {
         FormatError::malformed(message, self.at.clone())
     }
 
-    /// Its numbers, if that is what it holds.
+    /// Its numbers, if it holds numbers.
     pub(super) fn numbers(&self) -> Option<&[f32]> {
         match &self.values {
             Values::Numbers(list) => Some(list),
@@ -105,7 +105,7 @@ impl Parameter {
         }
     }
 
-    /// Its text, if it is one.
+    /// Its string, if it holds a single one.
     pub(super) fn text(&self) -> Option<&str> {
         match &self.values {
             Values::Texts(list) => match list.as_slice() {
@@ -191,7 +191,7 @@ fn values(
     }
 }
 
-/// True when a list, or the one value, is of texts.
+/// True if the list, or the single value, consists of strings.
 fn is_text(lexer: &mut Lexer) -> Result<bool, FormatError> {
     let mut ahead = lexer.ahead();
     Ok(match ahead.next()? {
@@ -216,7 +216,7 @@ fn push(values: &mut Values, token: &Token, lexer: &Lexer, name: &str, at: usize
         },
         Values::Integers(list) => {
             let word = if let Token::Word(word) = token { std::str::from_utf8(word).ok() } else { None };
-            // Some write 1.0.
+            // Some exporters write 1.0.
             let whole = |x: f64| (x.fract() == 0.0 && x.abs() < f64::from(i32::MAX)).then_some(x as i32);
             match word.and_then(|w| w.parse().ok().or_else(|| w.parse().ok().and_then(whole))) {
                 Some(number) => list.push(number),
@@ -228,7 +228,7 @@ fn push(values: &mut Values, token: &Token, lexer: &Lexer, name: &str, at: usize
             _ => return wrong("texts in quotes"),
         },
         Values::Bools(list) => match token {
-            // Version 3 has them in quotes.
+            // Version 3 puts them in quotes.
             Token::Word(b"true") => list.push(true),
             Token::Word(b"false") => list.push(false),
             Token::Quoted(text) if **text == *b"true" => list.push(true),
@@ -249,12 +249,12 @@ impl ParameterList {
         ParameterList { what, at, list, attributes, asked: RefCell::new(Vec::new()) }
     }
 
-    /// A parameter by its name.
+    /// The parameter with this name.
     pub(super) fn find(&self, name: &'static str) -> Option<&Parameter> {
         self.find_where(name, |_| true)
     }
 
-    /// A parameter by its name and something else.
+    /// The parameter with this name that satisfies a condition.
     pub(super) fn find_where(
         &self,
         name: &'static str,
@@ -271,18 +271,18 @@ impl ParameterList {
         found.inspect(|p| p.used.set(true))
     }
 
-    /// True when something is said of it, in the list itself or by attributes.
+    /// True if the list itself or an attribute has this parameter.
     pub(super) fn has(&self, name: &'static str) -> bool {
         self.find(name).is_some()
     }
 
-    /// Where a parameter stands, or else the whole list.
+    /// The location of a parameter, or else of the whole list.
     pub(super) fn place(&self, name: &str) -> Span {
         let mut all = self.list.iter().chain(&*self.attributes);
         all.find(|p| p.name == name).map_or(&self.at, |p| &p.at).clone()
     }
 
-    /// One number.
+    /// A single number.
     pub(super) fn number(&self, name: &'static str) -> Result<Option<f32>, FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(None) };
         match &parameter.values {
@@ -292,7 +292,7 @@ impl ParameterList {
         }
     }
 
-    /// One number, which has to be finite.
+    /// A single number, which must be finite.
     pub(super) fn finite(&self, name: &'static str, default: f32) -> Result<f32, FormatError> {
         let number = self.number(name)?.unwrap_or(default);
         if number.is_finite() {
@@ -301,7 +301,7 @@ impl ParameterList {
         Err(FormatError::malformed(format!("'{name}' has to be finite, and not {number}"), self.place(name)))
     }
 
-    /// One whole number.
+    /// A single whole number.
     pub(super) fn integer(&self, name: &'static str) -> Result<Option<i32>, FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(None) };
         match &parameter.values {
@@ -310,7 +310,7 @@ impl ParameterList {
         }
     }
 
-    /// True or false.
+    /// A Boolean.
     pub(super) fn flag(&self, name: &'static str, default: bool) -> Result<bool, FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(default) };
         match &parameter.values {
@@ -319,7 +319,7 @@ impl ParameterList {
         }
     }
 
-    /// One text.
+    /// A single string.
     pub(super) fn text(&self, name: &'static str) -> Result<Option<&str>, FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(None) };
         match parameter.text().filter(|_| parameter.kind == Kind::Text) {
@@ -328,7 +328,7 @@ impl ParameterList {
         }
     }
 
-    /// Texts.
+    /// All strings.
     pub(super) fn texts(&self, name: &'static str) -> Result<&[String], FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(&[]) };
         match &parameter.values {
@@ -337,13 +337,13 @@ impl ParameterList {
         }
     }
 
-    /// The name of a texture, where one is given.
+    /// The name of a texture, if one is given.
     pub(super) fn texture(&self, name: &'static str) -> Option<(&str, &Span)> {
         let parameter = self.find_where(name, |p| p.kind == Kind::Texture)?;
         Some((parameter.text()?, &parameter.at))
     }
 
-    /// Whole numbers.
+    /// All whole numbers.
     pub(super) fn integers(&self, name: &'static str) -> Result<&[i32], FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(&[]) };
         match &parameter.values {
@@ -352,13 +352,13 @@ impl ParameterList {
         }
     }
 
-    /// Numbers.
+    /// All numbers.
     pub(super) fn numbers(&self, name: &'static str) -> Result<&[f32], FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(&[]) };
         parameter.numbers().ok_or_else(|| parameter.wrong("numbers"))
     }
 
-    /// Points, vectors or normals.
+    /// All points, vectors or normals.
     pub(super) fn triples(&self, name: &'static str) -> Result<Vec<Vec3>, FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(Vec::new()) };
         let numbers = parameter.numbers().filter(|list| list.len().is_multiple_of(3));
@@ -366,7 +366,7 @@ impl ParameterList {
         Ok(numbers.chunks_exact(3).map(Vec3::from_slice).collect())
     }
 
-    /// One point or vector.
+    /// A single point or vector.
     pub(super) fn triple(&self, name: &'static str, default: Vec3) -> Result<Vec3, FormatError> {
         match self.triples(name)?.as_slice() {
             [] => Ok(default),
@@ -378,7 +378,7 @@ impl ParameterList {
         }
     }
 
-    /// Pairs of numbers; version 3 has them as plain numbers too.
+    /// All pairs of numbers, which version 3 also writes as plain numbers.
     pub(super) fn pairs(&self, name: &'static str) -> Result<Vec<Vec2>, FormatError> {
         let Some(parameter) = self.find(name) else { return Ok(Vec::new()) };
         let numbers = parameter.numbers().filter(|list| list.len().is_multiple_of(2));
@@ -386,7 +386,7 @@ impl ParameterList {
         Ok(numbers.chunks_exact(2).map(Vec2::from_slice).collect())
     }
 
-    /// Tells of parameters that nobody looked for.
+    /// Warns about parameters that nothing looked up.
     pub(super) fn report_unused(&self, oddities: &mut Oddities) {
         for parameter in self.list.iter().filter(|p| !p.used.get()) {
             let known: Vec<String> = self.asked.borrow().iter().map(|name| (*name).to_owned()).collect();

@@ -1,4 +1,4 @@
-//! From files to a scene: first all directives are read and meshes made, then names are looked up.
+//! Converts files to a scene: it first reads all directives and builds meshes, then resolves names.
 
 use super::directives;
 use super::lexer::Lexer;
@@ -60,7 +60,7 @@ fn read_whole(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, Fo
     Ok(scene)
 }
 
-/// Something that a file asks for: which kind, and its parameters.
+/// An entity of a directive: its kind and parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Entity {
     pub(super) kind: String,
@@ -68,38 +68,38 @@ pub(super) struct Entity {
     pub(super) at: Span,
 }
 
-/// A shape in the scene, before its material is known.
+/// A shape of the scene, before its material is resolved.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) form: ShapeGeometry,
-    /// To the world, or to the object that it is a part of.
+    /// The transforms to world space, or to the space of the object definition that contains it.
     pub(super) matrices: Matrices,
     pub(super) dress: SurfaceAttributes,
-    /// How many shapes it is for pbrt, each of which has the power of its light.
+    /// The number of shapes that pbrt counts, each of which emits the full power of its light.
     pub(super) shapes: u32,
     pub(super) at: Span,
 }
 
-/// What a shape is made of.
+/// The geometry of a shape.
 #[derive(Clone, Debug)]
 pub(super) enum ShapeGeometry {
-    /// Triangles.
+    /// A triangle mesh.
     Mesh(Arc<Mesh>),
-    /// A whole sphere around the origin; it may be seen from the inside instead.
+    /// A whole sphere around the origin; `reversed` turns it inside out.
     Sphere { radius: f32, reversed: bool },
 }
 
-/// What is on a shape's surface and behind it.
+/// The material and media of a shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct SurfaceAttributes {
     pub(super) material: MaterialKey,
-    /// Index of what makes it give light.
+    /// The index of its area light.
     pub(super) area_light: Option<usize>,
     pub(super) alpha: Alpha,
     pub(super) media: [Arc<str>; 2],
 }
 
-/// How much of a shape is there.
+/// The opacity of a shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) enum Alpha {
     #[default]
@@ -110,14 +110,14 @@ pub(super) enum Alpha {
     Texture(Arc<str>, u32, u32),
 }
 
-/// Where an object is put.
+/// An instance of an object.
 pub(super) struct Use {
     pub(super) object: String,
     pub(super) matrices: Matrices,
     pub(super) at: Span,
 }
 
-/// What a graphics state was pushed by.
+/// The directive that pushed a graphics state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Opened {
     Attribute,
@@ -125,12 +125,12 @@ pub(super) enum Opened {
     Object,
 }
 
-/// A scene on its way.
+/// The state while a scene is read.
 pub(super) struct Pbrt<'o, 'r> {
     pub(super) reading: &'r mut Reading<'o>,
     pub(super) scene: SceneBuilder,
     pub(super) oddities: Oddities,
-    /// That of the first file, which all names are relative to.
+    /// The folder of the first file, which all names are relative to.
     pub(super) folder: Option<PathBuf>,
     pub(super) state: State,
     pub(super) pushed: Vec<(Opened, Span, State)>,
@@ -141,33 +141,33 @@ pub(super) struct Pbrt<'o, 'r> {
     pub(super) textures: NamedTextures,
     pub(super) materials: Vec<Entity>,
     pub(super) named_materials: HashMap<Arc<str>, (usize, Span)>,
-    /// Materials as they have been made.
+    /// Materials built so far.
     pub(super) made_materials: HashMap<MaterialKey, Option<Spec>>,
-    /// How many mixes the material that is being made is a part of.
+    /// The number of mixes around the material that is being built.
     pub(super) mix_depth: usize,
     pub(super) media: HashMap<Arc<str>, Medium>,
     pub(super) area_lights: Vec<Entity>,
     pub(super) lights: Vec<(Entity, DMat4)>,
     pub(super) pieces: Vec<Piece>,
-    /// The object that is being made.
+    /// The object that is being defined.
     pub(super) definition: Option<(String, Vec<Piece>)>,
     pub(super) definitions: HashMap<String, Arc<Vec<Piece>>>,
     pub(super) uses: Vec<Use>,
     pub(super) cache: ShapeCache,
-    /// The chain of files from the first to the one that is read.
+    /// The chain of includes, from the first file to the current one.
     open: Vec<PathBuf>,
-    /// Bytes of all files that were included, each as often as it was.
+    /// The total bytes of included files, counted once per inclusion.
     included: u64,
-    /// Spectra from files.
+    /// Spectra loaded from files.
     pub(super) spectra: HashMap<PathBuf, Arc<Spectrum>>,
-    /// Where textures stand in the scene.
+    /// The indices of textures in the scene.
     pub(super) placed_textures: HashMap<*const Texture, usize>,
 }
 
-/// What opening a file counts for, beside its bytes.
+/// The cost of opening a file in addition to its bytes.
 const MIN_FILE: u64 = 1 << 14;
 
-/// Longer chains of files are refused: each takes a part of the stack.
+/// Longer chains of includes are refused, since each level uses some of the stack.
 const LONGEST_CHAIN: usize = 32;
 
 impl Pbrt<'_, '_> {
@@ -194,7 +194,7 @@ impl Pbrt<'_, '_> {
         self.finish()
     }
 
-    /// Reads another file as if it stood here.
+    /// Reads another file at this point.
     pub(super) fn include(&mut self, name: &str, at: &Span) -> Result<(), FormatError> {
         let path = self.reading.locate_besides(self.folder.as_deref(), name, &self.open, at)?;
         if self.open.contains(&path) {

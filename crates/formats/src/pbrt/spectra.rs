@@ -1,4 +1,4 @@
-//! Spectra as colours: what an eye sees of them under daylight, or what they shine with.
+//! Converts spectra to colours: reflectance under daylight, or emission.
 
 use super::colours::{from_xyz, of_chromaticity, of_unit_luminance};
 use bilux_math::Rgb;
@@ -6,11 +6,11 @@ use bilux_math::glam::DVec3;
 use bilux_math::transcendental::exp_f64;
 use bilux_scene::materials::glass_indices;
 
-/// A spectrum, from the shortest wavelength (nm) to the longest; between its samples straight, beyond them nothing.
+/// A spectrum by increasing wavelength (nm), linear between its samples and zero beyond them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Spectrum(pub(super) Vec<[f64; 2]>);
 
-/// The observer of 1931 and daylight D65, from 380 to 780 nm in steps of 10. [CIE 15]
+/// The CIE 1931 standard observer and illuminant D65, from 380 to 780 nm in steps of 10. [CIE 15]
 const FIRST: f64 = 380.0;
 const STEP: f64 = 10.0;
 #[rustfmt::skip]
@@ -39,7 +39,7 @@ const DAYLIGHT: [f64; 41] = [
     69.72, 71.61, 74.35, 61.60, 69.89, 75.09, 63.59, 46.42, 66.81, 63.38,
 ];
 
-/// Lights by name, with their chromaticities. [CIE 15; SMPTE 2065]
+/// Named illuminants with their chromaticities. [CIE 15; SMPTE 2065]
 const LIGHTS: &[(&str, [f64; 2])] = &[
     ("stdillum-A", [0.44758, 0.40745]),
     ("stdillum-D50", [0.34567, 0.35850]),
@@ -59,7 +59,7 @@ const LIGHTS: &[(&str, [f64; 2])] = &[
     ("illum-acesD60", [0.32168, 0.33767]),
 ];
 
-/// Glasses by name, as our own table calls them.
+/// Named glasses, and their names in the table of Bilux.
 pub(super) const GLASSES: &[(&str, &str)] = &[
     ("glass-BK7", "bk7"),
     ("glass-BAF10", "baf10"),
@@ -70,7 +70,7 @@ pub(super) const GLASSES: &[(&str, &str)] = &[
     ("glass-F11", "sf11"),
 ];
 
-/// Metals by the beginning of their names, as our own table calls them.
+/// Name prefixes of metals, and their names in the table of Bilux.
 const METALS: &[(&str, &str)] = &[
     ("metal-Ag", "silver"),
     ("metal-Al", "aluminium"),
@@ -79,23 +79,24 @@ const METALS: &[(&str, &str)] = &[
     ("metal-CuZn", "brass"),
 ];
 
-/// What else has names beginning with `metal-`, though it is none: index and extinction. [DeVore 1951; Stephens 1952]
+/// Oxides with names that begin with `metal-`, and their indices of refraction; they have no extinction. [DeVore
+/// 1951; Stephens 1952]
 const OXIDES: &[(&str, f32)] = &[("metal-MgO", 1.737), ("metal-TiO2", 2.613)];
 
-/// A spectrum that goes by a name.
+/// A named spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Named {
-    /// The colour of a light of luminance 1.
+    /// The colour of an illuminant with luminance 1.
     Light(Rgb),
-    /// A refractive index at 587.6 nm, and Abbe's number.
+    /// An index of refraction at 587.6 nm, and the Abbe number.
     Glass { index: f32, abbe_number: f32 },
-    /// The refractive index of a metal of our table, or its extinction.
+    /// The index of refraction, or the extinction, of a metal in the table of Bilux.
     Metal { metal: &'static str, is_extinction: bool },
-    /// The same number at every wavelength.
+    /// A constant spectrum.
     Even(f32),
 }
 
-/// A spectrum by its name.
+/// The spectrum with this name.
 pub(super) fn named(name: &str) -> Option<Named> {
     if let Some((_, xy)) = LIGHTS.iter().find(|(known, _)| *known == name) {
         return Some(Named::Light(of_chromaticity(*xy)));
@@ -116,7 +117,7 @@ pub(super) fn named(name: &str) -> Option<Named> {
     metal.or_else(|| oxide().map(|(_, index)| Named::Even(if is_extinction { 0.0 } else { *index })))
 }
 
-/// The names of all, for messages.
+/// All names, for messages.
 pub(super) fn names() -> impl Iterator<Item = String> {
     let metals = METALS.iter().map(|(name, _)| name).chain(OXIDES.iter().map(|(name, _)| name));
     let metals = metals.flat_map(|name| ["eta", "k"].map(|part| format!("{name}-{part}")));
@@ -124,17 +125,17 @@ pub(super) fn names() -> impl Iterator<Item = String> {
     others.map(str::to_owned).chain(metals)
 }
 
-/// Where sodium's line nearly is: the wavelength that refractive indices are quoted at.
+/// Close to the sodium line: the wavelength at which indices of refraction are quoted.
 const YELLOW: f64 = 587.6;
 
 impl Spectrum {
-    /// The same of all wavelengths that are seen.
+    /// A constant spectrum over all visible wavelengths.
     #[cfg(test)]
     pub(super) fn even(value: f64) -> Spectrum {
         Spectrum(vec![[300.0, value], [900.0, value]])
     }
 
-    /// The number at a wavelength in nm.
+    /// The value at a wavelength in nm.
     pub(super) fn at(&self, wavelength: f64) -> f64 {
         let after = self.0.partition_point(|[w, _]| *w < wavelength);
         match (after.checked_sub(1).map(|i| self.0[i]), self.0.get(after)) {
@@ -144,13 +145,14 @@ impl Spectrum {
         }
     }
 
-    /// The number at 587.6 nm.
+    /// The value at 587.6 nm.
     pub(super) fn at_yellow(&self) -> f32 {
         self.at(YELLOW) as f32
     }
 
-    /// 20 over Abbe's number of a glass with this as its refractive index: by the indices at hydrogen's blue and red lines. `None`
-    /// where they do not fall from blue to red as those of glass do, or are not told.
+    /// 20 / Abbe number of a glass with this spectrum as its index of refraction, from the hydrogen F and C lines.
+    ///
+    /// `None` if the index does not fall from blue to red as it does in glass, or is not given there.
     pub(super) fn dispersion(&self) -> Option<f32> {
         if self.0.windows(2).all(|pair| pair[0][1] == pair[1][1]) {
             return Some(0.0);
@@ -160,33 +162,33 @@ impl Spectrum {
         (red > 0.0 && yellow > 1.0 && (0.0..=20.0).contains(&dispersion)).then_some(dispersion as f32)
     }
 
-    /// The colour of a surface that reflects so much of each wavelength, under daylight. Numbers of any kind are averaged
-    /// in the same way.
+    /// The colour of a surface with this reflectance spectrum under daylight. Other spectral quantities are
+    /// averaged in the same way.
     pub(super) fn surface(&self) -> Rgb {
         let seen = under_daylight(|wavelength| self.at(wavelength));
         Rgb::from_array(seen.max(DVec3::ZERO).as_vec3().to_array())
     }
 
-    /// The colour of a light with this spectrum, of luminance 1.
+    /// The colour of a light with this spectrum, with luminance 1.
     pub(super) fn light(&self) -> Rgb {
         of_unit_luminance(observed(|wavelength| self.at(wavelength)))
     }
 }
 
-/// What daylight looks like where it is reflected by so much, white where all of it is.
+/// The colour of daylight after reflection, relative to daylight itself; may be outside the gamut.
 pub(super) fn under_daylight(reflected: impl Fn(f64) -> f64) -> DVec3 {
     let lit = observed(|wavelength| reflected(wavelength) * sampled(&DAYLIGHT, wavelength));
     let white = observed(|wavelength| sampled(&DAYLIGHT, wavelength));
     from_xyz(lit) / from_xyz(white)
 }
 
-/// The colour of a black body of this many kelvin, of luminance 1. [Wyszecki 1982]
+/// The colour of a black body at this temperature in kelvin, with luminance 1. [Wyszecki 1982]
 pub(super) fn blackbody(kelvin: f32) -> Rgb {
     let kelvin = f64::from(kelvin);
     if kelvin <= 0.0 {
         return Rgb::BLACK;
     }
-    // hc/k in nm·K; constant factors do not change the colour.
+    // hc/k in nm·K; constant factors do not affect the colour.
     let second = 1.438_776_877e7;
     let emitted = |w: f64| 1.0 / (fifth(w / YELLOW) * (exp_f64(second / (w * kelvin)) - 1.0));
     of_unit_luminance(observed(emitted))
@@ -197,7 +199,7 @@ fn fifth(x: f64) -> f64 {
     x2 * x2 * x
 }
 
-/// XYZ of a spectrum, of any scale.
+/// The XYZ of a spectrum, up to a constant scale.
 fn observed(spectrum: impl Fn(f64) -> f64) -> DVec3 {
     let samples = (X_BAR.len() - 1) * STEP as usize;
     (0..=samples)
@@ -240,7 +242,7 @@ mod tests {
 
     #[test]
     fn black_bodies_have_the_colours_of_the_planckian_locus() {
-        // Chromaticities of the locus. [Wyszecki 1982, table I(6.2.2)]
+        // Chromaticities of the Planckian locus. [Wyszecki 1982, table I(6.2.2)]
         for (kelvin, xy) in
             [(2856.0, [0.4476, 0.4074]), (6500.0, [0.3135, 0.3237]), (10000.0, [0.2807, 0.2884])]
         {

@@ -1,4 +1,4 @@
-//! The graphics state: what holds for what comes next in the file.
+//! The graphics state, which applies to the following directives.
 
 use super::colours::ColourSpace;
 use super::parameters::Parameter;
@@ -7,39 +7,40 @@ use bilux_math::transcendental::{sin_cos_f64, tan_f64};
 use bilux_math::{DMat4, DVec3};
 use std::sync::Arc;
 
-/// From the space of what comes next to the world (before the world begins, to the camera from it), at the start and the
-/// end of time.
+/// The transforms from the current space to world space, at the start and the end time.
+///
+/// Before `WorldBegin`, they map from it to camera space.
 pub(super) type Matrices = [DMat4; 2];
 
-/// Which material a shape has.
+/// The material of a shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) enum MaterialKey {
-    /// None was said.
+    /// No material was set.
     #[default]
     Default,
-    /// By its index among all.
+    /// By its index.
     Index(usize),
-    /// By its name, which may come later in the file.
+    /// By its name, which may be defined later in the file.
     Named(Arc<str>),
 }
 
-/// What attributes are for.
+/// The targets of attributes.
 pub(super) const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
-/// The state.
+/// The graphics state.
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
     pub(super) matrices: Matrices,
-    /// Which of the two matrices transforms are for: the start, the end.
+    /// Which of the two matrices transforms apply to: the start, the end.
     pub(super) is_active: [bool; 2],
     pub(super) reverses: bool,
     pub(super) space: ColourSpace,
     pub(super) material: MaterialKey,
-    /// Index of what makes shapes give light.
+    /// The index of the current area light.
     pub(super) area_light: Option<usize>,
-    /// Names of the media on the inside and on the outside of shapes; empty for none.
+    /// The names of the interior and the exterior medium; empty for none.
     pub(super) media: [Arc<str>; 2],
-    /// Parameters for each of [`TARGETS`].
+    /// The attributes for each of [`TARGETS`].
     pub(super) attributes: [Arc<Vec<Parameter>>; 5],
 }
 
@@ -55,22 +56,23 @@ impl State {
         }
     }
 
-    /// The attributes of one of [`TARGETS`].
+    /// The attributes for one of [`TARGETS`].
     pub(super) fn attributes_of(&self, target: &str) -> Arc<Vec<Parameter>> {
         let index = TARGETS.iter().position(|known| *known == target);
         index.map(|i| self.attributes[i].clone()).unwrap_or_default()
     }
 }
 
-/// A turn by an angle in degrees about an axis; none where that is zero.
+/// A rotation by an angle in degrees about an axis; `None` for a zero axis.
 pub(super) fn rotation(degrees: f64, axis: DVec3) -> Option<DMat4> {
     let axis = axis.try_normalize()?;
     let (sin, cos) = sin_cos_f64((degrees % 360.0).to_radians() * 0.5);
     Some(DMat4::from_quat(DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)))
 }
 
-/// From the world to a camera that looks along its own +z with +x to the right; none where it has no direction, or looks
-/// along its up.
+/// The transform from world space to a camera that looks along +z with +x to the right.
+///
+/// `None` if the direction is zero or parallel to up.
 pub(super) fn look_at(eye: DVec3, at: DVec3, up: DVec3) -> Option<DMat4> {
     let forward = (at - eye).try_normalize()?;
     let right = up.try_normalize()?.cross(forward).try_normalize()?;
@@ -80,7 +82,7 @@ pub(super) fn look_at(eye: DVec3, at: DVec3, up: DVec3) -> Option<DMat4> {
     Some(to_world.inverse())
 }
 
-/// Tangent of half an angle in degrees.
+/// The tangent of half an angle in degrees.
 pub(super) fn half_tangent(degrees: f32) -> f64 {
     tan_f64(f64::from(degrees).to_radians() * 0.5)
 }

@@ -1,4 +1,4 @@
-//! Colours and numbers of surfaces: constants or pictures.
+//! Surface parameters that are either a constant or a texture.
 
 use super::colours::ColourSpace;
 use super::parameters::{Kind, Parameter, ParameterList, Values};
@@ -11,21 +11,21 @@ use bilux_scene::texture::{Image, Texels};
 use bilux_scene::{Spec, Texture, Value};
 use std::sync::Arc;
 
-/// What a spectrum is of.
+/// The quantity that a spectrum describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
-    /// What a surface reflects.
+    /// A reflectance.
     Surface,
-    /// Numbers of any size.
+    /// Numbers of any magnitude.
     Number,
-    /// What a light shines with: colours as they are, other spectra with a luminance of 1.
+    /// An emission: colours as they are, other spectra with a luminance of 1.
     Light,
 }
 
-/// Nests of more formulas are baked, so that names of names of names take no time.
+/// Deeper nesting of procedural textures is baked, so that chains of references cost no time.
 const MAX_PARTS: usize = 16;
 
-/// A constant or a picture.
+/// A constant or a texture.
 #[derive(Clone, Debug)]
 pub(super) enum TextureOrValue {
     Colour(Rgb),
@@ -33,7 +33,7 @@ pub(super) enum TextureOrValue {
 }
 
 impl TextureOrValue {
-    /// Multiplied by a colour.
+    /// Multiplies it by a colour.
     pub(super) fn scaled(self, by: Rgb) -> TextureOrValue {
         match self {
             TextureOrValue::Colour(colour) => TextureOrValue::Colour(colour * by),
@@ -45,7 +45,7 @@ impl TextureOrValue {
         }
     }
 
-    /// The constant, or the mean of the picture.
+    /// The constant, or the mean of the texture.
     pub(super) fn mean(&self) -> Rgb {
         match self {
             TextureOrValue::Colour(colour) => *colour,
@@ -64,7 +64,7 @@ impl TextureOrValue {
         }
     }
 
-    /// At texture coordinates.
+    /// Its value at texture coordinates.
     pub(super) fn at(&self, uv: Vec2) -> Rgb {
         match self {
             TextureOrValue::Colour(colour) => *colour,
@@ -78,7 +78,7 @@ impl TextureOrValue {
 }
 
 impl Pbrt<'_, '_> {
-    /// Each texel, or the constant, by a rule.
+    /// Applies a function to each texel, or to the constant.
     pub(super) fn mapped(
         &mut self,
         ink: TextureOrValue,
@@ -99,7 +99,7 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// A picture of texels in rows, the top one first.
+    /// A texture from rows of texels, the top one first.
     pub(super) fn picture(
         &mut self,
         name: &str,
@@ -111,7 +111,8 @@ impl Pbrt<'_, '_> {
         Ok(Texture::of(name, Arc::new(image), true))
     }
 
-    /// What a texture of ours says of inks; baked by the rule where that takes other numbers, or has many parts.
+    /// A procedural texture of these parts; bakes `rule` if the kind does not accept these values, or has too many
+    /// parts.
     pub(super) fn by_formula<const N: usize>(
         &mut self,
         kind: &str,
@@ -141,14 +142,14 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// Two inks as one picture over texture coordinates from 0 to 1.
+    /// Bakes a function of the parts into an image over texture coordinates from 0 to 1.
     pub(super) fn baked(
         &mut self,
         name: &str,
         parts: &[&TextureOrValue],
         rule: impl Fn(Vec2) -> Rgb,
     ) -> Result<TextureOrValue, FormatError> {
-        /// Sides of what is baked.
+        /// Limits on the sides of the image.
         const MIN: usize = 256;
         const MAX: usize = 2048;
         let side = |of: fn(&Texture) -> usize| {
@@ -169,7 +170,7 @@ impl Pbrt<'_, '_> {
         Ok(TextureOrValue::Picture(Arc::new(self.picture(name, [width, height], texels)?)))
     }
 
-    /// An ink as a parameter of ours.
+    /// The value of a Bilux parameter.
     pub(super) fn value(&mut self, ink: TextureOrValue) -> Value {
         match ink {
             TextureOrValue::Colour(colour) => colour.into(),
@@ -177,7 +178,7 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// The same for what is one number.
+    /// The value of a Bilux parameter that is a single number.
     pub(super) fn number_value(&mut self, ink: TextureOrValue, [min, max]: [f32; 2]) -> Value {
         match ink {
             TextureOrValue::Colour(colour) => colour.r.clamp(min, max).into(),
@@ -185,7 +186,7 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// A picture, put into the scene once.
+    /// Adds a texture to the scene once.
     fn texture_value(&mut self, picture: Arc<Texture>) -> Value {
         let index = *self.placed_textures.entry(Arc::as_ptr(&picture)).or_insert_with(|| {
             self.scene.textures.push(picture);
@@ -194,7 +195,7 @@ impl Pbrt<'_, '_> {
         Value::Texture(index)
     }
 
-    /// The colour under a name, where one is given that is no texture.
+    /// The colour of a parameter, if it is given and not a texture.
     pub(super) fn spectrum(
         &mut self,
         list: &ParameterList,
@@ -207,7 +208,7 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// What a parameter of a spectrum looks like.
+    /// The colour of a spectrum parameter.
     pub(super) fn colour_of(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
         let at = &parameter.at;
         let wrong = |wanted: &str| {
@@ -222,7 +223,7 @@ impl Pbrt<'_, '_> {
             (Kind::Float, Values::Numbers(c)) if c.len() == 1 => Rgb::grey(c[0]),
             (Kind::Blackbody, Values::Numbers(c)) => match c.as_slice() {
                 [kelvin] => spectra::blackbody(*kelvin),
-                // Version 3 has a factor behind it.
+                // Version 3 adds a factor.
                 [kelvin, factor] => spectra::blackbody(*kelvin) * *factor,
                 _ => return wrong("a temperature in kelvin"),
             },
@@ -250,14 +251,14 @@ impl Pbrt<'_, '_> {
             return Rgb::from_array(super::colours::from_xyz(c.into()).as_vec3().to_array());
         }
         match (parameter.space, meaning) {
-            // What is out of range is told of by the caller.
+            // The caller warns about values that are out of range.
             (ColourSpace::Srgb, _) | (_, Meaning::Number) => colour,
             (space, Meaning::Light) => space.light(colour),
             (space, Meaning::Surface) => space.surface(colour),
         }
     }
 
-    /// A spectrum from pairs of wavelengths and numbers.
+    /// A spectrum from pairs of wavelengths and values.
     fn samples(&mut self, numbers: &[f32], parameter: &Parameter) -> Result<Spectrum, FormatError> {
         let wrong = |message: String| Err(FormatError::malformed(message, parameter.at.clone()));
         if !numbers.len().is_multiple_of(2) || numbers.is_empty() {
@@ -283,7 +284,7 @@ impl Pbrt<'_, '_> {
         Ok(Spectrum(pairs))
     }
 
-    /// A spectrum by its name, or from the file of that name.
+    /// A spectrum by its name, or from the file with that name.
     fn of_name(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
         let Some(name) = parameter.text() else {
             let message = format!("'{}' has to be one spectrum", parameter.name);
@@ -303,7 +304,7 @@ impl Pbrt<'_, '_> {
         })
     }
 
-    /// A spectrum in a file of its own: pairs of numbers.
+    /// A spectrum from a file of its own: pairs of numbers.
     pub(super) fn spectrum_file(
         &mut self,
         name: &str,
@@ -344,7 +345,7 @@ impl Pbrt<'_, '_> {
         Ok(spectrum)
     }
 
-    /// The spectrum itself, where a parameter has one that is no colour.
+    /// The full spectrum of a parameter, if it is one and not a colour.
     pub(super) fn whole_spectrum(&mut self, parameter: &Parameter) -> Result<Option<Spectrum>, FormatError> {
         match (parameter.kind, &parameter.values) {
             (Kind::Spectrum, Values::Numbers(numbers)) => self.samples(numbers, parameter).map(Some),

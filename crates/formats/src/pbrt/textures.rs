@@ -1,4 +1,4 @@
-//! Named textures. Pictures stay pictures; what is made of others is worked out, and baked where it has to be.
+//! Named textures. Images stay images; textures that combine others are evaluated, and baked if necessary.
 
 use super::parameters::{Kind, ParameterList};
 use super::reader::{Entity, Pbrt};
@@ -18,14 +18,14 @@ use std::sync::Arc;
 #[derive(Default)]
 pub(super) struct NamedTextures {
     named: [HashMap<String, Slot>; 2],
-    /// How many textures the one that is worked out is a part of.
+    /// The number of textures around the one that is being evaluated.
     depth: usize,
 }
 
 #[derive(Clone)]
 enum Slot {
     Defined(Rc<Entity>),
-    /// Being worked out.
+    /// Currently being evaluated.
     Open,
     Ready(TextureOrValue),
 }
@@ -36,13 +36,13 @@ impl NamedTextures {
     }
 }
 
-/// Deeper nests of textures are refused: each takes a part of the stack.
+/// Deeper nesting of textures is refused, since each level uses some of the stack.
 const DEEPEST: usize = 32;
 
-/// What a texture becomes.
+/// Builds a texture.
 type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<TextureOrValue, FormatError>;
 
-/// Every texture that is shown.
+/// Every supported texture.
 const TEXTURES: &[(&str, Make)] = &[
     ("bilerp", bilerp),
     ("checkerboard", checkerboard),
@@ -53,7 +53,7 @@ const TEXTURES: &[(&str, Make)] = &[
     ("scale", scale),
 ];
 
-/// Those in place of which one colour stands.
+/// Textures that are replaced by a single colour.
 const PLAIN: &[(&str, [f32; 3])] = &[
     ("dots", [0.5; 3]),
     ("fbm", [0.0; 3]),
@@ -65,7 +65,7 @@ const PLAIN: &[(&str, [f32; 3])] = &[
 ];
 
 impl Pbrt<'_, '_> {
-    /// The colour or texture under a name of a list.
+    /// The colour or texture of a parameter.
     pub(super) fn ink(
         &mut self,
         list: &ParameterList,
@@ -79,7 +79,7 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// The number or texture under a name of a list, as a grey.
+    /// The number or texture of a parameter, as a grey.
     pub(super) fn float_texture(
         &mut self,
         list: &ParameterList,
@@ -92,7 +92,7 @@ impl Pbrt<'_, '_> {
         }
     }
 
-    /// A texture by its name; numbers and colours have names of their own.
+    /// The texture with this name; numbers and colours have separate namespaces.
     pub(super) fn texture(
         &mut self,
         name: &str,
@@ -100,7 +100,7 @@ impl Pbrt<'_, '_> {
         at: &Span,
     ) -> Result<TextureOrValue, FormatError> {
         let wanted = usize::from(meaning == Meaning::Number);
-        // A colour that is wanted as a number, or the other way round, is better than none.
+        // A colour in place of a number, or the reverse, is better than nothing.
         let slot = [wanted, 1 - wanted].into_iter().find(|i| self.textures.named[*i].contains_key(name));
         let Some(slot) = slot else {
             let names = self.textures.named.iter().flat_map(|all| all.keys()).map(String::as_str);
@@ -143,7 +143,7 @@ impl Pbrt<'_, '_> {
         Ok(TextureOrValue::Colour(Rgb::from_array(*plain)))
     }
 
-    /// A part of a texture, or what it is where it is not given.
+    /// A part of a texture, or its default.
     fn part(
         &mut self,
         list: &ParameterList,
@@ -158,7 +158,7 @@ impl Pbrt<'_, '_> {
         Ok(found.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
-    /// Factors and shifts of texture coordinates.
+    /// The scale and offset of texture coordinates.
     fn lies(&mut self, list: &ParameterList) -> Result<[f32; 4], FormatError> {
         let mapping = list.text("mapping")?.unwrap_or("uv");
         if mapping != "uv" {
@@ -178,13 +178,13 @@ impl Pbrt<'_, '_> {
         ])
     }
 
-    /// A picture from a file; a checker of magenta, with a warning, where it cannot be had.
+    /// An image from a file; a magenta checker, with a warning, if it cannot be read.
     pub(super) fn file(&mut self, name: &str, holds: Texels, at: &Span) -> Result<Texture, FormatError> {
         self.file_or(name, holds, at, "a magenta checker", Texture::missing)
     }
 
-    /// The picture of a light; an even grey, with a warning, where it cannot be had: in any colour the whole scene
-    /// would be lit by it.
+    /// The image of a light; a uniform grey, with a warning, if it cannot be read: any colour would tint the whole
+    /// scene.
     pub(super) fn light_file(&mut self, name: &str, at: &Span) -> Result<Texture, FormatError> {
         self.file_or(name, Texels::Colours, at, "an even grey of 0.5", Texture::missing_light)
     }
@@ -214,7 +214,7 @@ fn constant(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<T
     pbrt.part(list, "value", meaning, 1.0)
 }
 
-/// The product of two; in version 4 a texture and a number, in version 3 any two.
+/// The product of two textures; in version 4, of a texture and a number.
 fn scale(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<TextureOrValue, FormatError> {
     let (a, b) = if list.has("tex1") || list.has("tex2") {
         (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 1.0)?)
@@ -243,7 +243,7 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Textur
     }
 }
 
-/// Between two by how a surface is turned: their mean.
+/// A mix by the orientation of the surface, approximated by its mean.
 fn direction_mix(
     pbrt: &mut Pbrt,
     list: &ParameterList,
@@ -283,7 +283,7 @@ fn bilerp(pbrt: &mut Pbrt, list: &ParameterList, meaning: Meaning) -> Result<Tex
         (corner("v00", 0.0)?, corner("v01", 1.0)?, corner("v10", 0.0)?, corner("v11", 1.0)?);
     let [su, sv, du, dv] = pbrt.lies(list)?;
     let ramp = pbrt.picture("bilerp", [2, 2], vec![v01, v11, v00, v10])?;
-    // The middles of the four texels are the corners.
+    // The centres of the four texels are the corners.
     let offset = [0.25 + 0.5 * du, 0.75 - 0.5 * (sv + dv)];
     let transform = Some(UvTransform::new(offset, 0.0, [0.5 * su, 0.5 * sv]));
     Ok(TextureOrValue::Picture(Arc::new(Texture { transform, wrap: [Wrap::Clamp; 2], ..ramp })))
@@ -300,7 +300,7 @@ fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<Textur
         Some(("gamma", number)) => number.trim().parse::<f32>().ok().filter(|g| g.is_finite() && *g > 0.0),
         _ => None,
     };
-    // Of version 3.
+    // A parameter of version 3.
     let is_linear = encoding == "linear" || gamma.is_some() || !list.flag("gamma", true)?;
     let holds = if is_linear { Texels::Numbers(None) } else { Texels::Colours };
     let mut texture = pbrt.file(name, holds, &at)?;
@@ -313,7 +313,7 @@ fn image_map(pbrt: &mut Pbrt, list: &ParameterList, _: Meaning) -> Result<Textur
     }
     let [su, sv, du, dv] = pbrt.lies(list)?;
     if [su, sv, du, dv] != [1.0, 1.0, 0.0, 0.0] {
-        // Rows go downwards, and t upwards.
+        // Rows run downwards, but t points upwards.
         texture.transform = Some(UvTransform::new([du, 1.0 - sv - dv], 0.0, [su, sv]));
     }
     let mut ink = TextureOrValue::Picture(Arc::new(texture));

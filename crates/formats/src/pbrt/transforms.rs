@@ -1,4 +1,4 @@
-//! Directives that place what comes after them.
+//! The transform directives.
 
 use super::directives::Directive;
 use super::lexer::{Token, shown};
@@ -61,7 +61,7 @@ impl Directive<'_, '_, '_, '_> {
         Ok(())
     }
 
-    /// What a transform is multiplied by.
+    /// The matrix that a directive multiplies the current transform by.
     fn step(&mut self, word: &[u8]) -> Result<DMat4, FormatError> {
         let step = match word {
             b"Translate" => Some(DMat4::from_translation(self.vector("a shift")?)),
@@ -89,7 +89,7 @@ impl Directive<'_, '_, '_, '_> {
         Ok(DVec3::new(number()?, number()?, number()?))
     }
 
-    /// 16 numbers, column by column.
+    /// 16 numbers in column-major order.
     fn matrix(&mut self) -> Result<DMat4, FormatError> {
         let mut numbers = [0.0; 16];
         let bracket = matches!(self.lexer.peek()?, Some((Token::Open, _)));
@@ -109,7 +109,8 @@ impl Directive<'_, '_, '_, '_> {
         Ok(self.affine_part(DMat4::from_cols_array(&numbers)))
     }
 
-    /// A matrix whose last row is 0 0 0 1. Some exporters leave a 0 in the corner, where only directions matter.
+    /// Forces the last row to be 0 0 0 1. Some exporters leave a 0 in the corner of a matrix that only transforms
+    /// directions.
     fn affine_part(&mut self, matrix: DMat4) -> DMat4 {
         let last = matrix.row(3);
         if last == DVec4::W {
@@ -117,7 +118,7 @@ impl Directive<'_, '_, '_, '_> {
         }
         let what = "a matrix has another last row than 0 0 0 1: its affine part is used";
         self.pbrt.oddities.note(what, || self.at.clone());
-        // Points are divided by their last coordinate: a single number there scales all of them.
+        // Points are divided by their homogeneous coordinate, so a single number there scales all of them.
         let is_scale = last.truncate() == DVec3::ZERO && last.w != 0.0;
         let affine = if is_scale { matrix * last.w.recip() } else { matrix };
         let column = |i: usize| affine.col(i).truncate().extend(if i == 3 { 1.0 } else { 0.0 });

@@ -1,4 +1,4 @@
-//! Numbers of the body, one after another, whatever their encoding.
+//! Reads the numbers of the body in order, in any encoding.
 
 use super::header::{Element, Encoding, Scalar};
 use crate::FormatError;
@@ -6,12 +6,12 @@ use crate::float::{parse_f32, parse_f64};
 use crate::reading::Source;
 use crate::text::{Cursor, Places, quoted};
 
-/// Walks through the numbers of the body.
+/// Iterates over the numbers of the body.
 pub(super) struct Body<'a> {
     encoding: Encoding,
-    /// For text.
+    /// For a text body.
     cursor: Cursor<'a>,
-    /// For binary.
+    /// For a binary body.
     bytes: &'a [u8],
     pos: usize,
     places: &'a Places<'a>,
@@ -29,12 +29,12 @@ impl<'a> Body<'a> {
         Body { encoding, cursor, bytes: source.bytes, pos: start, places }
     }
 
-    /// Where the next number stands.
+    /// The offset of the next number.
     pub(super) fn offset(&self) -> usize {
         if self.encoding == Encoding::Ascii { self.cursor.offset() } else { self.pos }
     }
 
-    /// Errors where an element claims more rows than there can be.
+    /// An error if an element claims more rows than the file can hold.
     pub(super) fn check_claim(&self, element: &Element) -> Result<(), FormatError> {
         let least = element.least_bytes(self.encoding);
         let left = (self.bytes.len() - self.offset()) as u64 + 1;
@@ -53,7 +53,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The next number.
+    /// Reads the next number.
     #[inline]
     pub(super) fn number(&mut self, scalar: Scalar) -> Result<f32, FormatError> {
         if self.encoding == Encoding::Ascii {
@@ -79,7 +79,7 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// The next number with all of its digits.
+    /// Reads the next number with all of its digits.
     pub(super) fn wide_number(&mut self, scalar: Scalar) -> Result<f64, FormatError> {
         match (self.encoding, scalar) {
             (Encoding::Ascii, _) => {
@@ -92,13 +92,13 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The next number as an index or a count; -1 and the like stay what they are.
+    /// Reads the next number as an index or a count; negative ones such as -1 are kept.
     #[inline]
     pub(super) fn integer(&mut self, scalar: Scalar) -> Result<i64, FormatError> {
         if self.encoding == Encoding::Ascii {
             let word = self.word()?;
             let value = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
-            // Some programs write indices as 12.0.
+            // Some exporters write indices as 12.0.
             let whole = || parse_f32(word).filter(|x| x.fract() == 0.0 && x.abs() < 1e7).map(|x| x as i64);
             return value.or_else(whole).ok_or_else(|| self.bad_word(word, "whole number"));
         }
@@ -120,22 +120,22 @@ impl<'a> Body<'a> {
         })
     }
 
-    /// True for binary numbers whose first byte is the least.
+    /// True for a little-endian binary body.
     pub(super) fn is_little(&self) -> bool {
         self.encoding == Encoding::Little
     }
 
-    /// The bytes that are not read yet, of a binary body.
+    /// The unread bytes of a binary body.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.pos..]
     }
 
-    /// Goes on by some bytes, of which there are as many.
+    /// Advances by this many bytes, which must exist.
     pub(super) fn pass(&mut self, bytes: usize) {
         self.pos += bytes;
     }
 
-    /// Passes numbers without looking at them.
+    /// Skips numbers.
     pub(super) fn skip(&mut self, scalar: Scalar, count: i64) -> Result<(), FormatError> {
         if self.encoding == Encoding::Ascii {
             return (0..count).try_for_each(|_| self.word().map(|_| ()));
@@ -147,7 +147,7 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// Ends a row; true when a text had more words in it than the header says.
+    /// Ends a row; true if a text row had more words than the header declares.
     pub(super) fn end_row(&mut self) -> bool {
         if self.encoding != Encoding::Ascii {
             return false;

@@ -1,4 +1,5 @@
-//! Faces straight into triangles, where vertices bring their normals: nothing has to be welded then, and each list is read once.
+//! Reads faces directly into triangles if vertices have normals: nothing has to be welded, and each list is read
+//! once.
 
 use super::body::Body;
 use super::header::{Element, Scalar};
@@ -11,19 +12,19 @@ use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// True for faces that are lists of vertices and nothing else.
+/// True for faces with a single property, the list of vertices.
 pub(super) fn can_be(element: &Element) -> bool {
     let [only] = element.properties.as_slice() else { return false };
     only.count.is_some() && matches!(only.name.as_str(), "vertex_indices" | "vertex_index")
 }
 
 impl Ply<'_, '_, '_> {
-    /// The faces of an element as triangles.
+    /// Reads the faces of an element as triangles.
     pub(super) fn triangles_of(&mut self, element: &Element) -> Result<Vec<[u32; 3]>, FormatError> {
         let (list, file) = (&element.properties[0], self.source.name);
         let known = self.soup.positions.len() as u64;
         let mut triangles = Vec::new();
-        // There are no more rows than bytes, so that this is bounded by the file.
+        // There are no more rows than bytes, so the size of the file bounds this.
         self.reading.budget.take_bytes(element.count * size_of::<[u32; 3]>() as u64, file)?;
         triangles.reserve_exact(element.count as usize);
         let mut triangulator = Triangulator::default();
@@ -67,7 +68,7 @@ impl Ply<'_, '_, '_> {
         Ok(triangles)
     }
 
-    /// The scene where nothing has to be welded.
+    /// Builds the scene if nothing has to be welded.
     pub(super) fn finish_triangles(
         mut self,
         texture: Option<(String, usize)>,
@@ -100,8 +101,9 @@ impl Ply<'_, '_, '_> {
 }
 
 impl Body<'_> {
-    /// Three corners below `known` as most files have them: a byte that says so, and words; none, and nothing is read, where they are
-    /// not.
+    /// Reads a triangle in the usual layout: a byte for the count, then three 32-bit indices below `known`.
+    ///
+    /// `None`, without consuming anything, for any other layout.
     #[inline]
     fn triangle(&mut self, count: Option<Scalar>, index: Scalar, known: u64) -> Option<[u32; 3]> {
         if !self.is_little() || count != Some(Scalar::U8) || !matches!(index, Scalar::I32 | Scalar::U32) {
@@ -113,7 +115,7 @@ impl Body<'_> {
         }
         let word = |i: usize| u32::from_le_bytes([row[i], row[i + 1], row[i + 2], row[i + 3]]);
         let triangle = [word(1), word(5), word(9)];
-        // What is wrong is told by whoever reads one number after the other.
+        // The general path reports the error.
         let most = known.min(i32::MAX as u64);
         if triangle.iter().any(|&corner| u64::from(corner) >= most) {
             return None;
@@ -123,7 +125,7 @@ impl Body<'_> {
     }
 }
 
-/// A mesh without those vertices that no triangle has.
+/// Removes the vertices that no triangle uses.
 fn without_unused(mut mesh: Mesh) -> Mesh {
     let mut places = vec![NONE; mesh.positions.len()];
     mesh.triangles.iter().flatten().for_each(|&corner| places[corner as usize] = 0);

@@ -1,10 +1,10 @@
-//! The header: which elements there are, how many, and what each is made of.
+//! The header: the elements, their counts and their properties.
 
 use crate::FormatError;
 use crate::reading::Source;
 use crate::text::{Cursor, Places, name_of, quoted};
 
-/// How numbers stand in the body.
+/// The encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -40,7 +40,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes in a binary body.
+    /// Its size in a binary body, in bytes.
     pub(super) fn size(self) -> usize {
         match self {
             Scalar::I8 | Scalar::U8 => 1,
@@ -50,7 +50,7 @@ impl Scalar {
         }
     }
 
-    /// The value that stands for 1 in a colour; `None` for types that hold 1 itself.
+    /// The value that means 1 in a colour; `None` for floating-point types.
     pub(super) fn colour_scale(self) -> Option<f32> {
         match self {
             Scalar::U8 => Some(255.0),
@@ -60,7 +60,7 @@ impl Scalar {
     }
 }
 
-/// One property of an element; with a count's type it is a list.
+/// A property of an element; a list if it has a count type.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Property {
     pub(super) name: String,
@@ -68,21 +68,21 @@ pub(super) struct Property {
     pub(super) count: Option<Scalar>,
 }
 
-/// Rows of the same make.
+/// A list of rows with the same properties.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
-    /// Where in the file it is declared.
+    /// The offset of its declaration.
     pub(super) offset: usize,
 }
 
 impl Element {
-    /// The fewest bytes that a row takes.
+    /// The minimum number of bytes of a row.
     pub(super) fn least_bytes(&self, encoding: Encoding) -> u64 {
         let of = |p: &Property| match encoding {
-            // A digit and a blank.
+            // A digit and a space.
             Encoding::Ascii => 2,
             _ => p.count.unwrap_or(p.scalar).size() as u64,
         };
@@ -90,20 +90,20 @@ impl Element {
     }
 }
 
-/// A whole header.
+/// A parsed header.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
-    /// The file of a `comment TextureFile` line, and where it stands.
+    /// The file of a `comment TextureFile` line, and the offset of the line.
     pub(super) texture: Option<(String, usize)>,
-    /// Whether a comment says that faces without normals are flat.
+    /// True if a comment states that faces without normals are flat.
     pub(super) is_flat: bool,
-    /// Where the body begins.
+    /// The offset of the body.
     pub(super) body: usize,
 }
 
-/// More than any real file has; each costs memory that its few bytes do not.
+/// More than any real file has; each costs far more memory than its few bytes.
 const MAX_PROPERTIES: usize = 10_000;
 
 pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, FormatError> {

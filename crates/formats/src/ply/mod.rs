@@ -1,4 +1,4 @@
-//! PLY, text and binary of both byte orders. See `docs/formats/ply.md`.
+//! PLY, as text and as binary of both byte orders. See `docs/formats/ply.md`.
 
 mod body;
 mod direct;

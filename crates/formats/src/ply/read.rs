@@ -1,4 +1,4 @@
-//! Reading PLY.
+//! Reads PLY.
 
 use super::body::Body;
 use super::direct::can_be;
@@ -32,7 +32,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         smoothing: if header.is_flat { FLAT } else { BY_ANGLE },
         oddities: Oddities::default(),
     };
-    // Where vertices have their normals and faces nothing else, these are triangles at once.
+    // If vertices have normals and faces have only their list, faces become triangles directly.
     let first = |name: &str| header.elements.iter().position(|element| element.name == name);
     let are_in_order = first("vertex").is_some_and(|vertex| Some(vertex) < first("face"));
     let are_few =
@@ -56,16 +56,16 @@ pub(super) struct Ply<'a, 'o, 'r> {
     pub(super) places: &'a Places<'a>,
     pub(super) body: Body<'a>,
     pub(super) soup: IndexedFaces,
-    /// Of all faces, where nothing has to be welded.
+    /// All triangles, if nothing has to be welded.
     triangles: Option<Vec<[u32; 3]>>,
-    /// Pairs of vertices.
+    /// Edges, as pairs of vertices.
     pub(super) edges: Vec<[u32; 2]>,
     vertices: Slots,
-    /// Texture coordinates of corners rather than vertices, each value once.
+    /// Distinct texture coordinates of corners, as opposed to vertices.
     wedge_uvs: Vec<Vec2>,
-    /// Index of each of these, by its bits.
+    /// The index of each of these, by its bits.
     wedges: HashMap<[u32; 2], u32>,
-    /// How faces without normals look.
+    /// The smoothing of faces without normals.
     smoothing: Smoothing,
     pub(super) oddities: Oddities,
 }
@@ -73,7 +73,7 @@ pub(super) struct Ply<'a, 'o, 'r> {
 impl Ply<'_, '_, '_> {
     fn element(&mut self, element: &Element) -> Result<(), FormatError> {
         if element.properties.is_empty() {
-            // Its rows take no bytes, however many they are.
+            // Its rows take no bytes, whatever their number.
             return Ok(());
         }
         self.body.check_claim(element)?;
@@ -116,7 +116,7 @@ impl Ply<'_, '_, '_> {
         }
         let floats = 3 * (1 + usize::from(slots.normals) + usize::from(slots.kd) + usize::from(slots.ks))
             + 2 * usize::from(slots.uvs);
-        // As many as the bytes that are left can hold, so that all room is made at once.
+        // The count has been checked against the remaining bytes, so the memory is reserved at once.
         self.reading.budget.take_bytes(element.count * 4 * floats as u64, self.source.name)?;
         self.make_room(&slots, element.count as usize);
         let origin = self.reading.origin;
@@ -223,7 +223,7 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    /// The corners of one face; or the faces of a strip of triangles, in which -1 begins anew.
+    /// Reads the corners of a face, or of a triangle strip, in which -1 starts a new strip.
     fn indices(
         &mut self,
         property: &Property,
@@ -266,7 +266,7 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    /// Adds a face where there is one.
+    /// Adds the collected corners as a face, if there are any.
     fn end_face(&mut self, corners: &mut Vec<Corner>, start: usize) -> Result<(), FormatError> {
         if corners.is_empty() {
             return Ok(());
@@ -285,7 +285,7 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    /// Texture coordinates of each corner of a face, one after another.
+    /// The texture coordinates of each corner of a face, in order.
     fn wedges(&mut self, property: &Property) -> Result<Vec<Vec2>, FormatError> {
         let count = self.body.integer(property.count.unwrap_or(Scalar::U8))?;
         let mut uvs = Vec::new();
@@ -354,7 +354,7 @@ impl Ply<'_, '_, '_> {
         Ok(scene)
     }
 
-    /// The texture of the whole mesh, as MeshLab names it in a comment.
+    /// Adds the texture of the whole mesh, which MeshLab names in a comment.
     pub(super) fn texture(
         &mut self,
         file: &str,
@@ -378,7 +378,7 @@ impl Ply<'_, '_, '_> {
     }
 }
 
-/// Vertices that come later in the file bring their normals and uvs too, which are looked at in the end.
+/// Vertices may follow later in the file, with their normals and uvs, which are resolved at the end.
 fn corner_of(vertex: u32) -> Corner {
     [vertex, NONE, NONE]
 }

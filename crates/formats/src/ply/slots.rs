@@ -1,8 +1,8 @@
-//! What the properties of vertices are.
+//! The meaning of vertex properties.
 
 use super::header::{Element, Property, Scalar};
 
-/// What the numbers of a vertex can mean, by the names that programs give them.
+/// The known meanings of vertex properties, with the names that programs use for them.
 pub(super) const MEANINGS: [&[&str]; 14] = [
     &["x"],
     &["y"],
@@ -20,12 +20,12 @@ pub(super) const MEANINGS: [&[&str]; 14] = [
     &["specular_blue"],
 ];
 
-/// Which meanings the vertices of a file have.
+/// The meanings that a file's vertices have.
 #[derive(Default)]
 pub(super) struct Slots {
     /// The meaning of each property.
     pub(super) meaning: Vec<Option<usize>>,
-    /// Types of colours.
+    /// The values that mean 1 in diffuse and specular colours.
     pub(super) colour: [Option<f32>; 2],
     pub(super) normals: bool,
     pub(super) uvs: bool,
@@ -48,7 +48,9 @@ impl Slots {
         Slots { colour: [scale(8), scale(11)], normals, uvs, kd, ks, meaning }
     }
 
-    /// Where in a row of bytes each meaning stands, and the row's length, if all that counts is in 32 bits and no list is among them.
+    /// The offset of each meaning in a binary row, and the row's length.
+    ///
+    /// `None` if any of them is not a 32-bit float, or if the row contains a list.
     pub(super) fn offsets(&self, element: &Element) -> Option<(Vec<(usize, usize)>, usize)> {
         let (mut offsets, mut at) = (Vec::new(), 0);
         for (property, meaning) in element.properties.iter().zip(&self.meaning) {

@@ -1,4 +1,4 @@
-//! Vertices without faces: lines along edges, or a cloud of points.
+//! Vertices without faces: lines along edges, or a point cloud.
 
 use super::header::Element;
 use super::read::Ply;
@@ -8,7 +8,7 @@ use crate::reading::plain_material;
 use bilux_scene::{Mesh, Object, SceneBuilder};
 use std::sync::Arc;
 
-/// What the properties of an edge are called.
+/// The names of an edge's properties.
 const ENDS: [&str; 2] = ["vertex1", "vertex2"];
 
 pub(super) fn has_both_ends(element: &Element) -> bool {
@@ -16,7 +16,7 @@ pub(super) fn has_both_ends(element: &Element) -> bool {
 }
 
 impl Ply<'_, '_, '_> {
-    /// Pairs of vertices, `vertex1` and `vertex2`.
+    /// Reads pairs of vertices, `vertex1` and `vertex2`.
     pub(super) fn edges(&mut self, element: &Element) -> Result<(), FormatError> {
         for _ in 0..element.count {
             let start = self.body.offset();
@@ -24,7 +24,7 @@ impl Ply<'_, '_, '_> {
             for property in &element.properties {
                 let which = ENDS.iter().position(|end| *end == property.name);
                 match which.filter(|_| property.count.is_none()) {
-                    // What is no index is one that no file has.
+                    // An invalid index becomes one that no file has.
                     Some(end) => {
                         ends[end] = u32::try_from(self.body.integer(property.scalar)?).unwrap_or(NONE);
                     }
@@ -38,7 +38,7 @@ impl Ply<'_, '_, '_> {
         Ok(())
     }
 
-    /// Vertices that no face joins: lines where there are edges, else a cloud of points.
+    /// Builds a scene without faces: lines if there are edges, else a point cloud.
     pub(super) fn finish_strokes(mut self, mut scene: SceneBuilder) -> Result<SceneBuilder, FormatError> {
         let (soup, mut lines) = (std::mem::take(&mut self.soup), std::mem::take(&mut self.edges));
         let known = soup.positions.len();

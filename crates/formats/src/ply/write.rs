@@ -1,4 +1,4 @@
-//! Writing PLY.
+//! Writes PLY.
 
 use crate::FormatError;
 use crate::bake::{in_place, warn_of_materials, warn_of_scene};
@@ -32,7 +32,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     Ok(())
 }
 
-/// True where a file holds all that is drawn of some meshes: nothing else beside faces, no points beside lines.
+/// True if a file can hold everything that the meshes draw: only triangles, only lines, or only points.
 fn holds_all(meshes: &[&Mesh]) -> bool {
     let any = |has: fn(&Mesh) -> bool| meshes.iter().any(|mesh| has(mesh));
     let kinds =
@@ -40,7 +40,7 @@ fn holds_all(meshes: &[&Mesh]) -> bool {
     kinds.iter().filter(|has| **has).count() <= 1
 }
 
-/// The bytes of a file with meshes joined; `None` where there are too many vertices.
+/// Encodes meshes merged into one; `None` if there are too many vertices.
 pub(crate) fn encode(meshes: &[&Mesh], ascii: bool) -> Option<Vec<u8>> {
     let columns = Columns::of(meshes);
     let vertices: usize = meshes.iter().map(|m| m.positions.len()).sum();
@@ -75,7 +75,7 @@ pub(crate) fn encode(meshes: &[&Mesh], ascii: bool) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// What is written of each vertex. Where one mesh has it, all do.
+/// The columns written for each vertex. If one mesh has a column, all do.
 struct Columns {
     normals: bool,
     uvs: bool,
@@ -83,7 +83,7 @@ struct Columns {
     ks: Option<Colours>,
 }
 
-/// Colours that bytes hold exactly are written as bytes, as other programs want them.
+/// Colours that are exact in 8 bits are written as bytes, since other programs expect that.
 #[derive(Clone, Copy, PartialEq)]
 enum Colours {
     Bytes,
@@ -115,7 +115,7 @@ impl Columns {
 
     fn header(&self, ascii: bool, vertices: usize, triangles: usize, lines: usize) -> String {
         let format = if ascii { "ascii" } else { "binary_little_endian" };
-        // Without this our reader smooths what was flat.
+        // Otherwise Bilux's reader would smooth flat faces.
         let shading = if self.normals { "" } else { "comment shading flat\n" };
         let mut header = format!("ply\nformat {format} 1.0\n{shading}element vertex {vertices}\n");
         let mut properties = |scalar: &str, names: &[&str]| {
@@ -155,7 +155,7 @@ impl Columns {
         };
         floats(&mesh.positions[i].to_array());
         if self.normals {
-            // Zero stands for none.
+            // A zero normal stands for a missing one.
             floats(&mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).to_array());
         }
         if self.uvs {

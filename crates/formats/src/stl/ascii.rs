@@ -1,4 +1,4 @@
-//! Reading text STL.
+//! Reads text STL.
 
 use crate::FormatError;
 use crate::float::parse_f32;
@@ -35,14 +35,14 @@ struct Ascii<'a, 'o, 'r> {
     scene: SceneBuilder,
     oddities: Oddities,
     mesh: Mesh,
-    /// Corners of the loop that is read.
+    /// The corners of the current loop.
     corners: Vec<Vec3>,
     triangulator: Triangulator,
 }
 
 impl Ascii<'_, '_, '_> {
     fn statements(&mut self) -> Result<(), FormatError> {
-        // Where the facet began that is read.
+        // The start of the current facet.
         let mut facet = None;
         while !self.cursor.is_done() {
             self.cursor.skip_blanks();
@@ -117,7 +117,7 @@ impl Ascii<'_, '_, '_> {
         Ok(())
     }
 
-    /// A facet is a triangle; some programs write more corners.
+    /// A facet is a triangle; some exporters write more corners.
     fn end_facet(&mut self, start: usize) -> Result<(), FormatError> {
         let (corners, mesh) = (&self.corners, &mut self.mesh);
         if corners.len() < 3 {

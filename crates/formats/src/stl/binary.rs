@@ -1,4 +1,4 @@
-//! Reading binary STL: 80 bytes of anything, a count, 50 bytes a triangle.
+//! Reads binary STL: 80 arbitrary bytes, a count, and 50 bytes per triangle.
 
 use crate::FormatError;
 use crate::reading::{Oddities, Reading, Source};
@@ -9,15 +9,15 @@ use std::sync::Arc;
 
 /// Bytes before the first triangle.
 pub(super) const HEADER: usize = 84;
-/// Bytes of a triangle: normal, three corners, and two bytes that each program uses as it likes.
+/// Bytes of a triangle: the normal, three corners, and two bytes that each program uses as it likes.
 pub(super) const TRIANGLE: usize = 50;
 
-/// The number of triangles that the header claims.
+/// The number of triangles that the header states.
 fn claimed(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(*bytes.get(80..HEADER)?.first_chunk()?))
 }
 
-/// True when the size is that of a binary file with as many triangles as it says.
+/// True if the size is that of a binary file with the stated number of triangles.
 pub(super) fn fits(bytes: &[u8]) -> bool {
     claimed(bytes)
         .is_some_and(|count| bytes.len() as u64 == HEADER as u64 + u64::from(count) * TRIANGLE as u64)

@@ -1,4 +1,4 @@
-//! STL, text and binary. See `docs/formats/stl.md`.
+//! STL, as text and as binary. See `docs/formats/stl.md`.
 
 mod ascii;
 mod binary;
@@ -26,7 +26,7 @@ pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     write: Some(write::write),
 };
 
-/// Many a binary file begins with `solid` too, so that its size, which gives it away, is looked at first.
+/// Many binary files begin with `solid` too, so the size decides first.
 fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatError> {
     let mut scene = if binary::fits(source.bytes) || !begins_with_solid(source.bytes) {
         binary::read(reading, source)?
@@ -41,8 +41,8 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
     Ok(scene)
 }
 
-/// Metres in a unit of length: printers take millimetres, unless the file's first bytes, which are free, say otherwise, as in
-/// `UNITS=inch`.
+/// The length of a unit in metres: millimetres, as 3D printers expect, unless the free-form header states another,
+/// as in `UNITS=inch`.
 fn unit(bytes: &[u8]) -> f64 {
     let head = bytes[..bytes.len().min(binary::HEADER - 4)].to_ascii_lowercase();
     let head = String::from_utf8_lossy(&head);

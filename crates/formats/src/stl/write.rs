@@ -1,4 +1,4 @@
-//! Writing STL.
+//! Writes STL.
 
 use super::binary::HEADER;
 use crate::FormatError;

@@ -1,11 +1,11 @@
-//! What the numbers of a line mean.
+//! Finds the meaning of the numbers on a line.
 
 use crate::text::Cursor;
 
-/// The most numbers that are looked at on a line.
+/// The maximum count of numbers that are used on a line.
 pub(super) const MAX: usize = 16;
 
-/// Where in a line the parts of a point stand.
+/// The columns of a point's parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Columns {
     pub(super) position: [usize; 3],
@@ -13,7 +13,7 @@ pub(super) struct Columns {
     pub(super) intensity: Option<usize>,
 }
 
-/// Names that columns are given in a first line, in lower case.
+/// Column names in a header line, in lower case.
 const NAMES: [&[&str]; 7] = [
     &["x", "east", "easting", "x_coord"],
     &["y", "north", "northing", "y_coord"],
@@ -25,7 +25,7 @@ const NAMES: [&[&str]; 7] = [
 ];
 
 impl Columns {
-    /// By the names of a first line; `None` where they do not tell where x, y and z are.
+    /// From the names in a header line; `None` if it does not name x, y and z.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let column = |meaning: usize| {
             names.iter().take(MAX).position(|name| {
@@ -37,8 +37,10 @@ impl Columns {
         Some(Columns { position: three(0)?, colour: three(3), intensity: column(6) })
     }
 
-    /// By how many there are, and by the numbers of the first points, as programs write them: `x y z`, then an intensity, a
-    /// colour, a normal, an intensity and a colour, or a colour and a normal in either order.
+    /// From the count of numbers and the first points, following common exporters.
+    ///
+    /// `x y z`, then an intensity, a colour, a normal, an intensity and a colour, or a colour and a normal in
+    /// either order.
     pub(super) fn guessed(count: usize, rows: &[[f64; MAX]]) -> Columns {
         let plain = Columns { position: [0, 1, 2], colour: None, intensity: None };
         let colour_at = |at: usize| Columns { colour: Some([at, at + 1, at + 2]), ..plain };
@@ -61,12 +63,12 @@ impl Columns {
     }
 }
 
-/// What stands between numbers beside blanks.
+/// Separators between numbers other than spaces.
 pub(super) const fn is_separator(byte: u8) -> bool {
     matches!(byte, b',' | b';')
 }
 
-/// True when the first lines are numbers, three or more on each but for a count before them.
+/// True if the first lines are numbers, at least three on each except for a leading count.
 pub(super) fn looks_like_points(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(4096)];
     let mut cursor = Cursor::new(head);

@@ -1,4 +1,4 @@
-//! Clouds of points as lines of numbers. See `docs/formats/xyz.md`.
+//! Point clouds as lines of numbers. See `docs/formats/xyz.md`.
 
 mod columns;
 mod read;

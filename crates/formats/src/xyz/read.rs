@@ -1,4 +1,4 @@
-//! Reading XYZ.
+//! Reads XYZ.
 
 use super::columns::{Columns, MAX, words_of};
 use crate::FormatError;
@@ -32,7 +32,7 @@ struct Xyz<'a, 'o, 'r> {
     places: &'a Places<'a>,
     cursor: Cursor<'a>,
     cloud: Cloud,
-    /// As they stand in the file.
+    /// As stored in the file.
     colours: Vec<[f32; 3]>,
     intensities: Vec<f32>,
     oddities: Oddities,
@@ -45,14 +45,14 @@ struct Row {
     start: usize,
 }
 
-/// What a line is.
+/// The type of a line.
 enum Line {
     Nothing,
     Numbers(Row),
     Words(Vec<String>),
 }
 
-/// Points that are looked at before it is decided what their columns mean.
+/// The number of points that are examined to determine the columns.
 const FIRST: usize = 32;
 
 impl Xyz<'_, '_, '_> {
@@ -92,7 +92,7 @@ impl Xyz<'_, '_, '_> {
         Ok(())
     }
 
-    /// The line that the cursor is at.
+    /// Parses the current line.
     fn line(&mut self) -> Result<Line, FormatError> {
         let start = self.cursor.offset();
         let line = self.cursor.rest_of_line();
@@ -119,13 +119,13 @@ impl Xyz<'_, '_, '_> {
         Ok(if is_comment { Line::Nothing } else { Line::Numbers(row) })
     }
 
-    /// A count alone begins PTS files, and those of chemists, in which letters follow.
+    /// A single count begins PTS files, but also chemists' XYZ files, in which element symbols follow.
     fn refuse_molecule(&mut self) -> Result<(), FormatError> {
         let mut ahead = self.cursor.clone();
         let mut at = ahead.offset();
         let mut words = words_of(ahead.rest_of_line());
         if words.len() < 4 || parse_f64(words[1]).is_none() {
-            // A line of words of their own comes first.
+            // A comment line comes first.
             ahead.end_line();
             at = ahead.offset();
             words = words_of(ahead.rest_of_line());
@@ -142,7 +142,7 @@ impl Xyz<'_, '_, '_> {
         }
     }
 
-    /// The numbers of the first points, from one on.
+    /// The numbers of the first points from this offset.
     fn rows_from(&mut self, start: usize) -> Result<Vec<[f64; MAX]>, FormatError> {
         let back = self.cursor.clone();
         self.cursor.go_to(start);
@@ -192,7 +192,7 @@ impl Xyz<'_, '_, '_> {
             return Err(FormatError::malformed(message, self.places.whole()));
         }
         self.reading.budget.take::<Rgb>(self.cloud.positions.len(), self.source.name)?;
-        // As displays have them: of 1, of 255, or of 65535.
+        // Display-encoded, with a maximum of 1, 255 or 65535.
         let greatest = self.colours.iter().flatten().copied().fold(0.0, f32::max);
         let one = [1.0, 255.0].into_iter().find(|&one| greatest <= one).unwrap_or(65535.0);
         let colour = |c: [f32; 3]| Rgb::from_array(c.map(|c| srgb_decode((c / one).clamp(0.0, 1.0))));
@@ -206,7 +206,7 @@ impl Xyz<'_, '_, '_> {
     }
 }
 
-/// Intensities as greys, from the second of a hundred parts of them to the last but one; `None` where they do not differ.
+/// Converts intensities to greys, from the 2nd to the 98th percentile; `None` if these are equal.
 fn greys(intensities: &[f32]) -> Option<Vec<Rgb>> {
     let mut sorted = intensities.to_vec();
     sorted.sort_by(f32::total_cmp);

@@ -1,4 +1,4 @@
-//! `.asc` in every way that it is written.
+//! Every variant of `.asc`.
 
 use crate::{read_text, refusal, warnings};
 use bilux_math::{Rgb, Vec2, Vec3};

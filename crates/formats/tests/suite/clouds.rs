@@ -1,4 +1,4 @@
-//! Clouds of points and lines: PLY without faces, OBJ's `p` and `l`, XYZ, LAS, and glTF's modes; there and back again.
+//! Point clouds and lines, read and written: PLY without faces, OBJ's `p` and `l`, XYZ, LAS, and glTF's modes.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
@@ -54,7 +54,7 @@ fn points_and_lines_of_an_obj_are_objects_beside_its_faces() {
     assert_eq!((dots.points.len(), dots.positions[dots.points[0] as usize]), (2, Vec3::splat(5.0)));
     assert_eq!(named("face").triangles.len(), 1);
     assert_eq!(warnings(&scene), "");
-    // Vertices alone are a cloud.
+    // Vertices alone form a point cloud.
     let scene = read_text("obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\n").unwrap();
     assert_eq!((&only(&scene).points[..], only(&scene).vertex_kd.len()), (&[0, 1][..], 2));
     for (text, wanted) in [

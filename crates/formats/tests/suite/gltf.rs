@@ -1,10 +1,10 @@
-//! glTF as programs write it.
+//! glTF files as exporters write them.
 
 use crate::{read_text, refusal, warnings};
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::Value;
 
-/// A document with one triangle, whose parts tests replace.
+/// A document with one triangle; tests replace parts of it.
 const TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"mesh":0}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -23,7 +23,7 @@ fn floats(numbers: &[f32]) -> String {
     format!("data:application/octet-stream,{text}")
 }
 
-/// A list of triangles with extra parts of the document.
+/// A document with a list of triangles and extra parts.
 fn document(primitive: &str, accessors: &str, views: &str, bytes: usize, uri: &str, node: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0{node}}}],
@@ -58,7 +58,8 @@ fn strips_and_fans_keep_their_side() {
 
 #[test]
 fn interleaved_normalised_and_sparse_elements_are_read() {
-    // Position as shorts (three, and two bytes of padding), colour as four bytes, uv as normalised bytes and padding.
+    // Position as shorts (three, and two bytes of padding), colour as four bytes, uv as normalised bytes with
+    // padding.
     let vertex = |x: i16, y: i16, rgb: [u8; 3], uv: [u8; 2]| {
         let mut bytes = [x.to_le_bytes(), y.to_le_bytes(), [0; 2], [0; 2]].concat();
         bytes.extend([rgb[0], rgb[1], rgb[2], 255, uv[0], uv[1], 0, 0]);
@@ -71,7 +72,7 @@ fn interleaved_normalised_and_sparse_elements_are_read() {
     ]
     .concat();
     let uri: String = bytes.iter().map(|b| format!("%{b:02x}")).collect();
-    // The first position is replaced by (7, 0, 0); both sparse views lie in zeros and ones of the same buffer.
+    // The first position becomes (7, 0, 0); both sparse views use zeros and ones of the same buffer.
     let sparse =
         r#","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":2}}"#;
     let text = document(
@@ -247,7 +248,7 @@ fn containers_are_taken_apart() {
     }
 }
 
-/// The triangle with a material and what that names.
+/// The triangle with a material and everything that the material refers to.
 fn with_material(material: &str, more: &str) -> String {
     TRIANGLE
         .replace("\"POSITION\":0}}", "\"POSITION\":0},\"material\":0}")
@@ -342,11 +343,11 @@ fn colours_of_highlights_above_one_are_a_greater_index() {
     }
 }
 
-/// Pictures of a direction and of a thickness mean what the extensions say, at every texel.
+/// Textures of directions and of thicknesses are converted at every texel, as the extensions specify.
 #[test]
 fn directions_and_thicknesses_come_from_their_textures() {
     let folder = tempfile::TempDir::new().unwrap();
-    // Along x, along y, against x, against y; of the least thickness, the greatest, and between.
+    // Along +x, +y, -x and -y; with the minimum thickness, the maximum, and in between.
     let texels = [[255, 128, 255, 255], [128, 255, 255, 255], [0, 128, 255, 255], [128, 0, 255, 255]];
     let plane = |c: usize| texels.iter().map(|t: &[u8; 4]| f32::from(t[c]) / 255.0).collect::<Vec<f32>>();
     let mut picture = bilux_pictures::Picture::new(4, 1).unwrap();

@@ -1,4 +1,4 @@
-//! What glTF files leave open and what is made of it: thin geometry, glass, variants, sizes of lights, coordinates.
+//! Choices that glTF leaves open: thin geometry, glass, variants, sizes of lights, texture coordinates.
 
 use crate::{read_text, warnings};
 use bilux_formats::{Glass, ReadOptions, read_bytes};
@@ -15,7 +15,7 @@ fn floats(numbers: &[f32]) -> String {
     format!("data:,{text}")
 }
 
-/// Four corners of a tetrahedron, whose faces are turned outwards; `more` goes into the document.
+/// A tetrahedron with outward faces; `more` is added to the document.
 fn tetrahedron(primitive: &str, more: &str) -> String {
     let positions = [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1.];
     let uvs = [0., 0., 1., 0., 0., 1., 1., 1.];
@@ -112,7 +112,7 @@ fn textures_are_looked_up_by_two_sets_of_coordinates() {
     );
     let scene = read(&text, &ReadOptions::default());
     let mesh = &scene.objects[0].mesh;
-    // The first texture's set is the first here, so that the sets have changed places.
+    // The first texture's set becomes the first set, so the two sets are swapped.
     assert_eq!((mesh.uvs[1], mesh.uvs2[1]), (Vec2::new(0.0, 0.0), Vec2::new(1.0, 1.0)));
     let second: Vec<bool> = scene.textures.iter().map(|texture| texture.second_uv).collect();
     assert_eq!(second, [false, false, true]);

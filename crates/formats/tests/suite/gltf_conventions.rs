@@ -1,5 +1,5 @@
-//! What glTF means by its numbers, followed to where a ray meets a surface: hands of tangents, edges of pictures, sets of
-//! texture coordinates, normals of skins, directions of highlights, cones of spots.
+//! Conventions of glTF, tested where a ray hits a surface: handedness of tangents, wrap modes, sets of texture
+//! coordinates, normals of skins, directions of highlights, cones of spot lights.
 
 use crate::gltf_motion::Parts;
 use crate::{read_text, warnings};
@@ -15,7 +15,7 @@ fn read(text: &str) -> SceneBuilder {
     read_text("gltf", text).unwrap_or_else(|error| panic!("{text}: {error}"))
 }
 
-/// A picture of these bytes, row 0 on top, as a data URI.
+/// An image with these bytes, top row first, as a data URI.
 fn picture(width: usize, texels: &[[u8; 3]]) -> String {
     let light = |byte: u8| srgb_decode(f32::from(byte) / 255.0);
     let colours = texels.iter().map(|&[r, g, b]| Rgb::new(light(r), light(g), light(b))).collect();
@@ -24,15 +24,17 @@ fn picture(width: usize, texels: &[[u8; 3]]) -> String {
     format!("data:image/png,{}", bytes.iter().map(|b| format!("%{b:02x}")).collect::<String>())
 }
 
-/// A square of 2 by 2 towards +z with given tangents and two sets of texture coordinates: in the first, v grows downwards
-/// as glTF has it; in the second the picture is turned by a quarter to the right.
+/// A square of 2 by 2 that faces +z, with tangents and two sets of texture coordinates.
+///
+/// In the first set, v grows downwards, as in glTF; the second set rotates the texture by a quarter turn to the
+/// right.
 struct Square {
-    /// The fourth number of its tangents.
+    /// The handedness: w of its tangents.
     hand: f32,
-    /// What else its node says, beginning with a comma.
+    /// Additional properties of its node, beginning with a comma.
     node: &'static str,
     material: String,
-    /// Textures, samplers and images, each part ending with a comma.
+    /// Textures, samplers and images, each followed by a comma.
     more: String,
 }
 
@@ -46,7 +48,7 @@ impl Square {
         parts.floats("VEC3", 3, &[-1., -1., 0., 1., -1., 0., 1., 1., 0., -1., 1., 0.]);
         parts.floats("VEC3", 3, &[0., 0., 1.].repeat(4));
         parts.floats("VEC4", 4, &[1., 0., 0., self.hand].repeat(4));
-        // Where the picture lies the other way round, u grows along the tangent all the same, and v the other way.
+        // In a mirrored texture, u still grows along the tangent, but v grows the other way.
         let v = |down: f32| if self.hand > 0.0 { down } else { 1.0 - down };
         parts.floats("VEC2", 2, &[0., v(1.), 1., v(1.), 1., v(0.), 0., v(0.)]);
         parts.floats("VEC2", 2, &[1., 1., 1., 0., 0., 0., 0., 1.]);
@@ -65,7 +67,7 @@ impl Square {
     }
 }
 
-/// What a ray from +z meets.
+/// The surface that a ray from +z hits.
 fn seen(scene: &Scene, x: f32, y: f32) -> Surface {
     Tracer::new(scene, false).closest(&Ray::new([x, y, 5.0], [0.0, 0.0, -1.0])).expect("the square is there")
 }
@@ -81,7 +83,8 @@ const MIRRORED: &str = r#","scale":[-1,1,1]"#;
 
 #[test]
 fn given_tangents_have_the_hand_that_they_say() {
-    // Red leans along the tangent, green along cross(normal, tangent) · w. [glTF 2.0, 3.7.2.1 and 3.9.3]
+    // Red tilts the normal along the tangent, green along cross(normal, tangent) · w. [glTF 2.0, 3.7.2.1 and
+    // 3.9.3]
     let material = r#"{"normalTexture":{"index":0}}"#;
     for (texel, lean) in [([204u8, 128, 230], [1.0f32, 0.0]), ([128, 204, 230], [0.0, 1.0])] {
         for (hand, node) in [(1.0f32, ""), (-1.0, ""), (1.0, MIRRORED), (-1.0, MIRRORED)] {
@@ -89,7 +92,7 @@ fn given_tangents_have_the_hand_that_they_say() {
             let scene = Square { hand, node, ..Square::of(material, &more) }.built();
             let found = seen(&scene, 0.3, 0.2).n_shade;
             let [along, across] = lean.map(|x| x * 0.6);
-            // A mirrored node turns the tangent around, and leaves what is across it where it is.
+            // A mirrored node reverses the tangent but not the bitangent.
             let wanted = Vec3::new(if node.is_empty() { along } else { -along }, across * hand, 0.8);
             assert!((found - wanted).length() < 0.01, "{texel:?}, w = {hand}{node}: {found}, not {wanted}");
         }
@@ -124,12 +127,12 @@ fn skins_that_mirror_turn_the_hand_of_tangents() {
 
 #[test]
 fn pictures_go_on_beyond_each_edge_as_their_sampler_says() {
-    // Columns are told apart by red, rows by green.
+    // Red distinguishes columns, green rows.
     let texels: Vec<[u8; 3]> = (0..16).map(|i| [(i % 4) as u8 * 60, (i / 4) as u8 * 60, 0]).collect();
     let material = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}"#;
-    // The texel that lies at -1, and the one at 4, of 0..4.
+    // The texels at -1 and at 4 of a row of four, for each wrap mode.
     let ways = [(10497u32, [3u8, 0u8]), (33071, [0, 3]), (33648, [0, 3])];
-    // And those at -2 and 5, which tell a mirror from what is held.
+    // Those at -2 and at 5 distinguish mirroring from clamping.
     let further = [[2u8, 1], [0, 3], [1, 2]];
     for ((i, (s, at_s)), (k, (t, at_t))) in
         ways.into_iter().enumerate().flat_map(|s| ways.into_iter().enumerate().map(move |t| (s, t)))
@@ -137,7 +140,7 @@ fn pictures_go_on_beyond_each_edge_as_their_sampler_says() {
         let sampler = format!(r#""wrapS":{s},"wrapT":{t},"magFilter":9728"#);
         let scene = read(&Square::of(material, &one_picture(4, &texels, &sampler)).text());
         let texture = &scene.textures[0];
-        // Ours grow upwards: row 0 is on top.
+        // In Bilux, v points up: row 0 is on top.
         let at = |column: f32, row: f32| {
             let texel = texture.at(Vec2::new((column + 0.5) / 4.0, 1.0 - (row + 0.5) / 4.0));
             [texel.r, texel.g]
@@ -166,9 +169,9 @@ fn a_texture_of_the_second_set_is_looked_up_there() {
         format!(r#"{{"pbrMetallicRoughness":{{"baseColorTexture":{texture},"metallicFactor":0}}}}"#)
     };
     let [red, green, blue, grey] = texels.map(|t| t.map(|b| srgb_decode(f32::from(b) / 255.0)));
-    // By the corners of the square, from the upper left to the lower right.
+    // At the corners of the square, from the upper left to the lower right.
     let upright = [red, green, blue, grey];
-    // A quarter to the right: what was on the left is on top.
+    // A quarter turn to the right: the left side becomes the top.
     let turned = [blue, red, grey, green];
     let by_first = r#","normalTexture":{"index":0},"occlusionTexture":{"index":0}}"#;
     let cases = [
@@ -176,7 +179,7 @@ fn a_texture_of_the_second_set_is_looked_up_there() {
         (base(r#"{"index":0,"texCoord":1}"#), turned),
         (base(r#"{"index":0,"texCoord":1,"extensions":{"KHR_texture_transform":{"texCoord":0}}}"#), upright),
         (base(r#"{"index":0,"extensions":{"KHR_texture_transform":{"texCoord":1}}}"#), turned),
-        // Beside a texture of the first set.
+        // Together with a texture that uses the first set.
         (base(r#"{"index":0,"texCoord":1}"#).trim_end_matches('}').to_owned() + "}" + by_first, turned),
     ];
     for (material, wanted) in cases {
@@ -251,7 +254,7 @@ fn normals_of_a_skin_that_is_scaled_unevenly_are_those_of_the_ellipsoid() {
     }
 }
 
-/// A texel of four channels as a data URI of a PNG.
+/// A texel with four channels as a data URI of a PNG.
 fn texel([r, g, b, a]: [u8; 4]) -> String {
     let light = |byte: u8| srgb_decode(f32::from(byte) / 255.0);
     let alpha = f32::from(a) / 255.0;
@@ -261,7 +264,7 @@ fn texel([r, g, b, a]: [u8; 4]) -> String {
     format!("data:image/png,{}", bytes.iter().map(|b| format!("%{b:02x}")).collect::<String>())
 }
 
-/// Where the specification says that a number stands in a picture.
+/// The specification assigns each number to a channel of a texture.
 #[test]
 fn numbers_are_in_the_channels_that_the_specification_says() {
     const RED: f32 = 51.0 / 255.0;
@@ -397,7 +400,7 @@ fn factors_count_beside_pictures_and_without() {
 
 #[test]
 fn a_picture_that_is_turned_lies_as_the_extension_says() {
-    // Coordinates are turned counter-clockwise about the upper left corner, and so the picture clockwise.
+    // Coordinates rotate counter-clockwise about the upper left corner, and so the image rotates clockwise.
     // [KHR_texture_transform]
     let texels = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [188, 188, 188]];
     let more = one_picture(2, &texels, r#""magFilter":9728"#);
@@ -405,7 +408,7 @@ fn a_picture_that_is_turned_lies_as_the_extension_says() {
         {"rotation":1.5707963267948966,"offset":[0,1]}}}}}"#;
     let scene = read(&Square::of(material, &more).text());
     let texture = &scene.textures[0];
-    // By a quarter, and one down: (u, v) is looked up at (v, 1 - u).
+    // A quarter turn and an offset of one downwards: (u, v) is looked up at (v, 1 - u).
     for (u, v, wanted) in [(0.25, 0.25, 2), (0.75, 0.25, 0), (0.25, 0.75, 3), (0.75, 0.75, 1)] {
         let found = texture.at(Vec2::new(u, 1.0 - v));
         let wanted = texels[wanted].map(|b: u8| srgb_decode(f32::from(b) / 255.0));
@@ -413,7 +416,7 @@ fn a_picture_that_is_turned_lies_as_the_extension_says() {
     }
 }
 
-/// The angle at which a highlight seen straight on reaches farthest, from +x towards +y, 0..π.
+/// The angle of the longest axis of a highlight at normal incidence, from +x towards +y, in 0..π.
 fn direction_of_highlight(scene: &Scene) -> f64 {
     let surface = seen(scene, 0.3, 0.2);
     let bsdf = scene.material(&surface).bsdf(&surface);
@@ -431,7 +434,7 @@ fn direction_of_highlight(scene: &Scene) -> f64 {
 
 #[test]
 fn an_anisotropic_highlight_reaches_along_its_direction() {
-    // Along the tangent, turned by the rotation towards the bitangent. [KHR_materials_anisotropy]
+    // Along the tangent, rotated towards the bitangent. [KHR_materials_anisotropy]
     for (hand, node, turned) in
         [(1.0f32, "", 1.0f64), (-1.0, "", -1.0), (1.0, MIRRORED, -1.0), (-1.0, MIRRORED, 1.0)]
     {
@@ -453,7 +456,7 @@ fn a_spots_cones_are_half_angles_about_the_nodes_minus_z() {
     let mut parts = Parts::default();
     parts.floats("VEC3", 3, &[0., 0., 0., 1., 0., 0., 0., 1., 0.]);
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    // Turned by a quarter about y: what looked along -z looks along -x.
+    // A quarter turn about y: -z becomes -x.
     let text = parts.document(&format!(
         r#""scenes":[{{"nodes":[0,1]}}],"nodes":[{{"mesh":0}},{{"translation":[1,2,3],"rotation":[0,{half},0,{half}],
         "extensions":{{"KHR_lights_punctual":{{"light":0}}}}}}],
@@ -467,7 +470,7 @@ fn a_spots_cones_are_half_angles_about_the_nodes_minus_z() {
     for (angle, wanted) in [(0.0, 1.0), (0.29, 1.0), (middle, 0.5), (0.91, 0.0)] {
         let (sin, cos) = sin_cos_f64(angle);
         let from = DVec3::new(1.0 - 2.0 * cos, 2.0 + 2.0 * sin, 3.0).as_vec3();
-        // Two metres away, where a quarter of the intensity arrives.
+        // At a distance of two metres, a quarter of the intensity arrives.
         let found = light.sample_li(from, 0.0, Vec2::ZERO).map_or(0.0, |sample| sample.li.g);
         assert!((found - 2.0 * wanted).abs() < 1e-3, "{angle}: {found}");
     }

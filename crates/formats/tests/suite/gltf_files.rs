@@ -1,4 +1,4 @@
-//! glTF files of others: test models that have to open, and broken ones that have to be refused or told of.
+//! Third-party glTF files: test models that must open, and broken ones that must be refused or reported.
 
 use crate::shared_files::{files, scenes};
 use crate::warnings;
@@ -21,7 +21,7 @@ fn triangles(scene: &SceneBuilder) -> usize {
     scene.objects.iter().map(|object| object.mesh.triangles.len()).sum()
 }
 
-/// Triangles and greatest extent of some.
+/// The number of triangles and the largest extent of some models.
 const KNOWN: [(&str, usize, f32); 9] = [
     ("glTF-Draco/Box.gltf", 12, 1.0),
     ("BoxMeshopt.glb", 12, 1.0),
@@ -58,17 +58,16 @@ fn test_models_open_and_build() {
     assert!(count == 0 || count >= 35, "only {count} files were found");
 }
 
-/// Errors of the validator that change nothing that could be seen: lists without anything, a word about the kind of
-/// data, numbers that are floats already.
+/// Errors of the validator without any visible effect: empty lists, a MIME type, normalised floats.
 const HARMLESS: [&str; 4] = [
     "EMPTY_ENTITY",
     "ACCESSOR_NORMALIZED_INVALID",
     "BUFFER_DATA_URI_MIME_TYPE_INVALID",
-    // A stride where nothing has one: no picture depends on what a view is said to be for.
+    // A stride on a view that needs none: its declared use does not affect the image.
     "BUFFER_VIEW_INVALID_BYTE_STRIDE",
 ];
 
-/// The codes of a report's errors.
+/// The error codes of a report.
 fn errors(report: &serde_json::Value) -> Vec<String> {
     let messages = report["issues"]["messages"].as_array().cloned().unwrap_or_default();
     let errors = messages.iter().filter(|message| message["severity"] == 0);
@@ -98,7 +97,7 @@ fn broken_files_are_refused_or_told_of() {
     assert!(count == 0 || (count >= 80 && broken >= 45), "{broken} of {count}");
 }
 
-/// glTF wants it so: a picture's own gamma and profile count for nothing.
+/// As glTF requires, the gamma and the profile of an image file are ignored.
 #[test]
 fn colours_are_srgb_whatever_their_file_says() {
     let Some(root) = scenes() else { return };
@@ -108,7 +107,7 @@ fn colours_are_srgb_whatever_their_file_says() {
         return;
     }
     let scene = read(&path, &ReadOptions::default()).unwrap();
-    // Plain, with a gamma of 0.2 and with a profile.
+    // Without either, with a gamma of 0.2, and with a profile.
     let mut uses: Vec<(bool, Option<Channel>, Rgb)> = Vec::new();
     let mut count = 0;
     for texture in scene.textures.iter().filter(|texture| texture.width() < 64) {

@@ -1,4 +1,4 @@
-//! Animation, skins and morph targets of glTF, against poses made by hand.
+//! Animation, skins and morph targets of glTF, compared with hand-made poses.
 
 use crate::{read_text, warnings};
 use bilux_formats::{ReadOptions, read_bytes};
@@ -14,7 +14,7 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// Adds an accessor of floats and gives its number.
+    /// Adds an accessor of floats and returns its index.
     pub(crate) fn floats(&mut self, kind: &str, width: usize, numbers: &[f32]) -> usize {
         let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
         self.add(kind, 5126, numbers.len() / width, &bytes)
@@ -56,7 +56,7 @@ fn near(a: Vec3, b: [f32; 3]) -> bool {
 
 const TRIANGLE: [f32; 9] = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
 
-/// A triangle below a parent; both move.
+/// A triangle below a parent node; both are animated.
 fn moving() -> String {
     let mut parts = Parts::default();
     parts.floats("VEC3", 3, &TRIANGLE);
@@ -83,7 +83,7 @@ fn moving() -> String {
 fn nodes_stand_where_the_animation_has_them() {
     let place = |time: f32, p: Vec3| at_time(&moving(), time).objects[0].motion.at(0.0).point(p);
     assert!(near(place(0.0, Vec3::X), [1.0, 0.0, 7.0]), "before the first key");
-    // Half of the way, and of the quarter turn; the scale is still that of the first key.
+    // Halfway along the translation and the quarter turn; the scale is still that of the first key.
     let half = std::f32::consts::FRAC_1_SQRT_2;
     assert!(near(place(2.0, Vec3::X), [2.0 + half, half, 7.0]), "{}", place(2.0, Vec3::X));
     assert!(near(place(9.0, Vec3::X), [4.0, 3.0, 7.0]), "behind the last key");
@@ -135,7 +135,8 @@ fn what_is_wrong_with_an_animation_is_told_and_left_out() {
     }
 }
 
-/// A strip of two triangles along y whose upper end follows a joint at (0, 1, 0) that turns by a quarter about z.
+/// A strip of two triangles along y whose upper end follows a joint at (0, 1, 0) that rotates a quarter turn about
+/// z.
 fn bent(normals: bool) -> String {
     let mut parts = Parts::default();
     let positions = parts.floats("VEC3", 3, &[0., 0., 0., 1., 1., 0., 0., 2., 0.]);
@@ -169,7 +170,7 @@ fn skins_bend_meshes_and_the_place_of_their_node_does_not_matter() {
     let scene = at_time(&bent(true), 1.0);
     let mesh = &scene.objects[0].mesh;
     assert!(near(mesh.positions[0], [0., 0., 0.]));
-    // Half at (1, 1, 0), half turned about (0, 1, 0) to (0, 2, 0).
+    // Half at (1, 1, 0), half rotated about (0, 1, 0) to (0, 2, 0).
     assert!(near(mesh.positions[1], [0.5, 1.5, 0.]), "{}", mesh.positions[1]);
     assert!(near(mesh.positions[2], [-1., 1., 0.]), "{}", mesh.positions[2]);
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -198,7 +199,7 @@ fn morph_targets_are_weighed_along_splines() {
     parts.floats("VEC3", 3, &[0., 0., 1., 0., 0., 1., 0., 0., 1.]);
     parts.floats("VEC3", 3, &[0., 8., 0., 0., 8., 0., 0., 8., 0.]);
     let times = parts.floats("SCALAR", 1, &[0.0, 2.0]);
-    // Two weights; of each key the tangents before it, the values, the tangents behind it.
+    // Two weights; each key has its in-tangents, its values and its out-tangents.
     let keys = [[0., 0., 0., 1., 1., 0.], [0., 0., 1., 0., 0., 0.]].concat();
     let weights = parts.floats("SCALAR", 1, &keys);
     let text = parts.document(&format!(

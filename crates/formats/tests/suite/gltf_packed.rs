@@ -1,4 +1,4 @@
-//! glTF files whose meshes and textures are packed by others' programs: what they were comes out again.
+//! glTF files whose meshes and textures were compressed by other programs decode to the original data.
 
 use crate::{read_text, refusal, warnings};
 use bilux_math::Vec3;
@@ -18,7 +18,7 @@ fn read(text: &str) -> SceneBuilder {
     read_text("gltf", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The seeds are a net of 4 by 4 points over the unit square, of height x y / 2, of which uv is x and y.
+/// The seeds are a grid of 4 by 4 points over the unit square, with height x y / 2 and uv = (x, y).
 #[test]
 fn draco_gives_back_points_texture_coordinates_and_triangles() {
     for text in seeds_of_draco() {
@@ -58,7 +58,7 @@ fn what_is_broken_in_draco_is_refused_with_its_pointer() {
     }
 }
 
-/// Bytes of the packed data set one by one: a scene or an error comes of each, and no panic.
+/// Changes the compressed data one byte at a time: the result is a scene or an error, never a panic.
 #[test]
 fn any_byte_of_draco_may_be_wrong() {
     for text in seeds_of_draco() {

@@ -1,10 +1,11 @@
-//! What `bilux info` says of faulty glTF: each rule on a file that breaks it and is right otherwise.
+//! What `bilux info` reports about invalid glTF: each rule on a file that violates only that rule.
 
 use crate::warnings;
 use bilux_formats::{ReadOptions, read_bytes};
 use std::path::Path;
 
-/// Bytes of a buffer as a data URI: three vertices with all their attributes, indices, keyframes and a joint's matrix.
+/// The bytes of a buffer as a data URI: three vertices with all attributes, indices, keyframes and a joint's
+/// matrix.
 fn buffer() -> (usize, String) {
     let floats = |all: &[f32]| all.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
     let mut identity = [0.0; 16];
@@ -36,7 +37,7 @@ fn picture() -> String {
     percent(&std::fs::read(path).unwrap())
 }
 
-/// A file that is right in all its parts.
+/// A file that is valid in all of its parts.
 fn sound() -> String {
     let (length, bytes) = buffer();
     let picture = picture();
@@ -107,7 +108,7 @@ fn sound() -> String {
     )
 }
 
-/// All that is reported of a text; the error, where there is one.
+/// All warnings about a text, or its error.
 fn reported(text: &str) -> String {
     let options = ReadOptions { validate: true, ..ReadOptions::default() };
     match read_bytes(text.as_bytes(), "gltf", None, "a.gltf", &options) {
@@ -129,7 +130,7 @@ fn a_render_does_not_ask_for_it() {
     assert!(reported(&text).contains("metalicFactor"));
 }
 
-/// What is written in place of what, and a report that must come of it.
+/// The original text, its replacement, and a report that must follow.
 const FAULTS: &[(&str, &str, &str)] = include!("gltf_faults.in");
 
 #[test]
@@ -149,7 +150,7 @@ fn each_fault_is_reported_where_it_is() {
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), FAULTS.len(), wrong.join("\n"));
 }
 
-/// Files of the Khronos validator's own tests, where a folder of them is named: `GLTF_VALIDATOR_TESTS=…/test`.
+/// Runs on the Khronos validator's own test files if `GLTF_VALIDATOR_TESTS=…/test` names their folder.
 #[test]
 fn faults_that_the_khronos_validator_knows_are_reported() {
     let Some(folder) = std::env::var_os("GLTF_VALIDATOR_TESTS") else {

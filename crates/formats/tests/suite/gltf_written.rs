@@ -1,4 +1,4 @@
-//! glTF that we write: what it holds comes back.
+//! glTF that Bilux writes: its contents survive a round trip.
 
 use crate::round_trips::corners;
 use crate::shared_files::{files, scenes};
@@ -17,7 +17,7 @@ fn there(scene: &SceneBuilder, path: &Path) -> (SceneBuilder, Vec<String>) {
     (back, lost.into_iter().map(|warning| warning.message).collect())
 }
 
-/// What a parameter comes to on a grid of texture coordinates.
+/// The values of a parameter on a grid of texture coordinates.
 fn values(scene: &SceneBuilder, value: &Value) -> Vec<f32> {
     match value {
         Value::Texture(index) => {
@@ -42,7 +42,7 @@ fn values(scene: &SceneBuilder, value: &Value) -> Vec<f32> {
     }
 }
 
-/// What is written otherwise, and says the same.
+/// Parameters that are written in another but equivalent form.
 const OTHERWISE: &[&str] =
     &["specular_roughness_anisotropy", "anisotropy_rotation", "transmission_color", "base_color"];
 
@@ -73,7 +73,7 @@ fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
     }
 }
 
-/// Else a dark scene would be read as one that says nothing of what is around.
+/// Otherwise a dark scene would read back as one that does not state its surroundings.
 #[test]
 fn lamps_in_the_dark_come_back_in_the_dark() {
     let folder = tempfile::tempdir().unwrap();
@@ -112,7 +112,7 @@ fn test_models_come_back() {
     for path in all {
         let Ok(scene) = read(&path, &ReadOptions::default()) else { continue };
         let name = path.display().to_string();
-        // Pictures take their time to be packed.
+        // Large images take long to compress.
         let texels: usize = scene.textures.iter().map(|texture| texture.width() * texture.height()).sum();
         if texels > 3_000_000
             || scene.objects.is_empty()
@@ -135,7 +135,7 @@ fn test_models_come_back() {
             }
         }
         assert_same_materials(&scene, &back, &name);
-        // Once it is in our words, nothing changes any more.
+        // Once a material is `principled`, it no longer changes.
         let (again, _) = there(&back, &folder.path().join("again.gltf"));
         for (a, b) in back.objects.iter().zip(&again.objects) {
             let numbers =
@@ -154,7 +154,7 @@ fn test_models_come_back() {
     assert!(count > 25, "{count}");
 }
 
-/// Cameras, lights, materials of every kind, a texture with a hole, and something that moves.
+/// Cameras, lights, materials of every kind, a cut-out texture, and an animated object.
 #[test]
 fn our_own_scenes_come_back() {
     let mut scene = read_text(
@@ -224,9 +224,9 @@ translate = [0, 4, 0]
     for file in ["a b.glb", "a b.gltf"] {
         let (back, lost) = there(&scene, &folder.path().join(file));
         assert!(lost.is_empty(), "{lost:?}");
-        // The pane is told to be one.
+        // The pane is reported to be thin.
         assert!(warnings(&back).lines().all(|line| line.contains("a thin wall")), "{}", warnings(&back));
-        // The panel is an object now.
+        // The area light is an object now.
         assert_eq!((back.objects.len(), back.lights.len(), back.cameras.len()), (6, 2, 1));
         let later =
             read(&folder.path().join(file), &ReadOptions { time: 1.0, ..ReadOptions::default() }).unwrap();
@@ -264,7 +264,7 @@ translate = [0, 4, 0]
     }
 }
 
-/// A file has no size of the picture, but its camera shows as much as it did in that.
+/// A glTF file has no image size, but its camera shows as much as it did before.
 #[test]
 fn a_camera_takes_the_shape_of_its_picture_along() {
     let scene = read_text("toml", "[render]\nsize = \"480x320\"\n[camera]\nfov = 33\n").unwrap();

@@ -17,7 +17,7 @@ fn corpus(format: &str) -> Vec<(PathBuf, Vec<u8>)> {
     files.into_iter().map(|path| (path.clone(), std::fs::read(path).unwrap())).collect()
 }
 
-/// Reads, and when that works builds and says what it has; both may refuse.
+/// Reads a scene and, if that succeeds, builds it and computes its bounds; both may fail.
 fn survive(format: &str, bytes: &[u8]) -> Option<SceneBuilder> {
     let options = ReadOptions { max_memory: 8 << 20, ..ReadOptions::default() };
     let scene = read_bytes(bytes, format, None, "x", &options).map_err(|e| e.to_string()).ok()?;
@@ -47,7 +47,7 @@ fn every_beginning_of_every_file_is_survived() {
     }
 }
 
-/// What happens to a file: where, and what.
+/// A way to damage a file.
 #[derive(Clone, Debug)]
 enum Harm {
     Set(usize, u8),
@@ -108,7 +108,7 @@ fn harmed(mut bytes: Vec<u8>, harms: &[Harm]) -> Vec<u8> {
     bytes
 }
 
-/// A triangle with this library of materials, beside one picture.
+/// A triangle with this material library, next to one image.
 fn with_materials(library: &[u8]) -> Result<SceneBuilder, FormatError> {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, bytes: &[u8]| std::fs::write(folder.path().join(name), bytes).unwrap();
@@ -176,7 +176,7 @@ proptest! {
             bilux_formats::write(&path, &original, &Default::default()).unwrap();
             let back = read(&path, &ReadOptions::default()).unwrap();
             let bits = |s: &SceneBuilder| -> Vec<Vec<u32>> {
-                // Not every NaN has a text of its own.
+                // Different NaNs may have the same text.
                 let one_nan = |bits: u32| if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits };
                 let all = crate::round_trips::corners(&s.objects[0].mesh).into_iter();
                 all.map(|corner| corner.into_iter().map(one_nan).collect()).collect()

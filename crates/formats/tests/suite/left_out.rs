@@ -1,4 +1,5 @@
-//! Nothing is lost in silence: what a written file does not show of a material is told.
+//! Nothing is lost silently: everything about a material or a light that a written file does not show gives a
+//! warning.
 
 use bilux_formats::{WriteOptions, write};
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
@@ -8,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Layers that are there, so that what is said of them counts.
+/// Layers that must be present for their parameters to have an effect.
 const BEFORE: [(&str, &[(&str, f64)]); 4] = [
     ("conductor", &[("anisotropy", 0.5)]),
     ("dielectric", &[("roughness", 0.4), ("anisotropy", 0.5)]),
@@ -29,7 +30,7 @@ const BEFORE: [(&str, &[(&str, f64)]); 4] = [
     ("phong", &[("kt", 0.375)]),
 ];
 
-/// What only counts beside something else, and that.
+/// A parameter that another one needs to have an effect, with a value for it.
 fn beside(key: &str) -> Option<(&'static str, Value)> {
     Some(match key {
         "normal_scale" => ("normal", Value::Texture(0)),
@@ -45,12 +46,12 @@ fn beside(key: &str) -> Option<(&'static str, Value)> {
     })
 }
 
-/// Of the paper's ways of rendering alone, which other programs do not have; or of no use beside another key.
+/// Parameters that apply only to the paper's own rendering modes, or that another parameter makes irrelevant.
 fn is_beside(key: &str) -> bool {
     ["ka", "gloss", "translucency", "classic"].contains(&key)
 }
 
-/// Values that are not the default: a plain one, and a picture.
+/// Values other than the default: a constant and, where allowed, a texture.
 fn others(parameter: &Parameter) -> Vec<Value> {
     let within = |min: f64, max: f64| {
         let default: f64 = parameter.default.split(' ').next().unwrap().parse().unwrap();
@@ -73,10 +74,10 @@ fn others(parameter: &Parameter) -> Vec<Value> {
     }
 }
 
-/// Puts what is described into a scene; gives the material of its triangle.
+/// Adds a spec to a scene; returns the material of its triangle.
 type Put = fn(&mut SceneBuilder, Spec) -> usize;
 
-/// All files of a triangle and what is described, by name, and what is told.
+/// All files of a scene with one triangle and this spec, by name, and the warnings.
 fn written(spec: Spec, put: Put, format: &str) -> (BTreeMap<String, Vec<u8>>, Vec<String>) {
     let mut scene = SceneBuilder::default();
     let texels = (1..5).map(|i| Rgb::new(0.2, 0.25, 0.2) * i as f32).collect();
@@ -97,7 +98,7 @@ fn written(spec: Spec, put: Put, format: &str) -> (BTreeMap<String, Vec<u8>>, Ve
     (files.collect(), told.into_iter().map(|warning| warning.message).collect())
 }
 
-/// The keys of what is described that a format loses without a word.
+/// The parameters of a spec that a format drops without a warning.
 fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
     let before = BEFORE.iter().find(|(kind, _)| *kind == entry.name).map_or(&[][..], |(_, keys)| keys);
     let base = before
@@ -111,7 +112,7 @@ fn lost(entry: &Entry, put: Put, format: &str) -> Vec<String> {
         let base = beside.into_iter().fold(base.clone(), |spec, (key, value)| spec.with(key, value));
         let (plain, told_of_plain) = written(base.clone(), put, format);
         let (changed, told) = written(base.with(parameter.name, value.clone()), put, format);
-        // Where it, or its whole layer, is left out anyway, nothing more needs to be said.
+        // If the parameter or its whole layer is left out in any case, no further warning is needed.
         let layer = |message: &String| {
             let of = message.split('\'').nth(1).unwrap_or_default();
             let stem = of.strip_suffix("weight").or(of.strip_suffix("scale"));

@@ -1,4 +1,4 @@
-//! Scene files as users have them: real ones, broken ones, and there and back again.
+//! Scene files as users have them: real ones, broken ones, and round trips.
 
 #![allow(clippy::print_stdout, reason = "tests say what they skip")]
 
@@ -34,18 +34,18 @@ mod wrong_files;
 use bilux_formats::{FormatError, ReadOptions, read_bytes};
 use bilux_scene::SceneBuilder;
 
-/// Reads a text that came from no folder.
+/// Reads a text without a folder.
 fn read_text(format: &str, text: impl AsRef<[u8]>) -> Result<SceneBuilder, FormatError> {
     read_bytes(text.as_ref(), format, None, &format!("scene.{format}"), &ReadOptions::default())
 }
 
-/// The message of a refusal.
+/// The message of an error.
 #[track_caller]
 fn refusal(format: &str, text: impl AsRef<[u8]>) -> String {
     read_text(format, text).expect_err("this should be refused").to_string()
 }
 
-/// Warnings, one a line.
+/// The warnings, one per line.
 fn warnings(scene: &SceneBuilder) -> String {
     scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }

@@ -1,4 +1,4 @@
-//! What is said of broken files: whole sentences in plain words, whatever is broken.
+//! Messages about broken files are whole sentences in plain words, whatever is broken.
 
 use bilux_formats::{ReadOptions, SCENE_FORMATS, read, read_bytes};
 use bilux_pictures::{Limits, PICTURE_FORMATS};
@@ -12,7 +12,7 @@ fn seeds(folder: &str) -> Vec<(PathBuf, Vec<u8>)> {
     files.into_iter().map(|path| (path.clone(), std::fs::read(path).unwrap())).collect()
 }
 
-/// Numbers that look random and are the same in every run. [Steele 2014]
+/// Pseudo-random numbers that are the same in every run. [Steele 2014]
 struct Numbers(u64);
 
 impl Numbers {
@@ -24,7 +24,7 @@ impl Numbers {
     }
 }
 
-/// A few bytes changed, left out, repeated or put in, or the end cut off.
+/// Changes, removes, repeats or inserts a few bytes, or cuts off the end.
 fn harmed(bytes: &[u8], numbers: &mut Numbers) -> Vec<u8> {
     const WORDS: [&str; 8] = ["-1", "nan", "1e39", "x", "\"", "{", "4294967295", "\n"];
     let mut bytes = bytes.to_vec();
@@ -35,7 +35,7 @@ fn harmed(bytes: &[u8], numbers: &mut Numbers) -> Vec<u8> {
             0 => bytes.truncate(at),
             1 => drop(bytes.drain(at..end)),
             2 => drop(bytes.splice(at..at, WORDS[numbers.below(WORDS.len())].bytes())),
-            // Headers are where most can be wrong.
+            // Most faults are possible in headers.
             3 if !bytes.is_empty() => {
                 let at = at % bytes.len().min(64);
                 bytes[at] = numbers.below(256) as u8;
@@ -47,7 +47,7 @@ fn harmed(bytes: &[u8], numbers: &mut Numbers) -> Vec<u8> {
     bytes
 }
 
-/// A message without what stands in quotes, which is the file's own.
+/// A message without its quoted parts, which come from the file.
 fn unquoted(message: &str) -> String {
     let mut plain = String::new();
     let mut quote = None;
@@ -65,7 +65,7 @@ fn unquoted(message: &str) -> String {
     plain
 }
 
-/// The shape of Rust's own values that is in a message, if one is.
+/// The debug syntax of a Rust value in a message, if there is any.
 fn raw_rust(message: &str) -> Option<&'static str> {
     let plain = unquoted(message);
     let shapes = [
@@ -73,14 +73,14 @@ fn raw_rust(message: &str) -> Option<&'static str> {
         "usize",
     ];
     let found = shapes.into_iter().find(|shape| plain.contains(shape));
-    // Bytes as a list; that of a matrix's last row is not one.
+    // A list of bytes; the last row of a matrix does not count.
     let is_byte = |word: &str| word.trim().parse::<u8>().is_ok();
     let lists = plain.split('[').skip(1).filter_map(|rest| rest.split(']').next());
     let is_bytes = |list: &str| list.split(',').count() >= 4 && list.split(',').all(is_byte);
     found.or(lists.into_iter().any(|l| is_bytes(l) && l != "0, 0, 0, 1").then_some("a list of bytes"))
 }
 
-/// Says all messages that are not plain, each kind once.
+/// Reports all messages that are not plain, one per kind.
 #[track_caller]
 fn assert_plain(messages: impl IntoIterator<Item = String>) {
     let mut bad: BTreeMap<&str, Vec<String>> = BTreeMap::new();

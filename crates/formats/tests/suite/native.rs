@@ -8,7 +8,7 @@ use bilux_scene::generators::GENERATORS;
 use bilux_scene::{SceneBuilder, Value};
 use std::path::Path;
 
-/// Reads the first of some files in a folder of their own.
+/// Reads the first of these files in a folder of their own.
 fn read_files(files: &[(&str, &str)]) -> Result<SceneBuilder, FormatError> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -139,7 +139,7 @@ fn no_parameter_has_the_name_of_a_key_of_models() {
     }
 }
 
-/// Where a model puts the point (1, 2, 3) at a time.
+/// The position of the point (1, 2, 3) of a placed model at a time.
 fn placed(place: &str, time: f32) -> Vec3 {
     let scene = read_text("toml", format!("[[model]]\nshape = \"box\"\n{place}\n")).unwrap();
     scene.objects[0].motion.at(time).point(Vec3::new(1.0, 2.0, 3.0))
@@ -228,7 +228,7 @@ fn cycles_are_refused() {
         ("b.toml", "[[model]]\nfile = \"a.toml\""),
     ]);
     assert!(message.contains("b.toml:2:8") && message.contains("put into itself"), "{message}");
-    // Doubling at every step: 2^12 objects are a scene, and 2^60 are refused for their memory.
+    // Each level doubles the objects: 2^12 of them are a scene, and 2^60 exceed the memory limit.
     let chain = |depth: usize| {
         let mut files: Vec<(String, String)> = (0..depth)
             .map(|i| {
@@ -406,7 +406,7 @@ fn pictures_lie_as_they_are_said_to_and_come_back() {
     }
     let plain = read_with("").unwrap();
     let lies = read_with(turned).unwrap();
-    // A quarter of the way along u, without v: scaled, turned by 30 degrees, shifted.
+    // A quarter of the way along u, with v = 0: scaled, rotated by 30 degrees, shifted.
     let (c, s) = (0.75f32.sqrt(), 0.5);
     let moved = Vec2::new(0.375 * c + 0.125, 0.375 * s + 0.4);
     let found = lies.textures[0].at(Vec2::new(0.25, 0.0)).g - plain.textures[0].at(moved).g;
@@ -454,7 +454,7 @@ fn textures_of_numbers_are_read_as_they_are_and_come_back() {
     let scene = read(&path, &ReadOptions::default()).unwrap();
     let texels: Vec<(Rgb, bool)> = scene.textures.iter().map(|t| (t.texel(0, 0), t.is_data)).collect();
     assert_eq!(texels[..2], [(Rgb::new(0.2, 0.4, 0.6), true), (Rgb::grey(0.4), true)]);
-    // Colours are decoded still.
+    // Colours are still decoded.
     assert!((texels[2].0.g - 0.1329).abs() < 1e-3 && !texels[2].1, "{texels:?}");
     scene.build(&Default::default(), [0.0, 0.0], 1.0).unwrap();
     let back = there_and_back(&scene, folder.path());

@@ -1,4 +1,4 @@
-//! OBJ and MTL as programs write them.
+//! OBJ and MTL files as exporters write them.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read};
@@ -9,7 +9,7 @@ use std::path::Path;
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// Reads a library by way of a file that names its first material.
+/// Reads a library through a file that uses its first material.
 fn materials(library: &str) -> SceneBuilder {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a b.mtl"), library).unwrap();
@@ -37,7 +37,7 @@ fn indices_forward_backward_and_with_every_part() {
 
 #[test]
 fn texture_coordinates_may_be_negative_and_are_counted_backwards_too() {
-    // The second face counts back from where it stands, past what has come in between.
+    // The indices of the second face count back from its own line, past the lines in between.
     let text = format!(
         "{SQUARE}vt -0.25 0.5\nvt 1.5 -2\nvt .1 -.2\nvn 0 0 1\nvn 0 1 0\nf 1/-3/-2 2/-2/-2 3/-1/-2\nvt 7 7\nvn 1 0 0\n\
          f -4/-4/-2 -3/-3/-2 -2/-2/-2\nf 1/-1/-1 2/4/3 3/-4/1\n"
@@ -98,7 +98,7 @@ fn vertex_colours_and_weights() {
     let scene =
         read_text("obj", "v 0 0 0 1 .5 .25\nv 1 0 0\nv 0 1 0 2\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
     assert_eq!(scene.objects[0].mesh.vertex_kd, [Rgb::new(1.0, 0.5, 0.25), Rgb::WHITE, Rgb::WHITE]);
-    // Behind a weight the colour is one further on.
+    // After a weight, the colour is one column further.
     let scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 5 5 5 1 .1 .2 .3\nf 1 2 3\n").unwrap();
     assert_eq!(scene.objects[0].mesh.vertex_kd[2], Rgb::new(0.1, 0.2, 0.3));
 }
@@ -157,7 +157,7 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert_eq!(value(&scene.materials[0], "kd"), Some(&Value::Texture(0)));
     assert!(scene.textures[0].texels().eq([Rgb::BLACK, Rgb::new(0.5, 1.0, 1.0)]));
-    // Half of a picture to the right, from below up; where none can be had, a checker.
+    // Half of the image to the right, with v upwards; a missing image becomes a checker.
     let texture = &scene.textures[0];
     let moved = texture.transform.unwrap().apply(Vec2::new(0.2, 0.6));
     assert!(moved.distance(Vec2::new(0.1 + 0.2, 0.4)) < 1e-6, "{moved}");
@@ -170,7 +170,7 @@ fn textures_are_found_tinted_and_kept_within_the_folder() {
     assert_eq!(value(&read(&path, &open).unwrap().materials[1], "kd"), Some(&Value::Texture(1)));
 }
 
-/// A scene of one material, with the pictures beside it that the closure writes.
+/// A scene with one material, next to the images that the closure writes.
 fn of_material(library: &str, pictures: impl FnOnce(&Path)) -> SceneBuilder {
     let folder = tempfile::tempdir().unwrap();
     pictures(folder.path());
@@ -202,7 +202,7 @@ fn words_of_metal_and_roughness_make_a_principled_surface() {
     }
     assert_eq!(value(spec, "base_color"), Some(&Value::triple([0.8, 0.4, 0.2])));
     assert_eq!(value(spec, "emission"), Some(&Value::triple([0.0, 0.0, 2.0])));
-    // Without a roughness it is that of the exponent; glass is clear.
+    // Without a roughness, the exponent determines it; glass is smooth.
     let glass = of_material("newmtl m\nillum 7\nNs 6\nPm 0\nTf .9 1 1\n", |_| {});
     let said = |key| value(&glass.materials[0], key);
     assert_eq!(said("specular_roughness"), Some(&Value::from(0.5f32.sqrt())));
@@ -279,7 +279,7 @@ fn pictures_of_numbers_holes_light_and_bumps_are_read() {
     assert!(rough.is_data && rough.wrap == [Wrap::Clamp; 2]);
     assert!((rough.number(Vec2::splat(0.5)) - 0.537).abs() < 0.01, "as the file has it, not as light");
     assert_eq!(texture("opacity").number(Vec2::splat(0.5)), 0.0);
-    // Where the picture rises along u the normal leans the other way; where it ends it falls.
+    // Where the height rises along u, the normal tilts the other way; at the end it falls.
     let normals = texture("normal");
     let lean = |x: usize| normals.texel(x, 0).r - 0.5;
     assert!(lean(1) < -0.03 && lean(2) < -0.05 && lean(3) > 0.05, "{} {} {}", lean(1), lean(2), lean(3));
@@ -314,7 +314,7 @@ fn old_picture(extension: &str, [r, g, b]: [u8; 3]) -> Vec<u8> {
             [b"BM\x22\0\0\0\0\0\0\0\x1a\0\0\0".as_slice(), &core, &row, &[0, 0]].concat()
         }
         _ => {
-            // Width, height, bits, no packing, RGB, offset, channels, rows and bytes of the one strip.
+            // Width, height, bits, no compression, RGB, offset, channels, rows and bytes of the single strip.
             let tags: [[u16; 2]; 9] =
                 [[256, 2], [257, 1], [258, 8], [259, 1], [262, 2], [273, 8], [277, 3], [278, 1], [279, 6]];
             let mut bytes = b"II*\0\x0e\0\0\0".to_vec();
@@ -350,7 +350,7 @@ fn textures_of_older_formats_are_shown() {
             let linear = bilux_math::colour::srgb_decode(0.2);
             assert_eq!(texture.texel(0, 0), Rgb::new(1.0, 0.0, linear), "{extension}");
             assert_eq!(texture.texel(1, 0), Rgb::WHITE);
-            // In bytes, as it came.
+            // As 8-bit texels, unchanged.
             assert!(texture.image.is_bytes(), "{extension}");
         }
     }

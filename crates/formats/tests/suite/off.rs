@@ -1,4 +1,4 @@
-//! OFF as programs write it.
+//! OFF files as exporters write them.
 
 use crate::{read_text, refusal, round_trips, warnings};
 use bilux_formats::{ReadOptions, read, write};
@@ -17,7 +17,7 @@ fn every_spelling_of_a_square_is_that_square() {
         SQUARE.replace('\n', "\r"),
         SQUARE.replace("OFF\n", "# made by hand\n\nOFF # of one face\n"),
         SQUARE.replace("OFF\n4 1 4", "OFF 4 1 4"),
-        // As a well-known collection of shapes has it.
+        // As in a well-known collection of shapes.
         SQUARE.replace("OFF\n4 1 4", "OFF4 1 4"),
         SQUARE.replace("4 1 4", "4 1"),
         SQUARE.trim_end().replace("0 1 0\n", "\n\t0  1 0 # the last\n\n"),
@@ -89,7 +89,7 @@ fn what_it_can_hold_comes_back_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.off");
     let coloured = "STCNOFF\n3 1 0\n.1 .2 .3 0 0 1 .1 .2 .3 .4 .5\n1 0 0 0 .6 .8 .7 .8 .9 0 0\n0 1 0 0 0 1 0 0 0 0 0\n3 0 1 2\n";
-    // Flat: two faces that meet at a small angle, which would be smoothed.
+    // Flat: two faces that meet at a small angle, which would otherwise be smoothed.
     let flat = "OFF\n# shading flat\n4 2 0\n0 0 0\n1 0 0\n1 1 .1\n0 1 0\n3 0 1 2\n3 0 2 3\n";
     for text in [coloured, flat] {
         let original = read_text("off", text).unwrap();

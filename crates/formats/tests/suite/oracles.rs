@@ -1,4 +1,4 @@
-//! Our readers against those of others, on real files.
+//! Compares our readers with those of other projects on real files.
 
 use crate::shared_files::{files, scenes};
 use bilux_formats::{ReadOptions, read};
@@ -14,7 +14,7 @@ fn corners(scene: &SceneBuilder) -> Vec<Vec3> {
     scene.objects.iter().flat_map(|o| of(&o.mesh)).collect()
 }
 
-/// Every file of a kind that ours reads, with what it gives.
+/// Reads every file of a format and calls `compare` with it; returns how many were compared.
 fn each(kind: &str, mut compare: impl FnMut(&Path, Vec<Vec3>) -> bool) -> usize {
     let Some(root) = scenes() else { return usize::MAX };
     let mut all: Vec<PathBuf> = Vec::new();
@@ -22,7 +22,7 @@ fn each(kind: &str, mut compare: impl FnMut(&Path, Vec<Vec3>) -> bool) -> usize 
     let is_kind = |p: &PathBuf| p.extension().is_some_and(|e| e.eq_ignore_ascii_case(kind));
     let options = ReadOptions { crease_angle: 0.0, ..ReadOptions::default() };
     let read_all = all.iter().filter(|p| is_kind(p)).filter_map(|p| Some((p, read(p, &options).ok()?)));
-    // What they make of points and lines is their own.
+    // Other readers treat points and lines differently.
     let has_strokes = |scene: &SceneBuilder| scene.objects.iter().any(|o| o.mesh.stroke_count() > 0);
     let read_all = read_all.filter(|(_, scene)| !has_strokes(scene));
     read_all.filter(|(path, scene)| compare(path, corners(scene))).count()
@@ -42,7 +42,7 @@ fn obj_agrees_with_tobj() {
             .iter()
             .flat_map(|m| m.mesh.indices.iter().map(|&i| point(&m.mesh, i)).collect::<Vec<_>>())
             .collect();
-        // Polygons may be cut along other diagonals, but hold the same corners as often.
+        // Readers may triangulate polygons along other diagonals, but the set of corners is the same.
         let sorted = |mut points: Vec<Vec3>| {
             points.sort_by(|a, b| a.to_array().map(f32::to_bits).cmp(&b.to_array().map(f32::to_bits)));
             points.dedup();
@@ -62,7 +62,7 @@ fn stl_agrees_with_stl_io() {
         let Ok(theirs) = stl_io::read_stl(&mut std::io::BufReader::new(file)) else { return false };
         let point = |i: usize| Vec3::from(theirs.vertices[i].0);
         let theirs: Vec<Vec3> = theirs.faces.iter().flat_map(|f| f.vertices).map(point).collect();
-        // It reads the first solid only.
+        // stl_io reads only the first solid.
         assert_eq!(ours[..theirs.len()], theirs[..], "{}", path.display());
         true
     });

@@ -1,4 +1,4 @@
-//! Native scenes that lie over files of other formats: what they change, and what they leave.
+//! Native scenes that overlay files of other formats: what they change, and what they leave unchanged.
 
 use bilux_formats::{FormatError, ReadOptions, read};
 use bilux_scene::SceneBuilder;
@@ -11,7 +11,7 @@ const MTL: &str =
 const OURS: &str = "[[material]]\nname = \"gold\"\nkind = \"conductor\"\nmetal = \"gold\"\n\
     [[material]]\nname = \"white\"\nkind = \"diffuse\"\n";
 
-/// A scene over a car of three objects.
+/// A scene that overlays a car of three objects.
 fn over_a_car(toml: &str) -> Result<SceneBuilder, FormatError> {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in [("car.obj", OBJ), ("a.mtl", MTL), ("scene.toml", toml)] {
@@ -20,7 +20,7 @@ fn over_a_car(toml: &str) -> Result<SceneBuilder, FormatError> {
     read(&folder.path().join("scene.toml"), &ReadOptions::default())
 }
 
-/// What each object is made of, by name.
+/// The material of each object, by name.
 fn made_of(replacements: &str) -> Result<Vec<(String, String)>, FormatError> {
     let scene = over_a_car(&format!("include = [\"car.obj\"]\n{OURS}{replacements}"))?;
     let pairs = scene.objects.iter().map(|o| (o.name.clone(), scene.materials[o.material].name.clone()));

@@ -1,4 +1,4 @@
-//! Procedural textures: in our own files, in pbrt's, and as pictures where a format holds none.
+//! Procedural textures in native files and in pbrt files, and as images in formats without them.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
@@ -21,7 +21,7 @@ fn texture(scene: &SceneBuilder, key: &str) -> Arc<Texture> {
     }
 }
 
-/// Places all over, none of them on an edge.
+/// Positions all over the texture, none of them on an edge.
 fn places() -> impl Iterator<Item = Vec2> {
     (0..400).map(|i| Vec2::new((i % 20) as f32 * 0.0973 - 0.41, (i / 20) as f32 * 0.0871 - 0.32))
 }
@@ -45,13 +45,13 @@ fn formulas_are_read_within_each_other_and_come_back() {
     let scene = read(&path, &ReadOptions::default()).unwrap();
     assert_eq!(warnings(&scene), "");
     let reflectance = texture(&scene, "reflectance");
-    // In the middle of the radius there is nothing of b, and a is the picture, tinted.
+    // At the centre of the radial ramp, b contributes nothing, and a is the tinted image.
     let a = reflectance.at(Vec2::new(0.5, 0.25));
     let middle = bilux_math::colour::srgb_decode(bilux_math::colour::srgb_encode(0.5));
     assert!((a.g - 0.5 * (middle + 0.125)).abs() < 0.01 && (a.r - 0.25).abs() < 0.01, "{a:?}");
     let roughness = texture(&scene, "roughness");
     assert_eq!(roughness.number(Vec2::new(0.5, 0.01)), 1.0);
-    // A file within is of numbers, as the whole is: the byte, and no curve.
+    // A nested file holds numbers, like the texture around it: the byte, without a transfer curve.
     let byte = (bilux_math::colour::srgb_encode(0.5) * 255.0).round() / 255.0;
     assert!((roughness.number(Vec2::new(0.25, 0.01)) - byte).abs() < 1e-6);
     scene.build(&Default::default(), [0.0, 0.0], 1.0).unwrap();
@@ -98,7 +98,7 @@ fn what_is_wrong_has_its_place() {
         let told = refusal("toml", material(lines));
         assert!(told.contains(wanted), "{lines}: {told}");
     }
-    // What is missing within one is told, and seen.
+    // A missing texture inside another one gives a warning, and is visible.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.toml");
     std::fs::write(
@@ -128,7 +128,8 @@ fn formats_without_formulas_have_pictures_of_them() {
     for (extension, key) in [("pbrt", "reflectance"), ("glb", "base_color"), ("obj", "kd")] {
         let scene = read_text("toml", material(board)).unwrap();
         let (told, back) = written(&scene, folder.path(), extension);
-        // A board is two squares by two, where pictures may be moved; else, and of all else, there are texels.
+        // If textures can have a placement, a checkerboard needs two texels by two; all else is written as many
+        // texels.
         assert_eq!(is_told(&told), extension == "obj", "{extension}: {told}");
         let (before, after) = (texture(&scene, "reflectance"), texture(&back, key));
         if extension != "obj" {
@@ -143,11 +144,11 @@ fn formats_without_formulas_have_pictures_of_them() {
         let off = |uv| (before.at(uv) - after.at(uv)).map(f32::abs).max_channel();
         assert!(within.map(off).fold(0.0, f32::max) < 0.02, "{extension}");
     }
-    // A board beside another picture has texels too: both may have to lie in one.
+    // A checkerboard next to another texture needs many texels too, since both may have to share one image.
     let two = format!("{board}\nroughness = {{ kind = \"checker\" }}");
     let (told, _) = written(&read_text("toml", material(&two)).unwrap(), folder.path(), "glb");
     assert!(is_told(&told), "{told}");
-    // What holds no textures says nothing of them.
+    // Formats without textures do not warn about them.
     let (told, _) = written(&read_text("toml", material(clouds)).unwrap(), folder.path(), "ply");
     assert!(!is_told(&told), "{told}");
 }
@@ -179,7 +180,7 @@ fn formulas_of_pbrt_are_the_same_ones() {
         "{checker}\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex1\" \"c\" \"texture tex2\" \"c\""
     ));
     assert_eq!(product.formula().unwrap().spec().kind, "scale");
-    // Thirty-one times doubled: what would take 2³¹ looks is baked on the way.
+    // Doubled thirty-one times: baking avoids 2³¹ evaluations.
     let mut lines = checker.replace("\"c\"", "\"t0\"");
     for i in 1..31 {
         let part = format!("\"texture tex1\" \"t{}\" \"texture tex2\" \"t{}\"", i - 1, i - 1);

@@ -1,4 +1,4 @@
-//! pbrt scenes: what is read of them, and what is said of what is not.
+//! pbrt scenes: what is read, and the warnings about everything else.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{FormatError, ReadOptions, read};
@@ -69,18 +69,18 @@ fn settings_camera_and_film_are_read() {
     assert_eq!(setting("filter"), "tent".into());
     assert_eq!((setting("spp"), setting("max_depth")), (Value::Integer(64), Value::Integer(7)));
     let camera = &scene.cameras[0].spec;
-    // 60 degrees is of the width, the shorter side.
+    // The 60 degrees apply to the width, which is the shorter side.
     assert!((number(camera, "fov") - 2.0 * atan(2.0 * tan(30f32.to_radians())).to_degrees()).abs() < 1e-3);
     assert_eq!(camera.parameters.find("mirrored").map(|(v, _)| v.clone()), Some(true.into()));
     close(colour(camera, "position"), [0.0, 0.0, 5.0]);
-    // Twice the speed of the film brightens all light.
+    // Doubling the ISO doubles all light.
     close(colour(&scene.lights[0], "intensity"), [2.0, 4.0, 6.0]);
     assert_eq!(warnings(&scene), "");
 }
 
 #[test]
 fn pictures_are_not_mirrored() {
-    // Without any transform x goes to the right, y up, and the view along z.
+    // Without any transform, x points right, y up, and the camera looks along z.
     let scene = scene(&format!("Camera \"perspective\"\nWorldBegin\n{TRIANGLE}"));
     let built = scene.build(&Default::default(), [0.0, 1.0], 1.0).unwrap();
     let camera = &built.cameras()[0].1;
@@ -192,7 +192,7 @@ fn materials_are_mapped() {
         colour(&material(r#"Material "diffuse" "rgb reflectance" [.1 .2 .3]"#), "reflectance"),
         [0.1, 0.2, 0.3],
     );
-    // Without a word it is half grey.
+    // The default is a grey of 0.5.
     close(colour(&material(r#"Material "diffuse""#), "reflectance"), [0.5; 3]);
     assert_eq!(number(&material(""), "reflectance"), 0.5);
     let metal = material(r#"Material "conductor" "spectrum eta" "metal-Ag-eta" "spectrum k" "metal-Ag-k""#);
@@ -211,7 +211,7 @@ fn materials_are_mapped() {
     let glass = material(r#"Material "dielectric" "spectrum eta" [400 1.6 700 1.6]"#);
     assert_eq!((glass.kind.as_str(), number(&glass, "eta")), ("dielectric", 1.6));
     assert_eq!(material(r#"Material "thindielectric""#).parameters.find("thin").unwrap().0, &true.into());
-    // Half of the light that reaches the base, with what the boundary turns back.
+    // Accounts for the light that the boundary reflects back to the base.
     let paint = material(r#"Material "coateddiffuse" "rgb reflectance" [.5 .5 .5] "float roughness" 0"#);
     close(colour(&paint, "base_color"), [0.5 * 0.4036 / (1.0 - 0.5 * 0.5964); 3]);
     assert_eq!(
@@ -264,7 +264,7 @@ fn lights_shine_as_much_as_they_say() {
     close(light(2, "direction"), [0.0, -1.0, 0.0]);
     close(light(3, "radiance"), [0.5, 0.6, 0.7]);
     let even = light(4, "intensity");
-    // A spectrum shines with a luminance of 1, whatever its numbers; this one is a little pinker than daylight.
+    // A spectrum has a luminance of 1, whatever its values; this one is slightly pinker than daylight.
     assert!((even.luminance() - 1.0).abs() < 2e-3 && even.r > 1.0, "{even:?}");
     assert_eq!((number(&scene.lights[4], "angle"), number(&scene.lights[4], "inner_angle")), (40.0, 30.0));
     let tungsten = light(5, "irradiance");
@@ -282,10 +282,10 @@ fn surfaces_give_light_on_their_side() {
     let spec = glowing(TRIANGLE);
     close(colour(&spec, "emission"), [2.0, 4.0, 6.0]);
     assert_eq!(spec.parameters.find("emission_sides").unwrap().0, &"front".into());
-    // Normals say which side is in front.
+    // Normals determine the front.
     let scene = world(&format!("{light}\n{TRIANGLE} \"normal N\" [0 0 -1 0 0 -1 0 0 -1]"));
     assert_eq!(scene.objects[0].mesh.triangles, [[0, 2, 1]]);
-    // A ball that reflects nothing is a lamp, round at every size.
+    // A black emissive sphere becomes a sphere light, which is round at any size.
     let black = r#"Material "diffuse" "rgb reflectance" [0 0 0]"#;
     let scene = world(&format!("{light}\n{black}\nTranslate 0 3 0\nScale 2 2 2\nShape \"sphere\""));
     assert_eq!((scene.objects.len(), scene.lights.len()), (0, 1));
@@ -294,7 +294,7 @@ fn surfaces_give_light_on_their_side() {
     let spec = world(&format!("AreaLightSource \"diffuse\" \"float power\" [1]\n{TRIANGLE}"));
     let spec = &spec.materials[spec.objects[0].material];
     close(colour(spec, "emission"), [2.0 / std::f32::consts::PI; 3]);
-    // And from both of its sides together.
+    // The same power from both sides together.
     let both = r#"AreaLightSource "diffuse" "float power" [1] "bool twosided" true"#;
     let scene = world(&format!("{both}\n{TRIANGLE}"));
     let spec = &scene.materials[scene.objects[0].material];
@@ -557,7 +557,7 @@ fn files_are_included_and_unpacked() {
     assert!(scene.objects[0].mesh.normals.is_empty(), "flat without normals");
 }
 
-/// A 0 in the corner is what pbrt-v3's scene of a dragon has before its infinite light.
+/// The scene of a dragon from pbrt-v3 has a 0 in the corner before its infinite light.
 #[test]
 fn a_matrix_that_is_not_affine_is_used_as_far_as_it_is() {
     let place = |matrix: &str| {
@@ -568,14 +568,14 @@ fn a_matrix_that_is_not_affine_is_used_as_far_as_it_is() {
     };
     assert_eq!(place("0 0 1 0  0 1 0 0  -1 0 0 0  5 6 7 0"), [Vec3::new(5.0, 6.0, 7.0), Vec3::Z]);
     assert_eq!(place("1 0 0 9  0 1 0 9  0 0 1 9  5 6 7 3"), [Vec3::new(5.0, 6.0, 7.0), Vec3::X]);
-    // Twice as far in homogeneous coordinates is half as large.
+    // Doubled homogeneous coordinates halve the size.
     assert_eq!(place("4 0 0 0  0 4 0 0  0 0 4 0  2 2 2 2"), [Vec3::ONE, Vec3::X * 2.0]);
     let turned =
         r#"ConcatTransform [0 0 1 0  0 1 0 0  -1 0 0 0  0 0 0 0] LightSource "infinite" "rgb L" [1 1 1]"#;
     assert_eq!(world(turned).lights.len(), 1);
 }
 
-/// A courtyard of version 3 has them crossed, which pbrt takes: it keeps one stack for both.
+/// A courtyard of version 3 interleaves them, which pbrt accepts, since it keeps one stack for both.
 #[test]
 fn objects_and_attributes_may_cross() {
     let crossed = format!(
@@ -616,7 +616,7 @@ fn a_missing_sky_is_grey_and_so_is_any_light() {
     }
 }
 
-/// Beside the scene first, then in the working folder, but nowhere above it.
+/// First next to the scene, then in the working folder, but nowhere above it.
 #[test]
 fn files_are_looked_for_in_the_working_folder_too() {
     let folder = tempfile::tempdir().unwrap();
@@ -652,7 +652,7 @@ fn a_missing_include_of_the_scene_s_own_name_is_missing() {
     assert!(told.contains("main.pbrt:1:9: there is no file 'geometry/main.pbrt'"), "{told}");
 }
 
-/// Gold in a file of its own, as scenes of version 3 have it: its red is above 1 in sRGB.
+/// Gold from a file, as in scenes of version 3: its red is above 1 in sRGB.
 #[test]
 fn gold_by_its_spectra_is_gold() {
     let eta = b"400 1.47\n450 1.38\n500 0.97\n550 0.42\n600 0.25\n650 0.15\n700 0.13\n850 0.17";
@@ -684,7 +684,7 @@ fn files_that_would_hurt_are_refused() {
     assert!(told.contains("takes more than the"), "{told}");
     let told = refused(&[("a.pbrt", b"WorldBegin Include \"b.gz\""), ("b.gz", &packed(b"Shape")[..20])]);
     assert!(told.contains("a.pbrt:1:20: ") && told.contains("cannot be unpacked"), "{told}");
-    // Each file names the next twice: 2^40 in all, were it not for the longest chain.
+    // Each file includes the next one twice: 2^40 inclusions in all, but for the limit on the chain.
     let names: Vec<String> = (0..41).map(|i| format!("{i}.pbrt")).collect();
     let texts: Vec<String> = (1..42).map(|i| format!("Include \"{i}.pbrt\" Include \"{i}.pbrt\"")).collect();
     let files: Vec<(&str, &[u8])> =

@@ -1,4 +1,4 @@
-//! pbrt files of our own: there and back again.
+//! pbrt files that Bilux writes: round trips.
 
 use crate::read_text;
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
@@ -6,7 +6,7 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 
-/// What was not held, and the scene as it comes back.
+/// Writes a scene and reads it back; returns the warnings and the scene.
 fn there_and_back(scene: &SceneBuilder, folder: &Path) -> (Vec<String>, SceneBuilder) {
     let path = folder.join("a scene.pbrt");
     let told = write(&path, scene, &WriteOptions::default()).unwrap();
@@ -18,7 +18,7 @@ fn scene(toml: &str) -> SceneBuilder {
     read_text("toml", toml).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// With a plain material for what names none.
+/// The same for TOML text, with a plain material where none is named.
 fn there(toml: &str) -> (Vec<String>, SceneBuilder) {
     let mut original = scene(toml);
     for spec in original.materials.iter_mut().filter(|spec| spec.kind == "phong") {
@@ -27,7 +27,7 @@ fn there(toml: &str) -> (Vec<String>, SceneBuilder) {
     there_and_back(&original, tempfile::tempdir().unwrap().path())
 }
 
-/// The spec of the material of the only object.
+/// The material of the only object.
 fn material(toml: &str) -> (Vec<String>, Spec) {
     let text =
         format!("[[material]]\nname = \"m\"\n{toml}\n[[model]]\nshape = \"sphere\"\nmaterial = \"m\"\n");

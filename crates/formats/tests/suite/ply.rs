@@ -1,4 +1,4 @@
-//! PLY as programs write it.
+//! PLY files as exporters write them.
 
 use crate::{read_text, refusal, warnings};
 use bilux_formats::{ReadOptions, read_bytes};
@@ -13,7 +13,7 @@ fn header(format: &str, extra: &str) -> String {
     )
 }
 
-/// The square as bytes of either order.
+/// The square in binary, in either byte order.
 fn binary(big: bool) -> Vec<u8> {
     let mut bytes = header(if big { "binary_big_endian" } else { "binary_little_endian" }, "").into_bytes();
     for number in [0f32, 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.] {
@@ -126,7 +126,8 @@ fn headers_that_promise_the_world_take_nothing() {
     }
 }
 
-/// Vertices with normals, the last of them unused, and a triangle, a square and a line; `extra` adds a property to faces.
+/// Vertices with normals, the last of them unused, and a triangle, a square and a line; `extra` adds a property to
+/// faces.
 fn with_normals(encoding: &str, extra: bool) -> Vec<u8> {
     let property = if extra { "property uchar flags\n" } else { "" };
     let mut file = format!(

@@ -1,10 +1,11 @@
-//! PLY: every type of number wherever one may stand, in text and in both byte orders, against the numbers that were put in.
+//! PLY: every numeric type at every place that allows it, in text and in both byte orders, compared with the
+//! numbers that were written.
 
 use crate::{read_text, warnings};
 use bilux_math::colour::srgb_decode;
 use bilux_math::{Rgb, Vec3};
 
-/// A file of numbers, each of a type of its own.
+/// A file under construction from numbers, each with its own type.
 struct File {
     encoding: &'static str,
     bytes: Vec<u8>,
@@ -47,7 +48,7 @@ const ENCODINGS: [&str; 3] = ["ascii", "binary_little_endian", "binary_big_endia
 
 #[test]
 fn indices_and_their_counts_are_of_any_type_in_both_byte_orders() {
-    // Above 256 a number in the wrong order of bytes is another one; 0x0102 and 0x0201 are both there.
+    // Above 256, a number in the wrong byte order is another number; both 0x0102 and 0x0201 are valid.
     let wide: [(&str, u32); 6] = [
         ("char", 100),
         ("uchar", 200),
@@ -100,7 +101,7 @@ fn indices_and_their_counts_are_of_any_type_in_both_byte_orders() {
 
 #[test]
 fn colours_are_of_any_type_in_both_byte_orders() {
-    // What is stored, and which part of the whole that is: 0x1234 is not 0x3412.
+    // The stored values, and the value that means 1: 0x1234 is not 0x3412.
     let kinds: [(&str, [f64; 3], f64); 4] = [
         ("uchar", [255.0, 18.0, 0.0], 255.0),
         ("ushort", [65535.0, f64::from(0x1234), 255.0], 65535.0),
@@ -127,7 +128,7 @@ fn colours_are_of_any_type_in_both_byte_orders() {
         let scene =
             read_text("ply", &file.bytes).unwrap_or_else(|error| panic!("{kind}, {encoding}: {error}"));
         let part = |i: usize| (stored[i] / one) as f32;
-        // Whole numbers are steps of the sRGB curve, others are light.
+        // Whole numbers follow the sRGB curve; floats are linear.
         let light = |i: usize| if one > 1.0 { srgb_decode(part(i)) } else { part(i) };
         let wanted = Rgb::new(light(0), light(1), light(2));
         for colour in &scene.objects[0].mesh.vertex_kd {

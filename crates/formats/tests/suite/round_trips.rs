@@ -1,11 +1,11 @@
-//! There and back again: what a format can hold comes back to the bit.
+//! Round trips: whatever a format can hold is preserved to the bit.
 
 use crate::shared_files::scenes;
 use bilux_formats::{ReadOptions, WriteOptions, read, write};
 use bilux_scene::{Mesh, SceneBuilder};
 use std::path::Path;
 
-/// Every corner of every triangle, in order, as bits: what a picture depends on.
+/// Every corner of every triangle, in order, as bits: everything that affects the image.
 pub(crate) fn corners(mesh: &Mesh) -> Vec<Vec<u32>> {
     let bits = |i: usize| {
         let mut all = mesh.positions[i].to_array().to_vec();

@@ -1,4 +1,4 @@
-//! Every real file that comes with the project reads, or is refused for its own reason.
+//! Every real file that comes with the project can be read, or is refused with the right message.
 
 use bilux_formats::{ReadOptions, read};
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Files that must be refused, with a part of the message.
 const REFUSED: &[(&str, &str)] = &[("asc/teapot.bpt", "not a scene format")];
 
-/// Files that belong to others.
+/// Files that accompany others.
 const COMPANIONS: &[&str] = &["mtl", "png", "jpg"];
 
 pub(crate) fn files(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -18,7 +18,7 @@ pub(crate) fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The folder of scenes, or `None` with a line that says so.
+/// The folder of scenes, or `None` with a message that says so.
 pub(crate) fn scenes() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
     if folder.is_dir() {

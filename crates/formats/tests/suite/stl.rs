@@ -1,4 +1,4 @@
-//! STL, text and binary.
+//! STL, as text and as binary.
 
 use crate::{read_text, refusal, warnings};
 use bilux_math::Vec3;

@@ -1,20 +1,20 @@
-//! Files that are wrong, each with all that is said of it: `wrong_files.txt` holds the text for every row of the table. Each
-//! has to say what is wrong, where, and what to do about it, and has to read well aloud.
+//! Wrong files with all of their messages: `wrong_files.txt` holds the text for every row of the table. Each
+//! message must state what is wrong, where, and what to do about it, and must read well aloud.
 //!
-//! After a change that is meant, `BILUX_WRITE_MESSAGES=1 cargo test -p bilux-formats wrong_files` writes the texts anew; read
-//! what has changed before you commit it.
+//! After an intended change, `BILUX_WRITE_MESSAGES=1 cargo test -p bilux-formats wrong_files` rewrites the texts;
+//! read the differences before you commit them.
 
 use bilux_formats::{ReadOptions, read};
 use bilux_pictures::PICTURE_FORMATS;
 use std::fmt::Write;
 use std::path::Path;
 
-/// One wrong file.
+/// A wrong file.
 struct Case {
     /// What is wrong, in a few words.
     name: &'static str,
     files: &'static [(&'static str, &'static [u8])],
-    /// Which of them is read: as a picture, where its name is one's.
+    /// The file to read: as a picture, if its name is that of one.
     read: &'static str,
 }
 
@@ -64,7 +64,7 @@ const CASES: &[Case] = &[
 ;
 
 impl Case {
-    /// What is said of it, one message a line, the folder's name left out.
+    /// All messages about it, one per line, without the folder's name.
     fn run(&self) -> String {
         let folder = tempfile::tempdir().unwrap();
         let outer = folder.path().canonicalize().unwrap();

@@ -1,18 +1,18 @@
-//! Elements whose bytes are near those of the element before.
+//! Decodes vertex attributes: each byte is stored as its difference from that of the previous element.
 
 use super::{Broken, Bytes};
 
 const HEADER: u8 = 0xa0;
-/// Differences that are packed together.
+/// The number of differences in a group.
 const GROUP: usize = 16;
-/// Elements of a block, at most.
+/// The maximum number of elements of a block.
 const LARGEST_BLOCK: usize = 256;
-/// Bytes of a block, at most.
+/// The maximum number of bytes of a block.
 const BLOCK_BYTES: usize = 8192;
-/// Bytes that the end has at least.
+/// The minimum number of bytes of the tail.
 const MIN_TAIL: usize = 32;
 
-/// Fills all elements of `stride` bytes.
+/// Decodes all elements of `stride` bytes.
 pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Result<(), Broken> {
     let tail = stride.max(MIN_TAIL);
     let (&header, rest) = packed.split_first().ok_or(Broken)?;
@@ -20,7 +20,7 @@ pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Resul
     if header != HEADER {
         return Err(Broken);
     }
-    // The element before the first stands at the very end.
+    // The tail ends with the element that precedes the first one.
     let mut last = rest[rest.len() - stride..].to_vec();
     let mut bytes = Bytes(&rest[..end]);
     let block = (BLOCK_BYTES / stride / GROUP * GROUP).min(LARGEST_BLOCK);
@@ -32,7 +32,7 @@ pub(super) fn unpack(packed: &[u8], stride: usize, elements: &mut [u8]) -> Resul
     if bytes.0.is_empty() { Ok(()) } else { Err(Broken) }
 }
 
-/// One byte of every element of a block.
+/// Decodes one byte of every element of a block.
 fn column(
     bytes: &mut Bytes,
     elements: &mut [u8],
@@ -53,7 +53,8 @@ fn column(
     Ok(())
 }
 
-/// Sixteen differences of 0, 2, 4 or 8 bits. Of 2 and 4 bits the greatest number says that the byte stands behind all.
+/// Sixteen differences of 0, 2, 4 or 8 bits. In 2 and 4 bits, the maximum value means that a full byte follows the
+/// group.
 fn differences(bytes: &mut Bytes, width: u8) -> Result<[u8; GROUP], Broken> {
     let mut all = [0; GROUP];
     match width {
@@ -64,7 +65,7 @@ fn differences(bytes: &mut Bytes, width: u8) -> Result<[u8; GROUP], Broken> {
             let (packed, mask) = (bytes.take(bits * GROUP / 8)?, (1u8 << bits) - 1);
             for (i, difference) in all.iter_mut().enumerate() {
                 let at = i * bits;
-                // The first stands in the highest bits.
+                // The first difference is in the highest bits.
                 let short = packed[at / 8] >> (8 - bits - at % 8) & mask;
                 *difference = if short == mask { bytes.byte()? } else { short };
             }
@@ -79,9 +80,9 @@ mod tests {
 
     #[test]
     fn differences_of_every_width_are_added_up() {
-        // Four bytes an element, three elements: first bytes of no difference, then 2 bits, then 4, then 8.
+        // Four bytes per element, three elements. The bytes of an element use 0, 2, 4 and 8 bits.
         let mut packed = vec![HEADER, 0];
-        // 1, -1 and one of a whole byte, +100.
+        // 1, -1, and +100 as a full byte.
         packed.extend([1, 0b10_01_11_00, 0, 0, 0, 200]);
         packed.extend([2, 0x4f, 0xe0, 0, 0, 0, 0, 0, 0, 255]);
         packed.extend([3, 2, 4, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);

@@ -1,14 +1,14 @@
-//! What was done to elements before they were packed.
+//! Undoes the filters that were applied to elements before they were compressed.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// What was done.
+/// A filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Filter {
     None,
-    /// Directions folded onto an octahedron.
+    /// Directions, octahedrally encoded.
     Octahedral,
-    /// Rotations without their greatest number.
+    /// Quaternions without their largest component.
     Quaternion,
     /// Floats that share their exponents.
     Exponential,
@@ -25,7 +25,7 @@ impl Filter {
         })
     }
 
-    /// Whether it is of elements of so many bytes.
+    /// True if the filter applies to elements of this many bytes.
     pub(super) fn takes(self, stride: usize) -> bool {
         match self {
             Filter::None | Filter::Exponential => stride.is_multiple_of(4),
@@ -34,7 +34,7 @@ impl Filter {
         }
     }
 
-    /// Undoes it for all elements.
+    /// Undoes the filter for all elements.
     pub(super) fn undo(self, stride: usize, elements: &mut [u8]) {
         match (self, stride) {
             (Filter::None, _) => {}
@@ -59,7 +59,7 @@ impl Filter {
     }
 }
 
-/// The direction that lies at a point of the octahedron's net, whose corners are `one` away.
+/// The direction at a point of the unfolded octahedron, whose corners are at a distance of `one`.
 fn unfolded(x: f32, y: f32, one: f32) -> [f32; 3] {
     let z = one - x.abs() - y.abs();
     let beyond = z.min(0.0);
@@ -70,8 +70,10 @@ fn unfolded(x: f32, y: f32, one: f32) -> [f32; 3] {
     [x * scale, y * scale, z * scale]
 }
 
-/// Three numbers, each at most the root of a half, and the greatest from the other three. Which that is stands in the two
-/// lowest bits of the fourth; with both set that is what a root of a half is written as.
+/// Restores a quaternion from its three smaller components, each at most the square root of a half.
+///
+/// The two lowest bits of the fourth number state which component is missing. With both bits set, the fourth
+/// number is the code of the square root of a half.
 fn rotation(packed: [i16; 4]) -> [i16; 4] {
     let scale = FRAC_1_SQRT_2 / f32::from(packed[3] | 3);
     let [x, y, z] = [packed[0], packed[1], packed[2]].map(|c| f32::from(c) * scale);
@@ -84,10 +86,10 @@ fn rotation(packed: [i16; 4]) -> [i16; 4] {
     turned
 }
 
-/// A whole number of 24 bits times two to the power of one of 8.
+/// A 24-bit integer mantissa times two to the power of an 8-bit exponent.
 fn float(packed: i32) -> f32 {
     let (exponent, mantissa) = (packed >> 24, packed << 8 >> 8);
-    // In two steps, since a power on its own may be no number in 32 bits.
+    // In f64, since the power by itself may be out of range for an f32.
     let power = |exponent: i32| f64::from_bits(((1023 + exponent) as u64) << 52);
     (f64::from(mantissa) * power(exponent)) as f32
 }
@@ -118,9 +120,9 @@ mod tests {
         let mut down = [127, 127, 127, 0];
         Filter::Octahedral.undo(4, &mut down);
         assert_eq!(down[..3], [0, 0, 129], "the corners of the net are below");
-        // No turn: the greatest is w, the fourth; the other three are 0.
+        // The identity: w, the fourth component, is the largest and the others are 0.
         assert_eq!(rotation([0, 0, 0, 2047 & !3 | 3]), [0, 0, 0, 32767]);
-        // A quarter turn about x: x = w, the first is left out.
+        // A quarter turn about x: x = w, and the first is left out.
         let one = 2047 & !3;
         assert_eq!(rotation([0, 0, one | 3, one])[..3], [23170, 0, 0]);
         assert_eq!(float(3 << 24 | 5), 40.0);

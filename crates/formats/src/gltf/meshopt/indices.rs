@@ -1,17 +1,17 @@
-//! Triangles that share edges and vertices with those before, and lists of indices.
+//! Decodes triangles that share edges and vertices with earlier ones, and lists of indices.
 
 use super::{Broken, Bytes};
 
 const TRIANGLES: u8 = 0xe1;
 const SEQUENCE: u8 = 0xd1;
-/// Bytes behind the data of triangles: pairs of places that are used often.
+/// Bytes after the triangle data: a table of frequent pairs of FIFO positions.
 const TABLE: usize = 16;
-/// Bytes behind the data of a list.
+/// Bytes after the data of a list.
 const TAIL: usize = 4;
-/// From here on a place of the newest vertices says something else.
+/// From this code on, a position in the vertex FIFO has another meaning.
 const PLACES: usize = 13;
 
-/// Sixteen things, the newest first.
+/// The sixteen most recent items, the newest first.
 struct RecentFifo<T> {
     ring: [T; 16],
     next: usize,
@@ -27,24 +27,24 @@ impl<T: Copy> RecentFifo<T> {
         self.next = (self.next + 1) & 15;
     }
 
-    /// The newest is at 0.
+    /// The item at a position; the newest is at 0.
     fn at(&self, place: usize) -> T {
         self.ring[self.next.wrapping_sub(1 + place) & 15]
     }
 }
 
-/// What is known from the triangles before.
+/// The decoder's state after the triangles so far.
 struct Triangles<'a> {
     data: Bytes<'a>,
     edges: RecentFifo<[u32; 2]>,
     vertices: RecentFifo<u32>,
-    /// The least vertex that was not named yet.
+    /// The smallest vertex index that has not been used yet.
     next: u32,
-    /// The last vertex that was named by itself.
+    /// The last vertex index that was coded explicitly.
     last: u32,
 }
 
-/// Fills a list of triangles with indices of `stride` bytes.
+/// Decodes a list of triangles to indices of `stride` bytes.
 pub(super) fn unpack_triangles(packed: &[u8], stride: usize, elements: &mut [u8]) -> Result<(), Broken> {
     let count = elements.len() / stride / 3;
     let end = packed.len().checked_sub(TABLE).ok_or(Broken)?;
@@ -76,13 +76,13 @@ pub(super) fn unpack_triangles(packed: &[u8], stride: usize, elements: &mut [u8]
 }
 
 impl Triangles<'_> {
-    /// A triangle beside one of the newest edges.
+    /// A triangle that shares one of the recent edges.
     fn beside_an_edge(&mut self, edge: usize, place: usize) -> Result<[u32; 3], Broken> {
         let [a, b] = self.edges.at(edge);
         let c = match place {
             0 => self.unnamed(),
             place if place < PLACES => self.vertices.at(place),
-            // One less or one more than the last.
+            // One less or one more than the last explicit index.
             13 | 14 => self.named(if place == 13 { u32::MAX } else { 1 }),
             _ => {
                 let by = signed(self.data.number()?);
@@ -97,11 +97,11 @@ impl Triangles<'_> {
         Ok([a, b, c])
     }
 
-    /// A triangle of which each corner is new (0), named by itself (15), or one of the newest (from 1).
+    /// A triangle whose corners are each new (0), explicit (15), or a recent vertex (from 1).
     fn of_places(&mut self, [first, others]: [u8; 2]) -> Result<[u32; 3], Broken> {
         let places = [first, others >> 4, others & 15];
         let mut corners = [0; 3];
-        // New ones are numbered before others are named.
+        // New vertices are numbered before explicit ones are decoded.
         for (corner, place) in corners.iter_mut().zip(places) {
             *corner = match place {
                 0 => self.unnamed(),
@@ -138,7 +138,7 @@ impl Triangles<'_> {
 }
 
 impl Bytes<'_> {
-    /// A number of up to 32 bits, seven a byte, the lowest first.
+    /// A variable-length number of up to 32 bits, seven bits per byte, the lowest first.
     fn number(&mut self) -> Result<u32, Broken> {
         let mut number = 0;
         for shift in [0, 7, 14, 21, 28] {
@@ -152,19 +152,19 @@ impl Bytes<'_> {
     }
 }
 
-/// What is to be added for a difference whose sign is in the lowest bit.
+/// The wrapping addend of a difference whose sign is in the lowest bit.
 fn signed(number: u32) -> u32 {
     number >> 1 ^ (number & 1).wrapping_neg()
 }
 
-/// Fills a list of indices of `stride` bytes.
+/// Decodes a list of indices of `stride` bytes.
 pub(super) fn unpack_sequence(packed: &[u8], stride: usize, elements: &mut [u8]) -> Result<(), Broken> {
     let end = packed.len().checked_sub(TAIL).ok_or(Broken)?;
     let mut data = Bytes(&packed[..end]);
     if data.byte()? != SEQUENCE {
         return Err(Broken);
     }
-    // Two runs, of which each index continues one.
+    // Two baselines; each index is a difference from one of them.
     let mut last = [0u32; 2];
     for bytes in elements.chunks_exact_mut(stride) {
         let number = data.number()?;
@@ -182,8 +182,9 @@ mod tests {
     #[test]
     fn triangles_share_edges_vertices_and_name_others() {
         let mut packed = vec![TRIANGLES];
-        // 0 1 2 all new by the table; beside the newest edge (0, 2) a new one; beside it one of the newest (1);
-        // one more than the last named; a whole one of named ones.
+        // 0 1 2, all new, by the table; then a new vertex across the newest edge (0, 2); then a recent vertex (1)
+        // across the newest edge; then one more than the last explicit index; then a triangle with all indices
+        // explicit.
         packed.extend([0xf0, 0x00, 0x03, 0x0e, 0xff]);
         packed.extend([0xff, 18, 2, 1]);
         packed.extend([0; TABLE]);
@@ -198,7 +199,7 @@ mod tests {
 
     #[test]
     fn lists_continue_two_runs() {
-        // +5 of the first, +300 of the second, -2 of the first.
+        // +5 from the first baseline, +300 from the second, -2 from the first.
         let packed = [SEQUENCE, 20, 0xb1, 0x09, 12 >> 1 << 1, 0, 0, 0, 0];
         let mut elements = [0; 12];
         assert!(unpack_sequence(&packed, 4, &mut elements).is_ok());

@@ -1,4 +1,5 @@
-//! `EXT_meshopt_compression`: buffer views that are packed. Its bitstream is that of the extension's appendices. [Kapoulkine 2021]
+//! `EXT_meshopt_compression`: compressed buffer views. The bitstream is that of the extension's appendices.
+//! [Kapoulkine 2021]
 
 mod attributes;
 mod filters;
@@ -11,7 +12,7 @@ use filters::Filter;
 
 pub(super) const NAME: &str = "EXT_meshopt_compression";
 
-/// Where packed bytes end too early, are too many, or mean nothing.
+/// The compressed bytes end too early, are too many, or are invalid.
 pub(super) struct Broken;
 
 /// How elements are packed.
@@ -22,7 +23,7 @@ enum Mode {
     Indices,
 }
 
-/// Bytes that are read from the front; none where there are no more.
+/// Bytes that are consumed from the front; reading past the end is an error.
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -37,7 +38,7 @@ impl<'a> Bytes<'a> {
     }
 }
 
-/// The elements of a packed view, of which `extension` says how it lies in a buffer of these bytes.
+/// Decompresses the elements of a view; `extension` describes where they are in a buffer of these bytes.
 pub(super) fn unpacked(
     extension: JsonNode,
     bytes: &[u8],
@@ -72,7 +73,7 @@ pub(super) fn unpacked(
         let message = format!("{length} bytes from byte {offset} go beyond the buffer, which has {have}");
         return Err(extension.error(message));
     };
-    // Nothing is packed tighter than sixteen elements' bytes in two bits, or a triangle in a byte.
+    // The best compression ratio is sixteen elements' bytes in two bits, or a triangle in a byte.
     if count > length.saturating_mul(64) {
         return Err(extension.error(format!("{count} elements cannot be in {length} bytes")));
     }

@@ -1,11 +1,11 @@
-//! Accessors: where their elements lie, and between which bounds. [glTF 2.0, 3.6.2]
+//! Accessors: the location of their elements, and their bounds. [glTF 2.0, 3.6.2]
 
 use super::{Check, Role, counted, floats, text, whole};
 use crate::FormatError;
 use crate::gltf::accessor::Accessor;
 use crate::gltf::json::JsonNode;
 
-/// Bytes of a component; 0 where there is no such type.
+/// Bytes of a component; 0 for an unknown type.
 pub(super) fn component_size(code: usize) -> usize {
     match code {
         5120 | 5121 => 1,
@@ -15,7 +15,7 @@ pub(super) fn component_size(code: usize) -> usize {
     }
 }
 
-/// Numbers of an element; 0 where there is no such type.
+/// Components of an element; 0 for an unknown type.
 pub(super) fn width(kind: &str) -> usize {
     match kind {
         "SCALAR" => 1,
@@ -28,7 +28,7 @@ pub(super) fn width(kind: &str) -> usize {
     }
 }
 
-/// `VEC3 of FLOAT`.
+/// The format in words, such as `VEC3 of FLOAT`.
 pub(super) fn format_words(accessor: JsonNode) -> String {
     let component = match whole(accessor, "componentType") {
         Some(5120) => "BYTE",
@@ -53,7 +53,7 @@ pub(super) fn lies_within<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let opened = Accessor::open(check.document, number, node, check.budget).map(|_| ());
     check.budget.give_back(check.budget.spent() - spent);
     if let Err(error @ FormatError::Malformed { .. }) = opened {
-        // What names nothing is reported where it stands.
+        // An invalid reference is reported at the reference itself.
         let names = |key| node.get(key).is_none_or(|_| check.named("bufferViews", node, key).is_some());
         if names("bufferView") {
             check.report(node, error.without_place());
@@ -130,7 +130,7 @@ pub(super) fn bounds<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         return check
             .report(node, format!("{what} not finite; the first is {} in element {}", all[at], at / width));
     }
-    // Bounds are those of the numbers as they are stored. [glTF 2.0, 3.6.2.5]
+    // Bounds apply to the stored numbers, before normalisation. [glTF 2.0, 3.6.2.5]
     let scale = stored_scale(node);
     for (key, sign) in [("min", 1.0f32), ("max", -1.0)] {
         let Some(declared) = floats(node, key) else { continue };
@@ -148,7 +148,7 @@ pub(super) fn bounds<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// What normalised numbers are multiplied by to become those that are stored.
+/// The factor from normalised numbers to the stored ones.
 fn stored_scale(node: JsonNode) -> f32 {
     let is_normalized = node.value().get("normalized").is_some_and(|x| x == true);
     match (is_normalized, whole(node, "componentType")) {
@@ -160,7 +160,7 @@ fn stored_scale(node: JsonNode) -> f32 {
     }
 }
 
-/// Bounds of floats are exact but for the digits in which programs write them.
+/// The bounds of floats are exact except for the digits that exporters write.
 fn tolerance(scale: f32, actual: f32) -> f32 {
     if scale > 1.0 { 1.5 } else { 1e-6 * actual.abs() }
 }

@@ -1,4 +1,4 @@
-//! Animations: keyframes, and what they move. [glTF 2.0, 3.11]
+//! Animations: keyframes and their targets. [glTF 2.0, 3.11]
 
 use super::accessors::format_words;
 use super::meshes::target_count;
@@ -7,7 +7,7 @@ use super::{Check, Role, counted, is_off, text, whole};
 use crate::gltf::json::JsonNode;
 use std::collections::HashSet;
 
-/// Looks at all animations, after all that they move.
+/// Checks all animations, after the objects that they animate.
 pub(super) fn all<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     for animation in check.list("animations") {
         let samplers: Vec<_> =
@@ -42,7 +42,7 @@ pub(super) fn all<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     }
 }
 
-/// What a channel moves, and whether that can be moved.
+/// Checks that a channel's target can be animated.
 fn aim<'d>(check: &mut Check<'d, '_>, target: JsonNode<'d>, path: &str) {
     if let Some(pointer) = target.extension("KHR_animation_pointer") {
         if path != "pointer" {
@@ -153,7 +153,7 @@ fn output<'d>(check: &mut Check<'d, '_>, channel: JsonNode<'d>, sampler: JsonNod
     }
 }
 
-/// Rotations have length one; the tangents on either side of a spline's need not.
+/// Rotations have length one; the tangents of a cubic spline need not.
 fn quaternions<'d>(check: &mut Check<'d, '_>, channel: JsonNode<'d>, index: usize, is_cubic: bool) {
     let Some(numbers) = check.numbers(index) else { return };
     let length = |q: &[f32]| q.iter().map(|x| x * x).sum::<f32>().sqrt();

@@ -5,7 +5,7 @@ use super::meshes::{attributes, of_primitive};
 use super::{Check, Role, text, whole};
 use crate::gltf::json::JsonNode;
 
-/// What an attribute may be made of: types, then codes of components without and with normalising.
+/// The formats that an attribute allows: types, then component type codes without and with normalisation.
 struct Semantic {
     name: &'static str,
     is_numbered: bool,
@@ -44,7 +44,7 @@ const SEMANTICS: &[Semantic] = &[
     },
 ];
 
-/// The semantic of a name; none for those that glTF has not.
+/// The semantic with this name; `None` for one that glTF does not define.
 fn semantic(name: &str) -> Option<&'static Semantic> {
     let (stem, number) = match name.split_once('_') {
         Some((stem, number)) => (stem, Some(number)),

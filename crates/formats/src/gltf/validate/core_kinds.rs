@@ -1,4 +1,4 @@
-//! The objects of glTF itself. [glTF 2.0, 5]
+//! The objects of core glTF. [glTF 2.0, 5]
 
 use super::material_kinds::MATERIAL;
 use super::schema::Shape::{

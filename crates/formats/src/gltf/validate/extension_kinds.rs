@@ -1,11 +1,11 @@
-//! Extensions: where each belongs, and what it holds.
+//! Extensions: the objects that each extends, and its properties.
 
 use super::core_kinds::{BUFFER, BUFFER_VIEW, NODE, PRIMITIVE, ROOT, TARGET, TEXTURE};
 use super::material_kinds::{self as material, MATERIAL, TEXTURE_INFO};
 use super::schema::Shape::{Any, Choice, Flag, Index, List, Number, Numbers, Object, Text, Whole};
 use super::schema::{Kind, NAME, Range, kind, may, must};
 
-/// An extension, a kind of object that it extends, and what stands in it there.
+/// An extension, a kind of object that it extends, and its properties there.
 pub(super) struct ExtensionEntry {
     pub(super) name: &'static str,
     pub(super) extends: &'static Kind,
@@ -16,12 +16,12 @@ const fn row(name: &'static str, extends: &'static Kind, kind: Kind) -> Extensio
     ExtensionEntry { name, extends, kind }
 }
 
-/// An extension whose contents the reader itself looks at.
+/// An extension whose properties the reader checks itself.
 const fn open(name: &'static str, extends: &'static Kind) -> ExtensionEntry {
     ExtensionEntry { name, extends, kind: Kind { plural: name, properties: &[], is_open: true } }
 }
 
-/// Every extension that is checked, in each place where it belongs.
+/// Every extension that is checked, once for each kind of object that it extends.
 pub(super) const EXTENSIONS: &[ExtensionEntry] = &[
     open("EXT_lights_area", &ROOT),
     open("EXT_lights_area", &NODE),
@@ -53,10 +53,10 @@ pub(super) const EXTENSIONS: &[ExtensionEntry] = &[
     row("KHR_texture_transform", &TEXTURE_INFO, TRANSFORM),
 ];
 
-/// Extensions that change what is allowed, and stand in no object.
+/// Extensions that relax the rules and add no object.
 pub(super) const WITHOUT_OBJECT: &[&str] = &["KHR_mesh_quantization"];
 
-/// Extensions that may stand anywhere, and show nothing.
+/// Extensions that are allowed on any object and have no visible effect.
 pub(super) const ANYWHERE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
 
 const SOURCE: Kind = kind("texture extensions", &[must("source", Index("images"))]);

@@ -1,4 +1,4 @@
-//! Images: where they lie, what they say they are, and what they are. [glTF 2.0, 3.8.3]
+//! Images: where they are stored, the format that they declare, and the format that they have. [glTF 2.0, 3.8.3]
 
 use super::{Check, Role, text};
 use crate::FormatError;
@@ -32,7 +32,7 @@ pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// What the first bytes say, as glTF names it.
+/// The MIME type that the first bytes indicate.
 fn recognised(bytes: &[u8]) -> Option<&'static str> {
     let kinds: [(&[u8], &str); 4] = [
         (b"\x89PNG\r\n\x1a\n", "image/png"),
@@ -43,7 +43,7 @@ fn recognised(bytes: &[u8]) -> Option<&'static str> {
     kinds.into_iter().find(|(magic, _)| bytes.starts_with(magic)).map(|(_, kind)| kind)
 }
 
-/// The extension that an image of this kind needs.
+/// The extension that an image of this type requires.
 fn extension_for(kind: &str) -> Option<&'static str> {
     match kind {
         "image/webp" => Some("EXT_texture_webp"),
@@ -53,7 +53,7 @@ fn extension_for(kind: &str) -> Option<&'static str> {
 }
 
 impl<'d> Gltf<'d, '_, '_> {
-    /// Reads the images that no material has asked for, and compares all with what the document says of them.
+    /// Reads the images that no material uses, and compares all images with the document's description of them.
     pub(super) fn validate_images(&mut self) -> Result<(), FormatError> {
         let root = self.document.root;
         let all: Vec<JsonNode<'d>> =

@@ -1,4 +1,4 @@
-//! Materials, and the extensions of them. [glTF 2.0, 5.19]
+//! Materials and their extensions. [glTF 2.0, 5.19]
 
 use super::schema::Shape::{Choice, Flag, Index, Number, Numbers, Object, Whole};
 use super::schema::{Kind, NAME, Property, Range, kind, may, must};
@@ -79,7 +79,8 @@ pub(super) const DISPERSION: Kind = kind("dispersion extensions", &[may("dispers
 pub(super) const EMISSIVE_STRENGTH: Kind =
     kind("emissive strength extensions", &[may("emissiveStrength", FROM_ZERO)]);
 
-/// An index of 0 stands for a mirror that reflects all light; others begin at that of vacuum.
+/// An index of refraction of 0 stands for a mirror that reflects all light; all others are at least that of
+/// vacuum, 1.
 pub(super) const IOR: Kind = kind("ior extensions", &[may("ior", FROM_ZERO)]);
 
 pub(super) const IRIDESCENCE: Kind = kind(

@@ -1,4 +1,4 @@
-//! Materials, and how their extensions go together.
+//! Materials, and which of their extensions can be combined.
 
 use super::{Check, floats, number, text, whole};
 use crate::gltf::json::JsonNode;
@@ -54,7 +54,7 @@ pub(super) fn go_together<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// The set of texture coordinates that a reference to a texture asks for.
+/// The set of texture coordinates that a texture reference uses.
 pub(super) fn coordinates(info: JsonNode) -> usize {
     let moved = info.extension("KHR_texture_transform").and_then(|moved| whole(moved, "texCoord"));
     moved.or_else(|| whole(info, "texCoord")).unwrap_or(0)
@@ -97,7 +97,7 @@ pub(super) fn thickness<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// `KHR_materials_variants` of a primitive.
+/// Checks `KHR_materials_variants` on a primitive.
 pub(super) fn mappings<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let variants = check.root.extension("KHR_materials_variants").and_then(|e| e.get("variants"));
     let count = variants.map_or(0, |variants| variants.children().count());

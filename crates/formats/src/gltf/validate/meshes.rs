@@ -1,10 +1,10 @@
-//! Primitives of meshes: counts, indices, morph targets. [glTF 2.0, 3.7.2]
+//! Mesh primitives: counts, indices and morph targets. [glTF 2.0, 3.7.2]
 
 use super::materials::coordinates;
 use super::{Check, Role, counted, text, whole};
 use crate::gltf::json::JsonNode;
 
-/// The attributes of a primitive, with the index and the accessor of each.
+/// The attributes of a primitive, each with its accessor and the accessor's index.
 pub(super) fn attributes<'d>(
     check: &Check<'d, '_>,
     holder: JsonNode<'d>,
@@ -28,7 +28,7 @@ fn targets<'d>(node: JsonNode<'d>) -> Vec<JsonNode<'d>> {
     node.get("targets").map(|list| list.children().collect()).unwrap_or_default()
 }
 
-/// How many morph targets the first primitive of a mesh has.
+/// The number of morph targets of a mesh's first primitive.
 pub(super) fn target_count(mesh: JsonNode) -> usize {
     let first = mesh.get("primitives").and_then(|list| list.children().next());
     first.map_or(0, |primitive| targets(primitive).len())
@@ -166,7 +166,7 @@ fn degenerate<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[u32]) {
     }
 }
 
-/// `1 triangle has`, `2 triangles have`.
+/// A count with its noun and verb: `1 triangle has`, `2 triangles have`.
 pub(super) fn have(count: usize, noun: &str) -> String {
     format!("{} {}", counted(count, noun), if count == 1 { "has" } else { "have" })
 }
@@ -206,7 +206,7 @@ pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// Every reference to a texture in a material, with the key that it stands under.
+/// Every texture reference in a material, with its key.
 fn texture_infos<'d>(node: JsonNode<'d>, found: &mut Vec<(&'d str, JsonNode<'d>)>) {
     for (key, value) in node.entries() {
         if key.ends_with("Texture") && value.get("index").is_some() {

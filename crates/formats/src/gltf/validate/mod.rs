@@ -1,6 +1,8 @@
-//! Whether a file is what the specification says, in all its parts, shown or not. Tables say what objects hold
-//! ([`core_kinds`], [`material_kinds`], [`extension_kinds`]); rules say how they go together ([`rules`]). A fault becomes a
-//! warning, since most programs show such files nevertheless.
+//! Validates every part of a file against the specification, whether or not it is shown.
+//!
+//! Tables describe the properties of objects ([`core_kinds`], [`material_kinds`], [`extension_kinds`]); rules
+//! check how objects fit together ([`rules`]). Faults are reported as warnings, since most programs show such
+//! files nevertheless.
 
 mod accessors;
 mod animations;
@@ -29,28 +31,28 @@ use crate::budget::Budget;
 use crate::reading::Oddities;
 use std::collections::{HashMap, HashSet};
 
-/// What has been found about a document so far.
+/// The state of a validation.
 struct Check<'d, 'a> {
     document: &'d Document<'d>,
     root: JsonNode<'d>,
     budget: &'a mut Budget,
     oddities: &'a mut Oddities,
-    /// List and index of all that something else names.
+    /// The list and the index of every item that is referenced.
     used: HashSet<(&'d str, usize)>,
-    /// Extensions that stand anywhere.
+    /// Extensions that are allowed on any object.
     extensions: HashSet<&'d str>,
-    /// What buffer views are used for.
+    /// The use of each buffer view.
     roles: HashMap<usize, Role>,
-    /// How many attributes lie in buffer views.
+    /// The vertex attributes' accessors in each buffer view.
     attributes_in: HashMap<usize, HashSet<usize>>,
 }
 
-/// True for a deviation beyond the tolerance, and for one that is not a number.
+/// True if a deviation exceeds the tolerance or is NaN.
 fn is_off(deviation: f32, tolerance: f32) -> bool {
     deviation.is_nan() || deviation.abs() > tolerance
 }
 
-/// What the data of a buffer view are.
+/// The kind of data in a buffer view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Vertices,
@@ -78,7 +80,7 @@ impl Gltf<'_, '_, '_> {
     /// Reports every fault of the document as a warning.
     ///
     /// # Errors
-    /// When reading a picture takes more memory than is left.
+    /// If reading an image exceeds the remaining memory.
     pub(super) fn validate(&mut self) -> Result<(), FormatError> {
         let mut check = Check {
             document: self.document,
@@ -96,17 +98,17 @@ impl Gltf<'_, '_, '_> {
 }
 
 impl<'d> Check<'d, '_> {
-    /// Reports a fault at a place.
+    /// Reports a fault at a node.
     fn report(&mut self, at: JsonNode<'d>, message: impl AsRef<str>) {
         self.oddities.note(message.as_ref(), || at.at());
     }
 
-    /// Reports a fault at a property, or at the object where it has none of that name.
+    /// Reports a fault at a property, or at the object if it has no such property.
     fn report_key(&mut self, at: JsonNode<'d>, key: &'d str, message: impl AsRef<str>) {
         self.report(at.get(key).unwrap_or(at), message);
     }
 
-    /// The item that the index under `key` names; none where there is none, which the walk reports.
+    /// The item that the index under `key` refers to; `None` if it is invalid, which the walk reports.
     fn named(&self, list: &'static str, node: JsonNode<'d>, key: &'d str) -> Option<(usize, JsonNode<'d>)> {
         let index = whole(node, key)?;
         Some((index, self.root.item(list, index)?))
@@ -117,7 +119,7 @@ impl<'d> Check<'d, '_> {
         self.root.get(list).map(|list| list.children().collect()).unwrap_or_default()
     }
 
-    /// The numbers of an accessor; none where they cannot be read, which is reported elsewhere.
+    /// The numbers of an accessor; `None` if they cannot be read, which is reported elsewhere.
     fn numbers(&mut self, index: usize) -> Option<Vec<f32>> {
         let node = self.root.item("accessors", index)?;
         let spent = self.budget.spent();
@@ -127,7 +129,7 @@ impl<'d> Check<'d, '_> {
         self.unless_too_large(node, numbers)
     }
 
-    /// The whole numbers of an accessor, likewise.
+    /// The indices of an accessor; `None` likewise.
     fn indices(&mut self, index: usize) -> Option<Vec<u32>> {
         let node = self.root.item("accessors", index)?;
         let spent = self.budget.spent();
@@ -144,7 +146,7 @@ impl<'d> Check<'d, '_> {
         read.ok()
     }
 
-    /// Notes what a buffer view is used for, and reports a second use that does not go with the first.
+    /// Records the use of a buffer view, and reports a second use that conflicts with the first.
     fn give_role(&mut self, user: JsonNode<'d>, accessor: JsonNode<'d>, role: Role) {
         let Some((index, view)) = self.named("bufferViews", accessor, "bufferView") else { return };
         let before = *self.roles.entry(index).or_insert(role);
@@ -174,7 +176,7 @@ impl<'d> Check<'d, '_> {
     }
 }
 
-/// A whole number; none where there is none.
+/// A whole number under a key; `None` if there is none.
 fn whole(node: JsonNode, key: &str) -> Option<usize> {
     let value = node.value().get(key)?;
     value.as_u64().or_else(|| whole_float(value)).and_then(|x| usize::try_from(x).ok())
@@ -197,7 +199,7 @@ fn floats(node: JsonNode, key: &str) -> Option<Vec<f64>> {
     node.value().get(key)?.as_array()?.iter().map(serde_json::Value::as_f64).collect()
 }
 
-/// `1 node`, `2 nodes`.
+/// A count with its noun: `1 node`, `2 nodes`.
 fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }

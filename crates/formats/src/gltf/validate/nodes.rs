@@ -1,4 +1,4 @@
-//! Nodes: how they stand, and that they form trees. [glTF 2.0, 3.5]
+//! Nodes: their transforms, and that they form trees. [glTF 2.0, 3.5]
 
 use super::meshes::target_count;
 use super::{Check, counted, floats, whole};
@@ -26,7 +26,7 @@ pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
 pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some(q) = floats(node, "rotation").filter(|q| q.len() == 4) else { return };
     let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-    // Programs write four digits and more.
+    // Exporters write at least four digits.
     if (length - 1.0).abs() > 5e-4 {
         check.report_key(
             node,
@@ -36,7 +36,7 @@ pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// True when a primitive of the mesh has joints.
+/// True if a primitive of the mesh has joints.
 pub(super) fn has_joints(mesh: JsonNode) -> bool {
     mesh.get("primitives")
         .into_iter()
@@ -67,7 +67,7 @@ pub(super) fn mesh<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// The transform of a node with a skinned mesh, and of those above it, does nothing.
+/// The transforms of a skinned mesh's node and of its ancestors have no effect.
 pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let Some((_, mesh)) = check.named("meshes", node, "mesh") else { return };
     if node.get("skin").is_none() || !has_joints(mesh) {
@@ -92,7 +92,7 @@ pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
 }
 
-/// The parent of each node; the first, where it has several.
+/// The parent of each node; the first one if it has several.
 pub(super) fn parents(check: &Check<'_, '_>) -> Vec<Option<usize>> {
     let nodes = check.list("nodes");
     let mut parents = vec![None; nodes.len()];
@@ -140,7 +140,7 @@ pub(super) fn trees<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     }
 }
 
-/// The number of a node's root.
+/// The index of a node's root.
 pub(super) fn root_of(parents: &[Option<usize>], mut index: usize) -> usize {
     for _ in 0..parents.len() {
         match parents.get(index).copied().flatten() {
@@ -151,17 +151,17 @@ pub(super) fn root_of(parents: &[Option<usize>], mut index: usize) -> usize {
     index
 }
 
-/// The index that a value is.
+/// The value as an index.
 pub(super) fn as_index(node: JsonNode) -> Option<usize> {
     node.value().as_u64().and_then(|index| usize::try_from(index).ok())
 }
 
-/// Those that `key` names, of a node or a skin.
+/// The nodes that `key` of a node or a skin lists.
 pub(super) fn named_nodes<'d>(node: JsonNode<'d>, key: &'d str) -> Vec<usize> {
     node.get(key).into_iter().flat_map(|list| list.children()).filter_map(as_index).collect()
 }
 
-/// The index of the skin that a node wears.
+/// The index of a node's skin.
 pub(super) fn skin_of(node: JsonNode) -> Option<usize> {
     whole(node, "skin")
 }

@@ -1,4 +1,4 @@
-//! What concerns the document as a whole, cameras and lights.
+//! Rules for the document as a whole, cameras and lights.
 
 use super::extension_kinds::{ANYWHERE, EXTENSIONS, WITHOUT_OBJECT};
 use super::walk::singular;
@@ -66,7 +66,7 @@ pub(super) fn extensions<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
     }
 }
 
-/// Objects that nothing names, unless extensions that are not known here may name them.
+/// Reports objects that nothing references, unless unknown extensions may reference them.
 pub(super) fn unused<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
     let is_known = |name: &&str| {
         EXTENSIONS.iter().any(|row| row.name == *name && !row.kind.is_open)

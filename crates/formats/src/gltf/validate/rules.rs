@@ -1,4 +1,4 @@
-//! The rules, by the kind of object that they look at. To add one: a function, and its row here.
+//! The rules, by the kind of object that they check. To add one, write a function and add its row here.
 
 use super::Check;
 use super::core_kinds::{
@@ -13,12 +13,12 @@ use super::{
 };
 use crate::gltf::json::JsonNode;
 
-/// One rule.
+/// A rule.
 pub(super) struct Rule {
-    /// What must hold.
+    /// The condition that must hold.
     #[cfg(test)]
     name: &'static str,
-    /// The objects for which it must.
+    /// The kind of object that it applies to.
     pub(super) of: &'static Kind,
     pub(super) check: for<'d> fn(&mut Check<'d, '_>, JsonNode<'d>),
 }
@@ -36,7 +36,8 @@ const fn rule(
     }
 }
 
-/// All rules. Those of an object run after all that it holds was looked at; those of the root are last.
+/// All rules. The rules of an object run after everything it contains has been checked; those of the root run
+/// last.
 pub(super) const RULES: &[Rule] = &[
     rule("an accessor lies within its buffer view", &ACCESSOR, accessors::lies_within),
     rule("elements are aligned", &ACCESSOR, accessors::is_aligned),

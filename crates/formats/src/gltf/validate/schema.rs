@@ -1,49 +1,49 @@
-//! How the tables say what an object of glTF may hold. [glTF 2.0, 5]
+//! The schema of the tables that describe glTF objects. [glTF 2.0, 5]
 
-/// One kind of object.
+/// A kind of object.
 pub(super) struct Kind {
-    /// What such objects are called in messages, in the plural.
+    /// The plural that messages use for such objects.
     pub(super) plural: &'static str,
     pub(super) properties: &'static [Property],
-    /// Properties that are not listed are left alone.
+    /// True if properties that are not listed are ignored.
     pub(super) is_open: bool,
 }
 
-/// One property of an object.
+/// A property of an object.
 pub(super) struct Property {
     pub(super) key: &'static str,
     pub(super) shape: Shape,
     pub(super) is_required: bool,
 }
 
-/// What the value of a property has to be.
+/// The required shape of a property's value.
 pub(super) enum Shape {
-    /// Anything: a rule of its own looks at it.
+    /// Anything: a rule of its own checks it.
     Any,
     Text,
     Flag,
-    /// A whole number from the first to the second.
+    /// A whole number in the inclusive range.
     Whole(u64, u64),
-    /// One of some whole numbers.
+    /// One of these whole numbers.
     Code(&'static [u64]),
-    /// One of some texts.
+    /// One of these texts.
     Choice(&'static [&'static str]),
     Number(Range),
-    /// So many numbers at least and at most.
+    /// A list of numbers with this minimum and maximum length.
     Numbers(usize, usize, Range),
-    /// The index of an item of a list of the document.
+    /// The index of an item in a list of the document.
     Index(&'static str),
-    /// Indices of different items of such a list.
+    /// Distinct indices into such a list.
     Indices(&'static str),
-    /// Indices of items of such a list, by name.
+    /// Indices into such a list, by name.
     Named(&'static str),
-    /// Different texts.
+    /// Distinct texts.
     Texts,
     Object(&'static Kind),
     List(&'static Kind),
 }
 
-/// The numbers from `min` to `max`, without `min` itself where it is excluded.
+/// The numbers from `min` to `max`, optionally excluding `min` itself.
 #[derive(Clone, Copy)]
 pub(super) struct Range {
     pub(super) min: f64,
@@ -69,7 +69,7 @@ impl Range {
         (self.min..=self.max).contains(&x) && !(self.excludes_min && x == self.min)
     }
 
-    /// The range in words, to stand behind "must be".
+    /// The range in words, for use after "must be".
     pub(super) fn words(&self) -> String {
         match (self.min.is_finite(), self.max.is_finite()) {
             (true, true) => format!("from {} to {}", self.min, self.max),
@@ -85,12 +85,12 @@ pub(super) const fn kind(plural: &'static str, properties: &'static [Property]) 
     Kind { plural, properties, is_open: false }
 }
 
-/// A property that may be left out.
+/// An optional property.
 pub(super) const fn may(key: &'static str, shape: Shape) -> Property {
     Property { key, shape, is_required: false }
 }
 
-/// A property that must be there.
+/// A required property.
 pub(super) const fn must(key: &'static str, shape: Shape) -> Property {
     Property { key, shape, is_required: true }
 }

@@ -51,7 +51,7 @@ pub(super) fn common_root<'d>(check: &mut Check<'d, '_>, skin: JsonNode<'d>) {
     }
 }
 
-/// A mesh is bent by joints of the scenes that it is in.
+/// Checks that a skinned mesh and its joints belong to the same scene.
 pub(super) fn in_scene<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
     let parents = parents(check);
     let nodes = check.list("nodes");

@@ -1,10 +1,10 @@
-//! The numbers of vertices: directions, colours, weights. [glTF 2.0, 3.7.2.1 and 3.7.3.3]
+//! Vertex data: directions, colours and skin weights. [glTF 2.0, 3.7.2.1 and 3.7.3.3]
 
 use super::meshes::{have, of_primitive};
 use super::{Check, is_off, text, whole};
 use crate::gltf::json::JsonNode;
 
-/// Lengths that differ from one by more are reported; bytes and halves keep them within it.
+/// The tolerance on unit lengths; bytes and halves stay within it.
 const LENGTH_TOLERANCE: f32 = 0.01;
 const SUM_TOLERANCE: f32 = 0.01;
 
@@ -32,7 +32,7 @@ pub(super) fn values<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     influences(check, node, &all);
 }
 
-/// How many of some elements have a fault, and which is the first.
+/// Counts the elements with a fault, and states the first.
 fn counted_faults(faults: impl Iterator<Item = bool>, noun: &str, rest: &str) -> Option<String> {
     let at: Vec<usize> = faults.enumerate().filter(|(_, bad)| *bad).map(|(i, _)| i).collect();
     let first = at.first()?;
@@ -67,7 +67,7 @@ fn negative_weights(all: &[f32]) -> Option<String> {
     (bad > 0).then(|| format!("{bad} of its numbers are negative"))
 }
 
-/// All joints and weights of a primitive, by vertex, over all sets.
+/// All joints and weights of a primitive, per vertex, over all sets.
 fn influences<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[(&'d str, usize, JsonNode<'d>)]) {
     let find = |name: String| all.iter().find(|(other, ..)| **other == name);
     let (mut sets, mut count) = (Vec::new(), usize::MAX);
@@ -129,7 +129,7 @@ fn influences<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[(&'d str
     }
 }
 
-/// The fewest joints of any skin that the mesh of a primitive is worn with.
+/// The smallest number of joints of any skin that is used with the mesh of a primitive.
 fn joint_limit<'d>(check: &Check<'d, '_>, primitive: JsonNode<'d>) -> Option<usize> {
     let mesh = primitive.number_of_parent()?;
     let wearing = check.list("nodes").into_iter().filter(|node| whole(*node, "mesh") == Some(mesh));

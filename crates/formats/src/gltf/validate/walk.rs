@@ -1,4 +1,4 @@
-//! Follows a document along the tables of kinds.
+//! Walks a document along the tables of kinds.
 
 use super::extension_kinds::{ANYWHERE, EXTENSIONS};
 use super::rules::RULES;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::collections::HashSet;
 
 impl<'d> Check<'d, '_> {
-    /// Checks an object, all that it holds, and the rules for its kind.
+    /// Checks an object, everything it contains, and the rules for its kind.
     pub(super) fn object(&mut self, node: JsonNode<'d>, kind: &'static Kind) {
         if !node.is_object() {
             self.wrong(node, "an object in braces");
@@ -112,7 +112,7 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    /// Checks the items of a list, which may not be empty.
+    /// Checks the items of a list, which must not be empty.
     pub(super) fn items(&mut self, list: JsonNode<'d>, mut check: impl FnMut(&mut Self, JsonNode<'d>)) {
         match list.value().as_array() {
             None => self.wrong(list, "a list in brackets"),
@@ -121,7 +121,7 @@ impl<'d> Check<'d, '_> {
         }
     }
 
-    /// The same for a list whose items must all be different.
+    /// Checks the items of a list, which must all be different.
     fn different(&mut self, list: JsonNode<'d>, mut check: impl FnMut(&mut Self, JsonNode<'d>)) {
         let mut seen = HashSet::new();
         self.items(list, |this, item| {
@@ -132,7 +132,7 @@ impl<'d> Check<'d, '_> {
         });
     }
 
-    /// Checks that an index names an item of a list of the document.
+    /// Checks that an index refers to an item of a list of the document.
     pub(super) fn index(&mut self, node: JsonNode<'d>, list: &'static str) {
         let Some(index) = whole_of(node.value()).and_then(|index| usize::try_from(index).ok()) else {
             return self.wrong(node, "a whole number, 0 or more");
@@ -206,7 +206,7 @@ fn one_of(choices: impl ExactSizeIterator<Item = String>) -> String {
     words
 }
 
-/// What one item of a list is called.
+/// The singular of a list's name.
 pub(super) fn singular(list: &str) -> &'static str {
     match list {
         "accessors" => "accessor",

@@ -1,8 +1,8 @@
-//! The binary part: bytes, views of them, and what their elements are.
+//! The binary part: bytes, buffer views and accessors.
 
 use serde_json::{Value as Json, json};
 
-/// Bytes while they are put together.
+/// The bytes under construction.
 #[derive(Default)]
 pub(super) struct Buffer {
     bytes: Vec<u8>,
@@ -10,14 +10,14 @@ pub(super) struct Buffer {
     accessors: Vec<Json>,
 }
 
-/// Codes of the specification.
+/// Component type codes of the specification.
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 impl Buffer {
-    /// Bytes as a view, starting at a multiple of four.
+    /// Adds bytes as a view, aligned to four bytes.
     pub(super) fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
@@ -29,12 +29,12 @@ impl Buffer {
         self.views.len() - 1
     }
 
-    /// Vectors of N numbers as an accessor, with bounds where they are asked for.
+    /// Adds vectors of N numbers as an accessor of vertices, optionally with bounds.
     pub(super) fn vectors<const N: usize>(&mut self, vectors: &[[f32; N]], bounds: bool) -> usize {
         self.floats(vectors, bounds, Some(ARRAY_BUFFER))
     }
 
-    /// The same of what is no attribute of vertices.
+    /// Adds vectors of N numbers as an accessor of something other than vertices.
     pub(super) fn keys<const N: usize>(&mut self, keys: &[[f32; N]]) -> usize {
         self.floats(keys, N == 1, None)
     }
@@ -57,7 +57,7 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    /// An accessor of indices.
+    /// Adds an accessor of indices.
     pub(super) fn indices(&mut self, indices: &[u32]) -> usize {
         let bytes: Vec<u8> = indices.iter().flat_map(|i| i.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
@@ -68,14 +68,14 @@ impl Buffer {
         self.accessors.len() - 1
     }
 
-    /// Views, accessors, bytes.
+    /// Returns the views, the accessors and the bytes.
     pub(super) fn finish(mut self) -> (Vec<Json>, Vec<Json>, Vec<u8>) {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         (self.views, self.accessors, self.bytes)
     }
 }
 
-/// JSON and bytes in one file.
+/// Combines JSON and bytes into a GLB file.
 pub(super) fn container(mut text: Vec<u8>, binary: Vec<u8>) -> Vec<u8> {
     text.resize(text.len().next_multiple_of(4), b' ');
     let mut chunks = vec![(*b"JSON", text)];

@@ -1,4 +1,4 @@
-//! What materials of any kind come to in glTF, which has one kind: our `principled`.
+//! Converts materials of any kind to `principled`, the only one that glTF can represent.
 
 use super::Document;
 use crate::values::{MaterialSupport, colour, coloured_metal, number};
@@ -8,7 +8,7 @@ use bilux_math::transcendental::exp;
 use bilux_scene::materials::with_indices;
 use bilux_scene::{Spec, Value};
 
-/// With what other kinds come to that; of their pictures `principled` tells.
+/// The supported parameters of all other kinds; textures are checked after the conversion to `principled`.
 pub(super) const OTHERS: MaterialSupport = MaterialSupport {
     format: "glTF",
     of_kinds: &[
@@ -22,11 +22,11 @@ pub(super) const OTHERS: MaterialSupport = MaterialSupport {
     pictured: None,
 };
 
-/// What materials of all kinds have.
+/// The supported parameters that all kinds share.
 pub(super) const OF_ANY: &[&str] =
     &["emission", "emission_scale", "emission_sides", "normal", "normal_scale", "opacity", "visible_sides"];
 
-/// What any material comes to as `principled`.
+/// Converts any material to `principled`.
 pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writing) -> Spec {
     let spec = &*with_indices(spec);
     let mut out = Spec::new(&spec.name, "principled");
@@ -40,7 +40,7 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
     match spec.kind.as_str() {
         "principled" => {
             let mut same = spec.clone();
-            // Light that goes through is tinted by the base there.
+            // glTF tints transmitted light by the base colour.
             if number(spec, "transmission_depth").unwrap_or(0.0) == 0.0
                 && number(spec, "transmission_weight") == Some(1.0)
             {
@@ -103,7 +103,7 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
     }
 }
 
-/// With glTF's dispersion as OpenPBR has it: how much of what an Abbe number says, 20 where nothing else is said.
+/// Converts glTF's dispersion to OpenPBR's: a scale on the dispersion of an Abbe number, 20 by default.
 fn parting(spec: Spec, dispersion: f32) -> Spec {
     spec.with("transmission_dispersion_scale", dispersion.min(1.0))
         .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0))

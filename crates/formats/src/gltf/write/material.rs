@@ -1,4 +1,4 @@
-//! Materials in the terms of glTF: what [`super::super::material`] reads, the other way round.
+//! Writes glTF materials: the inverse of [`super::super::material`].
 
 use super::Document;
 use super::kinds::{OF_ANY, OTHERS, as_principled};
@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// Our parameters of `principled` that are an extension's: extension, key there, its texture's key and channel.
+/// Parameters of `principled` that belong to an extension: extension, key, texture key and channel.
 const NUMBERS: &[(&str, &str, &str, &str, usize)] = &[
     ("specular_weight", "KHR_materials_specular", "specularFactor", "specularTexture", 3),
     ("transmission_weight", "KHR_materials_transmission", "transmissionFactor", "transmissionTexture", 0),
@@ -29,7 +29,7 @@ const NUMBERS: &[(&str, &str, &str, &str, usize)] = &[
     ),
 ];
 
-/// The same of colours.
+/// The same for colours.
 const COLOURS: &[(&str, &str, &str, &str)] = &[
     ("specular_color", "KHR_materials_specular", "specularColorFactor", "specularColorTexture"),
     (
@@ -40,7 +40,7 @@ const COLOURS: &[(&str, &str, &str, &str)] = &[
     ),
 ];
 
-/// What is written in another way.
+/// Parameters that are written in another way.
 const ELSEWHERE: &[&str] = &[
     "base_color",
     "base_metalness",
@@ -62,7 +62,7 @@ const ELSEWHERE: &[&str] = &[
     "thin_film_ior",
 ];
 
-/// Of that, what it holds pictures of.
+/// Those of them that may be textures.
 const PICTURED: [&str; 6] = [
     "base_color",
     "base_metalness",
@@ -73,7 +73,7 @@ const PICTURED: [&str; 6] = [
 ];
 
 impl Document<'_> {
-    /// A material of any kind.
+    /// Writes a material of any kind.
     pub(super) fn material(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Json, FormatError> {
         let principled = as_principled(spec, self, writing);
         OTHERS.tell(spec, writing);
@@ -156,7 +156,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// A film's thickness; as a picture, in parts of the greatest.
+    /// Writes a film's thickness; as a texture, relative to its maximum.
     fn thickness(&mut self, spec: &Spec, of: &mut Json) -> Result<(), FormatError> {
         let picture = texture(spec, "thin_film_thickness").and_then(|i| self.scene.textures.get(i));
         let Some(picture) = picture else {
@@ -229,7 +229,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// A picture of normals, and how far these lean.
+    /// A normal map with its scale.
     fn normals(
         &mut self,
         spec: &Spec,
@@ -243,7 +243,8 @@ impl Document<'_> {
         Ok(Some(info))
     }
 
-    /// Theirs is smooth across and rougher along, ours of the mean and smoother across, by the same ratio.
+    /// Converts the anisotropy. glTF states the roughness across the direction and increases it along;
+    /// `principled` states the mean and decreases it across, by the same ratio.
     fn brushing(&mut self, spec: &Spec, out: &mut Json) {
         let Some(ours) = number(spec, "specular_roughness_anisotropy").filter(|ours| *ours > 0.0) else {
             return;
@@ -262,7 +263,7 @@ impl Document<'_> {
         of["anisotropyRotation"] = json!(turns * TAU);
     }
 
-    /// What is inside of what is clear; a thickness says that there is one.
+    /// Writes the interior of a transmissive material; a non-zero thickness states that it has one.
     fn volume(&mut self, spec: &Spec, out: &mut Json) {
         let is_thin = matches!(spec.parameters.find("thin_walled"), Some((Value::Bool(true), _)));
         if spec.parameters.find("transmission_weight").is_none() || is_thin {
@@ -284,7 +285,7 @@ impl Document<'_> {
     }
 }
 
-/// Light that a surface gives out: a factor of at most 1, and what is above it in an extension.
+/// Emission: a factor of at most 1, and an extension for stronger light.
 pub(super) fn emission(document: &mut Document, light: Rgb) -> Json {
     let strength = light.max_channel().max(1.0);
     let mut out = json!({ "emissiveFactor": (light * (1.0 / strength)).to_array() });
@@ -295,7 +296,7 @@ pub(super) fn emission(document: &mut Document, light: Rgb) -> Json {
     out
 }
 
-/// The keys of one object into another, those below `extensions` too.
+/// Merges the keys of one object into another, including those under `extensions`.
 pub(super) fn merge(out: &mut Json, more: Json) {
     let Json::Object(more) = more else { return };
     for (key, value) in more {

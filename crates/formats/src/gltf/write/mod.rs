@@ -1,7 +1,7 @@
-//! Writing glTF: `.glb` in one file, `.gltf` with its binary beside it.
+//! Writes glTF: `.glb` as one file, `.gltf` with a separate binary file.
 //!
-//! Materials become metal and roughness with the extensions that say the rest; panels and spheres that give light become
-//! surfaces that do.
+//! Materials become metallic-roughness with extensions for the rest; area and sphere lights become emissive
+//! meshes.
 
 mod buffer;
 mod kinds;
@@ -19,17 +19,17 @@ use serde_json::{Map, Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// A document while it is put together.
+/// A document under construction.
 pub(super) struct Document<'s> {
     pub(super) scene: &'s SceneBuilder,
     buffer: Buffer,
-    /// The lists of the document by their names, in the order of their indices.
+    /// The lists of the document by name, in the order of their indices.
     lists: BTreeMap<&'static str, Vec<Json>>,
     extensions: BTreeSet<&'static str>,
-    /// Samplers and pictures that are there already, by what they are made of.
+    /// Samplers and images written so far, by content.
     pub(super) known: HashMap<String, usize>,
     meshes: HashMap<(*const Mesh, usize), usize>,
-    /// The nodes of the scene.
+    /// The root nodes of the scene.
     roots: Vec<usize>,
 }
 
@@ -64,20 +64,20 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
 }
 
 impl Document<'_> {
-    /// Adds to a list of the document, and gives the index.
+    /// Adds an item to a list of the document, and returns its index.
     pub(super) fn push(&mut self, list: &'static str, item: Json) -> usize {
         let list = self.lists.entry(list).or_default();
         list.push(item);
         list.len() - 1
     }
 
-    /// Notes that an extension is used.
+    /// Records that an extension is used.
     pub(super) fn uses(&mut self, extension: &'static str) -> &'static str {
         self.extensions.insert(extension);
         extension
     }
 
-    /// A node at the top of the scene.
+    /// Adds a root node to the scene.
     pub(super) fn root(&mut self, node: Json) -> usize {
         let index = self.push("nodes", node);
         self.roots.push(index);
@@ -107,7 +107,9 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// A mesh of one primitive, or of one each for triangles, points and lines; the same for all objects that share it and its material.
+    /// A mesh with one primitive each for its triangles, points and lines.
+    ///
+    /// All objects with the same mesh and material share it.
     fn mesh(
         &mut self,
         mesh: &Arc<Mesh>,
@@ -142,7 +144,7 @@ impl Document<'_> {
             let colours: Vec<_> = mesh.vertex_kd.iter().map(|c| c.to_array()).collect();
             attributes.insert("COLOR_0".into(), json!(self.buffer.vectors(&colours, false)));
         }
-        // Modes of a primitive. [glTF 2.0, 5.24.4]
+        // Primitive modes. [glTF 2.0, 5.24.4]
         const POINTS: u32 = 0;
         const LINES: u32 = 1;
         let mut primitives = Vec::new();

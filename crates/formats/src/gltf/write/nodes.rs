@@ -1,4 +1,4 @@
-//! What stands in the scene beside meshes: cameras, lights, and how things move.
+//! Everything in the scene other than meshes: cameras, lights and animations.
 
 use super::Document;
 use crate::values::{colour, number, vector};
@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use std::sync::Arc;
 
 impl Document<'_> {
-    /// Keys of a node's place, in straight lines between them.
+    /// Adds an animation of a node with linear interpolation between these keys.
     pub(super) fn animate(&mut self, node: usize, keys: &[MotionKey]) {
         let times = self.buffer.keys(&keys.iter().map(|key| [key.time_seconds]).collect::<Vec<_>>());
         let outputs = [
@@ -33,7 +33,7 @@ impl Document<'_> {
         self.push("animations", json!({ "channels": channels, "samplers": samplers }));
     }
 
-    /// Width over height of the scene's picture, where it says its size.
+    /// The aspect ratio of the scene's image, if the scene states its size.
     fn picture_shape(&self) -> Option<f32> {
         let Some((Value::Text(size), _)) = self.scene.settings.find("size") else { return None };
         let (width, height) = size.split_once('x')?;
@@ -58,7 +58,7 @@ impl Document<'_> {
         } else {
             let fov = number(spec, "fov").unwrap_or(40.0).to_radians();
             let mut lens = json!({ "yfov": fov, "znear": 0.001 });
-            // So that other shapes of pictures show no less.
+            // With an aspect ratio, images of another shape show no less.
             if let Some(shape) = number(spec, "frame").filter(|&shape| shape > 0.0).or(self.picture_shape()) {
                 lens["aspectRatio"] = json!(shape);
             }
@@ -108,7 +108,7 @@ impl Document<'_> {
         self.root(json!({ "name": spec.name, "matrix": matrix, "extensions": extension }));
     }
 
-    /// A panel or a sphere as a black surface that gives the same light.
+    /// Writes an area or sphere light as a black surface that emits the same light.
     fn glowing(&mut self, spec: &Spec, position: Vec3, writing: &mut Writing) {
         let edge = |key, default| vector(spec, key).unwrap_or(default);
         let (u, v) = (edge("edge_u", Vec3::X), edge("edge_v", Vec3::Z));
@@ -135,12 +135,12 @@ impl Document<'_> {
         if let Ok(mesh) = self.mesh(&mesh, material, writing) {
             self.root(json!({ "name": spec.name, "mesh": mesh }));
         }
-        // The mesh is gone after this; another may come to lie at its place in memory.
+        // The mesh is dropped after this; another may be allocated at the same address.
         self.meshes.retain(|(at, _), _| *at != Arc::as_ptr(&mesh));
     }
 }
 
-/// The place of what looks along its -z, as a matrix in columns.
+/// The transform of a node that looks along its -z axis, as a column-major matrix.
 fn looking(position: Vec3, forward: Vec3, up: Vec3) -> [f32; 16] {
     let right = forward.cross(up).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
     let axes = Mat3::from_cols(right, right.cross(forward), -forward);

@@ -1,4 +1,4 @@
-//! Textures: pictures as PNG, several numbers packed into the channels of one.
+//! Writes textures as PNG images, with several numbers packed into the channels of one image.
 
 use super::Document;
 use crate::FormatError;
@@ -11,7 +11,7 @@ use bilux_scene::{Texture, Value};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
 
-/// What goes into one channel of a picture: a texture's numbers, or the same everywhere.
+/// The source of one channel of an image: a texture's numbers, or a constant.
 #[derive(Clone)]
 pub(super) enum Channel {
     Even(f32),
@@ -19,7 +19,7 @@ pub(super) enum Channel {
 }
 
 impl Channel {
-    /// A number or a texture of a parameter.
+    /// The number or texture of a parameter.
     pub(super) fn of(document: &Document, value: Option<&Value>, default: f32) -> Channel {
         match value {
             Some(Value::Texture(index)) => match document.scene.textures.get(*index) {
@@ -39,7 +39,7 @@ impl Channel {
         }
     }
 
-    /// At a texel of a picture of this size, as a byte.
+    /// The value at a texel of an image of this size, as a byte.
     fn byte(&self, x: usize, y: usize, size: (usize, usize)) -> f32 {
         match self {
             Channel::Even(number) => number.clamp(0.0, 1.0),
@@ -54,7 +54,7 @@ impl Channel {
 }
 
 impl Document<'_> {
-    /// A picture of colours, with its opacity.
+    /// An image of colours with an opacity.
     pub(super) fn colours(
         &mut self,
         texture: &Arc<Texture>,
@@ -70,7 +70,7 @@ impl Document<'_> {
         let opaque = matches!(opacity, Channel::Even(_));
         self.picture(texture, size, !opaque, |x, y| {
             let texel = texture.texel(x, y);
-            // What came in bytes goes out in the same ones.
+            // 8-bit texels are written unchanged.
             let [r, g, b] = match &texture.image.texels {
                 Texels::Bytes(bytes) if texture.factor == Rgb::WHITE && texture.channel.is_none() => {
                     let [r, g, b, _] = bytes[y * size.0 + x];
@@ -82,7 +82,7 @@ impl Document<'_> {
         })
     }
 
-    /// A picture of numbers; `None` where none of them is a texture.
+    /// An image of numbers; `None` if none of the channels is a texture.
     pub(super) fn numbers(&mut self, channels: [&Channel; 4]) -> Result<Option<Json>, FormatError> {
         let textures: Vec<&Arc<Texture>> = channels.iter().filter_map(|channel| channel.texture()).collect();
         let Some(first) = textures.first() else { return Ok(None) };
@@ -93,7 +93,7 @@ impl Document<'_> {
             .map(Some)
     }
 
-    /// A picture with the sampler of a texture, as materials name it.
+    /// Adds an image with a texture's sampler; returns the reference for a material.
     fn picture(
         &mut self,
         like: &Texture,

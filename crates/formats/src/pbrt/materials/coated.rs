@@ -1,4 +1,4 @@
-//! Materials below a clear layer.
+//! Materials below a dielectric coating.
 
 use super::super::media::measured;
 use super::super::metals::straight_and_grazing;
@@ -11,8 +11,8 @@ use crate::FormatError;
 use bilux_math::Rgb;
 use bilux_scene::Spec;
 
-/// A matt base below a dielectric boundary: `principled`, with the base that is left when light has gone to and fro between
-/// the two.
+/// A diffuse base below a dielectric boundary: `principled`, with a base colour that accounts for internal
+/// reflection.
 pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let reflectance =
         pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
@@ -40,7 +40,7 @@ impl Pbrt<'_, '_> {
         Ok(spec)
     }
 
-    /// What lies between layers.
+    /// Reads the parameters of the medium between the layers.
     fn mind_layers(&mut self, list: &ParameterList) -> Result<(), FormatError> {
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
             list.has(name);
@@ -54,8 +54,9 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// The part of light, coming evenly from below, that a boundary turns back: by reciprocity what it lets through from above,
-/// over the square of its index, is not.
+/// The fraction of diffuse light from below that a boundary reflects.
+///
+/// By reciprocity, the transmitted fraction is that from above divided by the squared index.
 pub(in crate::pbrt) fn reflected_inside(index: f32) -> f32 {
     const STEPS: u32 = 512;
     let step = |i: u32| {
@@ -66,7 +67,7 @@ pub(in crate::pbrt) fn reflected_inside(index: f32) -> f32 {
     1.0 - (1.0 - above) / (index * index)
 }
 
-/// The reflected fraction at a dielectric from outside. [Fresnel 1823]
+/// The reflectance of a dielectric from outside. [Fresnel 1823]
 fn fresnel(cos: f32, index: f32) -> f32 {
     let inside = (1.0 - (1.0 - cos * cos) / (index * index)).max(0.0).sqrt();
     let across = (cos - index * inside) / (cos + index * inside);
@@ -92,7 +93,7 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
     };
     if let Some(metal) = metal {
         let [straight, grazing] = straight_and_grazing(metal, index);
-        // What Schlick's law would be there.
+        // Schlick's term at 82 degrees.
         const RISE: f32 = 0.4726;
         let edge = |c: usize| (grazing[c] / (straight[c] + (1.0 - straight[c]) * RISE)).clamp(0.0, 1.0);
         spec.parameters.set("base_color", straight.clamp(0.0, 1.0));
@@ -100,12 +101,12 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
     }
     pbrt.set_roughness(&mut spec, list, CONDUCTOR, 0.0, false, PRINCIPLED)?;
     pbrt.set_roughness(&mut spec, list, INTERFACE, 0.0, false, COAT)?;
-    // Coats have no direction.
+    // Coats have no anisotropy.
     spec.parameters.0.retain(|(key, ..)| !key.is_empty());
     Ok(Some(spec))
 }
 
-/// What light goes into and comes out of elsewhere, as a matt surface with the colour that it has from afar.
+/// Subsurface scattering, approximated by a diffuse surface with the colour that it has from a distance.
 pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let what = "light that comes out elsewhere than it went in is not shown: the surface is matt, of the same colour";
     pbrt.oddities.note(what, || list.at.clone());
@@ -136,7 +137,7 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
     Ok(Some(spec))
 }
 
-/// What a deep medium reflects whose particles reflect so much. [Hulst 1980; Kulla 2017]
+/// The reflectance of a semi-infinite medium with this single-scattering albedo. [Hulst 1980; Kulla 2017]
 fn seen_from_afar(albedo: f32) -> f32 {
     let s = (1.0 - albedo.clamp(0.0, 1.0)).sqrt();
     ((1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)).clamp(0.0, 1.0)

@@ -20,10 +20,10 @@ use bilux_scene::materials::{self, MaterialInputs};
 use bilux_scene::{Span, Spec, Value};
 use std::sync::Arc;
 
-/// What a material becomes; none for what is not there.
+/// Builds a material; `None` for an interface, which is invisible.
 type Make = fn(&mut Pbrt, &ParameterList) -> Result<Option<Spec>, FormatError>;
 
-/// Every material, those of version 3 behind.
+/// Every material; those of version 3 come last.
 const MATERIALS: &[(&str, Make)] = &[
     ("coatedconductor", coated::conductor),
     ("coateddiffuse", coated::diffuse),
@@ -53,7 +53,7 @@ const MATERIALS: &[(&str, Make)] = &[
 ];
 
 impl Pbrt<'_, '_> {
-    /// The material of a key, and where it stands; none for what is not there.
+    /// The material of a key; `None` for an interface, which is invisible.
     pub(super) fn material(&mut self, key: &MaterialKey, user: &Span) -> Result<Option<Spec>, FormatError> {
         let index = match key {
             MaterialKey::Default => {
@@ -101,7 +101,7 @@ impl Pbrt<'_, '_> {
         Ok(Some(spec))
     }
 
-    /// A refractive index, where one is given.
+    /// An index of refraction, if given.
     fn index(&mut self, list: &ParameterList, name: &'static str) -> Result<Option<f32>, FormatError> {
         let Some((index, dispersion)) = self.refraction(list, name)? else { return Ok(None) };
         if dispersion != Some(0.0) {
@@ -115,7 +115,9 @@ impl Pbrt<'_, '_> {
         self.oddities.note(what, || list.place(name));
     }
 
-    /// A refractive index at 587.6 nm, and the dispersion that goes with it; `None` for what disperses as nothing here does.
+    /// The index of refraction at 587.6 nm and its dispersion.
+    ///
+    /// The dispersion is `None` if `dielectric` cannot represent it.
     fn refraction(
         &mut self,
         list: &ParameterList,
@@ -134,14 +136,14 @@ impl Pbrt<'_, '_> {
         Ok(Some((self.colour_of(parameter, Meaning::Number)?.g, Some(0.0))))
     }
 
-    /// Sets a colour or a picture of one.
+    /// Sets a parameter to a colour or a texture.
     fn set(&mut self, spec: &mut Spec, key: &str, ink: TextureOrValue, at: Span) {
         let value = self.value(ink);
         spec.parameters.set_at(key, value, at);
     }
 
-    /// One material seen through another by a share, which is that of `b`; the first alone, with a warning, where that
-    /// cannot be.
+    /// Mixes two materials; `share` is the weight of `b`. If that is not possible, warns and returns the first
+    /// alone.
     pub(super) fn mixed(&mut self, mut a: Spec, mut b: Spec, share: Value, what: &str) -> Spec {
         match share {
             Value::Number(share) if share <= 0.0 => return a,
@@ -171,13 +173,13 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// Takes a parameter out of a spec.
+/// Removes a parameter from a spec.
 pub(super) fn take(spec: &mut Spec, key: &str) -> Option<Value> {
     let index = spec.parameters.0.iter().position(|(k, ..)| k == key)?;
     Some(spec.parameters.0.remove(index).1)
 }
 
-/// Deeper mixes of mixes are refused.
+/// Deeper nesting of mixes is refused.
 const DEEPEST: usize = 8;
 
 fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
@@ -201,7 +203,7 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatErro
         return Err(FormatError::malformed(message, list.at.clone()));
     }
     let mut part = |name: &str| pbrt.material(&MaterialKey::Named(name.into()), &list.place("materials"));
-    // In version 3 the amount is that of the first.
+    // In version 3 the amount is the weight of the first material.
     let (first, second) = if is_old { (part(b)?, part(a)?) } else { (part(a)?, part(b)?) };
     pbrt.mix_depth -= 1;
     let (Some(first), Some(second)) = (first, second) else {
@@ -214,7 +216,7 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatErro
 }
 
 impl Pbrt<'_, '_> {
-    /// A number, or a colour in its place, as version 3 has it.
+    /// A number, or a colour in its place, as version 3 allows.
     fn float_texture_or_colour(
         &mut self,
         list: &ParameterList,

@@ -1,4 +1,4 @@
-//! Materials of one layer.
+//! Materials with one layer.
 
 use super::super::metals::{self, Reduced};
 use super::super::parameters::ParameterList;
@@ -18,12 +18,12 @@ pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
     Ok(Some(spec))
 }
 
-/// Nothing is there: only what is behind may differ.
+/// An interface is invisible; only the media on its two sides may differ.
 pub(super) fn interface(_: &mut Pbrt, _: &ParameterList) -> Result<Option<Spec>, FormatError> {
     Ok(None)
 }
 
-/// A sheet without a boundary: a part of its scattered light comes out behind.
+/// A thin diffuse sheet without a boundary, which also transmits scattered light.
 pub(super) fn diffuse_transmission(
     pbrt: &mut Pbrt,
     list: &ParameterList,
@@ -52,7 +52,7 @@ pub(super) fn diffuse_transmission(
     Ok(Some(spec))
 }
 
-/// The share of the light that comes out behind, so that neither side's colour is above 1 unless both are together.
+/// The fraction of light that is transmitted, chosen so that neither colour exceeds 1 unless their sum does.
 fn share_behind(reflectance: &TextureOrValue, transmittance: &TextureOrValue) -> f32 {
     match (reflectance, transmittance) {
         (TextureOrValue::Colour(r), TextureOrValue::Colour(t)) => {
@@ -87,7 +87,7 @@ fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Spec, FormatError> {
 }
 
 impl Pbrt<'_, '_> {
-    /// An index that glass can have.
+    /// The index of refraction, clamped to the supported range.
     pub(super) fn held_index(&mut self, index: f32, list: &ParameterList) -> f32 {
         let held = if index.is_finite() { index.clamp(0.1, 10.0) } else { 1.5 };
         if held != index {
@@ -105,16 +105,16 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
     Ok(Some(spec))
 }
 
-/// What metal it is.
+/// How a metal is described.
 pub(super) enum Metal {
-    /// Reflects so much straight on.
+    /// By its reflectance at normal incidence.
     Reflectance(TextureOrValue),
-    /// By its refractive index and its extinction.
+    /// By its index of refraction and its extinction coefficient.
     Indices([Rgb; 2]),
 }
 
 impl Pbrt<'_, '_> {
-    /// Reads a metal; `names` are those of its index and of its extinction.
+    /// Reads a metal; `names` are the parameters of its index of refraction and of its extinction.
     pub(super) fn metal(
         &mut self,
         list: &ParameterList,
@@ -184,7 +184,8 @@ impl Pbrt<'_, '_> {
         Ok(())
     }
 
-    /// A metal of index 1, as theirs is where only a reflectance is given; of a picture Schlick's law.
+    /// Sets a metal of index 1, as pbrt assumes for a given reflectance; a texture uses Schlick's approximation
+    /// instead.
     pub(super) fn set_reflectance(&mut self, spec: &mut Spec, ink: TextureOrValue, list: &ParameterList) {
         let at = list.place("reflectance");
         match ink {
@@ -197,7 +198,7 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// The extinction with which a metal of index 1 reflects so much straight on.
+/// The extinction coefficient at which a metal of index 1 has this reflectance at normal incidence.
 pub(in crate::pbrt) fn extinction_of(reflectance: Rgb) -> Rgb {
     reflectance.map(|r| {
         let r = r.clamp(0.0, 0.9999);
@@ -224,7 +225,7 @@ pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>
     for name in ["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"] {
         list.has(name);
     }
-    // Brown, as theirs is where nothing is said.
+    // Brown, as is pbrt's default.
     let colour = colour.unwrap_or(TextureOrValue::Colour(Rgb::new(0.16, 0.08, 0.04)));
     let mut spec = Spec::new("", "principled").with("specular_roughness", 0.4f32);
     pbrt.set(&mut spec, "base_color", colour, list.at.clone());

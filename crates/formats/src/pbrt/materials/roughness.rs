@@ -1,5 +1,5 @@
-//! Roughness: theirs is an alpha along u and one along v, or the square of each; ours a square root and what it lacks
-//! along its brushing.
+//! Roughness. pbrt has one alpha along u and one along v, or their squares. Bilux has the square root of alpha,
+//! and an anisotropy that reduces it along the direction of brushing.
 
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
@@ -9,22 +9,22 @@ use bilux_math::Rgb;
 use bilux_math::transcendental::ln;
 use bilux_scene::Spec;
 
-/// What parameters are called: for both directions, along u, along v.
+/// The parameter names in pbrt: for both directions, along u, along v.
 pub(super) type Names = [&'static str; 3];
 pub(super) const OWN: Names = ["roughness", "uroughness", "vroughness"];
 
-/// What ours are called: roughness, anisotropy, rotation; and what a quarter of a turn is.
+/// The parameter names in Bilux: roughness, anisotropy, rotation; and the value of a quarter turn.
 pub(super) type Keys = ([&'static str; 3], f32);
 pub(super) const PLAIN: Keys = (["roughness", "anisotropy", "rotation"], 90.0);
 pub(super) const PRINCIPLED: Keys =
     (["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"], 0.25);
 
-/// How numbers become alphas.
+/// How numbers are converted to alphas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Remap {
-    /// They are.
+    /// They are alphas already.
     Never,
-    /// By the square root.
+    /// By their square root.
     Root,
     /// By the polynomial of version 3.
     Polynomial,

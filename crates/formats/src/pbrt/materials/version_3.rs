@@ -1,4 +1,4 @@
-//! Materials that only version 3 has.
+//! Materials that exist only in version 3.
 
 use super::super::parameters::ParameterList;
 use super::super::reader::Pbrt;
@@ -19,7 +19,7 @@ impl Pbrt<'_, '_> {
         Ok(self.ink(list, name, Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(default))))
     }
 
-    /// An index under one of its two names.
+    /// An index of refraction under one of its two names.
     fn old_index(&mut self, list: &ParameterList) -> Result<f32, FormatError> {
         let name = if list.has("index") { "index" } else { "eta" };
         let index = self.index(list, name)?.unwrap_or(1.5);
@@ -38,7 +38,7 @@ pub(super) fn matte(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
     Ok(Some(spec))
 }
 
-/// Matt below a boundary that reflects as glass does; how much Ks says of it beside that is told.
+/// A diffuse base below a dielectric boundary; `Ks` scales the reflection of the boundary.
 pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let kd = pbrt.texture_or(list, "Kd", 0.25)?;
     let weight = pbrt.texture_or(list, "Ks", 0.25)?.mean().luminance();
@@ -90,7 +90,7 @@ pub(super) fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
     let index = pbrt.old_index(list)?;
     let mut spec = Spec::new("", "dielectric").with("eta", index);
     pbrt.set(&mut spec, "tint", kt, list.place("Kt"));
-    // Zero is smooth here, whatever the polynomial says of it.
+    // Here zero means smooth, despite the polynomial.
     let is_smooth = ["roughness", "uroughness", "vroughness"].iter().all(|name| !list.has(name))
         || (list.texture("uroughness").is_none() && list.number("uroughness")?.unwrap_or(0.0) == 0.0);
     if !is_smooth {
@@ -117,7 +117,7 @@ pub(super) fn translucent(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Optio
     Ok(Some(spec))
 }
 
-/// The terms that `principled` shares with it.
+/// Maps the parameters that the Disney material shares with `principled`.
 pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let mut spec = Spec::new("", "principled");
     let colour = pbrt.texture_or(list, "color", 0.5)?;
@@ -136,7 +136,7 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
     spec.parameters.set("specular_ior", index.clamp(1.0, 10.0));
     let gloss = list.finite("clearcoatgloss", 1.0)?.clamp(0.0, 1.0);
-    // Its alpha goes from a tenth to a thousandth.
+    // The alpha of its clear coat ranges from a tenth to a thousandth.
     spec.parameters.set("coat_roughness", (0.1 + (0.001 - 0.1) * gloss).sqrt());
     spec.parameters.set("coat_ior", 1.5f32);
     for name in ["speculartint", "sheen", "sheentint", "flatness", "difftrans", "scatterdistance", "thin"] {

@@ -1,4 +1,4 @@
-//! `bilinearmesh`: surfaces stretched between four corners.
+//! `bilinearmesh`: bilinear patches with four corners.
 
 use super::super::parameters::ParameterList;
 use super::super::reader::{Pbrt, ShapeGeometry};
@@ -7,11 +7,11 @@ use crate::FormatError;
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::Mesh;
 
-/// Squares along a side of a patch that is not flat.
+/// Subdivisions per side of a patch that is not flat.
 const FINE: u32 = 8;
-/// The same where there are very many patches.
+/// Subdivisions per side if there are very many patches.
 const COARSE: u32 = 2;
-/// Patches are very many from here on.
+/// The number of patches from which on `COARSE` applies.
 const MANY: usize = 10_000;
 
 pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
@@ -38,7 +38,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     pbrt.finished(mesh, list)
 }
 
-/// True where two flat triangles are the patch, texture coordinates included.
+/// True if two flat triangles represent the patch exactly, including its texture coordinates.
 fn is_parallelogram([p00, p10, p01, p11]: [Vec3; 4]) -> bool {
     let gap = (p11 - p10) - (p01 - p00);
     gap.length() <= 1e-5 * ((p10 - p00).length() + (p01 - p00).length())

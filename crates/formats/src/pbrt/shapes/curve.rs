@@ -1,4 +1,4 @@
-//! `curve`: hair and grass, as tubes of triangles; ribbons as strips.
+//! `curve`: hair and grass as tubes of triangles, and ribbons as strips.
 
 use super::super::parameters::ParameterList;
 use super::super::reader::{Pbrt, ShapeGeometry};
@@ -11,11 +11,11 @@ use bilux_math::{Vec2, Vec3};
 use bilux_scene::Mesh;
 use std::f64::consts::TAU;
 
-/// Pieces along a segment and around it, of curves that are few.
+/// Subdivisions along and around a segment if there are few curves.
 const FINE: (u32, u32) = (16, 8);
-/// The same of those that are many.
+/// The same if there are many curves.
 const COARSE: (u32, u32) = (4, 3);
-/// Curves are many from here on.
+/// The number of curves from which on `COARSE` applies.
 const MANY: usize = 2000;
 
 pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
@@ -47,7 +47,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     pbrt.finished(mesh, list)
 }
 
-/// Cubic Bézier segments of a curve of any basis and degree.
+/// The cubic Bézier segments of a curve of any basis and degree.
 fn segments(list: &ParameterList, p: &[DVec3]) -> Result<Vec<[DVec3; 4]>, FormatError> {
     let degree = list.integer("degree")?.unwrap_or(3);
     let basis = list.text("basis")?.unwrap_or("bezier");
@@ -86,7 +86,7 @@ fn segments(list: &ParameterList, p: &[DVec3]) -> Result<Vec<[DVec3; 4]>, Format
     Ok((0..(p.len() - 1) / step).map(|s| raised(first(s))).collect())
 }
 
-/// A curve of degree 2 as one of degree 3.
+/// Raises a curve of degree 2 to degree 3.
 fn raised(p: &[DVec3]) -> [DVec3; 4] {
     match *p {
         [a, b, c] => [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c],
@@ -107,7 +107,7 @@ fn of_bspline(p: &[DVec3]) -> [DVec3; 4] {
     }
 }
 
-/// Points along a curve with unit directions.
+/// Points along a curve with unit tangents.
 fn spine(segments: &[[DVec3; 4]], pieces: u32) -> Vec<(DVec3, DVec3)> {
     let mut spine: Vec<(DVec3, DVec3)> = Vec::with_capacity(segments.len() * pieces as usize + 1);
     for (s, [a, b, c, d]) in segments.iter().enumerate() {
@@ -128,7 +128,7 @@ fn width_at(widths: [f64; 2], i: usize, count: usize) -> (f64, f64) {
     (t, widths[0] + (widths[1] - widths[0]) * t)
 }
 
-/// Rings around the spine; each frame is the one before, turned as little as can be. [Bishop 1975]
+/// Rings around the spine, with rotation-minimising frames. [Bishop 1975]
 fn tube(spine: &[(DVec3, DVec3)], widths: [f64; 2], around: u32) -> Mesh {
     let mut mesh = Mesh { name: "curve".to_owned(), ..Mesh::default() };
     let mut side = spine.first().map_or(DVec3::X, |(_, direction)| direction.any_orthonormal_vector());
@@ -146,12 +146,12 @@ fn tube(spine: &[(DVec3, DVec3)], widths: [f64; 2], around: u32) -> Mesh {
         }
     }
     rows(&mut mesh, spine.len() as u32, around + 1);
-    // Around, then along: what is seen from outside.
+    // Makes the surface face outwards.
     mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     mesh
 }
 
-/// A flat band that its normals lie across.
+/// A flat ribbon perpendicular to its normals.
 fn strip(spine: &[(DVec3, DVec3)], widths: [f64; 2], normals: &[Vec3]) -> Mesh {
     let mut mesh = Mesh { name: "curve".to_owned(), ..Mesh::default() };
     for (i, (p, direction)) in spine.iter().enumerate() {
@@ -171,7 +171,7 @@ fn strip(spine: &[(DVec3, DVec3)], widths: [f64; 2], normals: &[Vec3]) -> Mesh {
     mesh
 }
 
-/// Joins rows of so many points.
+/// Connects rows of `width` points with triangles.
 fn rows(mesh: &mut Mesh, count: u32, width: u32) {
     for (row, i) in (0..count.saturating_sub(1)).flat_map(|row| (0..width - 1).map(move |i| (row, i))) {
         let at = |dr: u32, di: u32| (row + dr) * width + i + di;

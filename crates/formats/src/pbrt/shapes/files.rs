@@ -1,4 +1,4 @@
-//! `plymesh`: triangles from a PLY file, packed or not.
+//! `plymesh`: triangles from a PLY file, which may be compressed.
 
 use super::super::gzip;
 use super::super::parameters::ParameterList;
@@ -29,7 +29,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     let bytes = gzip::plain(raw, pbrt.reading, &path, &at)?;
     let shown: Arc<str> = Path::new(&*at.file).with_file_name(name).display().to_string().into();
     let source = Source { bytes: &bytes, name: &shown, folder: path.parent() };
-    // Without normals a mesh is flat here.
+    // In pbrt, a mesh without normals is flat.
     let crease_angle = std::mem::replace(&mut pbrt.reading.crease_angle, 0.0);
     let model = read_source(&crate::ply::ENTRY, pbrt.reading, &source);
     pbrt.reading.crease_angle = crease_angle;
@@ -38,7 +38,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     pbrt.scene.warnings.append(&mut model.warnings);
     let mut meshes = model.objects.into_iter().map(|object| Arc::unwrap_or_clone(object.mesh));
     let mesh = meshes.next().unwrap_or_default();
-    // Colours of vertices mean nothing here.
+    // pbrt ignores vertex colours.
     let mesh = Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), ..mesh };
     let form = pbrt.finished(mesh, list)?;
     if let Some(ShapeGeometry::Mesh(mesh)) = &form {

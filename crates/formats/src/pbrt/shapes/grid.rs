@@ -1,14 +1,16 @@
-//! Curved surfaces as grids of triangles.
+//! Tessellates curved surfaces into grids of triangles.
 
 use bilux_math::Vec2;
 use bilux_math::glam::DVec3;
 use bilux_scene::Mesh;
 
-/// A point of a surface and its normal, at two coordinates from 0 to 1.
+/// The point and normal of a surface at two coordinates from 0 to 1.
 pub(super) type Surface<'s> = &'s dyn Fn(f64, f64) -> (DVec3, DVec3);
 
-/// Adds a surface in squares of two triangles, seen from where the change with the first coordinate crosses that with the
-/// second. Corners that coincide make one triangle of a square. `closes` makes the last column the first, to the bit.
+/// Adds a surface as a grid of quads with two triangles each.
+///
+/// It faces the cross product of its derivatives by the first and the second coordinate. Triangles with coinciding
+/// corners are left out. If `closes` is set, the last column repeats the first exactly.
 pub(super) fn add(mesh: &mut Mesh, columns: u32, rows: u32, closes: bool, at: Surface) {
     let first = mesh.positions.len() as u32;
     for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {

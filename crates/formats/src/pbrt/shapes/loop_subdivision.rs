@@ -1,4 +1,4 @@
-//! `loopsubdiv`: a mesh made smooth by cutting each triangle in four, over and over. [Loop 1987]
+//! `loopsubdiv`: Loop subdivision, which splits each triangle into four per level. [Loop 1987]
 
 use super::super::parameters::ParameterList;
 use super::super::reader::{Pbrt, ShapeGeometry};
@@ -11,13 +11,13 @@ use bilux_scene::Mesh;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-/// More would be finer than any picture.
+/// More levels would be finer than any image.
 const MAX_LEVELS: i32 = 8;
 
 pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
     let points = needed_points(list)?;
     let triangles = corners::<3>(list, points.len())?;
-    // Version 3 calls them nlevels; the scheme is always this one.
+    // Version 3 calls the parameter nlevels; the scheme is always this one.
     let levels = match list.integer("levels")? {
         Some(levels) => levels,
         None => list.integer("nlevels")?.unwrap_or(3),
@@ -29,7 +29,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     }
     let mut cage = Cage { points: points.iter().map(|p| p.as_dvec3()).collect(), triangles };
     for _ in 0..levels.clamp(0, MAX_LEVELS) {
-        // Four triangles of each, with about half as many points, and the edges while they are made.
+        // Each triangle becomes four, with about half as many points, plus the edges during construction.
         pbrt.reading.budget.take::<[u32; 40]>(cage.triangles.len() * 2, &list.at.file)?;
         cage = cage.refined();
     }
@@ -48,14 +48,14 @@ struct Cage {
     triangles: Vec<[u32; 3]>,
 }
 
-/// The corners beside an edge, and how many triangles have it.
+/// The corners opposite an edge, and its number of triangles.
 #[derive(Default)]
 struct Edge {
     opposite: [u32; 2],
     triangles: u32,
 }
 
-/// The neighbours of a point: their sum and number, all and those along the border.
+/// The neighbours of a point: their sum and count, for all of them and for those along the border.
 #[derive(Clone, Copy, Default)]
 struct Ring {
     sum: DVec3,
@@ -80,7 +80,7 @@ impl Cage {
     }
 
     fn rings(&self, edges: &HashMap<[u32; 2], Edge>) -> Vec<Ring> {
-        // Sums go in the order of triangles, since that of a table changes from run to run.
+        // Sums in the order of the triangles, since the order of a hash table changes from run to run.
         let mut rings = vec![Ring::default(); self.points.len()];
         let mut seen = std::collections::HashSet::with_capacity(edges.len());
         for &[a, b, c] in &self.triangles {
@@ -135,7 +135,7 @@ impl Cage {
         ends * 0.375 + (c + d) * 0.125
     }
 
-    /// Where the points would come to lie.
+    /// The limit positions of the points.
     fn limit(&self) -> Vec<DVec3> {
         let rings = self.rings(&self.edges());
         let settled = |(p, ring): (&DVec3, &Ring)| match ring.border_count {
@@ -147,12 +147,12 @@ impl Cage {
     }
 }
 
-/// A point with a part of each of its neighbours.
+/// Blends a point with its neighbours, each weighted by `part`.
 fn blended(p: DVec3, ring: &Ring, part: f64) -> DVec3 {
     if ring.count == 0.0 { p } else { p * (1.0 - ring.count * part) + ring.sum * part }
 }
 
-/// The part of each of so many neighbours. [Loop 1987]
+/// The weight of each neighbour for this number of them. [Loop 1987]
 fn beta(count: f64) -> f64 {
     let middle = 0.375 + 0.25 * cos_f64(TAU / count);
     (0.625 - middle * middle) / count

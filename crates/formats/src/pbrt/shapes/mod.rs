@@ -1,4 +1,4 @@
-//! Shapes. One a file; the table is [`SHAPES`].
+//! Shapes, one per file; the table is [`SHAPES`].
 
 mod bilinear;
 mod curve;
@@ -18,10 +18,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What a shape becomes; none where nothing can be seen of it.
+/// Builds a shape; `None` if it is invisible.
 type Make = fn(&mut Pbrt, &ParameterList) -> Result<Option<ShapeGeometry>, FormatError>;
 
-/// Every shape that is drawn.
+/// Every supported shape.
 const SHAPES: &[(&str, Make)] = &[
     ("bilinearmesh", bilinear::make),
     ("curve", curve::make),
@@ -33,24 +33,24 @@ const SHAPES: &[(&str, Make)] = &[
     ("trianglemesh", triangles::make),
 ];
 
-/// Those of version 3 that are left out.
+/// Shapes of version 3 that are not supported.
 const LEFT_OUT: [&str; 5] = ["cone", "paraboloid", "hyperboloid", "heightfield", "nurbs"];
 
-/// Meshes that are made once.
+/// Meshes that are built once and shared.
 #[derive(Default)]
 pub(super) struct ShapeCache {
-    /// The sphere of radius 1, seen from outside and from inside.
+    /// The sphere of radius 1, facing outwards and inwards.
     pub(super) unit_spheres: [Option<Arc<Mesh>>; 2],
-    /// Other round shapes, by the bits of their parameters.
+    /// Other quadrics, by the bits of their parameters.
     round: HashMap<Vec<u32>, Arc<Mesh>>,
-    /// Files, with whether they are turned inside out.
+    /// Meshes from files, by path and orientation.
     files: HashMap<(PathBuf, bool), Arc<Mesh>>,
-    /// Curves so far.
+    /// The number of curves so far.
     curves: usize,
 }
 
 impl Pbrt<'_, '_> {
-    /// What a shape directive makes.
+    /// Builds the shape of a directive.
     pub(super) fn shape(&mut self, entity: &Entity) -> Result<Option<Piece>, FormatError> {
         let list = &entity.parameters;
         let alpha = alpha(list)?;
@@ -77,7 +77,7 @@ impl Pbrt<'_, '_> {
         Ok(made.map(|form| Piece { shapes: count(entity, &form), form, matrices, dress, at }))
     }
 
-    /// A mesh as the state has it: turned inside out or not, and counted in the budget.
+    /// Finishes a mesh: reverses it if the state says so, and charges the budget.
     fn finished(&mut self, mesh: Mesh, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
         self.reading.budget.take_bytes(mesh.size(), &list.at.file)?;
         if mesh.positions.iter().any(|p| !p.is_finite()) {
@@ -88,7 +88,7 @@ impl Pbrt<'_, '_> {
         Ok((!mesh.triangles.is_empty()).then(|| ShapeGeometry::Mesh(Arc::new(mesh))))
     }
 
-    /// One of the round shapes, which look alike wherever they stand.
+    /// One of the quadrics, shared by all that have the same parameters.
     fn round(
         &mut self,
         list: &ParameterList,
@@ -106,14 +106,14 @@ impl Pbrt<'_, '_> {
     }
 }
 
-/// The same, seen from its other side.
+/// The mesh with reversed orientation.
 fn reversed(mut mesh: Mesh) -> Mesh {
     mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     mesh.normals.iter_mut().for_each(|n| *n = -*n);
     mesh
 }
 
-/// How many shapes a directive is for pbrt.
+/// The number of shapes that pbrt counts for a directive.
 fn count(entity: &Entity, form: &ShapeGeometry) -> u32 {
     let count = match (entity.kind.as_str(), form) {
         ("bilinearmesh", _) => entity.parameters.integers("indices").map_or(1, |list| list.len() / 4),
@@ -123,7 +123,7 @@ fn count(entity: &Entity, form: &ShapeGeometry) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX).max(1)
 }
 
-/// How much of a shape is there, as its parameter says.
+/// The opacity of a shape from its alpha parameter.
 fn alpha(list: &ParameterList) -> Result<Alpha, FormatError> {
     if let Some((name, at)) = list.texture("alpha") {
         return Ok(Alpha::Texture(name.into(), at.line, at.column));
@@ -132,7 +132,7 @@ fn alpha(list: &ParameterList) -> Result<Alpha, FormatError> {
     Ok(if number == 1.0 { Alpha::Whole } else { Alpha::Even(number.to_bits()) })
 }
 
-/// The numbers of the corners of triangles or of patches, checked.
+/// The vertex indices of triangles or patches, checked.
 fn corners<const N: usize>(list: &ParameterList, vertices: usize) -> Result<Vec<[u32; N]>, FormatError> {
     let given = list.integers("indices")?;
     if given.is_empty() && vertices == N {
@@ -156,7 +156,7 @@ fn corners<const N: usize>(list: &ParameterList, vertices: usize) -> Result<Vec<
     Ok(given.chunks_exact(N).map(|c| std::array::from_fn(|i| c[i] as u32)).collect())
 }
 
-/// Points under a name, which have to be there.
+/// The points of a required parameter.
 fn needed_points(list: &ParameterList) -> Result<Vec<Vec3>, FormatError> {
     let points = list.triples("P")?;
     if points.is_empty() {
@@ -167,13 +167,13 @@ fn needed_points(list: &ParameterList) -> Result<Vec<Vec3>, FormatError> {
 }
 
 impl Pbrt<'_, '_> {
-    /// Normals of vertices; none where they are not as many.
+    /// Vertex normals; none if their number is wrong.
     fn normals_of(&mut self, list: &ParameterList, vertices: usize) -> Result<Vec<Vec3>, FormatError> {
         let normals = list.triples("N")?;
         Ok(self.as_many(list, "N", normals, vertices))
     }
 
-    /// Texture coordinates of vertices; none where they are not as many.
+    /// Vertex texture coordinates; none if their number is wrong.
     fn uvs_of(&mut self, list: &ParameterList, vertices: usize) -> Result<Vec<Vec2>, FormatError> {
         let name = if list.has("uv") { "uv" } else { "st" };
         let uvs = list.pairs(name)?;

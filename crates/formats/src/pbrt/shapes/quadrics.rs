@@ -10,18 +10,18 @@ use bilux_scene::Mesh;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Squares around a whole turn.
+/// Quads around a whole turn.
 const AROUND: u32 = 192;
-/// Squares from pole to pole.
+/// Quads from pole to pole.
 const ALONG: u32 = 96;
 
-/// How much of a whole turn a shape has, from 0 to 1, and squares for it.
+/// The fraction of a whole turn that a shape covers, and its number of quads.
 fn turn(list: &ParameterList) -> Result<(f64, u32), FormatError> {
     let turn = f64::from(list.finite("phimax", 360.0)?.clamp(0.0, 360.0)) / 360.0;
     Ok((turn, ((f64::from(AROUND) * turn).ceil() as u32).max(1)))
 }
 
-/// A radius above 0; none, with a warning, where it is not.
+/// A radius above 0; `None`, with a warning, if it is zero.
 fn radius(pbrt: &mut Pbrt, list: &ParameterList, name: &'static str) -> Result<Option<f32>, FormatError> {
     let radius = list.finite(name, 1.0)?;
     if radius.abs() > 0.0 {
@@ -52,14 +52,14 @@ pub(super) fn sphere(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sha
     })
 }
 
-/// From one angle to the pole above to another.
+/// A part of a sphere between two angles to the upper pole.
 fn part_of_sphere(radius: f64, [from, to]: [f64; 2], turn: f64, around: u32) -> Mesh {
     let mut mesh = Mesh { name: "sphere".to_owned(), ..Mesh::default() };
     let rows = ((f64::from(ALONG) * (from - to).abs() / PI).ceil() as u32).max(1);
     grid::add(&mut mesh, around, rows, turn == 1.0, &|u, v| {
         let theta = from + (to - from) * v;
         let (sin, cos) = match theta {
-            // Poles are one point, to the bit.
+            // Each pole is exactly one point.
             0.0 => (0.0, 1.0),
             PI => (0.0, -1.0),
             t => sin_cos_f64(t),

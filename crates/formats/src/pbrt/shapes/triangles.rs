@@ -12,7 +12,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     let normals = pbrt.normals_of(list, positions.len())?;
     let uvs = pbrt.uvs_of(list, positions.len())?;
     for name in ["S", "faceIndices"] {
-        // Tangents are made of texture coordinates; numbers of faces are for Ptex alone.
+        // Tangents are derived from texture coordinates; face indices matter only to Ptex.
         list.has(name);
     }
     pbrt.finished(Mesh { positions, normals, uvs, triangles, ..Mesh::default() }, list)

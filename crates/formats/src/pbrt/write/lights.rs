@@ -1,4 +1,4 @@
-//! Lights; panels and spheres as black shapes that give light.
+//! Writes lights; area and sphere lights become black emissive shapes.
 
 use super::view::from_to;
 use super::{Document, float, numbers, point, rgb};
@@ -11,7 +11,7 @@ use bilux_pictures::{Picture, write_bytes};
 use bilux_scene::lights::{BuiltLight, build};
 use bilux_scene::{Spec, Value};
 
-/// What is black but for the light that it gives.
+/// The material of shapes that only emit.
 const BLACK: &str = "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]";
 
 impl Document<'_> {
@@ -67,7 +67,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// A black shape that gives light.
+    /// Writes a black shape that emits light.
     fn glowing(&mut self, place: &str, shape: &str, radiance: Rgb, both_sides: bool) {
         let light = area_light(&rgb("L", radiance), both_sides);
         self.say(&format!("AttributeBegin\n{place}{BLACK}\n{light}\nShape {shape}\nAttributeEnd"));
@@ -85,7 +85,7 @@ impl Document<'_> {
             self.say(&format!("LightSource \"infinite\"{}", rgb("L", built.le(Vec3::Y))));
             return Ok(());
         }
-        // As many texels as rows by longitude and latitude have around the equator, on the square.
+        // The square has enough texels to keep the resolution of the longitude-latitude map at its equator.
         let side = picture.map_or(256, |picture| (picture.height() * 3 / 2).clamp(64, 2048));
         let place = |k: usize| (k as f64 + 0.5) / side as f64;
         let texels = (0..side * side).map(|i| {
@@ -102,13 +102,13 @@ impl Document<'_> {
     }
 }
 
-/// What makes the shapes after it give light.
+/// The directive that makes the shapes after it emit.
 pub(super) fn area_light(radiance: &str, both_sides: bool) -> String {
     let sides = if both_sides { " \"bool twosided\" true" } else { "" };
     format!("AreaLightSource \"diffuse\"{radiance}{sides}")
 }
 
-/// Radiance, given as such or as an intensity over an area.
+/// The radiance, given directly or as an intensity over an area.
 fn radiance_of(spec: &Spec, area: f32) -> Rgb {
     match colour(spec, "radiance").filter(|radiance| !radiance.is_black()) {
         Some(radiance) => radiance,

@@ -1,4 +1,4 @@
-//! What pbrt's materials say of ours.
+//! The parameters of Bilux materials that pbrt's materials can express.
 
 use crate::values::MaterialSupport;
 

@@ -1,4 +1,4 @@
-//! Our materials in their terms: what [`super::super::materials`] reads, the other way round.
+//! Writes pbrt materials: the inverse of [`super::super::materials`].
 
 use super::material_parameters::HOLDS;
 use super::shape_attributes::AS_IT_IS;
@@ -14,11 +14,11 @@ use bilux_math::transcendental::ln;
 use bilux_scene::materials::{metal_indices, with_indices};
 use bilux_scene::{Spec, Value};
 
-/// Roughness is what we write, and no root of it.
+/// Roughness is written as alpha, so pbrt must not take its root.
 const AS_ALPHA: &str = " \"bool remaproughness\" false";
 
 impl Document<'_> {
-    /// Writes a material; gives its name, and what is absorbed inside.
+    /// Writes a material; returns its name and the absorption inside.
     pub(super) fn material(
         &mut self,
         spec: &Spec,
@@ -47,7 +47,7 @@ impl Document<'_> {
         self.named(spec, &spec.name, &given, writing).map(|name| (name, absorbed))
     }
 
-    /// Writes what is given under a name of its own.
+    /// Writes a named material of this kind.
     fn named(
         &mut self,
         spec: &Spec,
@@ -65,7 +65,7 @@ impl Document<'_> {
         Ok(name)
     }
 
-    /// A colour or a texture of one, under the name `x`.
+    /// A colour, or a texture of colours, as the parameter `x`.
     fn colour_of(
         &mut self,
         spec: &Spec,
@@ -110,7 +110,7 @@ impl Document<'_> {
                     Some((Value::Text(name), _)) => name.as_str(),
                     _ => "aluminium",
                 };
-                // Not by name: pbrt's spectra are other measurements.
+                // Not by name: pbrt's spectra come from other measurements.
                 let [eta, k] = metal_indices(metal).unwrap_or([Rgb::WHITE; 2]);
                 rgb("eta", eta) + &rgb("k", k)
             }
@@ -140,7 +140,8 @@ impl Document<'_> {
         Ok(format!(" \"string type\" \"dielectric\"{index}{rough}{AS_ALPHA}"))
     }
 
-    /// Two alphas; ours is a square root of one, and what it lacks along the brushing.
+    /// The two alphas; Bilux states the square root of alpha, and an anisotropy that reduces it along the
+    /// brushing.
     fn roughness(
         &mut self,
         spec: &Spec,
@@ -172,7 +173,7 @@ impl Document<'_> {
         Ok(float(&format!("{before}uroughness"), u) + &float(&format!("{before}vroughness"), v))
     }
 
-    /// Metal, glass and what is below a boundary, mixed where a surface is several of them.
+    /// Writes metal, glass and a coated base, mixed if a surface combines several of them.
     fn principled(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(String, Rgb), FormatError> {
         let white =
             |key: &str| colour(spec, key).is_none_or(|c| c == Rgb::WHITE) && texture(spec, key).is_none();
@@ -204,7 +205,7 @@ impl Document<'_> {
         Ok((name, absorbed))
     }
 
-    /// One material for a share of the light, and what there was for the rest.
+    /// Mixes one material with the ones so far; `share` names the parameter with its weight.
     fn blended(
         &mut self,
         spec: &Spec,
@@ -230,7 +231,7 @@ impl Document<'_> {
         Ok(float("amount", number(spec, key).unwrap_or(0.5)))
     }
 
-    /// The diffuse part and the boundary above it.
+    /// The diffuse base with the boundary above it.
     fn below_glass(&mut self, spec: &Spec, writing: &mut Writing) -> Result<String, FormatError> {
         let weight = number(spec, "specular_weight").unwrap_or(1.0);
         let behind = number(spec, "diffuse_transmission_weight").unwrap_or(0.0);
@@ -254,7 +255,7 @@ impl Document<'_> {
         if weight <= 0.0 {
             return self.matt(spec, "base_color", 0.8, writing);
         }
-        // What is reflected straight on is multiplied by the weight.
+        // The reflectance at normal incidence is multiplied by the weight.
         let index = number(spec, "specular_ior").unwrap_or(1.5);
         let root = ((index - 1.0) / (index + 1.0)) * weight.min(1.0).sqrt();
         let index = (1.0 + root) / (1.0 - root);
@@ -286,7 +287,7 @@ impl Document<'_> {
 
     fn mix(&mut self, spec: &Spec, writing: &mut Writing) -> Result<String, FormatError> {
         let mut part = |key: &str| match spec.parameters.find(key) {
-            // Parts stand before what is made of them.
+            // Parts are written before the materials that contain them.
             Some((Value::Material(index), _)) => match self.scene.materials.get(*index).cloned() {
                 Some(part) => self.material(&part, writing).map(|(name, _)| name),
                 None => Ok(String::new()),
@@ -298,7 +299,7 @@ impl Document<'_> {
         Ok(format!(" \"string type\" \"mix\" \"string materials\" [ \"{a}\" \"{b}\" ]{amount}"))
     }
 
-    /// The paper's material: matt, with a highlight as wide as its exponent says.
+    /// The Phong material: diffuse, with a highlight as wide as its exponent implies.
     fn shiny(&mut self, spec: &Spec, writing: &mut Writing) -> Result<String, FormatError> {
         let strongest = |key, default| colour(spec, key).unwrap_or(Rgb::grey(default)).max_channel();
         let clear = strongest("kt", 0.0);
@@ -343,17 +344,17 @@ impl Document<'_> {
     }
 }
 
-/// True for what is said to be of that glass.
+/// True if the material names this glass.
 fn is_of(spec: &Spec, glass: &str) -> bool {
     matches!(spec.parameters.find("glass"), Some((Value::Text(name), _)) if name == glass)
 }
 
-/// A parameter under its own name.
+/// A parameter with another name.
 fn renamed(parameter: &str, name: &str) -> String {
     parameter.replacen(" x\"", &format!(" {name}\""), 1)
 }
 
-/// What is absorbed inside of what leaves `transmission_color` after `transmission_depth`.
+/// The absorption that leaves `transmission_color` after `transmission_depth`.
 fn absorption(spec: &Spec) -> Rgb {
     let depth = number(spec, "transmission_depth").unwrap_or(0.0);
     if depth <= 0.0 || texture(spec, "transmission_color").is_some() {

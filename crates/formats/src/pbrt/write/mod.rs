@@ -1,4 +1,4 @@
-//! Writing pbrt-v4: meshes beside it as PLY, pictures as PNG or EXR.
+//! Writes pbrt-v4 scenes, with meshes as PLY files and images as PNG or EXR files.
 
 mod lights;
 mod material_parameters;
@@ -18,19 +18,19 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// A scene file while it is put together.
+/// A scene file under construction.
 struct Document<'s> {
     scene: &'s SceneBuilder,
     out: String,
-    /// Of textures, materials and media.
+    /// The names of textures, materials and media.
     names: UnusedNames,
-    /// Textures that are there already, by what they are made of.
+    /// Textures written so far, by content.
     textures: HashMap<String, String>,
-    /// What each material of the scene is called here, and what shapes have of it.
+    /// For each material of the scene, its name here and the attributes of its shapes.
     shape_attributes: Vec<ShapeAttributes>,
     /// The files of meshes.
     meshes: HashMap<*const Mesh, String>,
-    /// Objects that are used several times, by mesh and material.
+    /// Objects with several instances, by mesh and material.
     shared: HashMap<(*const Mesh, usize), String>,
 }
 
@@ -71,7 +71,7 @@ impl Document<'_> {
         self.out.push('\n');
     }
 
-    /// A name in quotes that nothing else has.
+    /// A unique quoted name.
     fn name(&mut self, wanted: &str, otherwise: &str) -> String {
         let wanted = if wanted.is_empty() { otherwise } else { wanted };
         let plain = |c: char| if c == '"' || c == '\\' || c.is_control() { '_' } else { c };
@@ -93,7 +93,7 @@ impl Document<'_> {
             let _ = writeln!(out, "Shape \"plymesh\" \"string filename\" \"{file}\"{}", look.alpha);
             out
         };
-        // Surfaces in objects give no light there.
+        // Surfaces of object instances do not emit in pbrt.
         if !is_shared || look.glows {
             let _ = write!(self.out, "AttributeBegin\n{}{}AttributeEnd\n", placed(&place), shape(&look));
             return Ok(());
@@ -113,7 +113,7 @@ impl Document<'_> {
         Ok(())
     }
 
-    /// The file of a mesh, made when it is first asked for.
+    /// The file of a mesh, written on first use.
     fn mesh(&mut self, mesh: &Arc<Mesh>, writing: &mut Writing) -> Result<String, FormatError> {
         if let Some(file) = self.meshes.get(&Arc::as_ptr(mesh)) {
             return Ok(file.clone());
@@ -137,7 +137,7 @@ impl Document<'_> {
     }
 }
 
-/// The directive that puts what follows into its place.
+/// The directive that applies a transform.
 fn placed(place: &Transform) -> String {
     if place.is_identity() {
         return String::new();
@@ -145,7 +145,7 @@ fn placed(place: &Transform) -> String {
     format!("Transform [ {} ]\n", numbers(&place.matrix().to_cols_array()))
 }
 
-/// Numbers that read back as the same.
+/// Numbers as text that parses back to the same values.
 fn numbers(list: &[f32]) -> String {
     list.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! What shapes have of a material: its name, what is inside, the light that they give, and their holes.
+//! What a material adds to its shapes: its name, interior medium, emission and opacity mask.
 
 use super::lights::area_light;
 use super::textures::{Change, TexelMeaning};
@@ -10,12 +10,12 @@ use bilux_math::Rgb;
 use bilux_scene::{Spec, Value};
 use std::fmt::Write;
 
-/// What stands before and behind a shape.
+/// The text before a shape and its last parameter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ShapeAttributes {
-    /// Directives.
+    /// The directives before the shape.
     pub(super) begin: String,
-    /// A parameter of the shape.
+    /// The alpha parameter of the shape.
     pub(super) alpha: String,
     pub(super) glows: bool,
 }
@@ -24,7 +24,7 @@ pub(super) struct ShapeAttributes {
 pub(super) const AS_IT_IS: Change = Change { name: "", of: &|texel| texel };
 
 impl Document<'_> {
-    /// Writes a material, and gives what shapes have of it.
+    /// Writes a material; returns what it adds to its shapes.
     pub(super) fn look(
         &mut self,
         spec: &Spec,
@@ -59,7 +59,7 @@ impl Document<'_> {
         Ok(look)
     }
 
-    /// The parameters of the light that a surface gives, if any.
+    /// The parameters of a surface's emission, if any.
     fn radiance(&mut self, spec: &Spec, writing: &mut Writing) -> Result<Option<String>, FormatError> {
         let scale = colour(spec, "emission_scale").unwrap_or(Rgb::WHITE);
         let Some(index) = texture(spec, "emission") else {

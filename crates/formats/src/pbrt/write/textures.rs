@@ -1,4 +1,4 @@
-//! Pictures on surfaces.
+//! Writes textures.
 
 use super::Document;
 use crate::FormatError;
@@ -9,15 +9,15 @@ use bilux_scene::Texture;
 use bilux_scene::texture::{Filter, Wrap};
 use std::fmt::Write;
 
-/// What a picture's texels become.
+/// A function that changes the texels of an image.
 #[derive(Clone, Copy)]
 pub(super) struct Change<'c> {
-    /// Other ones have other names.
+    /// Distinct functions have distinct names.
     pub(super) name: &'static str,
     pub(super) of: &'c dyn Fn(Rgb) -> Rgb,
 }
 
-/// What a texture's texels are taken for.
+/// How the texels of a texture are interpreted.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum TexelMeaning {
     Colours,
@@ -25,7 +25,7 @@ pub(super) enum TexelMeaning {
 }
 
 impl Document<'_> {
-    /// The name of a texture as it is needed; none where there is no such texture.
+    /// The name of a texture after a change; `None` if the texture does not exist.
     pub(super) fn texture(
         &mut self,
         index: usize,
@@ -58,7 +58,7 @@ impl Document<'_> {
             _ => writing.warn("textures whose edges are mirrored, or differ, are written to repeat"),
         }
         if let Some(transform) = &texture.transform {
-            // Theirs has v upwards.
+            // In pbrt, v points up.
             let at = |u, v| transform.apply(Vec2::new(u, v));
             let (zero, u, v) = (at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0));
             if (u.y - zero.y).abs() + (v.x - zero.x).abs() > 1e-5 {
@@ -77,7 +77,7 @@ impl Document<'_> {
         Ok(Some(name))
     }
 
-    /// The file of a picture; what is brighter than white goes into an EXR.
+    /// The file of an image; an image with texels brighter than white becomes an EXR.
     pub(super) fn picture(
         &mut self,
         texture: &Texture,
@@ -95,7 +95,7 @@ impl Document<'_> {
         let format = if is_bright { "exr" } else { "png" };
         let mut picture = Picture::from_rgb(texture.width(), texture.height(), texels)?;
         if (texture.is_data || is_number) && !is_bright {
-            // As the file holds them, so that no curve is laid over numbers.
+            // Texels are written as stored, so that no transfer curve is applied to numbers.
             picture.colour_space = ColourSpace::Srgb;
         }
         picture.alpha = Alpha::Straight;

@@ -1,4 +1,4 @@
-//! What stands before the world: film, camera, filter, samples and depth.
+//! Writes the directives before `WorldBegin`: film, camera, filter, samples and depth.
 
 use super::{Document, float, numbers, point};
 use crate::values::{number, vector};
@@ -8,11 +8,11 @@ use bilux_math::transcendental::{atan, tan};
 use bilux_scene::cameras::CameraSpec;
 use bilux_scene::{Spec, Value};
 
-/// What other programs need not know.
+/// Settings that need no warning.
 const QUIET: [&str; 4] = ["size", "max_depth", "filter", "camera"];
 
 impl Document<'_> {
-    /// Everything up to the world.
+    /// Writes everything before `WorldBegin`.
     pub(super) fn view(&mut self, writing: &mut Writing) {
         let settings = &self.scene.settings;
         let text = |key: &str| match settings.find(key) {
@@ -70,7 +70,7 @@ impl Document<'_> {
         }
     }
 
-    /// Theirs looks along +z with +x to the right.
+    /// A pbrt camera looks along +z with +x to the right.
     fn camera(&mut self, camera: &CameraSpec, aspect: f32, writing: &mut Writing) {
         if !camera.keyframes.is_empty() {
             writing.warn("cameras are written where they are at 0 seconds");
@@ -91,7 +91,7 @@ impl Document<'_> {
             return;
         }
         let vertical = number(spec, "fov").unwrap_or(40.0);
-        // Theirs is that of the shorter side.
+        // In pbrt, the field of view applies to the shorter side.
         let shorter = match aspect < 1.0 {
             true => 2.0 * atan(tan(0.5 * vertical.to_radians()) * aspect).to_degrees(),
             false => vertical,
@@ -110,7 +110,7 @@ fn is_switched_on(spec: &Spec, key: &str) -> bool {
     matches!(spec.parameters.find(key), Some((Value::Bool(true), _)))
 }
 
-/// A direction in words that lights share.
+/// The `from` and `to` parameters of a light.
 pub(super) fn from_to(from: Vec3, to: Vec3) -> String {
     point("from", from) + &point("to", to)
 }
