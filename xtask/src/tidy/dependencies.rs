@@ -1,5 +1,5 @@
-//! Every dependency of the workspace is justified in `docs/adr/dependencies.md`, by a line of its table that begins ``
-//! | `name` | ``; some crate uses it; and no line there is about a dependency that is gone. If a crate declares a
+//! Every dependency of the workspace is justified in `docs/adr/dependencies.md`, by a line of its table that begins
+//! `` | `name` | ``; some crate uses it; and no line there is about a dependency that is gone. If a crate declares a
 //! dependency, its code names it.
 
 use super::Violation;
