@@ -155,7 +155,7 @@ impl Embree {
                 path.display()
             ))
         };
-        // SAFETY: the user asks for this library's code to be run.
+        // SAFETY: the user asked for this library's code to be run.
         let library = unsafe { Library::new(path) }.map_err(|e| failed(e.to_string()))?;
         let functions = Functions::find(&library).map_err(|e| failed(e.to_string()))?;
         // SAFETY: the configuration ends in a zero.
@@ -168,7 +168,7 @@ impl Embree {
         }
         let held = Box::new(AtomicIsize::new(0));
         let counter: Pointer = std::ptr::from_ref(&*held).cast_mut().cast();
-        // SAFETY: `held` outlives the device; `count` has the type that is asked for.
+        // SAFETY: `held` outlives the device; `count` has the required type.
         unsafe { (functions.rtcSetDeviceMemoryMonitorFunction)(device, count, counter) };
         Ok(Rc::new(Embree { functions, device, held, _library: ManuallyDrop::new(library) }))
     }
@@ -221,8 +221,8 @@ impl Tree {
         positions.push([0.0; 3]);
         let before = embree.held.load(Ordering::Relaxed);
         let begun = Instant::now();
-        // SAFETY: handles are used as documented; both buffers live as long as the tree, with the room behind the
-        // last vertex that is asked for, and every index is less than `vertices`.
+        // SAFETY: handles are used as documented; both buffers live as long as the tree, with the required padding
+        // after the last vertex, and every index is less than `vertices`.
         let (scene, error) = unsafe {
             let scene = (f.rtcNewScene)(embree.device);
             (f.rtcSetSceneBuildQuality)(scene, kind.quality);

@@ -180,9 +180,9 @@ pub struct Settings {
     pub threads: usize,
     /// The name or number of the camera.
     pub camera: String,
-    /// Where the camera was asked for.
+    /// Where the camera was requested, for messages.
     pub camera_at: Span,
-    /// What is asked of the studio.
+    /// The settings of the studio.
     pub studio: Studio,
     /// The time to show, in seconds.
     pub time: f32,
@@ -374,7 +374,7 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         if reader.text("bsp_split") == "fuchs" { BspSplit::Fuchs } else { BspSplit::Mean };
     choice.options.bsp_group =
         if reader.text("bsp_group") == "objects" { BspGroup::Objects } else { BspGroup::Polygons };
-    // `auto` is none of them.
+    // `auto` is not a quality: it starts from the default.
     choice.options.quality = Quality::from_name(&reader.text("build")).unwrap_or_default();
     let wanted = CpuLevel::ALL.into_iter().find(|level| level.name() == reader.text("cpu"));
     choice.options.cpu_level = wanted.unwrap_or_default();
