@@ -340,9 +340,8 @@ fn integrator_parameters(
     Ok(spec)
 }
 
-/// The number of samples per triangle above which the best tree pays off. In interiors it pays from about four; the
-/// threshold is a few times higher because, where the best tree saves nothing, it costs a fiftieth of the time of the
-/// rays.
+/// The number of samples per triangle from which the best tree is built. In interiors it pays off from about four, so
+/// at this number several times over; where it saves nothing, it costs a fiftieth of the time of the rays here.
 const WORTH_THE_BEST: u64 = 64;
 
 /// Roughly the number of samples that there is time for, if time ends the picture.
