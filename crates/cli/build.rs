@@ -1,4 +1,4 @@
-//! Tells the binary which commit it was built from.
+//! Records in the binary which commit it was built from.
 
 use std::process::Command;
 

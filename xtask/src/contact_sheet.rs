@@ -1,10 +1,10 @@
-//! `cargo xtask contact-sheet [MODELS [OUT]]`: our pictures of models beside the screenshots that come with them.
+//! `cargo xtask contact-sheet [MODELS [OUT]]`: our pictures of models next to the screenshots that come with them.
 
 use crate::process::{cargo, root, run as run_process, target_folder};
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 
-/// Renders every model and puts the pictures on one sheet; further arguments go to the example that does it.
+/// Renders every model and puts the pictures on one sheet; further arguments are passed to the example that does it.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let is_folder = |argument: &&String| !argument.starts_with("--");
     let given: Vec<&String> = arguments.iter().take_while(is_folder).collect();

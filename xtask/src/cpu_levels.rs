@@ -1,6 +1,6 @@
-//! `cargo xtask cpu-levels`: the same pictures, byte by byte, whichever CPU level the compiler builds for.
+//! `cargo xtask cpu-levels`: the same pictures, byte for byte, whichever CPU level the compiler targets.
 //!
-//! Each level is a build of its own, so this takes minutes and is no part of `cargo xtask test`.
+//! Each level is a build of its own, so this takes minutes and is not part of `cargo xtask test`.
 
 use crate::process::{cargo, output, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A level of the x86-64 instruction set, and a feature by which to know that a machine has it.
+/// A level of the x86-64 instruction set, and how to detect whether this machine has it.
 struct Level {
     name: &'static str,
     runs_here: fn() -> bool,
@@ -32,14 +32,14 @@ const LEVELS: &[Level] = &[
 #[cfg(not(target_arch = "x86_64"))]
 const LEVELS: &[Level] = &[];
 
-/// A picture that every build makes: what it is called, and the arguments of `bilux`.
+/// A picture that every build renders: its name, and the arguments of `bilux`.
 struct Picture {
     name: &'static str,
     scene: &'static [&'static str],
     render: &'static [&'static str],
 }
 
-/// Every integrator, and every accelerator at least once.
+/// Every integrator except `occlusion`, and every accelerator at least once.
 const PICTURES: &[Picture] = &[
     Picture { name: "cast", scene: TEAPOTS, render: &["-i", "cast", "--accel", "brute"] },
     Picture { name: "whitted", scene: TEAPOTS, render: &["-i", "whitted", "--accel", "bsp-sah"] },
@@ -61,7 +61,7 @@ const TEAPOTS: &[&str] = &["teapots", "--count", "2"];
 const CORNELL: &[&str] = &["cornell-spheres", "--set", "level=3"];
 const ALL: &[&str] = &["--size", "96x96", "--spp", "4", "--quiet"];
 
-/// Builds every level that this machine can run, and compares what each one draws.
+/// Builds every level that this machine can run, and compares what each one renders.
 pub(crate) fn run(_: &[String]) -> Result<()> {
     let (able, unable): (Vec<_>, Vec<_>) = LEVELS.iter().partition(|level| (level.runs_here)());
     for level in unable {
@@ -89,7 +89,7 @@ fn build(level: &str, folder: &Path) -> Result<PathBuf> {
     Ok(folder.join("release").join("bilux"))
 }
 
-/// The SHA-256 of one picture as an OpenEXR file, in which every bit of every float counts.
+/// The SHA-256 of one picture as an OpenEXR file, so that every bit of every float counts.
 fn draw(picture: &Picture, binary: &Path, folder: &Path) -> Result<String> {
     let (scene, file) = (folder.join("scene.toml"), folder.join(format!("{}.exr", picture.name)));
     output(Command::new(binary).arg("generate").args(picture.scene).arg("-o").arg(&scene))?;
@@ -100,7 +100,7 @@ fn draw(picture: &Picture, binary: &Path, folder: &Path) -> Result<String> {
     Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Prints what differs; `columns` has one hash a picture for each level.
+/// Prints what differs; `columns` has one hash per picture for each level.
 fn report(levels: &[&Level], columns: &[Vec<String>]) -> Result<()> {
     let mut different = 0;
     for (row, picture) in PICTURES.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! `cargo xtask docs`: the library documentation, and the reference pages in `docs/reference/`, which are made
-//! from the tables that the binary lists. `--check` only says whether those pages are fresh.
+//! `cargo xtask docs`: the library documentation, and the reference pages in `docs/reference/`, which are generated
+//! from the tables that the binary lists. `--check` only checks whether those pages are up to date.
 
 use crate::process::{cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::process::Command;
 
-/// Where the pages are, from the root of the repository.
+/// The folder of the pages, relative to the root of the repository.
 const FOLDER: &str = "docs/reference";
 
-/// What `bilux list` lists, and the title of its page.
+/// The names that `bilux list` accepts, and the title of each one's page.
 const TABLES: &[(&str, &str)] = &[
     ("integrators", "Integrators"),
     ("accels", "Accelerators"),
@@ -32,14 +32,14 @@ const TABLES: &[(&str, &str)] = &[
     ("settings", "Settings"),
 ];
 
-/// Makes the pages and the library documentation, or checks the pages.
+/// Generates the pages and the library documentation, or checks the pages.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let check = match arguments {
         [] => false,
         [word] if word == "--check" => true,
         _ => bail!("only `--check` can be asked for"),
     };
-    // As the tests build it, so that no package is built a second time with other features.
+    // Builds as the tests do, so that no package is built a second time with other features.
     run_process(&mut cargo(&["test", "--quiet", "--locked", "--workspace", "--no-run"]))?;
     if check {
         return check_reference();
@@ -55,8 +55,8 @@ pub(crate) fn check_reference() -> Result<()> {
     compare(&pages()?)
 }
 
-/// The documentation of the libraries; a warning is an error. That the reason for something public is found
-/// at something private is none: whoever wants it reads the source.
+/// Builds the documentation of the libraries; a warning is an error. Public items may link to private ones that explain
+/// them: anyone who wants the explanation reads the source.
 pub(crate) fn library() -> Result<()> {
     let mut command = cargo(&["doc", "--locked", "--workspace", "--no-deps", "--quiet"]);
     run_process(command.env("RUSTDOCFLAGS", "--deny warnings --allow rustdoc::private_intra_doc_links"))

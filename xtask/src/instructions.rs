@@ -1,7 +1,7 @@
-//! `cargo xtask instructions`: how many instructions a ray takes, so that kernels do not grow slower unseen.
+//! `cargo xtask instructions`: how many instructions a ray takes, so that kernels do not get slower unnoticed.
 //!
-//! Seconds depend on the machine and on who shares it; the instructions that callgrind counts do not. They do depend on
-//! the compiler, so the table says by which they were counted, and by another they are printed only.
+//! Seconds depend on the machine and its other users; the instructions that callgrind counts do not. They do depend on
+//! the compiler, so the table records which compiler produced it; with another compiler the counts are only printed.
 
 use crate::process::{cargo, output, root, run as run_process, target_folder};
 use anyhow::{Context, Result, bail};
@@ -10,7 +10,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Callgrind knows no AVX-512: what those kernels take is seen by `bilux bench rays` only.
+/// Callgrind does not support AVX-512: only `bilux bench rays` measures those kernels.
 const WORKS: &[&str] = &[
     "primary-single-avx2",
     "primary-batch-avx2",
@@ -29,10 +29,11 @@ const WORKS: &[&str] = &[
     "bounce-compact-baseline",
 ];
 const TABLE: &str = "crates/accel/instructions.tsv";
-/// More than this over the table is a slow-down; less than this below it is worth a new table.
+/// A count above the table by more than this fraction is a slowdown; one below it by more than this is worth a new
+/// table.
 const TOLERANCE: f64 = 0.03;
 
-/// Counts, and compares with the table, or with `--write` writes it.
+/// Counts instructions and compares them with the table; with `--write`, writes the table.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     if !Command::new("valgrind").arg("--version").stdout(Stdio::null()).status().is_ok_and(|s| s.success()) {
         println!("skipped: there is no valgrind, which counts instructions");
@@ -66,7 +67,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     bail!("slower than {TABLE}: {}; if that is wanted, `cargo xtask instructions --write`", slower.join(", "))
 }
 
-/// Every work, as many at a time as there are cores: what one takes does not depend on the others.
+/// Counts every workload, as many at a time as there are cores: the counts do not depend on each other.
 fn count_all() -> Result<Vec<(&'static str, f64)>> {
     let next = AtomicUsize::new(0);
     let on_one_core = || {
@@ -85,7 +86,7 @@ fn count_all() -> Result<Vec<(&'static str, f64)>> {
     Ok(counted)
 }
 
-/// Instructions a ray.
+/// Instructions per ray.
 fn count(work: &str) -> Result<f64> {
     let program = target_folder().join("release").join("examples").join("counted_work");
     let mut valgrind = Command::new("valgrind");
@@ -105,7 +106,7 @@ fn count(work: &str) -> Result<f64> {
     }
 }
 
-/// From the line `Collected : N`.
+/// Reads the line `Collected : N`.
 fn collected(log: &str) -> Option<f64> {
     log.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
 }
@@ -118,7 +119,7 @@ fn table(compiler: &str, counted: &[(&str, f64)]) -> String {
     text
 }
 
-/// Prints both, and returns what is slower than it was, or has no line.
+/// Prints old and new counts, and returns what is slower than before, or has no line in the table.
 fn compare(known: &str, counted: &[(&str, f64)]) -> Vec<String> {
     let before =
         |work: &str| known.lines().find_map(|line| line.strip_prefix(work)?.trim().parse::<f64>().ok());

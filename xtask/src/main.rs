@@ -24,7 +24,7 @@ struct Chore {
     run: fn(&[String]) -> anyhow::Result<()>,
 }
 
-/// Every chore that there is.
+/// Every chore.
 const CHORES: &[Chore] = &[
     Chore { name: "test", summary: "everything that has to hold before a change lands", run: test::run },
     Chore { name: "tidy", summary: "the repository's own rules", run: tidy::run },

@@ -1,5 +1,5 @@
-//! `cargo xtask mutants [--since COMMIT] [-- MORE]`: plants small bugs by a tool, cargo-mutants, in the lines that have changed since
-//! a commit, and says which of them no test noticed.
+//! `cargo xtask mutants [--since COMMIT] [-- MORE]`: plants small bugs with the tool cargo-mutants in the lines that
+//! have changed since a commit, and reports which of them no test noticed.
 
 use crate::process::{cargo, output, root, target_folder};
 use anyhow::{Context, Result, bail};
@@ -7,8 +7,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Folder of a crate, and the packages whose tests look at it: what follows from the mathematics of one crate is mostly tested
-/// in those above.
+/// The folder of each crate, and the packages whose tests cover it: the consequences of one crate's mathematics are
+/// mostly tested in the crates above it.
 const SUITES: &[(&str, &[&str])] = &[
     ("math", &["bilux-math", "bilux-accel", "bilux-scene", "bilux-transport"]),
     ("accel", &["bilux-accel"]),
@@ -22,19 +22,19 @@ const SUITES: &[(&str, &[&str])] = &[
     ("validation", &["bilux-validation"]),
 ];
 
-/// Seconds: a mutant that loops is not waited for, and no test takes as long by itself.
+/// Seconds: a mutant that loops is stopped after this time, and no test takes as long by itself.
 const MIN_TIMEOUT: &str = "120";
 
-/// What is asked for.
+/// The arguments of the chore.
 #[derive(Debug, PartialEq)]
 struct Arguments<'a> {
-    /// Changes since then.
+    /// Plants bugs in what has changed since this commit.
     since: &'a str,
-    /// For the tool itself.
+    /// Further arguments for cargo-mutants itself.
     more: &'a [String],
 }
 
-/// Runs the tool once for each crate with changes, since each has suites of its own.
+/// Runs the tool once for each crate with changes, since each crate has its own test suites.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let Arguments { since, more } = read(arguments)?;
     if !is_installed() {
@@ -76,14 +76,14 @@ fn is_installed() -> bool {
     version.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// Plants bugs in one crate. That some survive is no failure of the tool.
+/// Plants bugs in one crate. Surviving bugs are not a failure of the tool.
 fn plant(name: &str, suites: &[&str], diff: &Path, out: &Path, more: &[String]) -> Result<()> {
     let mut command = cargo(&["mutants", "--in-diff"]);
     command.arg(diff).arg("--output").arg(out);
     command.args(["--package", &package_in(name), "--test-package", &suites.join(",")]);
     command.args(["--minimum-test-timeout", MIN_TIMEOUT, "--timeout-multiplier", "3"]).args(more);
     let status = command.status().context("cannot start cargo-mutants")?;
-    // 2: some survived; 3: some ran out of time, which is noticed.
+    // Exit status 2: some bugs survived; 3: some ran out of time, which counts as noticed.
     match status.code() {
         Some(0 | 2 | 3) => Ok(()),
         _ => bail!("cargo-mutants failed ({status})"),
@@ -95,7 +95,7 @@ fn package_in(name: &str) -> String {
     if name == "bilux" { name.to_owned() } else { format!("bilux-{name}") }
 }
 
-/// The lines of a file; none where there is no such file, as when nothing that has changed can be mutated.
+/// The lines of a file; none if there is no such file, for example because nothing that has changed can be mutated.
 fn listed(path: &Path) -> Result<Vec<String>> {
     if !path.exists() {
         return Ok(Vec::new());

@@ -1,10 +1,10 @@
-//! `cargo xtask package`: a rehearsal of publishing the libraries, each built from nothing but what its package holds.
-//! `--quick` packs them without building.
+//! `cargo xtask package`: a rehearsal of publishing the libraries, each built from nothing but the contents of its
+//! package. `--quick` packs them without building.
 
 use crate::process::{cargo, run as run_process};
 use anyhow::{Result, bail};
 
-/// What others depend on, the lowest first.
+/// The published libraries, in order of dependency.
 const LIBRARIES: &[&str] = &[
     "bilux-math",
     "bilux-accel",
@@ -15,7 +15,7 @@ const LIBRARIES: &[&str] = &[
     "bilux",
 ];
 
-/// Rehearses.
+/// Rehearses the publishing.
 pub(crate) fn run(arguments: &[String]) -> Result<()> {
     run_process(&mut cargo(&command(arguments)?))
 }
@@ -24,7 +24,7 @@ fn command(arguments: &[String]) -> Result<Vec<&'static str>> {
     let mut command = vec!["publish", "--dry-run", "--locked", "--quiet"];
     match arguments {
         [] => {}
-        // What is not committed yet is packed too.
+        // Uncommitted changes are packed too.
         [word] if word == "--quick" => command.extend(["--no-verify", "--allow-dirty"]),
         _ => bail!("only `--quick` can be asked for"),
     }

@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that has to hold before a change lands, quick steps first.
+//! `cargo xtask test`: everything that must hold before a change lands, quick steps first.
 
 use crate::process::{cargo, run_watched};
 use anyhow::{Context, Result, bail};
@@ -21,7 +21,7 @@ const STEPS: &[Step] = &[
     Step { name: "doc", run: |_| crate::docs::library() },
 ];
 
-/// Runs every step, or those that are named, and reports all of them even when one fails.
+/// Runs every step, or those that are named, and reports all of them even if one fails.
 pub(crate) fn run(names: &[String]) -> Result<()> {
     if let Some(name) = names.iter().find(|name| STEPS.iter().all(|step| step.name != **name)) {
         let known: Vec<_> = STEPS.iter().map(|step| step.name).collect();
@@ -82,7 +82,7 @@ fn run_step(arguments: &[&str]) -> Result<()> {
     crate::process::run(&mut cargo(arguments))
 }
 
-/// Installs a component of the toolchain if a minimal one came without it.
+/// Installs a component of the toolchain if a minimal toolchain lacks it.
 fn component(subcommand: &str, component: &str) -> Result<()> {
     let there = cargo(&[subcommand, "--version"]).output().is_ok_and(|output| output.status.success());
     if there {
@@ -93,7 +93,7 @@ fn component(subcommand: &str, component: &str) -> Result<()> {
         .with_context(|| format!("`cargo {subcommand}` is missing and could not be installed"))
 }
 
-/// Tests that passed and failed.
+/// The numbers of tests that passed and failed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Totals {
     passed: u64,
@@ -101,7 +101,7 @@ struct Totals {
 }
 
 impl Totals {
-    /// Reads the closing line of one suite.
+    /// Reads the closing line of a test suite.
     fn read(line: &str) -> Option<Totals> {
         let mut counts = line.strip_prefix("test result: ")?.split(['.', ';']).map(str::trim);
         let mut count = |word: &str| {

@@ -1,4 +1,4 @@
-//! The packages of the workspace and everything that they depend on, as cargo sees them.
+//! The packages of the workspace and everything that they depend on, as cargo reports them.
 
 use crate::process::{cargo, output};
 use anyhow::{Context, Result};
@@ -10,16 +10,16 @@ use std::path::PathBuf;
 pub(crate) struct Package {
     pub(crate) name: String,
     pub(crate) version: String,
-    /// The SPDX expression of its manifest, if it has one.
+    /// The SPDX expression in its manifest, if there is one.
     pub(crate) licence: Option<String>,
     pub(crate) repository: Option<String>,
     /// The folder of its manifest.
     pub(crate) folder: PathBuf,
-    /// True for our own.
+    /// True for our own packages.
     pub(crate) member: bool,
-    /// Names of the packages that it asks for, for whatever purpose and platform.
+    /// The names of the packages that it depends on, for any purpose and platform.
     pub(crate) dependencies: Vec<String>,
-    /// Cargo's name for this one package, version and source.
+    /// Cargo's unique id for this package, version and source.
     pub(crate) id: String,
     /// The packages, by their `id`, that end up in whatever is built from this one.
     pub(crate) parts: Vec<String>,
@@ -31,8 +31,8 @@ pub(crate) fn packages() -> Result<Vec<Package>> {
     read(&serde_json::from_str(&text).context("cargo metadata wrote no JSON")?)
 }
 
-/// The package of this name and all that it is built from, whatever the platform; development and build
-/// dependencies are not.
+/// The package of this name and everything it is built from, on any platform, without development and build
+/// dependencies.
 pub(crate) fn built_into<'a>(name: &str, packages: &'a [Package]) -> Vec<&'a Package> {
     let mut waiting: Vec<_> = packages.iter().filter(|package| package.name == name).collect();
     let mut found: Vec<&Package> = Vec::new();

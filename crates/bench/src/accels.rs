@@ -1,4 +1,4 @@
-//! Structures by the names that benchmarks know them by.
+//! Acceleration structures by the names that benchmarks use.
 
 use bilux::Error;
 use bilux::accel::registry::Quality;
@@ -6,8 +6,9 @@ use bilux::accel::{ACCELERATORS, AcceleratorEntry, BuildOptions, CpuLevel};
 use bilux::scene::error::nearest_name;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// The name of a structure, and behind a hyphen how much time its builder may take (`bvh8-best`), or which instructions
-/// its kernels (`bvh8-sse4.2`); balanced, and the highest level there is, where nothing is said.
+/// Finds a structure by its name. A suffix after a hyphen sets how much time its builder may take (`bvh8-best`) or
+/// which instructions its kernels may use (`bvh8-sse4.2`); without one, the build is balanced and the CPU level is the
+/// highest available.
 pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOptions), Error> {
     let row = |name: &str| ACCELERATORS.iter().find(|row| row.entry.name == name);
     if let Some(row) = row(name) {
@@ -34,7 +35,7 @@ pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOption
     })
 }
 
-/// So many threads, or all that there are for 0.
+/// Makes a pool of `number` threads, or of one per core for 0.
 pub(crate) fn threads(number: usize) -> Result<ThreadPool, Error> {
     let pool = ThreadPoolBuilder::new().num_threads(number).build();
     pool.map_err(|e| Error::Settings(format!("no threads can be had: {e}")))

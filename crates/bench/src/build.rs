@@ -1,4 +1,4 @@
-//! How fast trees are built over teapots, and how large they become.
+//! How fast trees over teapots are built, and how large they become.
 
 use crate::accels::{find, threads};
 use crate::{Options, ProgressFn, Report, median, table, timed};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Builds every accelerator over every number of teapots, on one thread and on all.
 ///
 /// # Errors
-/// When an accelerator is not known.
+/// If an accelerator is unknown.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![1, 5, 25] } else { options.counts.clone() };
     let all = || {
@@ -48,7 +48,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     Ok(Report { rows, text: table(title, &header, &cells), picture: None })
 }
 
-/// Median seconds on one thread and on all, in turns, and the tree.
+/// Returns the median seconds on one thread and on all, measured in turns, and the tree.
 #[allow(clippy::type_complexity, reason = "said above")]
 fn one(
     accel: &str,
@@ -62,7 +62,7 @@ fn one(
     let mut tree: Option<Box<dyn Accelerator>> = None;
     for _ in 0..repeats.max(1) {
         for (pool, seconds) in pools.iter().zip(&mut seconds) {
-            // What is taken down is not timed.
+            // Dropping the previous tree is not timed.
             drop(tree.take());
             let (taken, built) = pool.install(|| timed(build))?;
             seconds.push(taken);
@@ -90,7 +90,7 @@ fn json(
     })
 }
 
-/// All triangles of a scene of teapots, in world space, with the objects as groups.
+/// All triangles of a scene of teapots, in world space, grouped by object.
 pub(crate) fn mesh(count: u32, layout: &str) -> Result<Arc<TriangleMesh>, Error> {
     let scene = crate::teapots::scene(count, layout)?;
     let (mut corners, mut groups) = (Vec::new(), Vec::new());

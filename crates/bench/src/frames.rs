@@ -1,18 +1,18 @@
-//! Moving scenes: a walk through still teapots, and one teapot moving among them, against building everything
-//! anew for every frame.
+//! Moving scenes: a walk through static teapots, and one teapot moving among them, compared with rebuilding everything
+//! for every frame.
 
 use crate::{Options, ProgressFn, Report, table, timed};
 use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
 use bilux::{Error, Job, Quiet};
 use serde_json::json;
 
-/// Frames of each walk.
+/// The number of frames in each animation.
 const FRAMES: u32 = 24;
 
-/// Renders both walks in both ways and checks that they give the same pictures.
+/// Renders both animations both ways and checks that the pictures are the same.
 ///
 /// # Errors
-/// When an accelerator is not known.
+/// If an accelerator is unknown.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let size = options.size_or((512, 512));
     let count = options.counts.first().copied().unwrap_or(5);
@@ -62,7 +62,7 @@ fn settings(accel: &str, size: (u32, u32)) -> Parameters {
     settings
 }
 
-/// One job for all frames: only what moved is placed anew.
+/// One job for all frames: only what has moved is updated.
 fn kept(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Error> {
     let mut job = Job::new(scene, settings)?;
     let mut pictures = Vec::new();
@@ -73,7 +73,7 @@ fn kept(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Er
     Ok(pictures)
 }
 
-/// A job for each frame: every tree is built anew.
+/// One job per frame: every tree is rebuilt.
 fn anew(scene: &SceneBuilder, settings: &Parameters) -> Result<Vec<Vec<u32>>, Error> {
     let mut pictures = Vec::new();
     for frame in 0..FRAMES {

@@ -1,6 +1,6 @@
-//! What `bilux bench` runs. One benchmark a file; each gives a [`Report`] that prints as a table or as JSON.
+//! The benchmarks that `bilux bench` runs, one per file. Each returns a [`Report`] that prints as a table or as JSON.
 //!
-//! A speed is a ratio taken in one run: rivals take turns, and medians count.
+//! A speed is a ratio measured within one run: the competitors take turns, and the medians are reported.
 
 mod accels;
 pub mod build;
@@ -21,13 +21,13 @@ use std::time::Instant;
 /// Called with a line about what is being measured.
 pub type ProgressFn<'a> = &'a dyn Fn(&str);
 
-/// What a benchmark found.
+/// The result of a benchmark.
 pub struct Report {
-    /// One object for every row.
+    /// One JSON object per row.
     pub rows: Vec<Value>,
-    /// The same for people.
+    /// The same as text.
     pub text: String,
-    /// A picture of what was rendered, where there is one.
+    /// A picture of what was rendered, if there is one.
     pub picture: Option<Picture>,
 }
 
@@ -38,18 +38,19 @@ impl Report {
     }
 }
 
-/// What all benchmarks can be told.
+/// The options that all benchmarks share.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Numbers of teapots; empty for the benchmark's own.
+    /// The numbers of teapots; empty for the benchmark's defaults.
     pub counts: Vec<u32>,
-    /// Accelerators; empty for the benchmark's own.
+    /// The accelerators; empty for the benchmark's defaults.
     pub accels: Vec<String>,
-    /// Width and height of pictures; the benchmark's own where not given.
+    /// The width and height of pictures; `None` for the benchmark's default.
     pub size: Option<(u32, u32)>,
-    /// Repeats, of which the median counts.
+    /// The number of repeats; the median is reported.
     pub repeats: u32,
-    /// `paper`: at its fixed offset, seen by its camera; `coverage`: covering equally much of the picture.
+    /// `paper`: at the paper's fixed offset, seen by its camera; `coverage`: always covering the same part of the
+    /// picture.
     pub layout: String,
 }
 
@@ -65,20 +66,20 @@ impl Options {
     }
 }
 
-/// Seconds that `work` takes, with what it gives.
+/// The seconds that `work` takes, and its result.
 fn timed<T>(work: impl FnOnce() -> Result<T, Error>) -> Result<(f64, T), Error> {
     let begun = Instant::now();
     let result = work()?;
     Ok((begun.elapsed().as_secs_f64(), result))
 }
 
-/// The middle value; of an even number the lower of the two.
+/// The median; for an even number of values, the lower of the two in the middle.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// A table with right-aligned columns under a title.
+/// A table with a title and right-aligned columns.
 fn table(title: &str, header: &[&str], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());

@@ -1,4 +1,4 @@
-//! How fast scene files are read, and how much memory that takes beside what they become.
+//! How fast scene files are read, and how much memory that takes compared with the size of the scene.
 
 mod made;
 
@@ -15,21 +15,22 @@ use std::time::Instant;
 
 pub use made::make;
 
-/// What is to be read, and how.
+/// What to read, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Scene files.
+    /// The scene files.
     pub files: Vec<PathBuf>,
-    /// Repeats, of which the median counts.
+    /// The number of repeats; the median is reported.
     pub repeats: u32,
-    /// What reading may take.
+    /// The limits and options for reading.
     pub read: ReadOptions,
 }
 
-/// Reads each file several times. Memory is told of the first time: it is right in a process that has read nothing else.
+/// Reads each file several times. The memory is that of the first read, so it is right only in a process that has read
+/// nothing else.
 ///
 /// # Errors
-/// When a file cannot be read.
+/// If a file cannot be read.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let mut rows = Vec::new();
     for file in &options.files {
@@ -39,7 +40,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     Ok(report(rows))
 }
 
-/// The table of rows that [`run`] has made, in this process or in others.
+/// Makes the table from rows that [`run`] has measured, in this process or in others.
 pub fn report(rows: Vec<Value>) -> Report {
     let number = |row: &Value, key: &str, digits: usize| match row[key].as_f64() {
         Some(x) => format!("{x:.digits$}"),
@@ -106,7 +107,7 @@ fn one(file: &Path, options: &Options) -> Result<Value, Error> {
     drop(built);
     let with_build = memory("VmHWM:").zip(before).map(|(peak, before)| peak.saturating_sub(before));
     let seconds = median(seconds);
-    // Ticks of a hundredth: nothing is said of what is over in a few.
+    // The system counts in hundredths of a second, too coarse for reads that take only a few of them.
     let processor = Some(median(processor)).filter(|busy| *busy >= 0.05);
     let megabytes = |kilobytes: u64| kilobytes as f64 * 1024.0 / 1e6;
     Ok(json!({
@@ -125,7 +126,7 @@ fn one(file: &Path, options: &Options) -> Result<Value, Error> {
     }))
 }
 
-/// Bytes of what a scene holds: each mesh and picture once, and its objects.
+/// The bytes that a scene holds: each mesh and image once, and its objects.
 fn decoded(scene: &SceneBuilder) -> u64 {
     let mut meshes = HashSet::new();
     let places: usize = scene.objects.iter().map(|object| object.motion.heap_bytes()).sum();
@@ -148,23 +149,23 @@ fn decoded(scene: &SceneBuilder) -> u64 {
     bytes + new.map(|texture| texture.image.size()).sum::<u64>()
 }
 
-/// A line of what the system knows of this process, in kilobytes; none where it does not tell.
+/// A value in kilobytes from the system's status of this process; `None` if it is not available.
 fn memory(key: &str) -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(key))?;
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// Begins anew to look for the most memory that is taken.
+/// Resets the system's record of the peak memory.
 fn forget_peak() {
-    // Where the system has no such thing, the peak is that of the whole process.
+    // If the system cannot reset it, the peak is that of the whole process.
     let _ = fs::write("/proc/self/clear_refs", "5");
 }
 
-/// Seconds of all threads of this process.
+/// CPU seconds of all threads of this process.
 fn processor_seconds() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
-    // The name, in brackets, may have blanks.
+    // The name, in parentheses, may contain spaces.
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |i: usize| fields.get(i)?.parse::<f64>().ok();
     Some((ticks(11)? + ticks(12)?) / 100.0)

@@ -1,4 +1,4 @@
-//! The paper's Figure 1 and section 4.2 anew: one scene by `cast`, `whitted`, `cook` and `path`, how far each is
+//! The paper's Figure 1 and section 4.2, reproduced: one scene by `cast`, `whitted`, `cook` and `path`, how far each is
 //! from a converged `path` inside the mirror, and what Monte Carlo samples cost.
 
 use crate::{Options, ProgressFn, Report, table, timed};
@@ -11,15 +11,15 @@ use serde_json::json;
 
 /// The four pictures, each with its samples per pixel.
 const PANELS: [(&str, u32); 4] = [("cast", 16), ("whitted", 16), ("cook", 64), ("path", 256)];
-/// Samples of the converged picture that the others are held against.
+/// Samples per pixel of the converged picture that the others are compared with.
 const CONVERGED: u32 = 1024;
-/// Samples whose cost is shown.
+/// The numbers of samples whose cost is measured.
 const COSTS: [u32; 5] = [1, 4, 16, 64, 256];
 
 /// Renders everything; the report's picture has the four panels side by side.
 ///
 /// # Errors
-/// When something cannot be rendered.
+/// If something cannot be rendered.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let scene = bilux::generate(&Spec::new("", "trio"))?;
     let size = options.size_or((256, 144));
@@ -87,7 +87,7 @@ fn render(
     Ok((seconds, outcome.picture()?))
 }
 
-/// The pixels in whose centre a mirror is seen.
+/// The pixels whose centre shows a mirror.
 fn mirror_mask(scene: &SceneBuilder, (width, height): (u32, u32)) -> Result<Vec<bool>, Error> {
     let mut settings = Parameters::default();
     settings.set("size", Setting::Text(format!("{width}x{height}")));
@@ -109,7 +109,7 @@ fn mirror_mask(scene: &SceneBuilder, (width, height): (u32, u32)) -> Result<Vec<
     Ok(mask)
 }
 
-/// Root mean square difference over a mask, of light as a display shows it: held within 0..=1.
+/// The root mean square difference over a mask, of light as a display shows it: clamped to 0..=1.
 fn rmse(a: &Picture, b: &Picture, mask: &[bool]) -> f64 {
     let (Some(a), Some(b)) = (a.to_rgb(), b.to_rgb()) else { return f64::NAN };
     let squared = |a: &Rgb, b: &Rgb| {

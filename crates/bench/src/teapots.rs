@@ -1,4 +1,4 @@
-//! The paper's Figure 2 anew: two to five teapots, with and without a tree.
+//! The paper's Figure 2, reproduced: two to five teapots, with and without a tree.
 
 use crate::{Options, ProgressFn, Report, median, table, timed};
 use bilux::scene::{Parameters, SceneBuilder, Spec, Value as Setting};
@@ -6,11 +6,11 @@ use bilux::{Error, Job, Outcome, Quiet};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
-/// Seconds in the paper's Figure 2: teapots, without and with its tree.
+/// Seconds in the paper's Figure 2: the number of teapots, without and with its tree.
 const PAPER: [(u32, f64, f64); 4] =
     [(2, 31.62, 29.64), (3, 47.43, 42.89), (4, 65.78, 56.12), (5, 86.95, 71.33)];
 
-/// What one accelerator took for one number of teapots.
+/// The result of one accelerator for one number of teapots.
 struct Row {
     count: u32,
     accel: String,
@@ -23,10 +23,10 @@ struct Row {
     picture: String,
 }
 
-/// Renders every number of teapots by every accelerator, on one thread, by `whitted` to depth 5.
+/// Renders every number of teapots with every accelerator, on one thread, by `whitted` to depth 5.
 ///
 /// # Errors
-/// When an accelerator or a layout is not known.
+/// If an accelerator or a layout is unknown.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let counts = if options.counts.is_empty() { vec![2, 3, 4, 5] } else { options.counts.clone() };
     let mut accels = options.accels.clone();
@@ -45,7 +45,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
             .collect::<Result<Vec<_>, _>>()?;
         for round in 0..options.repeats.max(1) {
             for competitor in &mut competitors {
-                // A loop over all triangles takes long enough to be timed once.
+                // A loop over all triangles takes long enough for a single timing.
                 if round == 0 || !competitor.is_loop() {
                     tell(&format!("{count} teapots by {}, round {}", competitor.accel, round + 1));
                     competitor.race()?;
@@ -64,7 +64,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     Ok(Report { rows: rows.iter().map(as_json).collect(), text: text(&rows, options), picture: None })
 }
 
-/// The teapots of the paper, or N of them.
+/// The paper's teapots, or N of them.
 pub fn scene(count: u32, layout: &str) -> Result<SceneBuilder, Error> {
     let spec = Spec::new("", "teapots")
         .with("count", Setting::Integer(i64::from(count)))
@@ -72,7 +72,7 @@ pub fn scene(count: u32, layout: &str) -> Result<SceneBuilder, Error> {
     bilux::generate(&spec)
 }
 
-/// Settings of the benchmark: `whitted`, depth 5, one thread.
+/// The benchmark's settings: `whitted`, depth 5, one thread.
 fn settings(accel: &str, size: (u32, u32)) -> Parameters {
     let mut settings = Parameters::default();
     settings.set("integrator", "whitted");
@@ -84,7 +84,7 @@ fn settings(accel: &str, size: (u32, u32)) -> Parameters {
     settings
 }
 
-/// An accelerator in the race.
+/// An accelerator in the comparison.
 struct Competitor {
     accel: String,
     job: Job,
@@ -99,7 +99,7 @@ impl Competitor {
         Ok(Competitor { accel: accel.to_owned(), job, build_seconds, seconds: Vec::new(), outcome: None })
     }
 
-    /// True where counting costs nothing, so that one run does for time and counts.
+    /// True if counting costs nothing, so that one run provides both time and counts.
     fn is_loop(&self) -> bool {
         self.accel.starts_with("brute")
     }
@@ -159,7 +159,7 @@ fn as_json(row: &Row) -> Value {
     })
 }
 
-/// The paper's Figure 2 with our columns beside it.
+/// The paper's Figure 2 with our columns next to it.
 fn text(rows: &[Row], options: &Options) -> String {
     let header = [
         "teapots",

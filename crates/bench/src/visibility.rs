@@ -1,4 +1,4 @@
-//! Hidden-surface removal: the algorithms that the paper compares BSP trees with, on its teapots.
+//! Hidden-surface removal: the algorithms that the paper compares with BSP trees, on its teapots.
 
 use crate::{Options, ProgressFn, Report, median, table};
 use bilux::accel::BuildOptions;
@@ -12,7 +12,7 @@ use std::time::Instant;
 /// Runs every algorithm on the same teapots, and counts the pixels that differ from rays through their centres.
 ///
 /// # Errors
-/// When the layout is not known.
+/// If the layout is unknown.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let count = options.counts.first().copied().unwrap_or(5);
     let mesh = crate::build::mesh(count, &options.layout)?;
@@ -45,7 +45,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     Ok(Report { rows, text: table(&title, &header, &cells), picture: None })
 }
 
-/// The median time of several runs, with the answer, which is the same every time.
+/// The median time of several runs, and the result, which is the same every time.
 fn repeated(repeats: u32, work: impl Fn() -> VisibilityResult) -> (f64, VisibilityResult) {
     let mut seconds = Vec::new();
     let mut once = || {

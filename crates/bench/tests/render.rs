@@ -32,7 +32,7 @@ fn rows_have_what_programs_ask_for_and_the_page_shows_it() {
     }
     assert!(report.text.contains("daylight") && report.text.contains("bdpt"), "{}", report.text);
     let page = std::fs::read_to_string(folder.path().join("page/index.html")).unwrap();
-    // The reference, and a picture and a map of errors of each integrator; nothing from elsewhere.
+    // The reference, and for each integrator a picture and an error map; nothing is loaded from elsewhere.
     assert_eq!(page.matches("data:image/png;base64,").count(), 5);
     assert_eq!(page.matches("<svg").count(), 1);
     assert!(!page.contains("http"));
@@ -72,7 +72,7 @@ fn what_is_not_there_is_told() {
     assert!(error(Options { seconds: vec![0.0], ..quick() }).contains("above 0"));
 }
 
-/// Width and height of small pictures: each of their pixels is 4 × 4 of a reference.
+/// The width and height of small pictures: each of their pixels covers 4 × 4 of a reference.
 const SMALL: [usize; 2] = [32, 24];
 
 fn small(scene: &str, integrator: &str, samples: i64) -> Vec<Rgb> {
@@ -96,7 +96,7 @@ fn downscaled(pixels: &[Rgb]) -> Vec<Rgb> {
     small
 }
 
-/// The mean of what can be seen: few samples leave bright dots, each of which would outweigh all the rest.
+/// The mean of the light, clamped: with few samples there are fireflies, each of which would outweigh all the rest.
 fn seen(pixels: &[Rgb]) -> f64 {
     let samples = pixels.iter().flat_map(|p| p.to_array()).map(|c| f64::from(c.min(2.0)));
     samples.sum::<f64>() / (3 * pixels.len()) as f64

@@ -1,4 +1,4 @@
-//! What is seen at a pixel: the object's name, its distance, and the normal there.
+//! Prints what is visible at a pixel: the object's name, its distance, and the normal there.
 //!
 //! ```text
 //! cargo run -p bilux --example pick

@@ -1,4 +1,4 @@
-//! A scene made by the program, rendered into bytes that a window or a web page can show.
+//! A scene that the program builds itself, rendered into bytes that a window or a web page can show.
 //!
 //! ```text
 //! cargo run --release -p bilux --example render_to_buffer

@@ -1,14 +1,15 @@
-//! When a picture ends of which nobody says when.
+//! When a render stops if nobody sets a limit.
 
 use bilux_scene::{Parameters, Value};
 use bilux_transport::integrators::INTEGRATORS;
 use std::time::Duration;
 
-/// What ends a picture of which nobody says when: so little noise, as a part of the light, or so many seconds.
+/// The default limits of a render: a noise level, as a fraction of the light, and a time in seconds, whichever comes
+/// first.
 pub const DEFAULT_BUDGET: (f32, f32) = (0.02, 5.0);
 
-/// Adds [`DEFAULT_BUDGET`] to what a user says, and tells so, where neither the user nor the scene says samples, noise or time,
-/// and the integrator leaves anything to chance. Such a picture is not the same on every machine.
+/// Adds [`DEFAULT_BUDGET`] to the user's settings if neither the user nor the scene sets samples, noise or time and the
+/// integrator is not one of the classic ones. Returns true if it did. Such a picture is not the same on every machine.
 pub fn with_default_budget(scene: &Parameters, user: &mut Parameters) -> bool {
     let said = |key: &str| user.find(key).or_else(|| scene.find(key)).map(|(value, _)| value);
     let is_nothing = |value: &Value| matches!(value, Value::Integer(0) | Value::Number(0.0));
@@ -27,15 +28,15 @@ pub fn with_default_budget(scene: &Parameters, user: &mut Parameters) -> bool {
     true
 }
 
-/// What ends a picture that has to be there fast, in seconds.
+/// The time limit of a fast picture, in seconds.
 pub const FAST_SECONDS: f32 = 1.0;
 
-/// Scattering events after the camera that a fast picture has at most: what comes later shows in no thumbnail.
+/// The maximum number of scattering events after the camera in a fast picture: a thumbnail does not show later ones.
 const FAST_DEPTH: i64 = 8;
 
-/// Sets what gives the cleanest picture in about [`FAST_SECONDS`]: plain path tracing without a first look at the scene, few scattering
-/// events, and a tree that is built fast; but nothing that the user has said otherwise, and no other integrator where the scene
-/// asks for one that leaves nothing to chance.
+/// Sets what gives the cleanest picture in about [`FAST_SECONDS`]: plain path tracing without a pilot pass, few
+/// scattering events, and a tree that is quick to build. It never overrides a setting of the user's, nor the integrator
+/// of a scene that asks for a classic one.
 pub fn with_fast_budget(scene: &Parameters, user: &mut Parameters) {
     let mut unless_said = |key: &str, value: Value| {
         if user.find(key).is_none() {
@@ -54,7 +55,8 @@ pub fn with_fast_budget(scene: &Parameters, user: &mut Parameters) {
     }
 }
 
-/// What is left of a time limit for rendering, where other things take so much of it. One sample of each pixel is taken in any case.
+/// Returns the part of a time limit that is left for rendering when other work takes `others`. Rendering always takes
+/// at least one sample of each pixel.
 pub(crate) fn left_for_light(limit: Duration, others: Duration) -> Duration {
     limit.saturating_sub(others)
 }
@@ -107,7 +109,7 @@ mod tests {
         assert!(!budget(&[], &[("spp", Value::Integer(16))]));
         assert!(!budget(&[], &[("noise", Value::Number(0.1))]));
         assert!(!budget(&[("integrator", "whitted".into())], &[]));
-        // The user's word goes before the scene's.
+        // The user's setting overrides the scene's.
         assert!(budget(&[("integrator", "whitted".into())], &[("integrator", "path".into())]));
     }
 }

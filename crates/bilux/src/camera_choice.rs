@@ -4,7 +4,7 @@ use crate::Error;
 use bilux_scene::{Camera, Scene, SceneError, Span};
 use std::sync::Arc;
 
-/// A camera by its name, or by its number from 0.
+/// Finds a camera by its name, or by its number from 0.
 pub(crate) fn choose_camera(scene: &Scene, wanted: &str, at: &Span) -> Result<Arc<dyn Camera>, Error> {
     let cameras = scene.cameras();
     let by_name = cameras.iter().find(|(name, _)| name == wanted);

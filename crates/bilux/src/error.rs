@@ -1,4 +1,4 @@
-//! What can go wrong, from any part of Bilux.
+//! What can go wrong in any part of Bilux.
 
 use crate::memory::Memory;
 use bilux_formats::FormatError;
@@ -6,26 +6,26 @@ use bilux_pictures::PictureError;
 use bilux_scene::SceneError;
 use bilux_transport::{FilmError, RenderError};
 
-/// Anything that can go wrong. Each message says what, where and what to do.
+/// Anything that can go wrong. Each message says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A scene file.
+    /// An error in a scene file.
     #[error(transparent)]
     Format(#[from] FormatError),
-    /// A scene.
+    /// An error in a scene.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A picture.
+    /// An error in a picture.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// The rendering itself.
+    /// An error during rendering.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// A film, or a part of one.
+    /// An error in a film, or in part of one.
     #[error(transparent)]
     Film(#[from] FilmError),
-    /// A picture that would take more memory than it may.
+    /// The picture would take more memory than is allowed.
     #[error(
         "this would take about {} MB of memory ({} MB for meshes, {} MB for textures, {} MB for the trees that find hits, \
          {} MB for the picture), and {} MB are allowed: {}, or allow more memory",
@@ -33,17 +33,17 @@ pub enum Error {
         mega(.needed.picture), .most / 1_000_000, smaller(.needed)
     )]
     TooLarge {
-        /// What it would take.
+        /// An estimate of the memory that it would take.
         needed: Memory,
-        /// How many bytes are allowed.
+        /// The number of bytes allowed.
         most: u64,
     },
-    /// Settings that do not go together.
+    /// Settings that contradict each other.
     #[error("{0}")]
     Settings(String),
 }
 
-/// What to make smaller: that which takes the most.
+/// What to make smaller: whatever takes the most memory.
 fn smaller(needed: &Memory) -> &'static str {
     let Memory { meshes, textures, levels, trees, picture } = *needed;
     if picture >= (meshes + trees).max(textures + levels) {

@@ -1,12 +1,12 @@
-//! What identifies a picture before it is rendered: partial films join only where this agrees.
+//! What identifies a picture before it is rendered: partial films merge only if their fingerprints agree.
 
 use crate::settings::Settings;
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{SceneBuilder, Texture};
 use sha2::{Digest, Sha256};
 
-/// A hash of a scene and of every setting that its samples depend on, in hexadecimal. What changes no sample
-/// (threads, accelerator, number of samples, crop, display) is left out.
+/// Returns a hexadecimal hash of a scene and of every setting that its samples depend on. Settings that change no
+/// sample (threads, accelerator, number of samples, crop, display) are left out.
 pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
     let mut hash = Sha256::new();
     for object in &scene.objects {
@@ -14,7 +14,7 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         points(&mut hash, &mesh.positions);
         points(&mut hash, &mesh.normals);
         floats(&mut hash, mesh.uvs.iter().flat_map(|v: &Vec2| v.to_array()));
-        // Few meshes have these: the films of all others keep their names.
+        // Few meshes have these; films of all other meshes keep their old fingerprints.
         if !mesh.uvs2.is_empty() || !mesh.tangents.is_empty() {
             floats(&mut hash, mesh.uvs2.iter().flat_map(|v: &Vec2| v.to_array()));
             floats(&mut hash, mesh.tangents.iter().flat_map(|t| t.to_array()));
@@ -24,7 +24,7 @@ pub fn fingerprint(scene: &SceneBuilder, settings: &Settings) -> String {
         for index in mesh.triangles.iter().flatten() {
             hash.update(index.to_le_bytes());
         }
-        // As few have these.
+        // Few meshes have these either.
         if mesh.stroke_count() > 0 {
             for index in mesh.points.iter().chain(mesh.lines.iter().flatten()) {
                 hash.update(index.to_le_bytes());
@@ -99,7 +99,7 @@ fn hash_spec(hash: &mut Sha256, spec: &bilux_scene::Spec) {
     hash_parameters(hash, &spec.parameters);
 }
 
-/// Where a value was written does not matter.
+/// The place in the file where a value was written does not matter.
 fn hash_parameters(hash: &mut Sha256, parameters: &bilux_scene::Parameters) {
     for (key, value, _) in &parameters.0 {
         hash.update(format!("{key}={value:?};"));

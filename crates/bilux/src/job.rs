@@ -1,4 +1,4 @@
-//! One picture to be rendered: a scene, a camera, an integrator and settings, joined and checked.
+//! One render: a scene, a camera, an integrator and settings, combined and checked.
 
 use crate::Error;
 use crate::budget::left_for_light;
@@ -22,7 +22,8 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-/// Where time ends the picture, the first look at surfaces takes at most this part of it.
+/// If a time limit ends the picture, the pass that collects surface features (albedo, normals, …) takes at most one
+/// part in this many of it.
 const FEATURES_PART: u32 = 12;
 
 /// A picture to be rendered.
@@ -33,63 +34,64 @@ pub struct Job {
     integrator: Box<dyn PixelIntegrator>,
     pub(crate) settings: Settings,
     pub(crate) render: RenderSettings,
-    /// The studio's lights are on.
+    /// Whether the studio's lights are on.
     pub(crate) studio_lit: bool,
-    /// Albedo and the like are wanted.
+    /// Whether albedo and the like are wanted.
     pub(crate) features: bool,
-    /// The time that is going to be spent on denoising.
+    /// The time set aside for denoising.
     pub(crate) denoising: Duration,
-    /// From when on its time limit counts; none for when it is rendered.
+    /// When its time limit starts; `None` means when rendering starts.
     begun: Option<Instant>,
-    /// No library of others may be loaded.
+    /// Whether loading third-party libraries is forbidden.
     pub(crate) sandboxed: bool,
-    /// How a model was turned.
+    /// How a model was rotated.
     orientation: Option<Orientation>,
-    /// What it was made of; the fingerprint is of that, and takes long where textures are large.
+    /// The scene from which the job was built. The fingerprint is computed from it, which takes long if textures are
+    /// large.
     source: SceneBuilder,
     fingerprint: OnceLock<String>,
     warnings: Vec<Warning>,
     notes: Vec<String>,
-    /// The ground whose shadow alone is in the picture.
+    /// The ground of which only the shadow is in the picture.
     catcher: Option<ShadowCatcher>,
 }
 
-/// What a render gave.
+/// The result of a render.
 pub struct Outcome {
     /// The film.
     pub film: Film,
-    /// What its rays took.
+    /// Counts of the work that its rays took.
     pub counters: Counters,
-    /// It was stopped before the end; the film holds what there is.
+    /// Whether it was stopped early; the film holds what had been rendered by then.
     pub cancelled: bool,
-    /// What an integrator that chooses has chosen, and why.
+    /// What an integrator that chooses its strategies has chosen, and why.
     pub choice: Option<Choice>,
-    /// How far it came, where noise or time could end it.
+    /// How far it got, if noise or time could end it.
     pub reached: Option<Reached>,
-    /// Between which bounds pixels lie, where it was asked for ([`Job::with_interval`]).
+    /// The confidence interval of each pixel, if it was asked for ([`Job::with_interval`]).
     pub interval: Option<Interval>,
-    /// What surfaces are like, where it was asked for ([`Job::with_layers`]).
+    /// Features of the visible surfaces, if they were asked for ([`Job::with_layers`]).
     pub features: Option<Features>,
-    /// The part of each pixel that is not transparent, in rows of the film's window, where pictures are to be.
+    /// The alpha of each pixel, in rows of the film's window, if the picture has an alpha channel.
     pub coverage: Option<Vec<f32>>,
-    /// Batches of samples, which give the variance of each pixel, where variance was asked for ([`Job::with_layers`]).
+    /// Batches of samples, which give the variance of each pixel, if it was asked for ([`Job::with_layers`]).
     pub batch_means: Option<BatchMeans>,
     linear_transfer: bool,
 }
 
 impl Job {
-    /// Joins the scene file's own settings with the user's, which win, and builds the scene.
+    /// Merges the scene file's settings with the user's, which take precedence, and builds the scene.
     ///
     /// # Errors
-    /// When a setting or anything in the scene is wrong.
+    /// If a setting or anything in the scene is wrong.
     pub fn new(scene: &SceneBuilder, user: &Parameters) -> Result<Job, Error> {
         Job::within(scene, user, u64::MAX)
     }
 
-    /// The same, if so many bytes are enough for it.
+    /// Does the same, but only if `most` bytes of memory are enough.
     ///
     /// # Errors
-    /// As there; and before anything is built, when the picture is going to take more.
+    /// As for [`Job::new`]; and, before anything is built, if the picture would take more memory.
     pub fn within(scene: &SceneBuilder, user: &Parameters, most: u64) -> Result<Job, Error> {
         let settings = Settings::of(scene, user)?;
         let needed = Memory::of(scene, &settings);
@@ -101,10 +103,10 @@ impl Job {
         Ok(job)
     }
 
-    /// Builds the scene for settings that are checked already.
+    /// Builds the scene for settings that have already been checked.
     ///
     /// # Errors
-    /// When anything in the scene is wrong.
+    /// If anything in the scene is wrong.
     pub fn with_settings(scene: &SceneBuilder, settings: Settings) -> Result<Job, Error> {
         let aspect = settings.width as f32 / settings.height as f32;
         scene_warnings::check_not_empty(scene)?;
@@ -161,53 +163,54 @@ impl Job {
         })
     }
 
-    /// The same picture at another time, in seconds. What stands still is not built again.
+    /// Moves the picture to another time, in seconds. Static objects are not rebuilt.
     pub fn at_time(&mut self, time: f32) {
         self.settings.time = time;
         self.fingerprint = OnceLock::new();
         self.scene = self.scene.at(&self.accel, shutter_at(&self.settings, time));
     }
 
-    /// What is odd about the picture, though it can be rendered.
+    /// What is odd about the picture, even though it can be rendered.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
-    /// What was decided for a scene that leaves it open, such as what lights it.
+    /// What was decided where the scene leaves a choice, such as what lights it.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// How a model was turned that came without a camera, or that was asked to be turned.
+    /// How the model was rotated, if it came without a camera or the user asked for a rotation.
     pub fn orientation(&self) -> Option<Orientation> {
         self.orientation
     }
 
-    /// Its time limit counts from here, as where a file was opened, and not from the first sample.
+    /// Starts the clock of the time limit at `begun`, for example when the file was opened, instead of at the first
+    /// sample.
     pub fn begun_at(&mut self, begun: Instant) {
         self.begun = Some(begun);
     }
 
-    /// Only samples `range` of each pixel, for a partial film.
+    /// Takes only the samples in `range` of each pixel, for a partial film.
     pub fn samples(&mut self, range: Range<u32>) {
         self.render.samples = range;
     }
 
-    /// Only a window of the picture.
+    /// Renders only a window of the picture.
     pub fn crop(&mut self, window: Window) {
         self.render.crop = Some(window);
     }
 
-    /// Counts every node and triangle test; slower.
+    /// Counts every node visit and triangle test, which is slower.
     pub fn count_work(&mut self) {
         self.render.count_work = true;
     }
 
-    /// Takes samples that tell how far a pixel may be off ([`Outcome::interval`]). These are other samples, so that parts of
-    /// such a picture do not join with those of a plain one.
+    /// Takes samples that also give each pixel's confidence interval ([`Outcome::interval`]). These are different
+    /// samples, so parts of such a picture do not merge with parts of an ordinary one.
     ///
     /// # Errors
-    /// When the integrator leaves nothing to chance.
+    /// If the integrator is deterministic.
     pub fn with_interval(&mut self) -> Result<(), Error> {
         if !self.integrator.is_random() {
             return Err(RenderError::IntervalOfPattern.into());
@@ -227,10 +230,10 @@ impl Job {
         &self.settings
     }
 
-    /// Renders.
+    /// Renders the picture.
     ///
     /// # Errors
-    /// When the size or the crop makes no sense, or memory is short.
+    /// If the size or the crop makes no sense, or memory is short.
     pub fn render(&self, progress: &dyn Progress) -> Result<Outcome, Error> {
         let now = Instant::now();
         let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
@@ -272,13 +275,13 @@ impl Job {
         })
     }
 
-    /// True when the strategies of its integrator can be told apart.
+    /// True if its integrator's strategies can be shown separately.
     pub fn has_strategies(&self) -> bool {
         self.integrator.has_strategies()
     }
 
-    /// The pictures of its integrator's strategies, of the samples that the picture is of; `None` when it was stopped, or
-    /// there are none.
+    /// Renders a picture for each of the integrator's strategies, from the same samples as the main picture. Returns
+    /// `None` if it was stopped or there are no strategies.
     ///
     /// # Errors
     /// As [`Job::render`].
@@ -291,10 +294,10 @@ impl Job {
         Ok(bilux_transport::strategies(scene, camera, &*self.integrator, &settings, progress)?)
     }
 
-    /// One sample again, with what happened on its way.
+    /// Traces one sample again and records what happens to it.
     ///
     /// # Errors
-    /// When the pixel is outside of the picture.
+    /// If the pixel is outside the picture.
     pub fn replay(&self, x: u32, y: u32, sample: u32) -> Result<Replay, Error> {
         let (scene, camera) = (&self.scene, &*self.camera);
         Ok(bilux_transport::replay(
@@ -306,7 +309,7 @@ impl Job {
         )?)
     }
 
-    /// What identifies this picture: partial films join only where it agrees.
+    /// The fingerprint of this picture: partial films merge only if it agrees.
     pub fn fingerprint(&self) -> &str {
         self.fingerprint.get_or_init(|| {
             let plain = fingerprint(&self.source, &self.settings);
@@ -314,10 +317,10 @@ impl Job {
         })
     }
 
-    /// The film with its exact sums, as a picture that `.exr` can hold and `merge` can join.
+    /// The film with its exact sums, as a picture that an `.exr` can hold and `merge` can merge.
     ///
     /// # Errors
-    /// When memory is short.
+    /// If memory is short.
     pub fn partial(&self, outcome: &Outcome) -> Result<Picture, Error> {
         let mut picture = outcome.film.to_partial()?;
         picture.metadata.insert("bilux.fingerprint".to_owned(), self.fingerprint().to_owned());
@@ -326,15 +329,15 @@ impl Job {
 }
 
 impl Outcome {
-    /// The picture so far; of a crop, the window only.
+    /// The picture so far; for a crop, only its window.
     ///
     /// # Errors
-    /// When memory is short.
+    /// If memory is short.
     pub fn picture(&self) -> Result<Picture, Error> {
         Ok(self.encoded(self.light()?))
     }
 
-    /// The light of the film's window.
+    /// The light in the film's window.
     pub(crate) fn light(&self) -> Result<Picture, Error> {
         let mut picture = self.film.window_to_picture(self.film.window())?;
         if let Some(coverage) = &self.coverage {
@@ -344,16 +347,16 @@ impl Outcome {
         Ok(picture)
     }
 
-    /// As it is to be written.
+    /// The picture in the colour space in which it is written.
     pub(crate) fn encoded(&self, mut picture: Picture) -> Picture {
         if self.linear_transfer {
-            // Said to be encoded already, its samples become bytes as they are.
+            // Marked as already encoded, its samples become bytes unchanged.
             picture.colour_space = bilux_pictures::ColourSpace::Srgb;
         }
         picture
     }
 
-    /// Says in the picture what a rule that ended it has done to it.
+    /// Records in the picture's metadata how the stopping rule affected it.
     fn note_how_far(&self, picture: &mut Picture) {
         let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
         let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);

@@ -1,4 +1,4 @@
-//! What a picture tells beside its light, and what is made of it: layers, and the picture without its noise.
+//! What is derived from a render besides its light: layers, and the denoised picture.
 
 use crate::{Error, Job, Outcome};
 use bilux_pictures::Picture;
@@ -8,30 +8,32 @@ use bilux_transport::aovs::Aov;
 use bilux_transport::{Window, push_variance};
 use std::ops::Range;
 
-/// The value of the setting `denoise` that leaves it to the picture.
+/// The value of the setting `denoise` that lets the kind of picture decide.
 const FOR_DISPLAY: &str = "display";
-/// What denoisers go by.
+/// The layers that guide denoisers.
 const FOR_DENOISERS: [Aov; 4] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Variance];
 
 impl Job {
-    /// From now on no library of others is loaded, and no file looked for that may be one; what
-    /// [`preload`](bilux_pictures::denoise::preload) has loaded before is used.
+    /// From now on, loads no third-party library and looks for no file that might be one. A library that
+    /// [`preload`](bilux_pictures::denoise::preload) has already loaded is still used.
     pub fn sandbox(&mut self) {
         self.sandboxed = true;
     }
 
-    /// Keeps what is wanted of albedo, normals, depth, ids and variance ([`Outcome::layered`]). It changes no sample.
+    /// Keeps the layers in `wanted`: albedo, normals, depth, ids and variance ([`Outcome::layered`]). This changes no
+    /// sample.
     pub fn with_layers(&mut self, wanted: &[Aov]) {
         self.features |= wanted.iter().any(|aov| aov.is_feature());
         self.render.batch_means |= wanted.contains(&Aov::Variance);
     }
 
-    /// What is to denoise the picture, if anything is: what the setting `denoise` names, or where that is left open, the best for pictures
-    /// for a display that noise or time ends. The same number of samples gives the same bytes, unless denoising is
-    /// asked for. The job then keeps what denoisers go by.
+    /// Chooses what denoises the picture, if anything does: the denoiser that the setting `denoise` names, or, if the
+    /// setting leaves it open, the best one for pictures for a display that noise or time ends. A fixed number of
+    /// samples always gives the same bytes, unless denoising is asked for. If a denoiser is chosen, the job keeps the
+    /// layers that guide it.
     ///
     /// # Errors
-    /// When the denoiser that was asked for is not to be had.
+    /// If the denoiser that was asked for is not available.
     pub fn denoiser(&mut self, for_display: bool) -> Result<Option<Chosen>, Error> {
         let name = match self.settings.denoise.as_str() {
             "off" => return Ok(None),
@@ -42,7 +44,7 @@ impl Job {
         let task = Task {
             size: (self.render.width as usize, self.render.height as usize),
             threads: self.settings.threads,
-            // More of it is better spent on samples.
+            // Any more of it is better spent on samples.
             time: self.render.stop.time_limit.map(|limit| limit / 4),
             sandboxed: self.sandboxed,
         };
@@ -54,10 +56,10 @@ impl Job {
 }
 
 impl Outcome {
-    /// The picture with those layers that are wanted and were kept ([`Job::with_layers`]).
+    /// The picture with the layers that are wanted and were kept ([`Job::with_layers`]).
     ///
     /// # Errors
-    /// When memory is short.
+    /// If memory is short.
     pub fn layered(&self, wanted: &[Aov]) -> Result<Picture, Error> {
         let mut picture = self.picture()?;
         self.push_layers(&mut picture, wanted)?;
@@ -67,7 +69,7 @@ impl Outcome {
     /// Adds layers to a picture of the film's window.
     ///
     /// # Errors
-    /// When memory is short, or there are such layers.
+    /// If memory is short, or the picture already has such layers.
     pub fn push_layers(&self, picture: &mut Picture, wanted: &[Aov]) -> Result<(), Error> {
         self.push_rows(picture, 0..self.film.window().height as usize, wanted)
     }
@@ -84,16 +86,16 @@ impl Outcome {
         Ok(())
     }
 
-    /// The picture without its noise, and without layers.
+    /// The denoised picture, without layers.
     ///
     /// # Errors
-    /// When memory is short, or what denoises fails.
+    /// If memory is short, or the denoiser fails.
     pub fn denoised(&self, chosen: &Chosen) -> Result<Picture, Error> {
         let smooth = chosen.denoiser.denoise(self)?;
         Ok(self.encoded(repainted(self.light()?, &smooth)))
     }
 
-    /// Some rows of the film's window, with all that denoisers go by.
+    /// Some rows of the film's window, with all the layers that guide denoisers.
     fn noisy(&self, rows: Range<usize>) -> Result<Noisy, Error> {
         let window = self.film.window();
         let (y, height) = (window.y + rows.start as u32, rows.len() as u32);

@@ -1,4 +1,4 @@
-//! Physically right pictures on plain CPUs: everything that Bilux can do, behind one name.
+//! Physically based rendering on ordinary CPUs: everything that Bilux can do, in one crate.
 //!
 //! ```
 //! use bilux::prelude::*;
@@ -12,8 +12,8 @@
 //! # Ok::<(), bilux::Error>(())
 //! ```
 //!
-//! A scene is read or made ([`load`], [`generate`]), settings join what its file wishes with what the user
-//! says ([`settings`]), and a [`Job`] renders it.
+//! Read a scene with [`load`] or make one with [`generate`]; the [`settings`] combine what its file asks for with what
+//! the user asks for; and a [`Job`] renders it.
 
 pub mod budget;
 mod camera_choice;
@@ -54,18 +54,18 @@ pub mod prelude {
     pub use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value};
 }
 
-/// Reads a scene file of any known format.
+/// Reads a scene file in any known format.
 ///
 /// # Errors
-/// When the file cannot be read, or what it says is wrong; the message has the place.
+/// If the file cannot be read or its contents are wrong; the message says where.
 pub fn load(path: &Path, options: &bilux_formats::ReadOptions) -> Result<SceneBuilder, Error> {
     Ok(bilux_formats::read(path, options)?)
 }
 
-/// Makes one of the scenes that we ship: `kind` is its name.
+/// Makes one of the built-in scenes: `kind` is its name.
 ///
 /// # Errors
-/// When no generator has this name, or a parameter is wrong.
+/// If no generator has this name, or a parameter is wrong.
 pub fn generate(spec: &Spec) -> Result<SceneBuilder, Error> {
     Ok(bilux_scene::generators::generate(spec)?)
 }

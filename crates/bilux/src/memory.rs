@@ -1,40 +1,41 @@
-//! How much memory a picture is going to take, so that none is begun that cannot be held.
+//! How much memory a picture will take, so that Bilux refuses to start one that does not fit.
 
 use crate::Settings;
 use bilux_scene::{Mesh, SceneBuilder};
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// A triangle in trees of its own, while they are built; measured up to 157.
+/// Bytes per triangle in its mesh's own tree, while the tree is built; measured up to 157.
 const TRIANGLE: u64 = 170;
-/// A point or a line in a tree, with the place of its vertices in the world, while that is built; an estimate.
+/// Bytes per point or line in a tree, including the positions of its vertices in world space, while the tree is built;
+/// an estimate.
 const STROKE: u64 = 150;
-/// An object that repeats another, with its place in the tree of all; measured at 295.
+/// Bytes per instance of a repeated object, including its entry in the top-level tree; measured at 295.
 const INSTANCE: u64 = 350;
-/// A pixel, with its sums, its layers, and what tells noise and takes it away; measured up to 180.
+/// Bytes per pixel, with its sums, its layers, and what measuring the noise and denoising take; measured up to 180.
 const PIXEL: u64 = 200;
 
 fn trees_over(mesh: &Mesh) -> u64 {
     mesh.triangles.len() as u64 * TRIANGLE + mesh.stroke_count() as u64 * STROKE
 }
 
-/// About how many bytes it takes to render a scene, at most.
+/// An upper estimate of the bytes that rendering a scene takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// Meshes as they are held, each once.
+    /// Meshes as they are stored, each counted once.
     pub meshes: u64,
-    /// Textures as they are held, each picture once.
+    /// Textures as they are stored, each image counted once.
     pub textures: u64,
-    /// Their coarser levels, where a render makes them.
+    /// Their coarser mipmap levels, if the render makes them.
     pub levels: u64,
-    /// What finds hits.
+    /// The acceleration structures.
     pub trees: u64,
-    /// The picture while it is made.
+    /// The picture while it is rendered.
     pub picture: u64,
 }
 
 impl Memory {
-    /// What a scene takes, whatever the picture.
+    /// The memory for a scene, whatever the picture.
     pub fn of_scene(scene: &SceneBuilder) -> Memory {
         let mut all = Memory::default();
         let mut meshes = HashSet::new();
@@ -43,7 +44,7 @@ impl Memory {
             if is_new {
                 all.meshes += mesh.size();
             }
-            // What stands still goes into one tree, as often as it is there.
+            // A static object goes into one tree, once for each of its occurrences.
             let is_still = !object.instanced && object.motion.is_still();
             all.trees += INSTANCE + if is_new || is_still { trees_over(mesh) } else { 0 };
         }
@@ -54,13 +55,13 @@ impl Memory {
         all
     }
 
-    /// What a picture of it takes with these settings.
+    /// The memory for a picture of a scene with these settings.
     pub fn of(scene: &SceneBuilder, settings: &Settings) -> Memory {
         let picture = u64::from(settings.width) * u64::from(settings.height) * PIXEL;
         Memory { picture, ..Memory::of_scene(scene) }
     }
 
-    /// All of it.
+    /// The sum of all parts.
     pub fn total(&self) -> u64 {
         let Memory { meshes, textures, levels, trees, picture } = *self;
         [meshes, textures, levels, trees, picture].into_iter().fold(0, u64::saturating_add)

@@ -1,4 +1,5 @@
-//! Whether a file's own light is to light its picture, or a studio: by what it brings where the camera looks.
+//! Whether a file's own light or the studio lights its picture, decided by how much of what the camera sees the file's
+//! light reaches.
 
 use crate::Error;
 use crate::camera_choice::choose_camera;
@@ -8,23 +9,24 @@ use crate::settings::Settings;
 use bilux_scene::{AccelChoice, Scene, SceneBuilder};
 use bilux_transport::{Illumination, illumination};
 
-/// The part of what is seen that a file's own light has to reach, so that no studio is put around it.
+/// The fraction of the visible surfaces that a file's own light must reach for the studio to stay off.
 const ENOUGH: f32 = 0.5;
 
-/// What was measured of a file's own light.
+/// The result of measuring a file's own light.
 pub(crate) struct OwnLight {
-    /// It lights what is seen.
+    /// Whether it lights what is visible.
     pub(crate) is_enough: bool,
-    /// What was decided, for people; none where nobody would expect anything else.
+    /// What was decided, as text for the user; `None` if nobody would expect anything else.
     pub(crate) decision: Option<String>,
-    /// The scene with nothing but its own light, and the trees over it.
+    /// The scene with only its own light, and the trees over it.
     pub(crate) alone: (SceneBuilder, Scene),
 }
 
-/// Measures the own light of a scene where it says nothing of its surroundings; `None` where there is nothing to decide.
+/// Measures the own light of a scene whose file says nothing about its surroundings; returns `None` if there is nothing
+/// to decide.
 ///
 /// # Errors
-/// When anything in the scene is wrong.
+/// If anything in the scene is wrong.
 pub(crate) fn measure(
     scene: &SceneBuilder,
     studio: &Studio,
@@ -48,7 +50,7 @@ pub(crate) fn measure(
     Ok(Some(OwnLight { is_enough, decision, alone: (framed, built) }))
 }
 
-/// True where nothing was added to a scene but a camera.
+/// True if nothing but a camera was added to a scene.
 pub(crate) fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> bool {
     let counts = |scene: &SceneBuilder| (scene.objects.len(), scene.lights.len(), scene.cameras.len());
     counts(alone) == counts(completed)

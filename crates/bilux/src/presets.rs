@@ -1,4 +1,4 @@
-//! How bare files are seen: presets that the user asks for, and the studio for files that bring no camera or light.
+//! How bare files are shown: presets that the user asks for, and the studio for files without a camera or lights.
 
 use crate::Error;
 use bilux_formats::ReadOptions;
@@ -9,18 +9,18 @@ pub use bilux_scene::presets::{
 use bilux_scene::{SceneBuilder, Spec, Value};
 use std::path::Path;
 
-/// A copy of the scene in which a missing camera and missing light are made up for, and what is asked of the studio is
-/// there.
+/// Returns a copy of the scene with a camera and lights added where they are missing, and with whatever the user asks
+/// of the studio.
 pub fn completed(scene: &SceneBuilder, studio: &Studio) -> SceneBuilder {
     let mut scene = scene.clone();
     bilux_scene::presets::complete(&mut scene, studio);
     scene
 }
 
-/// Shows a picture, in longitude and latitude, where the camera sees nothing else, whatever lights the scene.
+/// Shows an image in longitude and latitude as the background, whatever lights the scene.
 ///
 /// # Errors
-/// When the picture cannot be read, or has no colours.
+/// If the image cannot be read, or has no colours.
 pub fn set_behind(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
     let light = picture_light(scene, picture, options)?;
     put_behind(scene, light);
@@ -33,11 +33,11 @@ pub(crate) fn put_behind(scene: &mut SceneBuilder, environment: Spec) {
     scene.lights.push(environment.with("backdrop", true));
 }
 
-/// Lights a scene by a picture of its surroundings, in longitude and latitude, in place of an environment that it may have. Lamps
+/// Lights a scene with an environment map in longitude and latitude, replacing the one that it may have. Other lights
 /// stay.
 ///
 /// # Errors
-/// When the picture cannot be read, or has no colours.
+/// If the image cannot be read, or has no colours.
 pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<(), Error> {
     let light = picture_light(scene, picture, options)?;
     scene.lights.retain(|light| light.kind != "environment" || light.is_backdrop());
@@ -45,22 +45,23 @@ pub fn surround(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions)
     Ok(())
 }
 
-/// What is wrong with a picture itself: its place in the text that names it here is nobody's.
+/// What is wrong with the image itself: an error's position in the generated text below would mean nothing to the user.
 fn picture_fault(picture: &Path, options: &ReadOptions) -> Option<Error> {
     let limits = Limits::new(options.max_memory);
     bilux_pictures::read_with(picture, &limits).err().map(Error::from)
 }
 
-/// A picture of surroundings as a light, its texture among the scene's.
+/// An environment map as a light; its texture joins the scene's.
 fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions) -> Result<Spec, Error> {
     let name = picture.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    // As a scene file would say it, so that the picture is looked for, decoded and refused as those of scenes are.
+    // Written as a scene file would be, so that the image is found, decoded and refused exactly as a scene's images
+    // are.
     let quoted = name.replace('\\', "\\\\").replace('"', "\\\"");
     let text = format!(
         "[[light]]\nname = \"surroundings\"\nkind = \"environment\"\nradiance = {{ texture = \"{quoted}\" }}\n"
     );
     let folder = picture.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // Nobody who asks for it wants a checker in its place.
+    // A user who asks for it does not want a checker in its place.
     let options = ReadOptions { strict: true, ..options.clone() };
     let read = bilux_formats::read_bytes(text.as_bytes(), "toml", Some(folder), &name, &options);
     let mut read = read.map_err(|error| picture_fault(picture, &options).unwrap_or(error.into()))?;

@@ -1,4 +1,4 @@
-//! What is odd about a picture before it is rendered, though it can be.
+//! What is odd about a picture before it is rendered, even though it can be rendered.
 
 use crate::presets::{Ground, Studio};
 use bilux_math::{Vec2, Vec3};
@@ -6,7 +6,7 @@ use bilux_scene::{
     Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
 };
 
-/// Warnings about a scene, as it was before anything was made up for, and as a camera sees it.
+/// Warnings about a scene: `given` is the scene before anything missing was added, `scene` is as the camera sees it.
 pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn =
@@ -22,7 +22,8 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
              and so nothing: look from the other side, as by --orbit 180",
         );
     } else if given.surroundings_unsaid && !given.cameras.is_empty() {
-        // Who writes such a file has rarely looked through its camera; other scenes are made for theirs.
+        // Authors of such files have rarely looked through the file's camera; scenes in other formats are made for
+        // theirs.
         let share = share_seen(given.objects.len() as u32, scene, camera);
         if share < SPECK {
             warn(&format!(
@@ -49,10 +50,10 @@ pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -
     Some(Warning { message: message.to_owned(), at: Span::default() })
 }
 
-/// Kinds of light that are seen themselves.
+/// The kinds of light that are visible themselves.
 const SEEN_LIGHTS: [&str; 4] = ["rect", "sphere", "environment", "sky"];
 
-/// Refuses a scene in which there is nothing to be seen.
+/// Refuses a scene with nothing to see.
 pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
     let is_seen = |light: &Spec| SEEN_LIGHTS.contains(&light.kind.as_str());
     let is_full = |mesh: &Mesh| !mesh.triangles.is_empty() || mesh.stroke_count() > 0;
@@ -64,7 +65,7 @@ pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
         (true, _) => {
             "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers"
         }
-        // A sky alone is a picture, where a format can say so.
+        // An environment alone makes a picture, if the format has a way to say so.
         (false, true) if !scene.surroundings_unsaid => return Ok(()),
         (false, _) => {
             "the scene is empty: it has no triangles, points or lines to render; `bilux info` shows what the file holds"
@@ -73,10 +74,10 @@ pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
     Err(SceneError::invalid(message, &Span::default()))
 }
 
-/// A model that fills less of a picture than this is a speck.
+/// A model that fills less of the picture than this is a speck.
 const SPECK: f32 = 0.003;
 
-/// The part of a camera's picture that a scene's first objects fill.
+/// The fraction of a camera's picture that a scene's first objects fill.
 fn share_seen(objects: u32, scene: &Scene, camera: &dyn Camera) -> f32 {
     const GRID: usize = 96;
     let mut tracer = Tracer::new(scene, false);
@@ -95,7 +96,7 @@ fn shows_something(mesh: &Mesh) -> bool {
         || mesh.lines.iter().any(|line| line.iter().all(is_finite))
 }
 
-/// True when the camera would see something of a scene's first objects if it did not see through their backs.
+/// True if the camera would see some of a scene's first objects if it did not see through their backs.
 fn sees_backs_alone(objects: u32, scene: &Scene, camera: &dyn Camera) -> bool {
     const GRID: usize = 32;
     let mut tracer = Tracer::new(scene, false);
@@ -113,7 +114,7 @@ fn sees_backs_alone(objects: u32, scene: &Scene, camera: &dyn Camera) -> bool {
     hides
 }
 
-/// Directions that meet no wall of an ordinary room at an edge.
+/// Directions whose rays hit no wall of an ordinary room at an edge.
 const AROUND: [Vec3; 6] = [
     Vec3::new(0.91, 0.11, 0.4),
     Vec3::new(-0.93, -0.13, 0.34),
@@ -123,7 +124,7 @@ const AROUND: [Vec3; 6] = [
     Vec3::new(-0.37, 0.19, -0.91),
 ];
 
-/// True when rays that way all leave some transparent solid once more than they enter it.
+/// True if the rays in all these directions leave some transparent solid once more than they enter it.
 fn is_in_glass(scene: &Scene, camera: &dyn Camera) -> bool {
     let sample = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: scene.shutter()[0] };
     let eye = camera.ray(&sample);
@@ -139,7 +140,7 @@ fn is_in_glass(scene: &Scene, camera: &dyn Camera) -> bool {
     !around.is_empty()
 }
 
-/// Surfaces that a ray is followed through; who is behind more than that is not looked for.
+/// The maximum number of surfaces that a ray is followed through; solids behind more surfaces are not looked for.
 const MAX_SURFACES: usize = 256;
 
 /// Transparent objects that a ray leaves more often than it enters.
@@ -174,7 +175,7 @@ mod tests {
     use bilux_scene::{Object, Parameters, SceneBuilder, Spec, Value, generators::shapes};
     use std::sync::Arc;
 
-    /// Warnings when a camera stands there, with a ball of this material at the origin.
+    /// The warnings for a camera at this position, with a ball of this material at the origin.
     fn told(material: Spec, position: [f32; 3]) -> Vec<String> {
         let mut scene = SceneBuilder::default();
         let material = scene.add_material(material);

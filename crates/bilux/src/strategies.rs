@@ -1,36 +1,37 @@
-//! All strategies' pictures on one sheet: a pyramid with a row for each length of path. [Veach 1997, fig. 10.3]
+//! All the strategies' pictures on one contact sheet: a pyramid with a row for each path length.
+//! [Veach 1997, fig. 10.3]
 
 use crate::Error;
 use bilux_math::Rgb;
 use bilux_pictures::{Picture, downscaled, label, side_by_side, stacked};
 use bilux_transport::{Strategies, StrategyPicture};
 
-/// Pixels across a picture on the sheet, or a few more or less.
+/// The approximate width of a picture on the sheet, in pixels.
 const PANEL: usize = 160;
 
-/// Pixels between two pictures.
+/// The gap between two pictures, in pixels.
 const GAP: usize = 4;
 
-/// Pixels of a line of words.
+/// The height of a line of text, in pixels.
 const LINE: usize = 12;
 
-/// No row is made brighter by more powers of two.
+/// The maximum number of stops by which a row is brightened.
 const MAX_STOPS: u32 = 30;
 
-/// Which light of the strategies.
+/// Which version of the strategies' light to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Light {
-    /// With their weights: together it is the picture.
+    /// Weighted by MIS: the sum over all strategies is the picture.
     Weighted,
-    /// All that each of them finds.
+    /// Everything that each strategy finds on its own.
     Unweighted,
 }
 
 impl Light {
-    /// Both.
+    /// Both versions.
     pub const BOTH: [Light; 2] = [Light::Weighted, Light::Unweighted];
 
-    /// What a strategy's file ends with, and its sheet is called.
+    /// The suffix of a strategy's file, and the name of the sheet.
     pub fn name(self) -> &'static str {
         match self {
             Light::Weighted => "weighted",
@@ -38,7 +39,7 @@ impl Light {
         }
     }
 
-    /// Pixels of a strategy's picture.
+    /// The pixels of a strategy's picture.
     pub fn of(self, picture: &StrategyPicture) -> &[Rgb] {
         match self {
             Light::Weighted => &picture.weighted,
@@ -50,23 +51,23 @@ impl Light {
 /// A strategy's picture, in linear light.
 ///
 /// # Errors
-/// When memory is short.
+/// If memory is short.
 pub fn picture(strategies: &Strategies, one: &StrategyPicture, light: Light) -> Result<Picture, Error> {
     let (width, height) = (strategies.window.width as usize, strategies.window.height as usize);
     Ok(Picture::from_rgb(width, height, light.of(one).to_vec())?)
 }
 
-/// A sheet in linear light: a row for each length of path, the shortest on top, in it all strategies from s = 0 on, those
-/// that merge after those that join. Rows of long paths are brighter by powers of two, as written on their left end, so
-/// that all rows are as bright as that of direct light.
+/// Makes a sheet in linear light: a row for each path length, the shortest on top, with all strategies from s = 0 on;
+/// strategies that merge vertices come after those that connect them. Rows of long paths are brightened by whole stops,
+/// as written at their left end, so that all rows are about as bright as the row of direct light.
 ///
 /// # Errors
-/// When there is nothing to show, or memory is short.
+/// If there is nothing to show, or memory is short.
 pub fn sheet(strategies: &Strategies, light: Light) -> Result<Picture, Error> {
     let rows: Vec<&[StrategyPicture]> =
         strategies.pictures.chunk_by(|a, b| a.strategy.edges == b.strategy.edges).collect();
     let brightness: Vec<f64> = rows.iter().map(|row| row_brightness(row, light)).collect();
-    // Direct light. Lights that are seen themselves are too bright, and need not be there.
+    // The row of direct light. The row of directly visible lights is too bright, and may be missing.
     let first = rows.iter().position(|row| row[0].strategy.edges > 1);
     let standard = first.map_or(0.0, |first| brightness[first]);
     let mut lines = Vec::new();
@@ -76,7 +77,7 @@ pub fn sheet(strategies: &Strategies, light: Light) -> Result<Picture, Error> {
     }
     let width = lines.iter().map(Picture::width).max().unwrap_or(0);
     for line in &mut lines {
-        // A pyramid: each row in the middle.
+        // A pyramid: each row is centred.
         *line = beside(line, (width - line.width()) / 2)?;
     }
     if lines.is_empty() {
@@ -110,7 +111,7 @@ fn row_of_panels(
     Ok(side_by_side(&shown, GAP)?)
 }
 
-/// A picture with so many black pixels on its left.
+/// Adds `left` columns of black pixels to the left of a picture.
 fn beside(picture: &Picture, left: usize) -> Result<Picture, Error> {
     if left == 0 {
         return Ok(picture.clone());
@@ -119,13 +120,13 @@ fn beside(picture: &Picture, left: usize) -> Result<Picture, Error> {
     Ok(side_by_side(&[black, picture.clone()], 0)?)
 }
 
-/// Mean light of all pictures together.
+/// The mean light of all pictures together.
 fn row_brightness(row: &[StrategyPicture], light: Light) -> f64 {
     let all = row.iter().flat_map(|one| light.of(one)).filter(|pixel| pixel.is_finite());
     all.map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / row.len() as f64
 }
 
-/// By how many powers of two to brighten for this ratio, rounded.
+/// The number of stops by which to brighten for this ratio, rounded.
 fn stops(ratio: f64) -> u32 {
     let is_below =
         |&stops: &u32| ratio.is_finite() && ratio > f64::from(1u32 << stops) * std::f64::consts::SQRT_2;

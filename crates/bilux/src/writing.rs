@@ -1,18 +1,18 @@
-//! How pictures of a job are written.
+//! How a job's pictures are written.
 
 use crate::settings::Background;
 use crate::{Error, Job, Outcome};
 use bilux_pictures::{Picture, WriteOptions};
 use std::path::Path;
 
-/// The curve where the studio lights a model.
+/// The tone curve if the studio lights a model.
 const STUDIO_TONEMAP: &str = "neutral";
 
 impl Job {
-    /// How a picture of this job is written, exposed as it asks for where that is wanted.
+    /// The options for writing a picture of this job, with automatic exposure if the settings ask for it.
     ///
     /// # Errors
-    /// When no tone curve has the name.
+    /// If no tone curve has the name.
     pub fn write_options_for(&self, picture: &Picture) -> Result<WriteOptions, Error> {
         let mut options = self.write_options()?;
         if self.settings.auto_exposure {
@@ -21,10 +21,10 @@ impl Job {
         Ok(options)
     }
 
-    /// How pictures of this job are written, whatever they show.
+    /// The options for writing any picture of this job, whatever it shows.
     ///
     /// # Errors
-    /// When no tone curve has the name.
+    /// If no tone curve has the name.
     pub fn write_options(&self) -> Result<WriteOptions, Error> {
         let name = match self.settings.tonemap.as_str() {
             "auto" if self.studio_lit => STUDIO_TONEMAP,
@@ -39,10 +39,10 @@ impl Job {
         Ok(WriteOptions { exposure: self.settings.exposure, tone_map, behind, ..WriteOptions::default() })
     }
 
-    /// Writes the picture, or for a partial one its film.
+    /// Writes the picture.
     ///
     /// # Errors
-    /// When the file cannot be written, or its format cannot hold a partial film.
+    /// If the file cannot be written.
     pub fn write(&self, outcome: &Outcome, path: &Path) -> Result<(), Error> {
         let picture = outcome.picture()?;
         Ok(bilux_pictures::write(path, &picture, &self.write_options_for(&picture)?)?)

@@ -1,5 +1,5 @@
-//! Whatever changes a sample changes the fingerprint, so that films of two pictures never join in silence; and what changes
-//! none does not, so that films of one picture do.
+//! Whatever changes a sample changes the fingerprint, so that films of two different pictures never merge silently; and
+//! whatever changes no sample keeps it, so that films of one picture do merge.
 
 use bilux::fingerprint::fingerprint;
 use bilux::math::glam::Vec4;
@@ -14,7 +14,7 @@ use bilux::transport::integrators::INTEGRATORS;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A triangle with everything that a mesh can have, a lamp, two cameras of which one moves, a picture.
+/// A triangle with everything that a mesh can have, a light, two cameras of which one moves, and an image texture.
 fn scene() -> SceneBuilder {
     let mut scene = SceneBuilder::default();
     let texels = (0..16).map(|i| Rgb::grey(i as f32 / 15.0)).collect();
@@ -57,7 +57,7 @@ fn key(time_seconds: f32, x: f32) -> MotionKey {
 
 type Change = (&'static str, fn(&mut SceneBuilder));
 
-/// All that a scene is made of, each changed a little.
+/// Every part of a scene, each changed a little.
 const CHANGES: &[Change] = &[
     ("a position", |s| mesh_of(s).positions[1].x = 1.5),
     ("a normal", |s| mesh_of(s).normals[1].x = 0.5),
@@ -121,19 +121,19 @@ fn whatever_of_a_scene_changes_another_picture_it_is() {
             panic!("{what} and {other} have one fingerprint");
         }
     }
-    // Names alone, and where something was written, are no part of the picture.
+    // Names, and where something was written, are not part of the picture.
     let mut renamed = scene();
     mesh_of(&mut renamed).name = "canvas".to_owned();
     renamed.objects[0].name = "jib".to_owned();
     assert_eq!(seen[&fingerprint(&renamed, &settings)], "nothing");
 }
 
-/// What a setting does to samples.
+/// What a setting does to the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Effect {
-    /// Each may be another.
+    /// It may change each of them.
     Changes,
-    /// They are the same to the bit, or others of the same picture.
+    /// The samples are the same bit for bit, or are other samples of the same picture.
     Keeps,
 }
 use Effect::{Changes, Keeps};
@@ -185,7 +185,7 @@ fn value(parameter: &Parameter, text: &str) -> Value {
     }
 }
 
-/// Without a camera and a light of its own, where a setting is of the studio.
+/// For studio settings the scene has no camera and no light of its own.
 fn fingerprint_of(key: &str, value: Option<Value>) -> String {
     let mut scene = scene();
     if ["ground", "orbit", "up", "front", "focal", "background"].contains(&key) {
@@ -213,7 +213,7 @@ fn every_setting_is_known_to_change_samples_or_to_keep_them() {
     assert!(SETTINGS.iter().all(|(key, ..)| RENDER.parameters.iter().any(|p| p.name == *key)));
 }
 
-/// Something that is not the default of a parameter.
+/// A value that is not the parameter's default.
 fn other(parameter: &Parameter) -> Value {
     match parameter.kind {
         ParameterKind::Bool => Value::Bool(parameter.default != "true"),

@@ -1,10 +1,10 @@
-//! What a model stands on: a ground of which the picture has the shadow alone, and a mirror.
+//! What a model stands on: a ground of which only the shadow is in the picture, and a mirror.
 
 use bilux::math::{Aabb, Rgb, Vec3};
 use bilux::prelude::*;
 use std::sync::Arc;
 
-/// A slab above the ground, under the studio's light or one lamp of its own.
+/// A slab above the ground, lit by the studio or by one light of its own.
 fn slab(lamp: Option<Spec>) -> SceneBuilder {
     let mut scene = SceneBuilder::default();
     let red = scene.add_material(Spec::new("", "diffuse").with("reflectance", Rgb::new(0.7, 0.1, 0.1)));
@@ -45,13 +45,13 @@ fn a_ground_that_is_not_seen_has_its_shadow_as_alpha() {
     }
 }
 
-/// Over white the shadow is that on a white ground: of one lamp alone it is as dark as a form factor says.
+/// Composited over white, the shadow is that on a white ground: as dark as the lid's form factor says.
 #[test]
 fn the_shadow_over_white_is_that_of_the_ground() {
-    // Under an even sky, far below a large lid, the ground keeps what the lid does not cover.
+    // Under a uniform environment light, far below a large lid, the ground keeps the light that the lid does not block.
     let mut scene = SceneBuilder::default();
     let black = scene.add_material(Spec::new("", "diffuse").with("reflectance", 0.0f32));
-    // The ground lies at the foot of the two posts.
+    // The ground lies at the foot of the post.
     let lid = Aabb { min: Vec3::new(-1.0, 1.0, -1.0), max: Vec3::new(1.0, 1.001, 1.0) };
     let post = Aabb { min: Vec3::new(-0.001, 0.0, -0.001), max: Vec3::new(0.001, 1.0, 0.001) };
     for bounds in [lid, post] {

@@ -1,4 +1,4 @@
-//! Whether a file's own light is to light its picture, or the studio.
+//! Whether a file's own light or the studio lights its picture.
 
 use bilux::math::{Aabb, Rgb, Vec3};
 use bilux::prelude::*;
@@ -6,7 +6,7 @@ use bilux::scene::cameras::CameraSpec;
 use bilux::scene::generators::shapes;
 use std::sync::Arc;
 
-/// A scene of a format that has no word for what is around it, as glTF.
+/// A scene in a format that cannot describe its surroundings, such as glTF.
 fn file() -> SceneBuilder {
     SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() }
 }
@@ -28,7 +28,7 @@ fn cuboid(low: Vec3, high: Vec3) -> Mesh {
     shapes::cuboid(Aabb { min: low, max: high })
 }
 
-/// A panel of two triangles, its front where `u × v` points.
+/// A panel of two triangles; its front faces along `u × v`.
 fn panel(middle: Vec3, u: Vec3, v: Vec3) -> Mesh {
     let corner = |a: f32, b: f32| middle + u * a + v * b;
     Mesh {
@@ -46,7 +46,7 @@ fn job(scene: &SceneBuilder) -> Job {
     Job::new(scene, &settings).unwrap()
 }
 
-/// The luminance that a tenth of the pixels have or exceed: the rest may be of nothing.
+/// The luminance that a tenth of the pixels reach: the others may show nothing.
 fn bright(job: &Job) -> f32 {
     let picture = job.render(&Quiet).unwrap().picture().unwrap();
     let mut seen: Vec<f32> = picture.to_rgb().unwrap().iter().map(|p| p.luminance()).collect();
@@ -65,7 +65,7 @@ fn assert_decided(name: &str, scene: &SceneBuilder, by_studio: bool) {
     assert!(bright(&job) > 0.03, "{name} is dark: {}", bright(&job));
 }
 
-/// A body and two small lamps at its front, as a car has.
+/// A body and two small lights at its front, like a car.
 fn car(emission: f32) -> SceneBuilder {
     let mut scene = file();
     put(&mut scene, cuboid(Vec3::new(-0.5, 0.0, -1.0), Vec3::new(0.5, 0.6, 1.0)), clay(0.6));
@@ -93,7 +93,7 @@ fn what_glows_alone_is_seen_in_the_studio() {
     assert_decided("glowing cubes", &scene, true);
 }
 
-/// A closed room, seen through the back of one of its walls, with a lamp below the ceiling.
+/// A closed room, seen through the back of one of its walls, with a light below the ceiling.
 fn closed_box(emission: f32) -> SceneBuilder {
     let mut scene = file();
     let mut walls = cuboid(Vec3::NEG_ONE, Vec3::ONE);
@@ -111,12 +111,12 @@ fn a_closed_box_is_lit_by_its_own_lamp() {
     let scene = closed_box(15.0);
     assert_decided("a box", &scene, false);
     assert_eq!(job(&scene).scene().lights().len(), 1, "nothing is added");
-    // Without a camera of its own too.
+    // The same without a camera of its own.
     let bare = SceneBuilder { cameras: Vec::new(), ..scene };
     assert_decided("a box without a camera", &bare, false);
 }
 
-/// A bulb above a foot and a table.
+/// A bulb above a stand and a table.
 fn lamp(emission: f32) -> SceneBuilder {
     let mut scene = file();
     put(&mut scene, panel(Vec3::ZERO, Vec3::Z, Vec3::X), clay(0.6));
@@ -150,7 +150,7 @@ fn what_is_decided_depends_on_the_scene_alone() {
         Job::new(&scene, &settings).unwrap().notes().to_vec()
     });
     assert!(notes[0].len() == 1 && notes.iter().all(|n| *n == notes[0]), "{notes:?}");
-    // Formats that can say what is around a scene have said it.
+    // Formats that can describe a scene's surroundings have described them.
     let said = SceneBuilder { surroundings_unsaid: false, ..car(20.0) };
     assert!(job(&said).notes().is_empty());
 }

@@ -1,4 +1,4 @@
-//! The command line. Help, completions and the man pages are made from this one description.
+//! The command line. Help, shell completions and man pages are all generated from this one description.
 
 use crate::choices::{Choices, Posed};
 pub use crate::comparison::Compare;
@@ -36,7 +36,7 @@ pub struct Arguments {
     pub command: Command,
 }
 
-/// Options of every command.
+/// The options of every command.
 #[derive(Args)]
 pub struct Common {
     /// Limit the memory for reading a file and, approximately, for rendering it
@@ -48,14 +48,14 @@ pub struct Common {
     /// Let scene files refer to files outside their own folder
     #[arg(long, global = true, help_heading = help::FILES)]
     pub allow_outside: bool,
-    /// For files from strangers: read nothing outside the scene's folder and write nothing outside the folder of OUT;
-    /// on Linux the kernel enforces it (see -V)
+    /// Read nothing outside the scene's folder and write nothing outside OUT's folder, for files from untrusted
+    /// sources; on Linux the kernel enforces this (see -V)
     #[arg(long, global = true, conflicts_with = "allow_outside", help_heading = help::FILES)]
     pub sandbox: bool,
-    /// Print nothing but errors
+    /// Print only errors
     #[arg(short, long, global = true, help_heading = help::OUTPUT)]
     pub quiet: bool,
-    /// Print more: what was chosen, and why
+    /// Print more detail, such as what `auto` chose and why
     #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = help::OUTPUT)]
     pub verbose: u8,
     /// Show progress as a bar or as lines [default: a bar on a terminal, lines elsewhere]
@@ -94,7 +94,7 @@ pub enum Command {
     Bench(Box<Bench>),
     /// List integrators, accelerators, materials, formats and more
     List(List),
-    /// Print completions for a shell
+    /// Print shell completions
     Completions {
         /// The shell
         shell: clap_complete::Shell,
@@ -104,7 +104,7 @@ pub enum Command {
         /// The folder for the man pages of all commands
         folder: Option<PathBuf>,
     },
-    /// Print the JSON Schema of scene files, for editors
+    /// Print the JSON Schema of scene files, for use in editors
     Schema,
     /// Print the licences of Bilux and of its dependencies
     Licenses,
@@ -131,80 +131,81 @@ pub enum Command {
     124 when --timeout, 130 or 143 when a signal ended it early (the picture so far is saved),\n  \
     141 when standard output was closed")]
 pub struct Render {
-    /// The scene files; `-` reads standard input
+    /// The scene files to render; `-` reads a scene from standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// The picture; its extension sets the format, `{stem}` stands for the scene's name, `{frame}` for a frame's number,
-    /// and `-` writes PNG to standard output
+    /// The picture to write; its extension sets the format, `{stem}` stands for the scene's name, `{frame}` for the
+    /// frame's number, and `-` writes a PNG to standard output
     #[arg(short, long, value_name = "OUT", help_heading = help::MAX_USED)]
     pub output: PathBuf,
-    /// The width and height in pixels [default: 512x512]
+    /// The width and height of the picture in pixels [default: 512x512]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::MAX_USED)]
     pub size: Option<String>,
-    /// Take this number of samples in each pixel; the picture is then the same on every machine
+    /// Take N samples per pixel; the picture is then the same on every machine
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::MAX_USED)]
     pub spp: Option<u32>,
-    /// Stop when the noise is at most this part of the light, on average: 2% looks smooth
+    /// Stop when the noise is, on average, at most this fraction of the light; 2% looks smooth
     #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::MAX_USED)]
     pub noise: Option<f32>,
-    /// Finish within this time, including reading and denoising; where that is impossible, a line says why
+    /// Finish within this time, including reading and denoising; if that is impossible, Bilux says why
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::MAX_USED)]
     pub time_limit: Option<f32>,
-    /// The integrator, which finds the light (`bilux list integrators`) [default: auto]
+    /// The integrator, the algorithm that computes the light (`bilux list integrators`) [default: auto]
     #[arg(short, long, value_name = "NAME", help_heading = help::MAX_USED)]
     pub integrator: Option<String>,
-    /// The camera of the scene to use, by name or by number from 0
+    /// The camera of the scene, by name or by number from 0
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::MAX_USED)]
     pub camera: Option<String>,
     #[command(flatten)]
     pub studio: StudioArguments,
     #[command(flatten)]
     pub choices: Choices,
-    /// The format of the scene on standard input; auto goes by its first bytes
+    /// The format of the scene on standard input; auto detects it from the first bytes
     #[arg(long, value_name = "NAME|auto", default_value = "auto", help_heading = help::WHAT)]
     pub input_format: String,
-    /// The time to show, in scenes that move
+    /// The time to show, for animated scenes
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, help_heading = help::WHAT)]
     pub at: Option<f32>,
-    /// Render frames A to B, both included
+    /// Render frames A to B, inclusive
     #[arg(long, value_name = "A-B", value_parser = parse_frames, help_heading = help::WHAT)]
     pub frames: Option<(u32, u32)>,
     /// Render only a window of the picture
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = parse_crop, help_heading = help::PICTURE)]
     pub crop: Option<[u32; 4]>,
-    /// Brighten by powers of two, or automatically to the brightness of a photograph
+    /// Brighten by this many stops (powers of two), or automatically to the brightness of a photograph
     #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, value_parser = parse_exposure, help_heading = help::PICTURE)]
     pub exposure: Option<Exposure>,
-    /// The tone curve (`bilux list tonemaps`)
+    /// The tone-mapping curve (`bilux list tonemaps`) [default: auto]
     #[arg(long, value_name = "NAME", help_heading = help::PICTURE)]
     pub tonemap: Option<String>,
-    /// Denoise with the best denoiser there is, or with the one named (`bilux list denoisers`) [default: auto for pictures
-    /// that are shown on a display and that --noise or --time-limit ends, else off]
+    /// Denoise with the best available denoiser, or with the one named (`bilux list denoisers`) [default: auto for
+    /// display formats when noise or time ends the render, else off]
     #[arg(long, value_name = "auto|oidn|builtin|off", num_args = 0..=1, default_missing_value = "auto",
         require_equals = true, help_heading = help::PICTURE)]
     pub denoise: Option<String>,
-    /// Render the cleanest picture that about a second gives, reading and denoising included: for thumbnails
+    /// Render the cleanest picture that about a second allows, including reading and denoising; for thumbnails
     #[arg(long, conflicts_with_all = ["spp", "noise", "time_limit"], help_heading = help::SPEED)]
     pub fast: bool,
-    /// End the whole command after this time, with the picture as it is by then (exit status 124)
+    /// Stop the whole command after this time and save the picture so far (exit status 124)
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_duration, help_heading = help::SPEED)]
     pub timeout: Option<Duration>,
-    /// The seed of the random numbers; another seed gives other noise
+    /// The seed of the random numbers; a different seed gives different noise
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_seed, help_heading = help::PICTURE)]
     pub seed: Option<u64>,
-    /// Take only samples A to B (excluded) of each pixel, for a partial render in an .exr
+    /// Take only samples A to B (B excluded) of each pixel, for a partial render in an .exr (`bilux merge`)
     #[arg(long, value_name = "A..B", value_parser = parse_samples, help_heading = help::PICTURE)]
     pub samples: Option<(u32, u32)>,
-    /// Any other setting (`bilux list settings`)
+    /// Change any other setting (`bilux list settings`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::PICTURE)]
     pub set: Vec<String>,
-    /// The maximum number of bounces; 0 shows only what emits light
+    /// The maximum number of bounces; 0 shows only emitters
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::LIGHT)]
     pub max_depth: Option<u32>,
-    /// The highlights of `cast` and `whitted`: the halfway vector of Eq. 1, or the reflected ray of section 3.1
+    /// How `cast` and `whitted` compute highlights: from the halfway vector of Eq. 1, or from the reflected ray of
+    /// section 3.1
     #[arg(long, value_name = "halfway|reflect", help_heading = help::LIGHT)]
     pub specular: Option<String>,
-    /// Shadows in `whitted`: dark where all lights are blocked, as in the paper, or light by light
+    /// How `whitted` computes shadows: dark where all lights are blocked, as in the paper, or per light
     #[arg(long, value_name = "paper|per-light", help_heading = help::LIGHT)]
     pub shadow_rule: Option<String>,
     /// The number of threads; 0 uses all cores
@@ -213,10 +214,11 @@ pub struct Render {
     /// The acceleration structure (`bilux list accels`)
     #[arg(long, value_name = "NAME", help_heading = help::SPEED)]
     pub accel: Option<String>,
-    /// How much time its construction may take [default: auto, by the number of samples per triangle]
+    /// How much time building the acceleration structure may take [default: auto, by the number of samples per
+    /// triangle]
     #[arg(long, value_name = "fast|balanced|best", help_heading = help::SPEED)]
     pub build: Option<String>,
-    /// How `bsp` chooses its planes
+    /// How `bsp` chooses its splitting planes
     #[arg(long, value_name = "mean|fuchs", help_heading = help::SPEED)]
     pub bsp_split: Option<String>,
     /// What `bsp` keeps together
@@ -228,18 +230,19 @@ pub struct Render {
     /// The quality of a JPEG, from 1 to 100 [default: 92]
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_quality, help_heading = help::OUTPUT)]
     pub quality: Option<u8>,
-    /// More outputs (`bilux list aovs`): albedo, normal, depth, ids and variance become layers of an .exr (OUT.layers.exr
-    /// beside other formats), interval writes OUT.interval.exr, strategies writes the folder OUT.strategies
+    /// Write more outputs (`bilux list aovs`): albedo, normal, depth, ids and variance become layers of an .exr (of
+    /// OUT.layers.exr if OUT is not an .exr), interval writes OUT.interval.exr, and strategies writes the folder
+    /// OUT.strategies
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', help_heading = help::OUTPUT)]
     pub aov: Vec<String>,
-    /// Print a line of JSON about each picture on standard output
+    /// Print one line of JSON per picture to standard output
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
-    /// Write statistics as JSON, or print them on standard output with `-`; every node visit and triangle test is
-    /// counted, which is slower
+    /// Write statistics as JSON to a file, or to standard output with `-`; this counts every node visit and triangle
+    /// test, which is slower
     #[arg(long, value_name = "FILE.json|-", help_heading = help::OUTPUT)]
     pub stats: Option<PathBuf>,
-    /// Trace one sample again and print what happens to it
+    /// Trace one sample of a pixel again and print what happens along its path
     #[arg(long, value_name = "X,Y,SAMPLE", allow_hyphen_values = true, value_parser = parse_replay, help_heading = help::OUTPUT)]
     pub replay: Option<[u32; 3]>,
 }
@@ -271,7 +274,7 @@ pub struct Convert {
     /// The file to write; its extension sets the format
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
-    /// Write text instead of binary, for PLY and STL
+    /// Write PLY and STL files as text instead of binary
     #[arg(long, help_heading = help::OUTPUT)]
     pub ascii: bool,
     /// The quality of a JPEG, from 1 to 100 [default: 92]
@@ -287,7 +290,7 @@ pub struct Convert {
 #[command(after_help = "Examples:\n  bilux generate teapots --set count=5 -o five.toml\n  \
     bilux generate teapots --from pot.asc --count 3 --offset 4,0,0 -o three.asc")]
 pub struct Generate {
-    /// The scene (`bilux list generators`)
+    /// The built-in scene (`bilux list generators`)
     pub name: String,
     /// The file to write; its extension sets the format
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
@@ -295,13 +298,13 @@ pub struct Generate {
     /// The number of copies
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_count, help_heading = help::WHAT)]
     pub count: Option<u32>,
-    /// The distance from each copy to the next
+    /// The offset from each copy to the next
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_vector, help_heading = help::WHAT)]
     pub offset: Option<[f32; 3]>,
     /// Copy the model in this file instead of a built-in one
     #[arg(long, value_name = "FILE", help_heading = help::WHAT)]
     pub from: Option<PathBuf>,
-    /// Any other parameter (`bilux list generators`)
+    /// Set any other parameter (`bilux list generators`)
     #[arg(long = "set", value_name = "KEY=VALUE", help_heading = help::WHAT)]
     pub set: Vec<String>,
 }
@@ -311,10 +314,10 @@ pub struct Generate {
 #[command(help_template = help::TEMPLATE)]
 #[command(after_help = "Example:\n  bilux merge a.exr b.exr -o scene.png")]
 pub struct Merge {
-    /// The partial renders, in any order
+    /// The partial renders to merge, in any order
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
-    /// The picture; an .exr can be merged again
+    /// The picture to write; an .exr can be merged again
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
 }

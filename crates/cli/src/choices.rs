@@ -1,19 +1,19 @@
-//! The options that choose where a scene file leaves a choice.
+//! The options for the choices that a scene file leaves open.
 
 use crate::help;
 use crate::values::parse_radius;
 use clap::{Args, ValueEnum};
 
-/// Choices that a scene file leaves open.
+/// The choices that a scene file leaves open.
 #[derive(Args)]
 pub struct Choices {
-    /// The animation to show, by name or by number from 0 [default: the first, with those that move other objects]
+    /// The animation to show, by name or by number from 0 [default: the first, and any others that move other objects]
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub animation: Option<String>,
-    /// The variant of the materials to show, by name or by number from 0
+    /// The material variant to show, by name or by number from 0
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::WHAT)]
     pub variant: Option<String>,
-    /// How to read glass whose thickness the file does not give
+    /// How to interpret glass whose thickness the file does not give
     #[arg(long, value_name = "HOW", value_enum, default_value = "auto", help_heading = help::WHAT)]
     pub glass: GlassArgument,
     /// Give the file's point lights this radius, in metres
@@ -22,12 +22,12 @@ pub struct Choices {
     pub light_radius: f32,
 }
 
-/// The same, and the time.
+/// The same choices, and a time.
 #[derive(Args)]
 pub struct Posed {
     #[command(flatten)]
     pub choices: Choices,
-    /// The time, in files whose meshes bend
+    /// The time to show, for files whose meshes deform
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, allow_negative_numbers = true,
         help_heading = help::WHAT)]
     pub at: f32,
@@ -38,7 +38,7 @@ pub struct Posed {
 pub enum GlassArgument {
     /// Solid where the mesh is closed, a thin pane elsewhere
     Auto,
-    /// Thin panes
+    /// A thin pane everywhere
     Thin,
     /// Solid everywhere
     Solid,

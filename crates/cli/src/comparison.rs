@@ -13,9 +13,9 @@ use std::path::PathBuf;
     0 when every bound holds, 1 when one does not, 2 when the pictures cannot be compared"
 )]
 pub struct Compare {
-    /// The picture
+    /// The picture to measure
     pub picture: PathBuf,
-    /// The reference
+    /// The reference picture
     pub reference: PathBuf,
     /// The maximum mean FLIP error
     #[arg(long, value_name = "X", help_heading = BOUNDS)]
@@ -38,10 +38,10 @@ pub struct Compare {
     /// Print JSON
     #[arg(long, help_heading = help::OUTPUT)]
     pub json: bool,
-    /// Write a picture of the differences
+    /// Write a heat map of the FLIP error to this file
     #[arg(long, value_name = "FILE", help_heading = help::OUTPUT)]
     pub heat_map: Option<PathBuf>,
 }
 
-/// Heading of what decides about the exit status.
+/// The heading of the options that decide the exit status.
 const BOUNDS: &str = "Bounds";

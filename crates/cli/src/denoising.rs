@@ -19,17 +19,17 @@ use std::path::PathBuf;
 pub struct Denoise {
     /// The noisy picture
     pub input: PathBuf,
-    /// The picture without noise
+    /// The denoised picture to write; its extension sets the format
     #[arg(short, long, value_name = "OUT", help_heading = help::OUTPUT)]
     pub output: PathBuf,
     /// The denoiser (`bilux list denoisers`)
     #[arg(long, value_name = "auto|oidn|builtin", default_value = "auto", help_heading = help::PICTURE)]
     pub by: String,
-    /// Brighten pictures for a display by powers of two, or automatically to the brightness of a photograph
+    /// Brighten display formats by this many stops (powers of two), or automatically to the brightness of a photograph
     #[arg(long, value_name = "EV|auto", allow_hyphen_values = true, default_value = "0",
         value_parser = parse_exposure, help_heading = help::PICTURE)]
     pub exposure: Exposure,
-    /// The tone curve of pictures for a display (`bilux list tonemaps`)
+    /// The tone-mapping curve for display formats (`bilux list tonemaps`)
     #[arg(long, value_name = "NAME", default_value = "none", help_heading = help::PICTURE)]
     pub tonemap: String,
     /// The quality of a JPEG, from 1 to 100 [default: 92]
@@ -40,7 +40,7 @@ pub struct Denoise {
     pub threads: usize,
 }
 
-/// Refuses a denoiser that is taken for a scene because a space stands before it.
+/// Refuses a denoiser's name that was taken for a scene because a space precedes it.
 pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
     let is_denoiser =
         |scene: &&PathBuf| bilux::settings::DENOISE.iter().any(|name| scene.as_os_str() == *name);
@@ -50,13 +50,13 @@ pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Begins to load the libraries of denoisers, while the scene is read, where one is likely to be used. In a sandbox they are loaded
-/// before the first byte of a file is read, and none is loaded after that.
+/// Starts loading the denoisers' libraries while the scene is being read, if one is likely to be used. In a sandbox the
+/// libraries are loaded before the first byte of a file is read, and none is loaded afterwards.
 pub fn begin_loading(arguments: &Render, common: &Common) {
     let may_use = match arguments.denoise.as_deref() {
         Some("auto" | "oidn") => true,
         Some(_) => false,
-        // A number of samples gives the same bytes as ever.
+        // A fixed number of samples is not denoised, so its bytes never depend on a denoiser.
         None => arguments.spp.is_none() || arguments.noise.is_some() || arguments.time_limit.is_some(),
     };
     if may_use && arguments.samples.is_none() && arguments.crop.is_none() {
@@ -64,7 +64,7 @@ pub fn begin_loading(arguments: &Render, common: &Common) {
     }
 }
 
-/// Loads them, or in a sandbox waits until they are loaded.
+/// Loads the libraries; in a sandbox, waits until they are loaded.
 pub fn load(threads: usize, common: &Common) {
     let loading = preload(threads);
     if common.sandbox {

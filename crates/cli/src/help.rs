@@ -1,21 +1,21 @@
-//! How help is laid out: examples first, then the options under headings, the most used ones before all others.
+//! The layout of the help: examples first, then the options under headings, the most used ones before all others.
 
-/// Examples stand before the options, where they are seen without scrolling.
+/// Puts the examples before the options, so that they are visible without scrolling.
 pub const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\n{all-args}\n";
 
-/// Heading of the ten options that are used most.
+/// The heading of the ten most used options.
 pub const MAX_USED: &str = "Most used";
-/// Heading: what of a scene is shown.
+/// The heading of options for which part of a scene is shown.
 pub const WHAT: &str = "What";
-/// Heading: how the picture looks.
+/// The heading of options for how the picture looks.
 pub const PICTURE: &str = "Picture";
-/// Heading: which light is found.
+/// The heading of options for how light is computed.
 pub const LIGHT: &str = "Light";
-/// Heading: from where a model is seen, and what is around it.
+/// The heading of options for where a model is seen from and what surrounds it.
 pub const STUDIO: &str = "Camera and studio";
-/// Heading: what makes it fast.
+/// The heading of options for speed.
 pub const SPEED: &str = "Speed";
-/// Heading: how files are read.
+/// The heading of options for how files are read.
 pub const FILES: &str = "Files";
-/// Heading: what is written and printed.
+/// The heading of options for what is written and printed.
 pub const OUTPUT: &str = "Output";

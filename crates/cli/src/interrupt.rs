@@ -1,5 +1,5 @@
-//! Ctrl-C and SIGTERM: the first asks the work to end and save what there is, the second ends it at once. `--timeout` does both, one
-//! after the other.
+//! Ctrl-C and SIGTERM: the first signal asks the work to stop and save what there is, the second stops it at once.
+//! `--timeout` does both, one after the other.
 
 use crate::output;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -12,25 +12,25 @@ use std::time::Duration;
 pub struct Interrupt {
     /// The signal's number, or [`TIMEOUT`].
     signal: Arc<AtomicUsize>,
-    /// There is a picture that can be saved.
+    /// Whether there is a picture that can be saved.
     renders: Arc<AtomicBool>,
 }
 
-/// In place of a signal: the time is over.
+/// Takes the place of a signal's number when the time is up.
 const TIMEOUT: usize = usize::MAX;
 
-/// The exit status of what a timeout has ended, as that of the command `timeout`.
+/// The exit status after a timeout, the same as that of the command `timeout`.
 const TIMED_OUT: u8 = 124;
 
-/// So long after a timeout what there is has to be saved.
+/// How long saving may take after a timeout.
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Listens from now on.
+    /// Starts listening for signals.
     pub fn listen() -> anyhow::Result<Interrupt> {
         let signal = Arc::new(AtomicUsize::new(0));
         for wanted in [SIGINT, SIGTERM] {
-            // In this order: the shutdown looks at the flag that an earlier signal has set.
+            // The order matters: the shutdown checks the flag that an earlier signal has set.
             let again = Arc::new(AtomicBool::new(false));
             signal_hook::flag::register_conditional_shutdown(wanted, status(wanted as usize), again.clone())?;
             signal_hook::flag::register(wanted, again)?;
@@ -39,7 +39,7 @@ impl Interrupt {
         Ok(Interrupt { signal, renders: Arc::default() })
     }
 
-    /// Ends the work after this time: what is rendered by then is saved; where nothing is, the program ends at once.
+    /// Stops the work after this time. What is rendered by then is saved; if nothing is, the program exits at once.
     pub fn end_after(&self, timeout: Duration) {
         let Interrupt { signal, renders } = self.clone();
         std::thread::spawn(move || {
@@ -60,22 +60,22 @@ impl Interrupt {
         });
     }
 
-    /// From here on there is a picture that can be saved, or no longer.
+    /// Says whether, from now on, there is a picture that can be saved.
     pub fn renders(&self, yes: bool) {
         self.renders.store(yes, Ordering::Relaxed);
     }
 
-    /// True where it was the time that ended the work.
+    /// True if the timeout stopped the work.
     pub fn timed_out(&self) -> bool {
         self.signal.load(Ordering::Relaxed) == TIMEOUT
     }
 
-    /// True when the work should end.
+    /// True when the work should stop.
     pub fn is_requested(&self) -> bool {
         self.signal.load(Ordering::Relaxed) != 0
     }
 
-    /// 130 or 143 after a signal, 124 after a timeout, 0 without.
+    /// Returns 130 or 143 after a signal, 124 after a timeout, and 0 otherwise.
     pub fn exit_status(&self) -> u8 {
         match self.signal.load(Ordering::Relaxed) {
             0 => 0,
@@ -85,7 +85,7 @@ impl Interrupt {
     }
 }
 
-/// The exit status by which shells know a signal.
+/// The exit status by which shells report a signal.
 fn status(signal: usize) -> i32 {
     128 + signal as i32
 }

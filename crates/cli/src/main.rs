@@ -1,7 +1,7 @@
-//! `bilux`, the command line. It reads arguments, shows progress and writes files; whatever is rendered is
-//! rendered by the library.
+//! `bilux`, the command line. It reads arguments, shows progress and writes files; the library does all of the
+//! rendering.
 
-// A program's modules are all its own: `pub` here means: for the modules beside.
+// A binary exports nothing, so `pub` here means visible to sibling modules.
 #![allow(unreachable_pub)]
 
 mod arguments;
@@ -30,7 +30,7 @@ use std::process::ExitCode;
 const FAILED: u8 = 1;
 /// The command line was wrong.
 const WRONG_COMMAND_LINE: u8 = 2;
-/// Whoever read standard output went away: what shells report of a program that a closed pipe has ended.
+/// The reader of standard output went away: the status that shells report for a program that a closed pipe has ended.
 const CLOSED_PIPE: u8 = 128 + 13;
 
 fn main() -> ExitCode {
@@ -69,17 +69,17 @@ fn run(arguments: &Arguments) -> anyhow::Result<u8> {
     }
 }
 
-/// Prints help or the version on standard output, or what is wrong with the command line on standard error.
+/// Prints help or the version to standard output, or what is wrong with the command line to standard error.
 fn print_answer(answer: &clap::Error) -> anyhow::Result<u8> {
     let printed = answer.print().and_then(|()| std::io::stdout().flush());
-    // Where standard error is closed nobody can be told.
+    // If standard error is closed, there is nowhere to report the failure.
     if !answer.use_stderr() {
         printed.map_err(output::Unprinted)?;
     }
     Ok(u8::try_from(answer.exit_code()).unwrap_or(WRONG_COMMAND_LINE))
 }
 
-/// Reports a panic as a bug of Bilux. Panics inside picture decoders are caught and become errors.
+/// Reports a panic as a bug in Bilux. Panics inside picture decoders are caught and become errors.
 fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
         if !bilux::pictures::is_decoding() {

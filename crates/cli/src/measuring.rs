@@ -25,12 +25,13 @@ use std::path::PathBuf;
     bilux bench render room.pbrt --reference-seconds 30 --integrators auto,path,bdpt,auto:path-photons\n  \
     bilux bench models                                 A dozen models, in five minutes")]
 pub struct Bench {
-    /// The benchmark
+    /// The benchmark to run
     #[arg(value_enum)]
     pub kind: BenchKind,
-    /// `render`: scene files [default: the built-in scenes]. `load`: scene files [default: files that it makes]. `models`:
-    /// model files [default: built-in ones, and those of ../shared/scenes]. `rays`: scene files, or the built-in scenes teapots3, interior,
-    /// scan, teapot1m [default: these four], teapot1k, teapot10k, teapot100k and teapots10m
+    /// `render`: scene files [default: the built-in scenes]. `load`: scene files [default: files that it generates].
+    /// `models`: model files [default: built-in ones, and those in ../shared/scenes]. `rays`: scene files, or the
+    /// built-in scenes teapots3, interior, scan, teapot1m [default: these four], teapot1k, teapot10k, teapot100k and
+    /// teapots10m
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
     /// Print JSON
@@ -45,51 +46,51 @@ pub struct Bench {
     /// The width and height in pixels
     #[arg(long, value_name = "WxH")]
     pub size: Option<String>,
-    /// The number of repeats, of which the median is reported
+    /// The number of repeats; the median is reported
     #[arg(long, value_name = "N")]
     pub repeats: Option<u32>,
     /// Where the teapots stand: at the paper's fixed offset, or so that they always cover the same part of the picture
     #[arg(long, value_name = "paper|coverage")]
     pub layout: Option<String>,
-    /// Write a picture of the result, where there is one
+    /// Write a picture of the result, if there is one
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// `rays`: the number of rays in each class [default: 1048576], or with --mesh a file of rays
     #[arg(long, value_name = "N|FILE")]
     pub rays: Vec<String>,
-    /// `rays`: the number of rounds; every engine has its turn in each, and the median is reported [default: 5]
+    /// `rays`: the number of rounds; every engine takes a turn in each, and the median is reported [default: 5]
     #[arg(long, value_name = "N")]
     pub rounds: Option<u32>,
-    /// `rays`: another engine in a shared library, such as embree=libembree4.so.4
+    /// `rays`: compare with another engine from a shared library, such as embree=libembree4.so.4
     #[arg(long, value_name = "NAME=PATH", value_parser = parse_rival)]
     pub against: Vec<(String, PathBuf)>,
     /// `rays`: write the meshes and rays to this folder
     #[arg(long, value_name = "DIR")]
     pub dump: Option<PathBuf>,
-    /// `rays`: a mesh file instead of scenes
+    /// `rays`: trace this mesh file instead of scenes
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
     /// `rays`: write the hits of the rays in --rays FILE
     #[arg(long, value_name = "FILE")]
     pub hits: Option<PathBuf>,
-    /// `render`: the scenes [default: all]
+    /// `render`: the built-in scenes to use [default: all]
     #[arg(long = "scenes", value_name = "NAME,…", value_delimiter = ',')]
     pub gallery: Vec<String>,
-    /// `render`: the integrators [default: path, bdpt, vcm, sppm, auto]; auto:WAYS is `auto` restricted to one of its
-    /// choices, such as auto:path-photons
+    /// `render`: the integrators [default: path, bdpt, vcm, sppm, auto]; auto:WAYS restricts `auto` to one of its
+    /// strategies, such as auto:path-photons
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub integrators: Vec<String>,
     /// `render`: the CPU seconds per picture, summed over all threads [default: 1,4]. `models`: the seconds for each half of a
     /// reference [default: 8]
     #[arg(long, value_name = "S,S,…", value_delimiter = ',')]
     pub seconds: Vec<f64>,
-    /// `models`: keep the references in this folder, and use those that it has
+    /// `models`: keep the references in this folder, and reuse those that are already there
     #[arg(long, value_name = "DIR")]
     pub references: Option<PathBuf>,
     /// `render`: the CPU seconds for each of the two integrators that make the reference of a scene file [default: 60]
     #[arg(long, value_name = "S")]
     pub reference_seconds: Option<f64>,
-    /// `render`: the number of pictures of each kind, of which the median is reported [default: 5]
+    /// `render`: the number of pictures per scene, integrator and budget; the median is reported [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub seeds: Option<u32>,
     /// `render`: the number of threads; 0 uses all cores
@@ -98,7 +99,7 @@ pub struct Bench {
     /// `render`: write a page with pictures, error maps and curves to this folder
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// `render`: write references to this folder, with --seconds spent by each of two integrators
+    /// `render`: write references to this folder; each of two integrators spends --seconds on a scene
     #[arg(long, value_name = "DIR", conflicts_with_all = ["report", "integrators", "seeds"])]
     pub make_references: Option<PathBuf>,
 }
@@ -107,20 +108,20 @@ pub struct Bench {
 pub enum BenchKind {
     /// The paper's Figure 1 and section 4.2
     Paper,
-    /// The paper's Figure 2: the time for teapots, by acceleration structure
+    /// The paper's Figure 2: render times of teapots, by acceleration structure
     Teapots,
-    /// Animated scenes: how much it saves to rebuild only what has moved
+    /// Animated scenes: how much time is saved by rebuilding only what has moved
     Frames,
     /// Hidden-surface algorithms: painter's, Warnock's, z-buffer, BSP
     Visibility,
     /// How fast acceleration structures are built, and how large they are
     Build,
-    /// Rays per second, beside other libraries
+    /// Rays per second, compared with other libraries
     Rays,
-    /// The errors of the integrators in equal time, on eight scenes
+    /// The integrators' errors at equal time, on eight scenes
     Render,
     /// How fast scene files are read, and how much memory that takes
     Load,
-    /// Models as they come: what is seen of their errors at nothing said, in a second, and fast
+    /// Models as they come: the visible error with default settings, in one second, and with --fast
     Models,
 }

@@ -1,4 +1,4 @@
-//! What is printed: results on standard output, everything else on standard error.
+//! Output: results go to standard output, everything else to standard error.
 
 use bilux::formats::FormatError;
 use std::fmt::Display;
@@ -16,10 +16,10 @@ impl std::fmt::Display for Unprinted {
 
 impl std::error::Error for Unprinted {}
 
-/// Prints a result and the end of its line.
+/// Prints a result and a newline.
 ///
 /// # Errors
-/// When not all of it could be written; see [`is_closed_pipe`].
+/// If not all of it could be written; see [`is_closed_pipe`].
 pub fn print(text: impl Display) -> anyhow::Result<()> {
     print_bytes(format!("{text}\n").as_bytes())
 }
@@ -34,29 +34,29 @@ pub fn print_bytes(bytes: &[u8]) -> anyhow::Result<()> {
     Ok(written.map_err(Unprinted)?)
 }
 
-/// True when whoever reads standard output has gone away, as `head` does: no fault that anybody has to hear of.
+/// True if the reader of standard output has gone away, as `head` does. That is not an error that needs a message.
 pub fn is_closed_pipe(error: &anyhow::Error) -> bool {
     let unprinted = error.chain().find_map(|cause| cause.downcast_ref::<Unprinted>());
     unprinted.is_some_and(|unprinted| unprinted.0.kind() == io::ErrorKind::BrokenPipe)
 }
 
-/// Says something on standard error.
+/// Prints a line to standard error.
 pub fn say(text: impl Display) {
-    // Where standard error is closed there is nobody to tell.
+    // If standard error is closed, there is nowhere to report it.
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Says what is odd, but does not stop the work.
+/// Prints a warning: something is odd, but the work goes on.
 pub fn warning(text: impl Display) {
     say(format_args!("{}: {text}", painted("warning", "33")));
 }
 
-/// Says why the work failed.
+/// Prints why the work failed.
 pub fn error(error: &anyhow::Error) {
     say(format_args!("{}: {}", painted("error", "31"), message(error)));
 }
 
-/// An error with its causes, each said once: libraries' messages mostly end with their cause's already.
+/// An error with its causes, each mentioned once: most libraries' messages already end with their cause's message.
 pub fn message(error: &anyhow::Error) -> String {
     let mut text = String::new();
     for cause in
@@ -71,7 +71,7 @@ pub fn message(error: &anyhow::Error) -> String {
     text + &error.chain().find_map(flag_that_helps).unwrap_or_default()
 }
 
-/// Leaves out the number that the standard library puts behind what the system says: `(os error 2)`.
+/// Removes the error number that the standard library appends to the system's messages: `(os error 2)`.
 fn without_error_numbers(text: &str) -> String {
     let mut parts = text.split(" (os error ");
     let mut plain = parts.next().unwrap_or_default().to_owned();
@@ -81,7 +81,7 @@ fn without_error_numbers(text: &str) -> String {
     plain
 }
 
-/// The flag by which to allow what the library says has to be allowed.
+/// The flag that allows what the library refused.
 fn flag_that_helps(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
     Some(match cause.downcast_ref::<bilux::Error>()? {
         bilux::Error::TooLarge { needed, .. } => {

@@ -1,4 +1,4 @@
-//! How far the work is: a bar on a terminal, a line every few seconds elsewhere.
+//! Progress: a bar on a terminal, a line every few seconds elsewhere.
 
 use crate::arguments::{Common, ProgressStyle};
 use crate::interrupt::Interrupt;
@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Shows samples done, rays a second and the time left.
+/// Shows the samples done, rays per second and the time left.
 pub struct Report {
     interrupt: Interrupt,
     bar: Option<ProgressBar>,
@@ -23,11 +23,11 @@ pub struct Report {
     last_line: Mutex<Instant>,
 }
 
-/// Between two lines where there is no terminal.
+/// The time between two lines where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
 
 impl Report {
-    /// A report on what `label` names.
+    /// Makes a report on the work that `label` names.
     pub fn new(label: &str, common: &Common, interrupt: Interrupt) -> Report {
         let terminal = std::io::stderr().is_terminal();
         let style = match common.progress {
@@ -57,7 +57,7 @@ impl Report {
         }
     }
 
-    /// Takes the bar away and gives the seconds that went by.
+    /// Removes the bar and returns the elapsed seconds.
     pub fn finish(&self) -> f64 {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

@@ -1,11 +1,11 @@
-//! Flags and `--set KEY=VALUE` as the parameters that scene files use too.
+//! Turns flags and `--set KEY=VALUE` into the same parameters that scene files use.
 
 use crate::arguments::Render;
 use crate::values::Exposure;
 use anyhow::Context;
 use bilux::scene::{Parameters, Span, Value};
 
-/// What the command line says about a render.
+/// The render settings on the command line.
 pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
     let a = arguments;
     let text = |t: &Option<String>| t.clone().map(Value::Text);
@@ -53,14 +53,14 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
         let (key, value) = assignment_of(assignment)?;
         parameters.set_at(&key, value, from_flag(&format!("--set {key}")));
     }
-    // A number of samples that the scene file gives is no reason to stop short of what is asked for here.
+    // If the scene file sets a number of samples, it must not end the render before the limit given here does.
     if a.spp.is_none() && (a.noise.is_some() || a.time_limit.is_some()) {
         parameters.set_at("spp", Value::Integer(0), from_flag("--noise"));
     }
     Ok(parameters)
 }
 
-/// `KEY=VALUE` with the value as scene files would have it: true, 3, 0.5, `1,2,3` or text.
+/// Parses `KEY=VALUE`; the value is what a scene file would hold: true, 3, 0.5, `1,2,3` or text.
 pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
     let (key, value) = assignment
         .split_once('=')

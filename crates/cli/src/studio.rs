@@ -1,4 +1,4 @@
-//! The options of the studio around a model.
+//! The options for the studio around a model.
 
 use crate::settings_from::from_flag;
 use crate::values::parse_turntable;
@@ -18,25 +18,25 @@ pub struct StudioArguments {
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::MAX_USED)]
     pub orbit: Option<String>,
     /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none keeps
-    /// the studio away from the lights that a glTF file brings
+    /// the studio's lights out of a glTF file that brings its own
     #[arg(long, value_name = "FILE|none", help_heading = help::MAX_USED)]
     pub env: Option<PathBuf>,
-    /// Put the model in front of nothing (transparent), a colour (white, '#rrggbb' or R,G,B) or a picture, which lights nothing
+    /// The background: transparent, a colour (white, '#rrggbb' or R,G,B) or a picture; it lights nothing
     #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::MAX_USED)]
     pub background: Option<String>,
-    /// Which of the model's axes is up: x, y, z, -x, -y or -z [default: auto, by its format and its shape]
+    /// The model's up axis: x, y, z, -x, -y or -z [default: auto, from its format and its shape]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
     pub up: Option<String>,
-    /// Which of the model's axes is its front, which the studio's camera sees [default: auto]
+    /// The model's front axis, the side that the studio's camera sees [default: auto]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
     pub front: Option<String>,
-    /// The studio's camera as a preset (`bilux list presets`)
+    /// A preset for the studio's camera (`bilux list presets`)
     #[arg(long, value_name = "NAME", help_heading = help::STUDIO)]
     pub preset: Option<String>,
-    /// The focal length of the studio's camera, in mm for a picture 24 mm high [default: 45]
+    /// The focal length of the studio's camera in mm, for a picture 24 mm high [default: 45]
     #[arg(long, value_name = "MM", allow_negative_numbers = true, help_heading = help::STUDIO)]
     pub focal: Option<f32>,
-    /// What a model stands on [default: a matte backdrop, where the file has neither camera nor light]
+    /// What the model stands on [default: a matte backdrop, if the file has neither camera nor lights]
     #[arg(long, value_name = "shadow|mirror|none", help_heading = help::STUDIO)]
     pub ground: Option<String>,
     /// Render N pictures from all around the model
@@ -46,7 +46,7 @@ pub struct StudioArguments {
 }
 
 impl StudioArguments {
-    /// Puts around a scene what is asked for.
+    /// Adds to a scene the surroundings that the options ask for.
     pub fn set_up(&self, scene: &mut SceneBuilder, options: &ReadOptions) -> anyhow::Result<()> {
         if let Some(preset) = &self.preset {
             let names = bilux::presets::PRESETS.iter().map(|row| row.entry.name);
@@ -66,13 +66,13 @@ impl StudioArguments {
         Ok(())
     }
 
-    /// The background where it is a picture, and no colour.
+    /// The background if it is a picture instead of a colour.
     pub fn picture_behind(&self) -> Option<&Path> {
         let is_setting = |text: &str| Background::parse(text).is_some() || text.starts_with('#');
         self.background.as_deref().filter(|text| !is_setting(text)).map(Path::new)
     }
 
-    /// Refuses a background that is neither a setting nor named as a picture is.
+    /// Refuses a background that is neither a setting nor the name of a picture.
     pub fn check(&self) -> anyhow::Result<()> {
         let is_picture =
             |path: &&Path| path.exists() || bilux::pictures::format_named(extension(path)).is_some();
@@ -85,7 +85,7 @@ impl StudioArguments {
         Ok(())
     }
 
-    /// Finds out before the work whether the pictures that options name can be opened.
+    /// Checks, before any work, that the pictures that options name can be opened.
     pub fn check_files(&self) -> anyhow::Result<()> {
         let env = self.env.as_deref().filter(|path| *path != Path::new("none"));
         for (flag, path) in [("--env", env), ("--background", self.picture_behind())] {
@@ -97,7 +97,7 @@ impl StudioArguments {
         Ok(())
     }
 
-    /// The background where it is a setting.
+    /// The background if it is a setting.
     pub fn background(&self) -> Option<String> {
         self.background.clone().filter(|_| self.picture_behind().is_none())
     }
@@ -107,7 +107,7 @@ fn extension(path: &Path) -> &str {
     path.extension().and_then(|extension| extension.to_str()).unwrap_or_default()
 }
 
-/// The same settings from farther around the model, in turns to the right.
+/// The same settings with the camera moved around the model to the right by a fraction of a turn.
 pub fn turned(user: &Parameters, turns: f32) -> anyhow::Result<Parameters> {
     let orbit = match user.find("orbit") {
         Some((Value::Text(text), _)) => bilux::settings::parse_orbit(text)

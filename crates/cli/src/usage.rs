@@ -1,4 +1,4 @@
-//! Telling a wrong command line (exit status 2) from work that failed (1).
+//! Distinguishes a wrong command line (exit status 2) from work that failed (1).
 
 use std::fmt;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub fn wrong(error: impl Into<anyhow::Error>) -> anyhow::Error {
     anyhow::Error::new(WrongCommandLine(error.into()))
 }
 
-/// The error with the scene's name, unless it has it already or is about the command line.
+/// Adds the scene's name to an error, unless it already has it or is about the command line.
 pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
     let is_about_scene = !is_command_line(&error) && !error.is::<crate::output::Unprinted>();
     if !is_about_scene || scene == Path::new("-") {
@@ -35,7 +35,7 @@ pub fn naming(scene: &Path, error: anyhow::Error) -> anyhow::Error {
     if format!("{error:#}").contains(&name) { error } else { error.context(name) }
 }
 
-/// True for errors that the command line is to blame for: said so, or about a value that a flag gave.
+/// True for errors that the command line is to blame for: marked as such, or about a value that a flag gave.
 pub fn is_command_line(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         let scene = match cause.downcast_ref::<bilux::Error>() {
@@ -48,7 +48,7 @@ pub fn is_command_line(error: &anyhow::Error) -> bool {
     })
 }
 
-/// True for what only options can have caused.
+/// True for errors that only options can have caused.
 fn is_about_options(error: &bilux::Error) -> bool {
     use bilux::transport::{FilmError, RenderError};
     let bilux::Error::Render(error) = error else { return false };

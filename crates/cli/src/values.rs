@@ -1,4 +1,4 @@
-//! Values as they are written on the command line.
+//! Parsers for the values on the command line.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -28,12 +28,12 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
     }
 }
 
-/// A number of samples, which cannot be 0.
+/// Parses a number of samples, which cannot be 0.
 pub fn parse_spp(text: &str) -> Result<u32, String> {
     at_least_one(text, "the number of samples is a whole number of at least 1, such as 64")
 }
 
-/// A number of pictures around a model.
+/// Parses a number of pictures around a model.
 pub fn parse_turntable(text: &str) -> Result<u32, String> {
     at_least_one(text, "the number of pictures is a whole number of at least 1, such as 36")
 }
@@ -42,24 +42,24 @@ fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
     text.parse().ok().filter(|&n| n >= 1).ok_or_else(|| advice.to_owned())
 }
 
-/// A whole number from 0.
+/// Parses a whole number from 0.
 pub fn parse_count(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| format!("write a whole number from 0 to {}", u32::MAX))
 }
 
-/// A seed.
+/// Parses a seed.
 pub fn parse_seed(text: &str) -> Result<u64, String> {
     let seed = text.parse().ok().filter(|&seed| i64::try_from(seed).is_ok());
     seed.ok_or_else(|| format!("a seed is a whole number from 0 to {}", i64::MAX))
 }
 
-/// The quality of a JPEG.
+/// Parses the quality of a JPEG.
 pub fn parse_quality(text: &str) -> Result<u8, String> {
     let quality = text.parse().ok().filter(|quality| (1..=100).contains(quality));
     quality.ok_or_else(|| "the quality is a whole number from 1 to 100, such as 92".to_owned())
 }
 
-/// A part of the light: `0.02` or `2%`.
+/// Parses a fraction of the light: `0.02` or `2%`.
 pub fn parse_noise(text: &str) -> Result<f32, String> {
     let (number, unit) = match text.strip_suffix('%') {
         Some(number) => (number.trim_end(), 100.0),
@@ -78,7 +78,7 @@ pub fn parse_noise(text: &str) -> Result<f32, String> {
     }
 }
 
-/// A time in seconds, above 0.
+/// Parses a time in seconds, above 0.
 pub fn parse_seconds(text: &str) -> Result<f32, String> {
     let seconds = text.strip_suffix('s').unwrap_or(text).trim_end().parse::<f32>();
     let seconds = seconds.ok().filter(|&seconds| seconds > 0.0 && seconds.is_finite());
@@ -117,14 +117,14 @@ pub fn parse_vector(text: &str) -> Result<[f32; 3], String> {
     numbers(text, "three numbers, such as 4,0,0")
 }
 
-/// The same as a duration.
+/// Parses a time in seconds as a duration.
 pub fn parse_duration(text: &str) -> Result<Duration, String> {
     let seconds = parse_seconds(text)?;
     Duration::try_from_secs_f32(seconds)
         .map_err(|_| "this is longer than any picture takes: write less".to_owned())
 }
 
-/// A length, 0 or more.
+/// Parses a length, 0 or more.
 pub fn parse_radius(text: &str) -> Result<f32, String> {
     let radius = text.parse().ok().filter(|r: &f32| r.is_finite() && *r >= 0.0);
     radius.ok_or_else(|| "write a length in metres, such as 0.05".to_owned())
@@ -133,13 +133,13 @@ pub fn parse_radius(text: &str) -> Result<f32, String> {
 /// By how much a picture is brightened.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
-    /// As much as it takes.
+    /// As much as automatic exposure decides.
     Auto,
-    /// Powers of two.
+    /// By this many powers of two.
     Stops(f32),
 }
 
-/// `auto`, or powers of two.
+/// Parses `auto`, or a number of stops (powers of two).
 pub fn parse_exposure(text: &str) -> Result<Exposure, String> {
     match (text, text.parse::<f32>()) {
         ("auto", _) => Ok(Exposure::Auto),

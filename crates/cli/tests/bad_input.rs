@@ -1,4 +1,4 @@
-//! What a newcomer does wrong, and whether the answer says what, where and what to do.
+//! The mistakes that newcomers make, and whether the answer says what is wrong, where, and what to do.
 
 use assert_cmd::Command;
 use std::path::Path;
@@ -6,7 +6,7 @@ use tempfile::TempDir;
 
 const PLAIN: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// Renders a file of this name; gives the exit status and what is said.
+/// Renders a file of this name; returns the exit status and what is printed to standard error.
 fn render(folder: &Path, scene: &str, more: &[&str]) -> (i32, String) {
     let mut command = Command::cargo_bin("bilux").expect("the binary is built with its tests");
     let always = ["render", scene, "--spp", "1", "--progress", "none"];

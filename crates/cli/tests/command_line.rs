@@ -1,4 +1,5 @@
-//! The command line as users meet it: exit statuses, messages, and the same bytes whatever is done to them.
+//! The command line as users see it: exit statuses, messages, and the same bytes whatever the options that must not
+//! change them.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use assert_cmd::Command;
@@ -11,7 +12,7 @@ fn bilux(folder: &Path) -> Command {
     command
 }
 
-/// A folder with two teapots in it.
+/// A folder with a file of two teapots.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     let generate = ["generate", "teapots", "--count", "2", "--set", "tessellation=3", "-o", "pots.asc"];
@@ -67,7 +68,7 @@ fn pieces_in_any_order_are_the_whole() {
     // The same samples twice would count double.
     let twice = bilux(path).args(["merge", "a.exr", "a.exr", "-o", "twice.pfm"]).assert().code(1);
     assert!(!path.join("twice.pfm").exists() && !twice.get_output().stderr.is_empty());
-    // Another seed is another picture.
+    // Another seed makes another picture.
     with("other.exr", &["--samples", "0..1", "--seed", "9"]);
     bilux(path).args(["merge", "other.exr", "d.exr", "-o", "mixed.pfm"]).assert().code(1);
 }
@@ -89,7 +90,8 @@ fn layers_of_pieces_are_those_of_the_whole() {
         assert_eq!(joined.channel(name).unwrap(), whole.channel(name).unwrap(), "{name}");
     }
     assert_eq!(joined.integer_plane("id.object").unwrap(), whole.integer_plane("id.object").unwrap());
-    // Each half of the samples has its own guess of the variance: the same in the mean, and where there is but one part.
+    // Each half of the samples has its own estimate of the variance: the two agree in the mean, and exactly where there
+    // is only one part.
     let of = |picture: &bilux::pictures::Picture, columns: std::ops::Range<usize>| -> f64 {
         let plane = picture.channel("variance.G").unwrap();
         let rows = plane.chunks(picture.width()).flat_map(|row| &row[columns.clone()]);
@@ -151,7 +153,7 @@ fn an_interval_lies_beside_the_picture() {
     assert!(said.contains("chance") && !path.join("a.png").exists(), "{said}");
 }
 
-/// Runs what must fail and gives what it says.
+/// Runs a command that must fail and returns what it prints.
 fn failing(folder: &Path, code: i32, arguments: &[&str]) -> String {
     let assert = bilux(folder).args(arguments).assert().code(code).stdout("");
     String::from_utf8(assert.get_output().stderr.clone()).unwrap()
@@ -259,7 +261,7 @@ fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
     let json: serde_json::Value = serde_json::from_slice(&info.get_output().stdout).unwrap();
     assert_eq!(json["triangles"], 3);
     assert_eq!(json["bounds"]["max"][0], 9.0);
-    // Nine corners with a position, a normal and texture coordinates, and the triangles' indices.
+    // Nine vertices with a position, a normal and texture coordinates, and the triangles' indices.
     assert_eq!(json["memory"]["meshes"], 9 * (12 + 12 + 8) + 3 * 12);
     assert_eq!(json["memory"]["textures"], 0);
     run(&["convert", "three.asc", "-o", "three.obj"]);
@@ -284,7 +286,7 @@ fn pictures_that_are_only_read_become_others() {
     }
 }
 
-/// Under an even light what a board sends is what its texture says there.
+/// Under uniform light, a board reflects exactly what its texture says at that point.
 #[test]
 fn textures_by_formula_are_rendered() {
     let folder = TempDir::new().unwrap();
@@ -293,7 +295,7 @@ fn textures_by_formula_are_rendered() {
     let render = ["render", scene.to_str().unwrap(), "--size", "110x110", "--spp", "64", "-o", "out.pfm"];
     bilux(path).args(render).assert().success();
     let picture = bilux::pictures::read(path.join("out.pfm")).unwrap();
-    // 4.4 m are 110 pixels; each board begins 0.05 m from the middle.
+    // The picture is 4.4 m and 110 pixels wide; each board begins 0.05 m from the centre.
     let at = |board: [f32; 2], u: f32, v: f32| {
         let pixel = |x: f32| (55.0 + x * 25.0) as usize;
         let [x, y] = [board[0] + 2.0 * u, board[1] + 2.0 * v];
@@ -307,7 +309,7 @@ fn textures_by_formula_are_rendered() {
     close(at(squares, 0.5 / 6.0, 0.5 / 6.0), [0.8, 0.75, 0.6]);
     close(at(squares, 1.5 / 6.0, 0.5 / 6.0), [0.15, 0.05, 0.05]);
     close(at(squares, 1.5 / 6.0, 5.5 / 6.0), [0.8, 0.75, 0.6]);
-    // The middle of a pixel; the radius is 0.57 there.
+    // The centre of a pixel; the radius is 0.57 there.
     close(at(target, 0.505, 0.785), [0.447, 0.56, 0.787]);
     close(at(target, 0.02, 0.02), [0.02; 3]);
     let dark = at(floor, 1.5 / 4.0, 0.5 / 4.0);
@@ -370,7 +372,7 @@ fn of_many_scenes_one_that_is_broken_does_not_stop_the_others() {
     assert!(folder.path().join("pots.png").is_file() && !folder.path().join("broken.png").exists());
 }
 
-/// Every file that the program opens while it renders what a stranger sent.
+/// Lists every file that the program opens while it renders an untrusted scene.
 #[test]
 fn in_a_sandbox_nothing_outside_the_folder_is_opened() {
     let folder = folder();
@@ -384,10 +386,10 @@ fn in_a_sandbox_nothing_outside_the_folder_is_opened() {
     for (scene, works) in [("harmless", true), ("spy", false)] {
         let trace = folder.path().join("trace");
         let binary = assert_cmd::cargo::cargo_bin("bilux");
-        // What cargo adds for its tests has the loader look in more places.
+        // The variables that cargo sets for tests make the loader search more places.
         let strace = std::process::Command::new("strace")
             .env_remove("LD_LIBRARY_PATH")
-            // No denoiser, so that `python3`, which would be asked for one, opens nothing of its own.
+            // No denoiser, so that `python3`, which would be queried for one, opens no files of its own.
             .env("OIDN_LIB", "nowhere")
             .args(["-f", "-qq", "-e", "trace=open,openat,creat,execve,landlock_restrict_self", "-o"])
             .arg(&trace)
@@ -402,10 +404,11 @@ fn in_a_sandbox_nothing_outside_the_folder_is_opened() {
         };
         assert_eq!(run.status.success(), works, "{}", String::from_utf8_lossy(&run.stderr));
         let trace = std::fs::read_to_string(&trace).unwrap();
-        // The system's own: libraries that the program was linked with, what tells cores and memory.
+        // The system's own files: the libraries that the program is linked with, and those that describe cores and
+        // memory.
         let systems = ["/lib/", "/lib64/", "/usr/lib", "/etc/ld.so", "/proc/", "/sys/", "/dev/"];
         let name = |line: &str| line.split('"').nth(1).unwrap_or_default().to_owned();
-        // Before that a denoiser's library is looked for, and loaded.
+        // Before the scene is read, Bilux looks for a denoiser's library and loads it.
         let names_scene = |line: &str| {
             line.contains("open") && line.contains(&format!("{scene}.toml")) && !line.contains("O_PATH")
         };
@@ -436,7 +439,7 @@ fn a_picture_of_the_surroundings_lights_a_bare_model() {
     let path = folder.path();
     let always = ["--spp", "4", "-i", "path"];
     render(path, "studio.pfm", &always);
-    // Red all around: no other light is left.
+    // Red all around: no other light remains.
     std::fs::write(path.join("red sky.ppm"), b"P6 2 1 255\n\xff\0\0\xff\0\0").unwrap();
     let lit = render(path, "red.pfm", &[&always[..], &["--env", "red sky.ppm"]].concat());
     let picture = bilux::pictures::read(path.join("red.pfm")).unwrap();

@@ -1,11 +1,11 @@
-//! When pictures are denoised, by what, and what is told of it; budgets where nothing is said; layers; what is behind a model.
+//! When pictures are denoised, by what, and what is reported about it; default budgets; layers; what is behind a model.
 
 use assert_cmd::Command;
 use bilux::pictures::formats::read;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// What it says, with no Open Image Denoise anywhere, so that every machine does the same.
+/// Returns what Bilux prints when no Open Image Denoise is available, so that every machine does the same.
 fn bilux(folder: &Path, arguments: &[&str]) -> String {
     let mut command = Command::cargo_bin("bilux").expect("the binary is built with its tests");
     command.current_dir(folder).env("OIDN_LIB", "nowhere").args(arguments);
@@ -40,7 +40,7 @@ fn what_noise_or_time_ends_is_denoised_for_a_display_and_counted_samples_are_not
     assert!(said.contains("denoised by the built-in filter"), "{said}");
     let bytes = |name: &str| std::fs::read(path.join(name)).unwrap();
     assert_ne!(bytes("c.png"), bytes("d.png"));
-    // Asked for and counted, it is the same for any number of threads.
+    // With an explicit denoiser and a fixed number of samples, the result is the same for any number of threads.
     render(path, "e.png", &["--spp", "2", "--denoise=builtin", "--threads", "3"]);
     assert_eq!(bytes("d.png"), bytes("e.png"));
 }
@@ -53,7 +53,7 @@ fn with_nothing_said_there_is_a_budget() {
     let said =
         bilux(folder.path(), &["render", "pot.obj", "-v", "-i", "whitted", "--size", "8x8", "-o", "b.png"]);
     assert!(!said.contains("until") && !said.contains("denoised"), "{said}");
-    // A part is one of a counted picture.
+    // A part belongs to a picture with a fixed number of samples.
     let said = render(folder.path(), "c.exr", &["-v", "--crop", "0,0,8,8"]);
     assert!(!said.contains("until"), "{said}");
 }
@@ -78,7 +78,7 @@ fn layers_lie_in_the_exr_and_are_denoised_from_there() {
     let smooth = read(path.join("smooth.exr")).unwrap();
     assert_ne!(smooth.to_rgb(), noisy.to_rgb());
     assert_eq!(smooth.channel("depth.Z"), noisy.channel("depth.Z"));
-    // The same as when it is done at once; what was noisy is kept beside it.
+    // The result is the same as when denoising is part of the render; the noisy picture is kept in a layer.
     render(path, "at-once.exr", &["--spp", "4", "--denoise"]);
     let at_once = read(path.join("at-once.exr")).unwrap();
     assert_eq!(at_once.to_rgb(), smooth.to_rgb());
@@ -97,7 +97,8 @@ fn a_denoiser_that_is_not_there_is_an_error_that_says_how_to_get_it() {
     assert!(!folder.path().join("a.png").exists());
 }
 
-/// What a default picture says of denoising, where `python3` is a script that prints `printed`, and nothing else is installed.
+/// What a default picture says about denoising if `python3` is a script that prints `printed`, and nothing else is
+/// installed.
 #[cfg(unix)]
 fn said_with_python(folder: &Path, printed: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
@@ -123,7 +124,7 @@ fn python3_is_asked_where_pyoidn_is_and_nobody_is_told_to_install_what_is_instal
         return; // The system has one.
     }
     assert!(said.contains("pip install pyoidn"), "{said}");
-    // A file that is no library: found, and said to be of no use.
+    // A file that is not a library: it is found and reported as unusable.
     std::fs::create_dir_all(package.join("oidn/lib")).unwrap();
     std::fs::write(package.join("oidn/lib/libOpenImageDenoise.so.2"), "no library").unwrap();
     let said = said_with_python(folder.path(), &package.display().to_string());
@@ -131,14 +132,15 @@ fn python3_is_asked_where_pyoidn_is_and_nobody_is_told_to_install_what_is_instal
     assert!(is_true || cfg!(target_os = "macos"), "{said}");
 }
 
-/// In a sandbox the library is loaded before the scene is read, so that its fault is found as without one.
+/// In a sandbox the library is loaded before the scene is read, so that its error is reported as it is without a
+/// sandbox.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_sandbox_loads_the_library_before_the_scene_is_read() {
     let folder = folder();
     let mut command = Command::cargo_bin("bilux").unwrap();
     let arguments = ["--sandbox", "render", "missing.obj", "--denoise=oidn", "-o", "a.png"];
-    // The dynamic linker says what it looks for, in its order.
+    // The dynamic linker prints what it looks for, in order.
     command.current_dir(folder.path()).env("LD_DEBUG", "files").env("OIDN_LIB", "nowhere").args(arguments);
     let said = String::from_utf8_lossy(&command.assert().failure().get_output().stderr.clone()).into_owned();
     let place = |what: &str| said.find(what).unwrap_or_else(|| panic!("no {what} in {said}"));
@@ -154,7 +156,7 @@ fn a_timeout_ends_with_the_picture_as_it_is() {
     command.current_dir(folder.path()).args(arguments);
     let said = String::from_utf8(command.assert().code(124).get_output().stderr.clone()).unwrap();
     assert!(said.contains("--timeout") && folder.path().join("a.png").exists(), "{said}");
-    // Without a picture there is nothing to save; and no time is no timeout.
+    // Without a picture there is nothing to save; and a time of 0 is not a timeout.
     for wrong in ["0", "-1", "soon"] {
         let mut command = Command::cargo_bin("bilux").unwrap();
         command.current_dir(folder.path()).args(["render", "pot.obj", "-o", "b.png"]);
@@ -184,7 +186,7 @@ fn what_is_behind_a_model_is_what_was_asked_for() {
         seen(background, more).rgb(0, 0).to_array().map(|c| (c * 255.0).round())
     };
     assert_eq!(corner("white", &[]), [255.0; 3]);
-    // It is no light, so that no curve and no exposure changes it.
+    // It is not a light, so no tone curve and no exposure changes it.
     assert_eq!(corner("#336699", &["--tonemap", "agx", "--exposure", "3"]), [51.0, 102.0, 153.0]);
     assert_eq!(corner("0,1,0", &["--denoise"]), [0.0, 255.0, 0.0]);
     let cut = seen("transparent", &[]);
@@ -193,7 +195,7 @@ fn what_is_behind_a_model_is_what_was_asked_for() {
     assert!(half > 20, "edges are smooth: {half} pixels");
     render(path, "a.exr", &["--spp", "4", "--background", "transparent"]);
     assert_eq!(read(path.join("a.exr")).unwrap().alpha_at(0, 0), 0.0);
-    // A picture of surroundings is seen as it is, and the studio's lamps stay.
+    // A picture of the surroundings is shown as it is, and the studio's lights stay.
     let mut sky = bilux::pictures::Picture::new(4, 2).unwrap();
     sky.push_rgb("", &[bilux::math::Rgb::new(0.0, 0.0, 1.0); 8]).unwrap();
     bilux::pictures::write(path.join("sky.hdr"), &sky, &bilux::pictures::WriteOptions::default()).unwrap();

@@ -1,4 +1,4 @@
-//! Many scenes in one process take no more than the same scenes alone.
+//! Rendering many scenes in one process takes no more time than rendering each in a process of its own.
 #![cfg(target_os = "linux")]
 
 use assert_cmd::Command;
@@ -7,7 +7,8 @@ use tempfile::TempDir;
 
 const SCENES: usize = 6;
 
-/// CPU seconds of all children so far that have ended, in hundredths: the clock would tell who else is at work.
+/// CPU seconds of all child processes that have ended so far, in hundredths; a wall clock would also measure other
+/// processes.
 fn children_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/self/stat").unwrap();
     let fields = text.rsplit_once(')').unwrap().1.split_whitespace();

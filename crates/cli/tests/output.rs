@@ -1,4 +1,4 @@
-//! What is written can be trusted: a write that fails is an error, results are what was asked for, and a sandbox holds.
+//! Output can be trusted: a write that fails is an error, results are what was asked for, and a sandbox holds.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use bilux::pictures::{Picture, read};
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 fn bilux(folder: &Path, command: &str) -> Command {
     let mut bilux = Command::new(env!("CARGO_BIN_EXE_bilux"));
-    // What cargo adds for its tests would have libraries looked for in more places.
+    // The variables that cargo sets for tests would make the loader search more places.
     bilux.current_dir(folder).env("OIDN_LIB", "nowhere").env_remove("LD_LIBRARY_PATH");
     bilux.args(command.split_whitespace()).stdin(Stdio::null());
     bilux
@@ -19,7 +19,7 @@ fn run(folder: &Path, command: &str) -> Output {
     bilux(folder, command).output().unwrap()
 }
 
-/// Runs it and gives the exit status with what is on standard error.
+/// Runs a command and returns the exit status and what it prints to standard error.
 fn answer(folder: &Path, command: &str) -> (Option<i32>, String) {
     let output = run(folder, command);
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
@@ -32,7 +32,7 @@ fn assert_done(folder: &Path, command: &str) -> String {
     said
 }
 
-/// A folder with a ball in it.
+/// A folder with a scene of one ball.
 fn folder() -> TempDir {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("ball.toml"), "[[model]]\nshape = \"sphere\"\n").unwrap();
@@ -75,7 +75,7 @@ fn a_result_that_cannot_be_printed_is_an_error() {
         let full = File::options().write(true).open("/dev/full").unwrap();
         let output = bilux(path, &command).stdout(full).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();
-        // As everywhere, `compare` keeps 1 for pictures that differ.
+        // As everywhere, `compare` reserves 1 for pictures that differ.
         let status = if command.starts_with("compare") { 2 } else { 1 };
         assert_eq!(output.status.code(), Some(status), "{command}: {said}");
         assert!(
@@ -210,7 +210,7 @@ fn standard_input_is_recognised_by_its_first_bytes() {
     assert!(code == Some(1) && said.contains("standard input"), "{said}");
 }
 
-/// The log of a picture is one line, of which `-v` makes more.
+/// The log of a picture is one line; `-v` adds more.
 #[test]
 fn the_log_of_a_picture_is_one_line() {
     let folder = folder();
@@ -226,7 +226,7 @@ fn the_log_of_a_picture_is_one_line() {
     }
 }
 
-/// A scene in a folder of its own, beside a file that nobody may read or write.
+/// A scene in a folder of its own, next to a file that must be neither read nor written.
 fn sandboxed() -> TempDir {
     let folder = folder();
     let path = folder.path();
@@ -259,7 +259,7 @@ fn a_sandbox_writes_only_beside_the_picture() {
     }
     #[cfg(unix)]
     {
-        // A link in the folder may lead to a file of somebody else.
+        // A link in the folder may lead to somebody else's file.
         std::os::unix::fs::symlink("../secret.obj", path.join("out/link.png")).unwrap();
         let (code, said) = answer(path, &format!("{render} -o out/link.png"));
         assert!(code == Some(2) && said.contains("--sandbox writes only into"), "{said}");
@@ -267,7 +267,7 @@ fn a_sandbox_writes_only_beside_the_picture() {
     }
 }
 
-/// That the kernel refuses what it should is tested where it is asked to: `src/sandbox/landlock.rs`.
+/// `src/sandbox/landlock.rs` tests that the kernel refuses what it should.
 #[cfg(target_os = "linux")]
 #[test]
 fn commands_work_within_a_sandbox_and_its_enforcement_is_reported() {

@@ -1,9 +1,9 @@
-//! Mitsuba 3, where its Python package is installed, renders the same boxes: `witness/cornell.py`.
+//! If Mitsuba 3's Python package is installed, it renders the same boxes for comparison: `witness/cornell.py`.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use std::process::Command;
 
-/// `python3`, or what `$BILUX_PYTHON` names.
+/// `python3`, or the interpreter that `$BILUX_PYTHON` names.
 fn python() -> Command {
     Command::new(std::env::var_os("BILUX_PYTHON").unwrap_or_else(|| "python3".into()))
 }

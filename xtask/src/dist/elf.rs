@@ -1,4 +1,4 @@
-//! Whether a program of Linux stands on its own: nothing in its headers asks for a loader.
+//! Whether a Linux program is self-contained: nothing in its headers asks for a loader.
 
 use anyhow::{Context, Result, bail};
 
@@ -8,7 +8,7 @@ const INTERPRETER: u32 = 3;
 /// Checks that a 64-bit little-endian ELF program is static.
 ///
 /// # Errors
-/// When it asks for a loader, or is no such program.
+/// If it asks for a loader, or is not such a program.
 pub(super) fn require_static(program: &[u8]) -> Result<()> {
     if !program.starts_with(&[0x7f, b'E', b'L', b'F', 2, 1]) {
         bail!("it is no 64-bit little-endian ELF program");

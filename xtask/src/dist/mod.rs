@@ -1,9 +1,8 @@
-//! `cargo xtask dist`: the binary as it is released, static where that can be had, in an archive with its
-//! licences, completions, man pages and scenes, and the archive's SHA-256 beside it. The profile is `dist` of
-//! `Cargo.toml`.
+//! `cargo xtask dist`: the binary as it is released, static where possible, in an archive with its licences,
+//! completions, man pages and scenes, and the archive's SHA-256 next to it. The profile is `dist` of `Cargo.toml`.
 //!
-//! The archive is a function of the sources and the toolchain: no time, owner or path of the machine that
-//! builds it gets in.
+//! The archive depends only on the sources and the toolchain: it contains no time, owner or path of the machine that
+//! builds it.
 
 mod elf;
 
@@ -15,15 +14,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What goes along with the binary.
+/// The files that accompany the binary.
 const PAGES: &[&str] = &["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICES];
 
-/// The scenes that the front page's commands name.
+/// The scenes that the commands on the front page use.
 const SCENES: &str = "scenes";
 
 const SHELLS: &[&str] = &["bash", "zsh", "fish", "powershell", "elvish"];
 
-/// Builds the archive, and says how large everything is.
+/// Builds the archive, and prints how large everything is.
 pub(crate) fn run(_: &[String]) -> Result<()> {
     let target = Target::best()?;
     let binary = build(&target)?;
@@ -43,15 +42,15 @@ pub(crate) fn run(_: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// What the binary is built for.
+/// The target that the binary is built for.
 struct Target {
     triple: String,
     is_static: bool,
 }
 
 impl Target {
-    /// On Linux a static binary with musl, whose licence lets it be linked in (glibc's asks for more); anywhere
-    /// else, or where musl cannot be had, a binary for this machine's system.
+    /// On Linux, a static binary with musl, whose licence allows linking it in (glibc's requires more); on other
+    /// systems, or if musl is not available, a binary for this machine's system.
     fn best() -> Result<Target> {
         let about = output(Command::new(rustc()).arg("-vV"))?;
         let host = about.lines().find_map(|line| line.strip_prefix("host: "));
@@ -88,8 +87,8 @@ fn build(target: &Target) -> Result<PathBuf> {
     Ok(target_folder().join(triple).join("dist").join("bilux"))
 }
 
-/// Messages of panics name source files: from the root of the repository and of cargo's home, not of this
-/// machine's disk.
+/// Panic messages name source files: these flags make the paths relative to the repository's root and to cargo's home,
+/// so that no path of this machine's disk remains.
 fn flags(is_static: bool) -> String {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
@@ -125,7 +124,7 @@ fn assemble(folder: &Path, binary: &Path) -> Result<()> {
     run_process(Command::new(folder.join("bilux")).arg("man").arg(folder.join("man")))
 }
 
-/// Copies the files of a folder; there is none in it.
+/// Copies the files of a folder, which contains no subfolders.
 fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
     for entry in fs::read_dir(from).with_context(|| format!("cannot read {}", from.display()))? {

@@ -1,4 +1,4 @@
-//! Licence expressions, as manifests have them. [SPDX 2022, annex D]
+//! Licence expressions, as manifests contain them. [SPDX 2022, annex D]
 //!
 //! ```text
 //! any  = all { ("OR" | "/") all }
@@ -9,11 +9,11 @@
 use std::iter::Peekable;
 use std::vec::IntoIter;
 
-/// Whether the expression can be met with the licences of `permitted` alone. An exception (`WITH …`) only
-/// ever permits more, so it does not matter here. `/` is cargo's old way of writing `OR`.
+/// Whether the licences in `permitted` alone satisfy the expression. An exception (`WITH …`) only ever permits more, so
+/// it does not matter here. `/` is cargo's old way of writing `OR`.
 ///
 /// # Errors
-/// When the expression cannot be read; the error says where.
+/// If the expression cannot be parsed; the error says where.
 pub(crate) fn allows(expression: &str, permitted: &[&str]) -> Result<bool, String> {
     let mut parser = Parser { words: words(expression).into_iter().peekable(), permitted };
     let allowed = parser.any()?;

@@ -1,5 +1,6 @@
-//! `cargo xtask licences`: every package that we build on is permissively licensed, and `LICENSES.txt`, which
-//! the binary prints and every release carries, passes their notices on. `--write` writes that file anew.
+//! `cargo xtask licences`: checks that every package that we build on is permissively licensed, and that
+//! `LICENSES.txt`, which the binary prints and every release includes, reproduces their notices. `--write` rewrites
+//! that file.
 
 mod expression;
 mod notices;
@@ -9,8 +10,8 @@ use crate::workspace::{Package, packages};
 use anyhow::{Context, Result, bail};
 use std::fs;
 
-/// The licences that we build on, by their SPDX names. None of them asks anything of a program that
-/// links to the package, but its notice to be passed on.
+/// The licences that we build on, by their SPDX names. None of them demands anything of a program that links to the
+/// package, except that its notice be passed on.
 const PERMISSIVE: &[&str] = &[
     "0BSD",
     "Apache-2.0",
@@ -28,7 +29,7 @@ const PERMISSIVE: &[&str] = &[
     "Zlib",
 ];
 
-/// The page with all notices, from the root of the repository.
+/// The page with all notices, relative to the root of the repository.
 pub(crate) const PAGE: &str = "LICENSES.txt";
 
 /// Checks every package of `Cargo.lock`, names those that are not permissive, and checks or writes the page.
@@ -53,7 +54,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     }
 }
 
-/// Why we may not build on a package, if so.
+/// Why we may not build on a package, if there is a reason.
 fn objection(package: &Package) -> Option<String> {
     let Package { name, version, licence, .. } = package;
     let Some(licence) = licence else {

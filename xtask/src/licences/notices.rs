@@ -11,7 +11,7 @@ const BINARY: &str = "bilux-cli";
 
 const RULE: &str = "------------------------------------------------------------------------------";
 
-/// The page: our own licence, what we build on, and each notice once.
+/// The page: our own licence, the packages that we build on, and each notice once.
 pub(super) fn page(packages: &[Package]) -> Result<String> {
     let own = root().join("LICENSE-MIT");
     let own = fs::read_to_string(&own).with_context(|| format!("cannot read {}", own.display()))?;
@@ -34,7 +34,7 @@ pub(super) fn page(packages: &[Package]) -> Result<String> {
     Ok(page)
 }
 
-/// Each different notice with the names of the packages that carry it, by the notice's words.
+/// Each distinct notice with the names of the packages that carry it, keyed by the notice's words.
 fn notices<'a>(parts: &[&'a Package]) -> Result<BTreeMap<String, (String, Vec<&'a str>)>> {
     let mut notices: BTreeMap<String, (String, Vec<&str>)> = BTreeMap::new();
     for part in parts {
@@ -60,8 +60,8 @@ fn file_names(folder: &Path) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// The files that carry the notice: of a choice of licences the MIT one, which is the shortest, but never
-/// without what has to go with it.
+/// The files that carry the notice: if there is a choice of licences, the MIT one, which is the shortest, together with
+/// whatever must accompany it.
 fn chosen(names: Vec<String>) -> Vec<String> {
     let upper = |name: &str| name.to_uppercase();
     let is_notice = |name: &String| {
@@ -76,7 +76,7 @@ fn chosen(names: Vec<String>) -> Vec<String> {
     names
 }
 
-/// A text without carriage returns, blanks at line ends and empty lines around it.
+/// A text without carriage returns, trailing spaces, and leading and trailing empty lines.
 fn tidied(text: &str) -> String {
     let lines: Vec<_> = text.lines().map(str::trim_end).collect();
     lines.join("\n").trim_matches('\n').to_owned()

@@ -1,4 +1,4 @@
-//! The change log has a place for what is not released yet.
+//! The change log has a section for what is not released yet.
 
 use super::Violation;
 use super::repository::Repository;

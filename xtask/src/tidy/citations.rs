@@ -1,6 +1,6 @@
-//! Whatever a comment cites, `[Woop 2013]` or `[Schlick 1994, eq. 15]`, and whatever an entry of a
-//! registry names as its source, has its line in `REFERENCES.md`, which begins `- **[Woop 2013]**`; and what
-//! stands there is cited by some file of code.
+//! Whatever a comment cites, `[Woop 2013]` or `[Schlick 1994, eq. 15]`, and whatever an entry of a registry names as
+//! its source, has a line in `REFERENCES.md` that begins `- **[Woop 2013]**`; and every entry there is cited by some
+//! code file.
 
 use super::Violation;
 use super::repository::Repository;
@@ -29,7 +29,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     violations
 }
 
-/// Whether a text has a key, which a comment may break after any of its words.
+/// Whether a text contains a key, which a comment may break after any of its words.
 fn is_named(text: &str, key: &str) -> bool {
     text.contains(key) || {
         let words: Vec<_> = text.split_whitespace().filter(|word| !word.starts_with("//")).collect();
@@ -37,7 +37,7 @@ fn is_named(text: &str, key: &str) -> bool {
     }
 }
 
-/// The keys of the list; one that stands there twice is a violation.
+/// The keys of the list; a key that appears twice is a violation.
 fn keys(list: &str) -> (BTreeSet<&str>, Vec<Violation>) {
     let mut keys = BTreeSet::new();
     let mut violations = Vec::new();
@@ -50,7 +50,7 @@ fn keys(list: &str) -> (BTreeSet<&str>, Vec<Violation>) {
     (keys, violations)
 }
 
-/// The keys cited in one line of a comment. Links, `[text](…)` and `` [`item`] ``, are none.
+/// The keys cited in one line of a comment. Links, `[text](…)` and `` [`item`] ``, are not citations.
 fn citations(comment: &str) -> Vec<&str> {
     let mut found = Vec::new();
     for part in comment.split('[').skip(1) {
@@ -63,7 +63,7 @@ fn citations(comment: &str) -> Vec<&str> {
     found
 }
 
-/// A name and then a year or a number: `Woop 2013`, `IEC 61966-2-1`.
+/// Whether a key is a name followed by a year or a number: `Woop 2013`, `IEC 61966-2-1`.
 fn is_key(key: &str) -> bool {
     let Some((name, year)) = key.rsplit_once(' ') else { return false };
     name.starts_with(char::is_uppercase)

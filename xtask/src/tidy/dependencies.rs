@@ -1,6 +1,6 @@
-//! Every dependency of the workspace is argued for in `docs/adr/dependencies.md`, by a line of its table
-//! that begins `` | `name` | ``; some crate asks for it; and no line there speaks of one that is gone. What a
-//! crate asks for, its code names.
+//! Every dependency of the workspace is justified in `docs/adr/dependencies.md`, by a line of its table that begins
+//! `` | `name` | ``; some crate uses it; and no line there is about a dependency that is gone. If a crate declares a
+//! dependency, its code names it.
 
 use super::Violation;
 use super::repository::Repository;
@@ -42,7 +42,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     violations
 }
 
-/// What a crate asks for although its code never names it.
+/// The dependencies that a crate declares although its code never names them.
 fn unnamed(repository: &Repository, member: &Package) -> Vec<Violation> {
     let folder = member.folder.strip_prefix(root()).unwrap_or(&member.folder);
     let code: Vec<_> =

@@ -1,10 +1,10 @@
-//! Which crate may know of which: the direction rules of `ARCHITECTURE.md`, for every kind of dependency.
+//! Which crate may depend on which: the direction rules of `ARCHITECTURE.md`, for every kind of dependency.
 
 use super::Violation;
 use super::repository::Repository;
 use crate::workspace::Package;
 
-/// Crate, what it may use of the workspace. In the order of the house, from the ground up.
+/// Each crate, and what it may use of the workspace. Lower crates come first.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("bilux-math", &[]),
     ("bilux-accel", &["bilux-math"]),

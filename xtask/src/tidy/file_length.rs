@@ -1,12 +1,12 @@
-//! A file is read in one sitting: at most 400 lines before its tests. Split a longer one along its
-//! concepts; a table of data may go on the list of exceptions, with the reason.
+//! A file can be read in one sitting: at most 400 lines before its tests. Split a longer one along its concepts; a
+//! table of data may go on the list of exceptions, with the reason.
 
 use super::Violation;
 use super::repository::Repository;
 
 const LONGEST: usize = 400;
 
-/// Path, most lines, reason.
+/// Path, maximum number of lines, reason.
 const EXCEPTIONS: &[(&str, usize, &str)] = &[];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {

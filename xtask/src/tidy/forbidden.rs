@@ -1,4 +1,5 @@
-//! Words that never belong in the repository: what is unfinished, and what is true of one machine only.
+//! Words that never belong in the repository: marks of unfinished work, paths of one machine, host names of package
+//! registries, and names that were replaced.
 
 use super::Violation;
 use super::repository::Repository;
@@ -8,7 +9,7 @@ const ONE_MACHINE: &str = "the path of one machine";
 const OLD_NAME: &str = "a name that was replaced by the field's own (CHANGELOG.md, \"Renamed\")";
 const HOST: &str = "the host name of a package registry: name the package instead";
 
-/// Word, why not.
+/// The word, and why it is forbidden.
 const WORDS: &[(&str, &str)] = &[
     ("todo!", UNFINISHED),
     ("unimplemented!", UNFINISHED),
@@ -30,7 +31,7 @@ const WORDS: &[(&str, &str)] = &[
     ("tell_faults", OLD_NAME),
 ];
 
-/// Where such words have to stand: this list, and what is taken from others word by word.
+/// Files in which such words are unavoidable: this list, and files with text copied from elsewhere.
 const EXEMPT: &[&str] = &["xtask/src/tidy/forbidden.rs", "Cargo.lock", "fuzz/Cargo.lock", "LICENSES.txt"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {

@@ -1,5 +1,5 @@
-//! The README has exactly two commands for a fresh machine, each alone in its block, and continuous
-//! integration runs the second of them and nothing else.
+//! The README has exactly two commands for a fresh machine, each alone in its block, and continuous integration runs
+//! the second of them and nothing else.
 
 use super::Violation;
 use super::repository::Repository;
@@ -22,7 +22,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     vec![Violation::new(CI, 0, format!("does not end with the README's second command, `{second}`"))]
 }
 
-/// The lines of the section's blocks of `sh`.
+/// The lines of the section's `sh` blocks.
 fn commands(readme: &str) -> Vec<&str> {
     let section = readme.lines().skip_while(|line| *line != SECTION).skip(1);
     let mut inside = false;

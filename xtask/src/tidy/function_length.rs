@@ -1,4 +1,4 @@
-//! A function fits a screen: about 60 lines, and never more than 80. Give its parts names.
+//! A function fits on a screen: about 60 lines, and never more than 80. Split a longer one into named parts.
 
 use super::Violation;
 use super::repository::Repository;
@@ -26,13 +26,13 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 
 struct Function {
     name: String,
-    /// Of its `fn`, from 1.
+    /// The line of its `fn`, from 1.
     line: usize,
-    /// From its `fn` to its closing brace.
+    /// The number of lines from its `fn` to its closing brace.
     lines: usize,
 }
 
-/// Every function with a body, those inside others too.
+/// Every function with a body, including nested ones.
 fn functions(code: &str) -> Vec<Function> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut functions = Vec::new();
@@ -45,7 +45,7 @@ fn functions(code: &str) -> Vec<Function> {
     functions
 }
 
-/// How far it is to the closing brace of the first body; `None` if a semicolon comes first.
+/// The offset of the closing brace of the first body; `None` if a semicolon comes first.
 fn body_end(code: &str) -> Option<usize> {
     let (mut nesting, mut braces) = (0, 0);
     for (at, c) in code.char_indices() {

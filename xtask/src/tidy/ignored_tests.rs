@@ -1,4 +1,4 @@
-//! No test is switched off: a long one has its own command, a wrong one is repaired or deleted.
+//! No test is ignored: a long test has its own command, and a wrong one is fixed or deleted.
 
 use super::Violation;
 use super::repository::Repository;

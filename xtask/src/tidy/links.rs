@@ -1,4 +1,5 @@
-//! Every relative link of a page leads to a file of the repository, and every decision record is linked from the records' own front page.
+//! Every relative link of a page leads to a file of the repository, and every decision record is linked from the
+//! records' own front page.
 
 use super::Violation;
 use super::repository::{Repository, TextFile};
@@ -34,7 +35,7 @@ fn links(line: &str) -> impl Iterator<Item = &str> {
     line.split("](").skip(1).filter_map(|rest| rest.split_once(')').map(|(target, _)| target))
 }
 
-/// A target seen from a page, as a path from the root.
+/// Resolves a target relative to a page, as a path from the root.
 fn resolve(page: &str, target: &str) -> String {
     let mut parts: Vec<&str> = page.split('/').collect();
     parts.pop();

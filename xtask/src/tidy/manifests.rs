@@ -1,4 +1,4 @@
-//! Every crate takes its version, edition, licence and lints from the workspace.
+//! Every crate inherits its version, edition, licence and lints from the workspace.
 
 use super::Violation;
 use super::repository::Repository;

@@ -1,4 +1,4 @@
-//! `cargo xtask tidy`: the repository's own rules. One rule a file; the table is [`RULES`].
+//! `cargo xtask tidy`: the repository's own rules, one per file; the table is [`RULES`].
 
 mod changelog;
 mod citations;
@@ -26,7 +26,7 @@ struct Rule {
     check: fn(&Repository) -> Vec<Violation>,
 }
 
-/// Every rule that there is. Each one's file says what it asks, why, and how to satisfy it.
+/// Every rule. Each one's file says what it requires, why, and how to satisfy it.
 const RULES: &[Rule] = &[
     Rule { name: "file-length", check: file_length::check },
     Rule { name: "function-length", check: function_length::check },
@@ -43,7 +43,7 @@ const RULES: &[Rule] = &[
     Rule { name: "front-page", check: front_page::check },
 ];
 
-/// Something that a rule does not allow.
+/// A violation of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Violation {
     path: String,
@@ -67,7 +67,7 @@ impl fmt::Display for Violation {
     }
 }
 
-/// Applies every rule to the repository as it lies on the disk.
+/// Applies every rule to the repository as it is on disk.
 pub(crate) fn run(_: &[String]) -> Result<()> {
     let repository = Repository::read()?;
     let mut count = 0;

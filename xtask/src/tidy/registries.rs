@@ -1,4 +1,4 @@
-//! Every table of variants is named in `ARCHITECTURE.md`, so that one can find where to add one.
+//! Every table of variants is named in `ARCHITECTURE.md`, so that readers find where to add one.
 
 use super::Violation;
 use super::repository::Repository;

@@ -1,4 +1,4 @@
-//! What the rules look at: every text file that belongs to the repository, and the workspace's packages.
+//! The input of the rules: every text file that belongs to the repository, and the workspace's packages.
 
 use super::rust_text::RustText;
 use crate::process::root;
@@ -19,10 +19,10 @@ pub(crate) struct Repository {
 
 /// One file.
 pub(crate) struct TextFile {
-    /// From the root of the repository, with `/` between folders.
+    /// The path from the root of the repository, with `/` between folders.
     pub(crate) path: String,
     pub(crate) text: String,
-    /// Code apart from comments, if it is Rust.
+    /// Code and comments separated, if it is Rust.
     pub(crate) rust: Option<RustText>,
 }
 
@@ -37,7 +37,7 @@ impl TextFile {
         self.path.ends_with("/tests.rs") || self.path.split('/').any(|part| part == "tests")
     }
 
-    /// How many of its lines stand before its tests.
+    /// How many lines come before its tests.
     pub(crate) fn lines_before_tests(&self) -> usize {
         let lines = || self.text.lines();
         lines().position(|line| line == "#[cfg(test)]").unwrap_or_else(|| lines().count())
@@ -45,7 +45,7 @@ impl TextFile {
 }
 
 impl Repository {
-    /// Reads what lies on the disk, less what `.gitignore` names.
+    /// Reads what is on disk, except what `.gitignore` names.
     pub(crate) fn read() -> Result<Repository> {
         let root = root();
         let ignored = fs::read_to_string(root.join(".gitignore")).unwrap_or_default();
@@ -93,7 +93,7 @@ fn walk(root: &Path, folder: &str, ignored: &str, files: &mut Vec<TextFile>) -> 
     Ok(())
 }
 
-/// Understands as much of `.gitignore` as ours uses: `/path` from the root, `*ending` anywhere.
+/// Supports as much of `.gitignore` as ours uses: `/path` from the root, `*ending` anywhere.
 fn is_ignored(path: &str, ignored: &str) -> bool {
     ignored.lines().any(|pattern| match (pattern.strip_prefix('/'), pattern.strip_prefix('*')) {
         (Some(anchored), _) => path == anchored.trim_end_matches('/'),

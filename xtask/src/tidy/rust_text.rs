@@ -1,10 +1,10 @@
-//! Code apart from comments, so that no rule takes a word in a string or in a comment for code.
+//! Separates code from comments, so that no rule mistakes a word in a string or a comment for code.
 
-/// A Rust file taken apart. Both halves keep the line breaks, hence the line numbers, of the file.
+/// A Rust file split in two. Both halves keep the file's line breaks, and so its line numbers.
 pub(crate) struct RustText {
-    /// The code, with blanks for comments and for what stands in literals.
+    /// The code, with spaces in place of comments and literals.
     pub(crate) code: String,
-    /// The comments, with blanks for everything else.
+    /// The comments, with spaces in place of everything else.
     pub(crate) comments: String,
 }
 
@@ -65,7 +65,7 @@ impl Splitter<'_> {
     }
 }
 
-/// The same number of bytes, all blanks but for the line breaks.
+/// The same number of bytes, all spaces except for the line breaks.
 fn blank(text: &str) -> String {
     text.bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }).collect()
 }
@@ -108,7 +108,7 @@ fn quoted(text: &str, quote: char) -> usize {
     text.len()
 }
 
-/// The length of a character literal, if the text begins with one and not with a lifetime.
+/// The length of a character literal, if the text begins with one rather than with a lifetime.
 fn character(text: &str) -> Option<usize> {
     let mut chars = text.strip_prefix('\'')?.chars();
     let first = chars.next()?;

@@ -1,10 +1,10 @@
-//! `unsafe` stands only in the modules that DESIGN gives it to, and each has its `// SAFETY:` (or, on the
-//! declaration of an unsafe function, its `# Safety`) in the lines right above.
+//! `unsafe` appears only in the modules listed below, and each use has its `// SAFETY:` comment (or, on the declaration
+//! of an unsafe function, its `# Safety` section) in the lines just above.
 
 use super::Violation;
 use super::repository::Repository;
 
-/// Path or its beginning, reason.
+/// A path or its beginning, and the reason.
 const ALLOWED: &[(&str, &str)] = &[
     ("crates/accel/src/brute_simd/kernel.rs", "the wide loop over triangles"),
     ("crates/bench/src/rays/embree.rs", "a rival's library, loaded at run time"),
@@ -14,7 +14,7 @@ const ALLOWED: &[(&str, &str)] = &[
     ("crates/accel/src/bvh8/kernel/", "the wide tree's walk, a file for each level of instructions"),
 ];
 
-/// How far above the word its reason may begin: attributes and a longer reason need room.
+/// How many lines above the word its justification may begin: attributes and longer reasons need room.
 const REACH: usize = 12;
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
@@ -36,7 +36,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     violations
 }
 
-/// Whether the word stands in a line of code; `unsafe_code`, the lint, is another word.
+/// Whether a line of code contains the word; `unsafe_code`, the lint, is another word.
 fn says_unsafe(line: &str) -> bool {
     line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == "unsafe")
 }

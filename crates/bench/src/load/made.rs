@@ -1,4 +1,4 @@
-//! The files that are read where none is given: a wavy square in each format, and a box that stands there very often.
+//! The files to read if none are given: a wavy square in each format, and a box with very many instances.
 
 use bilux::Error;
 use bilux::formats::{FormatError, WriteOptions, write};
@@ -10,13 +10,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Formats, and the bytes that a vertex takes there with its two triangles.
+/// The formats, and the bytes per vertex in each, including its two triangles.
 const FORMATS: [(&str, f64); 3] = [("glb", 56.0), ("obj", 222.0), ("ply", 58.0)];
 
-/// Writes a GLB, an OBJ and a PLY of about so many bytes, and a GLB with so many instances; gives their paths.
+/// Writes a GLB, an OBJ and a PLY of about `bytes` bytes each, and a GLB with this many instances; returns their paths.
 ///
 /// # Errors
-/// When one cannot be written.
+/// If a file cannot be written.
 pub fn make(folder: &Path, bytes: u64, instances: u32) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for (extension, per_vertex) in FORMATS {
@@ -35,7 +35,7 @@ pub fn make(folder: &Path, bytes: u64, instances: u32) -> Result<Vec<PathBuf>, E
     Ok(files)
 }
 
-/// A square of so many vertices each way, with normals and texture coordinates.
+/// A square with `side` vertices in each direction, with normals and texture coordinates.
 fn waves(side: u32) -> Mesh {
     let step = 1.0 / (side - 1) as f32;
     let places = (0..side * side).map(|i| Vec2::new((i % side) as f32 * step, (i / side) as f32 * step));
@@ -55,7 +55,7 @@ fn waves(side: u32) -> Mesh {
     mesh
 }
 
-/// A GLB with one box in many places, by `EXT_mesh_gpu_instancing`.
+/// A GLB with many instances of one box, by `EXT_mesh_gpu_instancing`.
 fn boxes(count: u32) -> Vec<u8> {
     let side = powf_f64(f64::from(count), 1.0 / 3.0).ceil() as u32;
     let mut binary = Vec::new();

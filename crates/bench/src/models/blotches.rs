@@ -1,17 +1,17 @@
-//! Blotches: errors that are as wide as several pixels, which no eye averages away. Both pictures are blurred until noise from pixel to
-//! pixel is gone; a pixel is blotched where their lightness then differs by as much as can be seen.
+//! Blotches: errors that are several pixels wide, which the eye does not average away. Both pictures are blurred until
+//! pixel-to-pixel noise is gone; a pixel is blotched if the lightness still differs visibly there.
 
 use bilux::math::Rgb;
 use bilux::math::transcendental::{exp_f64, powf_f64};
 use bilux::pictures::Picture;
 
-/// From this difference of CIE L* on, two fields beside each other look different. [Mahy 1994]
+/// The difference in CIE L* from which two adjacent fields look different. [Mahy 1994]
 pub(super) const SEEN: f64 = 2.3;
 
-/// Standard deviation of the blur, in pixels: what is left is wider than about ten pixels.
+/// The standard deviation of the blur, in pixels: what remains is wider than about ten pixels.
 const BLUR: f64 = 4.0;
 
-/// The share of a picture's pixels that are blotched beside its reference, 0..=1; 1 where the sizes differ.
+/// The fraction of a picture's pixels that are blotched compared with its reference, 0..=1; 1 if the sizes differ.
 pub(super) fn share([picture, reference]: [&Picture; 2]) -> f64 {
     let (width, height) = (picture.width(), picture.height());
     if (reference.width(), reference.height()) != (width, height) {
@@ -20,20 +20,20 @@ pub(super) fn share([picture, reference]: [&Picture; 2]) -> f64 {
     let [a, b] = [picture, reference].map(|picture| {
         let light = picture.clone().into_linear().to_rgb().unwrap_or_default();
         let lightness: Vec<f64> = light.into_iter().map(lightness).collect();
-        // Down the columns of the transposed is along the rows.
+        // The first blur transposes, so the second one runs along the columns.
         blurred(&blurred(&lightness, width), height)
     });
     let blotched = a.iter().zip(&b).filter(|(a, b)| (**a - **b).abs() >= SEEN).count();
     blotched as f64 / (width * height).max(1) as f64
 }
 
-/// CIE L* of linear light, white is 100.
+/// CIE L* of linear light; white is 100.
 fn lightness(light: Rgb) -> f64 {
     let y = f64::from(light.luminance()).clamp(0.0, 1.0);
     if y > 216.0 / 24_389.0 { 116.0 * powf_f64(y, 1.0 / 3.0) - 16.0 } else { y * 24_389.0 / 27.0 }
 }
 
-/// Blurred along its rows, with the edges repeated, and transposed.
+/// Blurs a plane along its rows, repeating the edges, and transposes it.
 fn blurred(plane: &[f64], width: usize) -> Vec<f64> {
     let reach = (3.0 * BLUR) as isize;
     let kernel: Vec<f64> =
@@ -69,7 +69,7 @@ mod tests {
         assert_eq!(share([&even, &even]), 0.0);
         let noise = picture(|i| 0.2 + 0.1 * (unit_f32(hash_words([i as u64]) as u32) - 0.5));
         assert!(share([&noise, &even]) < 0.01);
-        // A fourth of the picture is a tenth brighter: 0.2 is L* 51.8, 0.22 is 54.0, 0.23 is 55.1.
+        // A quarter of the picture is a tenth or more brighter: 0.2 is L* 51.8, 0.22 is 54.0, 0.23 is 55.1.
         let quarter = |light: f32| {
             picture(move |i| if i % SIDE < SIDE / 2 && i / SIDE < SIDE / 2 { light } else { 0.2 })
         };

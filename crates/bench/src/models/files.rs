@@ -1,10 +1,10 @@
-//! The models: ours, in formats of others, and public ones where they are there.
+//! The models: built-in ones converted to other formats, and public ones if they are available.
 
 use bilux::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Ours, by generator, and the file that is made of each.
+/// The built-in models: each generator, and the file that is made of it.
 const OURS: &[(&str, &str)] = &[
     ("teapot", "teapot.obj"),
     ("scan", "scan.stl"),
@@ -14,7 +14,7 @@ const OURS: &[(&str, &str)] = &[
     ("caustics", "caustics.glb"),
 ];
 
-/// Public models, in folders beside the repository, where they are there.
+/// Public models, in folders next to the repository, if they are available.
 const SHARED: &[&str] = &[
     "gltf/WaterBottle/glTF/WaterBottle.gltf",
     "gltf/Suzanne/glTF/Suzanne.gltf",
@@ -24,7 +24,7 @@ const SHARED: &[&str] = &[
     "obj/spot.obj",
 ];
 
-/// All of them; ours are written into a folder.
+/// All of the models; the built-in ones are written to a folder.
 pub(super) fn all(program: &Path, folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for (generator, file) in OURS {
@@ -42,7 +42,7 @@ pub(super) fn all(program: &Path, folder: &Path) -> Result<Vec<PathBuf>, Error> 
     Ok(files)
 }
 
-/// Waits for a command that has to end well.
+/// Runs a command, which must succeed.
 pub(super) fn finish(mut command: Command) -> Result<(), Error> {
     let output = command.output();
     let failed = |why: &str| {

@@ -1,5 +1,5 @@
-//! What a newcomer gets: models as they come, at nothing said, in a second and fast, each by a process of its own, held against
-//! converged pictures by what one sees.
+//! What a newcomer gets: models as they come, rendered with default settings, in one second and with `--fast`, each by
+//! a process of its own, and compared with converged pictures by perceptual metrics.
 
 mod blotches;
 mod files;
@@ -13,23 +13,23 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// What is measured, and how long for.
+/// What is measured, and for how long.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The program `bilux` itself.
     pub program: PathBuf,
-    /// Model files; where there are none, ours and those of `../shared/scenes`.
+    /// The model files; if there are none, the built-in ones and those in `../shared/scenes`.
     pub files: Vec<PathBuf>,
-    /// Seconds for each of the two halves of a reference.
+    /// The seconds for each of the two halves of a reference.
     pub seconds: f64,
-    /// Where references are kept from one run to the next.
+    /// The folder where references are kept from one run to the next.
     pub references: Option<PathBuf>,
 }
 
-/// Seconds for each half of a reference where nothing is said.
+/// The default number of seconds for each half of a reference.
 pub const SECONDS: f64 = 8.0;
 
-/// What is asked of a picture, and the greatest mean FLIP that is a good one.
+/// How a picture is rendered, and the maximum mean FLIP of a good one.
 struct Setting {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -42,14 +42,14 @@ const SETTINGS: [Setting; 3] = [
     Setting { name: "--fast", arguments: &["--fast"], goal: 0.12 },
 ];
 
-/// A converged picture: the mean of two that were made by themselves.
+/// A converged picture: the mean of two independent ones.
 struct Reference {
     picture: Picture,
-    /// FLIP of the two halves: about that much is unknown, and the mean is nearer.
+    /// The FLIP between the two halves: about that much is uncertain, and the mean is closer to the truth.
     noise: f64,
 }
 
-/// One picture beside its reference.
+/// One picture compared with its reference.
 struct Row {
     model: String,
     setting: &'static Setting,
@@ -80,10 +80,10 @@ impl Row {
     }
 }
 
-/// Measures.
+/// Runs the benchmark.
 ///
 /// # Errors
-/// When a picture cannot be made, or a file not written.
+/// If a picture cannot be rendered, or a file cannot be written.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let scratch = std::env::temp_dir().join(format!("bilux-models-{}", std::process::id()));
     make_folder(&scratch)?;
@@ -92,7 +92,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     }
     let bench = Bench { options, scratch: &scratch, tell };
     let rows = bench.rows();
-    // What was made is of no use any more.
+    // The generated files are no longer needed.
     let _ = std::fs::remove_dir_all(&scratch);
     let rows = rows?;
     let cells: Vec<Vec<String>> = rows.iter().map(Row::cells).collect();
@@ -166,7 +166,7 @@ impl Bench<'_> {
         Ok(rows)
     }
 
-    /// Two pictures with other samples, made now or kept from before.
+    /// The mean of two pictures with different seeds, rendered now or kept from an earlier run.
     fn reference(&self, file: &Path, model: &str) -> Result<Reference, Error> {
         let folder = self.options.references.as_deref().unwrap_or(self.scratch);
         let seconds = self.options.seconds.to_string();
@@ -185,7 +185,7 @@ impl Bench<'_> {
         Ok(Reference { picture: Picture::from_rgb(width, height, mean)?, noise })
     }
 
-    /// Seconds from the start of the program to its end.
+    /// The seconds from the start of the program to its end.
     fn render(&self, file: &Path, output: &Path, more: &[&str]) -> Result<f64, Error> {
         let begun = Instant::now();
         let mut command = Command::new(&self.options.program);

@@ -7,17 +7,17 @@ use bilux::scene::{Camera, CameraSample};
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::warp::sample_cosine_hemisphere;
 
-/// A point that rays start from.
+/// A point from which rays start.
 #[derive(Clone, Copy)]
 struct Point {
-    /// Moved off the surface, so that no engine finds the triangle that is left.
+    /// Offset from the surface, so that no engine hits the triangle that the ray leaves.
     position: Vec3,
     normal: Vec3,
     t: f32,
 }
 
-/// `count` rays of every class, the same for the same scene; none where the camera sees nothing. `light` is the
-/// middle and the edges of an area light, or one overhead.
+/// Makes `count` rays of every class, deterministically for each scene; returns `None` if the camera sees nothing.
+/// `light` is the centre and the edges of an area light; without it, one is placed overhead.
 pub(super) fn make(
     mesh: &TriangleMesh,
     camera: &dyn Camera,
@@ -52,7 +52,7 @@ pub(super) fn make(
     ])
 }
 
-/// Pixels of a square picture, tile by tile, in each along Morton's curve.
+/// The pixels of a square picture, tile by tile, each tile in Morton order.
 fn morton_in_tiles(width: usize) -> impl Iterator<Item = [usize; 2]> {
     let tiles = width.div_ceil(16);
     let even_bits = |k: usize| (0..4).fold(0, |bits, b| bits | (k >> (2 * b) & 1) << b);
@@ -62,7 +62,7 @@ fn morton_in_tiles(width: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..tiles * tiles).flat_map(in_tile).filter(move |p| p[0] < width && p[1] < width)
 }
 
-/// Through the middle of a pixel, its direction of unit length.
+/// A ray through the centre of a pixel, with a direction of unit length.
 fn pixel(camera: &dyn Camera, x: usize, y: usize, width: usize) -> Ray {
     let film = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / width as f32;
     let ray = camera.ray(&CameraSample { film, lens: Vec2::ZERO, time: 0.0 });
@@ -70,7 +70,7 @@ fn pixel(camera: &dyn Camera, x: usize, y: usize, width: usize) -> Ray {
     Ray { t_min: 0.0, t_max: f32::INFINITY, ..Ray::new(ray.origin, direction.to_array()) }
 }
 
-/// Where rays arrive; those that miss are left out.
+/// Where rays hit; those that miss are left out.
 fn arrivals(tree: &Bvh, mesh: &TriangleMesh, rays: impl Iterator<Item = Ray>) -> Vec<Point> {
     let arrive = |ray: Ray| {
         let hit = tree.closest_hit(&ray, &Query::default())?;
@@ -78,7 +78,7 @@ fn arrivals(tree: &Bvh, mesh: &TriangleMesh, rays: impl Iterator<Item = Ray>) ->
         let normal = (b - a).cross(c - a).try_normalize()?;
         let normal = if normal.dot(Vec3::from(ray.direction)) > 0.0 { -normal } else { normal };
         let position = a + (b - a) * hit.u + (c - a) * hit.v;
-        // Many units in the last place of the largest number that went into the point.
+        // An offset of many ulps of the largest coordinate that went into the point.
         let size = a.abs().max(b.abs()).max(c.abs()).max(Vec3::from(ray.origin).abs()).max_element();
         Some(Point { position: position + normal * (size * 64.0 * f32::EPSILON), normal, t: hit.t })
     };
@@ -91,20 +91,20 @@ fn median_t(points: &[Point]) -> Option<f32> {
     ts.get(ts.len() / 2).copied()
 }
 
-/// Two numbers in 0..1 for a ray.
+/// Two numbers in 0..1 for ray `k`.
 fn chances(salt: u64, k: usize) -> Vec2 {
     let bits = hash_words([salt, k as u64]);
     Vec2::new(unit_f32(bits as u32), unit_f32((bits >> 32) as u32))
 }
 
-/// Away from a matt surface.
+/// A cosine-distributed ray away from a diffuse surface.
 fn scattered(point: &Point, salt: u64, k: usize) -> Ray {
     let local = sample_cosine_hemisphere(chances(salt, k));
     let direction = Frame::from_normal(point.normal).to_world(local);
     Ray::new(point.position.to_array(), direction.to_array())
 }
 
-/// A square above what is seen, a third as wide as it is far from the camera.
+/// A square light above the visible points, a third as wide as their median distance from the camera.
 fn overhead(points: &[Point], scale: f32) -> [Vec3; 3] {
     let mut middles: Vec<Vec3> = points.iter().map(|p| p.position).collect();
     let mut median = |axis: usize| {
@@ -115,7 +115,7 @@ fn overhead(points: &[Point], scale: f32) -> [Vec3; 3] {
     [middle + Vec3::Y * (0.8 * scale), Vec3::X * (0.33 * scale), Vec3::Z * (0.33 * scale)]
 }
 
-/// To a point of the light, and not quite as far.
+/// A ray to a point on the light that stops just short of it.
 fn to_light(point: &Point, [middle, u, v]: [Vec3; 3], k: usize) -> Ray {
     let chance = chances(4, k) - 0.5;
     let direction = middle + u * chance.x + v * chance.y - point.position;

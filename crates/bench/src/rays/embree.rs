@@ -1,5 +1,5 @@
-//! Embree 4, found at run time in a shared library that the user names. Its C interface is declared here as its
-//! public documentation has it; nothing of it is linked.
+//! Embree 4, loaded at run time from a shared library that the user names. Its C interface is declared here following
+//! its public documentation; nothing of it is linked.
 #![allow(unsafe_code, reason = "a C library is loaded and called")]
 
 use super::engines::{Answers, Engine};
@@ -16,17 +16,17 @@ use std::sync::atomic::{AtomicIsize, Ordering};
 use std::time::Instant;
 
 type Pointer = *mut c_void;
-/// Called when Embree takes or gives back memory.
+/// Called when Embree allocates or frees memory.
 ///
 /// # Safety
-/// Embree hands over the pointer that it was given for this.
+/// Embree passes back the pointer that it was given for this callback.
 type Monitor = unsafe extern "C" fn(Pointer, isize, bool) -> bool;
 
-/// Declares the functions that are used, and finds them by name.
+/// Declares the functions that are used, and looks them up by name.
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
         /// # Safety
-        /// Each is to be called as Embree's documentation says.
+        /// Each must be called as Embree's documentation says.
         #[allow(non_snake_case, reason = "as the library calls them")]
         struct Functions { $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)* }
 
@@ -62,7 +62,7 @@ functions! {
     rtcOccluded16: fn(*const Valid, Pointer, *mut RayHit16, *const Arguments);
 }
 
-/// Of `rtcSetSharedGeometryBuffer`.
+/// Constants for `rtcSetSharedGeometryBuffer`.
 const BUFFER_INDEX: u32 = 0;
 const BUFFER_VERTEX: u32 = 1;
 const FORMAT_UINT3: u32 = 0x5003;
@@ -73,7 +73,7 @@ const FLAG_COHERENT: u32 = 1 << 16;
 const PROPERTY_VERSION_MAJOR: u32 = 1;
 const INVALID: u32 = u32::MAX;
 
-/// `RTCRayHit`: a ray and what it hits; with room for what later versions add at its end.
+/// `RTCRayHit`: a ray and its hit, with room for what later versions append.
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 struct RayHit1 {
@@ -93,7 +93,7 @@ struct RayHit1 {
     instances: [u32; 5],
 }
 
-/// `RTCRayHit16`: the same for sixteen, field by field.
+/// `RTCRayHit16`: the same for sixteen rays, field by field.
 #[repr(C, align(64))]
 #[derive(Clone, Copy)]
 struct RayHit16 {
@@ -116,7 +116,8 @@ struct RayHit16 {
 #[repr(C, align(64))]
 struct Valid([i32; 16]);
 
-/// `RTCIntersectArguments`, which `RTCOccludedArguments` equals but for the type of its last function.
+/// `RTCIntersectArguments`, which has the same layout as `RTCOccludedArguments` except for the type of its last
+/// function.
 #[repr(C)]
 struct Arguments {
     flags: u32,
@@ -131,9 +132,9 @@ struct Arguments {
 pub(super) struct Embree {
     functions: Functions,
     device: Pointer,
-    /// Bytes that Embree holds.
+    /// The number of bytes that Embree holds.
     held: Box<AtomicIsize>,
-    /// Never closed: its threads outlive the device.
+    /// Never unloaded: its threads outlive the device.
     _library: ManuallyDrop<Library>,
 }
 
@@ -154,7 +155,7 @@ impl Embree {
                 path.display()
             ))
         };
-        // SAFETY: the user asks for this library's code to be run.
+        // SAFETY: the user asked for this library's code to be run.
         let library = unsafe { Library::new(path) }.map_err(|e| failed(e.to_string()))?;
         let functions = Functions::find(&library).map_err(|e| failed(e.to_string()))?;
         // SAFETY: the configuration ends in a zero.
@@ -167,7 +168,7 @@ impl Embree {
         }
         let held = Box::new(AtomicIsize::new(0));
         let counter: Pointer = std::ptr::from_ref(&*held).cast_mut().cast();
-        // SAFETY: `held` outlives the device; `count` has the type that is asked for.
+        // SAFETY: `held` outlives the device; `count` has the required type.
         unsafe { (functions.rtcSetDeviceMemoryMonitorFunction)(device, count, counter) };
         Ok(Rc::new(Embree { functions, device, held, _library: ManuallyDrop::new(library) }))
     }
@@ -180,7 +181,7 @@ impl Drop for Embree {
     }
 }
 
-// What Embree asks for, and reads past the end of otherwise.
+// Embree requires these layouts; otherwise it would read past the end.
 const _: () = assert!(size_of::<RayHit1>() == 96 && align_of::<RayHit1>() == 16);
 const _: () = assert!(size_of::<RayHit16>() == 21 * 64 && align_of::<RayHit16>() == 64);
 
@@ -192,7 +193,7 @@ pub(super) struct Kind {
     robust: bool,
 }
 
-/// Every way to build that is compared with.
+/// Every build configuration in the comparison.
 pub(super) const KINDS: [Kind; 4] = [
     Kind { name: "embree", quality: 1, robust: false },
     Kind { name: "embree-high", quality: 2, robust: false },
@@ -206,22 +207,22 @@ pub(super) struct Tree {
     scene: Pointer,
     pub(super) build_seconds: f64,
     pub(super) bytes: usize,
-    // What the geometry's buffers point at.
+    // The memory that the geometry's buffers point to.
     _positions: Vec<[f32; 3]>,
     _indices: Vec<[u32; 3]>,
 }
 
 impl Tree {
-    /// Builds one. Vertices that are the same to the bit are given once, as meshes mostly come; that is not timed.
+    /// Builds a tree. Bitwise identical vertices are merged, since meshes usually come indexed; that is not timed.
     pub(super) fn build(embree: &Rc<Embree>, kind: Kind, mesh: &TriangleMesh) -> Result<Tree, Error> {
         let (mut positions, indices) = super::files::indexed(mesh);
         let (vertices, f) = (positions.len(), &embree.functions);
-        // The last vertex is read with sixteen bytes.
+        // Embree reads sixteen bytes for the last vertex.
         positions.push([0.0; 3]);
         let before = embree.held.load(Ordering::Relaxed);
         let begun = Instant::now();
-        // SAFETY: handles are used as documented; both buffers live as long as the tree, with the room behind the
-        // last vertex that is asked for, and every index is less than `vertices`.
+        // SAFETY: handles are used as documented; both buffers live as long as the tree, with the required padding
+        // after the last vertex, and every index is less than `vertices`.
         let (scene, error) = unsafe {
             let scene = (f.rtcNewScene)(embree.device);
             (f.rtcSetSceneBuildQuality)(scene, kind.quality);
@@ -256,7 +257,7 @@ impl Drop for Tree {
     }
 }
 
-/// How rays are handed over.
+/// How rays are passed to Embree.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Packets {
     One,
@@ -264,7 +265,7 @@ pub(super) enum Packets {
     Coherent,
 }
 
-/// One way of asking a tree.
+/// A tree together with one way of tracing rays through it.
 pub(super) struct Asked {
     pub(super) tree: Rc<Tree>,
     pub(super) packets: Packets,
@@ -309,7 +310,8 @@ impl Asked {
         let begun = Instant::now();
         let query = if batch.any { f.rtcOccluded1 } else { f.rtcIntersect1 };
         for ray in &mut rays {
-            // SAFETY: the scene is committed, the ray laid out and aligned as asked; no arguments are the defaults.
+            // SAFETY: the scene is committed, the ray has the required layout and alignment, and null selects default
+            // arguments.
             unsafe { query(scene, ray, null()) };
         }
         let seconds = begun.elapsed().as_secs_f64();
@@ -358,7 +360,7 @@ impl RayHit1 {
         }
     }
 
-    /// Of any hit, only that there is one: Embree then sets the ray's end to minus infinity.
+    /// For any-hit queries, only whether there is a hit: Embree then sets the ray's end to minus infinity.
     fn hit(&self) -> Option<Hit> {
         let is_hit = self.geometry != INVALID || self.t_far == f32::NEG_INFINITY;
         let (t, u, v, primitive) = (self.t_far, self.u, self.v, self.primitive);
@@ -367,7 +369,7 @@ impl RayHit1 {
 }
 
 impl RayHit16 {
-    /// Of up to sixteen rays; the rest repeat the last.
+    /// A packet of up to sixteen rays; the last one fills the remaining lanes.
     fn new(rays: &[Ray]) -> RayHit16 {
         let ray = |lane: usize| &rays[lane.min(rays.len() - 1)];
         let each = |value: &dyn Fn(&Ray) -> f32| std::array::from_fn(|lane| value(ray(lane)));

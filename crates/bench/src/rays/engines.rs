@@ -1,4 +1,4 @@
-//! What is measured: our structures and their rivals, behind one trait whose calls hold a whole batch.
+//! The engines being measured: our structures and their competitors, behind one trait whose calls take a whole batch.
 
 use super::embree::{Asked, Embree, KINDS, Packets, Tree};
 use super::{Batch, Mode};
@@ -12,12 +12,12 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// What a batch of rays found, ray by ray.
+/// What the rays of a batch found, ray by ray.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Answers {
-    /// Closest hits; empty for a batch that asks for any.
+    /// Closest hits; empty for an any-hit batch.
     pub(super) closest: Vec<Option<Hit>>,
-    /// Whether anything was hit; empty for a batch that asks for the closest.
+    /// Whether anything was hit; empty for a closest-hit batch.
     pub(super) any: Vec<bool>,
 }
 
@@ -31,8 +31,8 @@ impl Answers {
         }
     }
 
-    /// Rays of which one says hit and the other miss, or that hit another primitive at a distance that differs
-    /// by more than a ten-thousandth; where answers are to be `equal`, all that differ in anything.
+    /// Counts the rays for which one side reports a hit and the other a miss, or which hit different primitives at
+    /// distances that differ by more than a ten-thousandth; if answers must be `equal`, all rays with any difference.
     pub(super) fn mismatches(&self, reference: &Answers, equal: bool) -> usize {
         let differ = |(a, b): &(&Option<Hit>, &Option<Hit>)| match (a, b) {
             (Some(a), Some(b)) if !equal => {
@@ -45,26 +45,26 @@ impl Answers {
     }
 }
 
-/// A structure over the mesh of a scene, and one way of asking it.
+/// A structure over a scene's mesh, and one way of querying it.
 pub(super) trait Engine {
     fn mode(&self) -> Mode;
     fn build_seconds(&self) -> f64;
     fn bytes(&self) -> usize;
-    /// Seconds that the rays take. To bring them into the engine's own form, and to take the answers out of it, is
-    /// not counted.
+    /// The seconds that the rays take. Converting them into the engine's own form, and reading the answers out of it,
+    /// is not timed.
     fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64;
 }
 
-/// An engine by its name.
+/// An engine with its name.
 pub(super) struct Named {
     pub(super) name: String,
-    /// One of our own.
+    /// Whether it is one of our own.
     pub(super) ours: bool,
     pub(super) engine: Box<dyn Engine>,
 }
 
-/// Builds every engine over a mesh, on one thread: ours, those behind the feature `peers`, and Embree from the
-/// libraries given.
+/// Builds every engine over a mesh, on one thread: ours, those behind the feature `peers`, and Embree from the given
+/// libraries.
 pub(super) fn build(
     mesh: &Arc<TriangleMesh>,
     accels: &[String],
@@ -91,7 +91,7 @@ pub(super) fn build(
     Ok(engines)
 }
 
-/// Loads what `--against NAME=PATH` names.
+/// Loads the libraries that `--against NAME=PATH` names.
 pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Error> {
     let load = |(name, path): &(String, PathBuf)| match name.as_str() {
         "embree" => Embree::load(path),
@@ -100,8 +100,8 @@ pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Err
     against.iter().map(load).collect()
 }
 
-/// Ours, ray by ray and, where a structure has a way of its own for many, in batches. Those that are asked for
-/// their speed are called through their own types, so that the query is compiled into the loop.
+/// Our structures, ray by ray and, if a structure has a batch kernel, in batches. The structures whose speed matters
+/// most are called through their concrete types, so that the query is inlined into the loop.
 fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<Named>, Error> {
     let failed = |e: BuildError| Error::Settings(e.to_string());
     let (row, options) = find(name)?;
@@ -123,7 +123,7 @@ fn ours(name: &str, mesh: &Arc<TriangleMesh>, alone: &ThreadPool) -> Result<Vec<
     })
 }
 
-/// A tree that has just been built, asked in some ways.
+/// Wraps a tree that has just been built in an engine for each mode.
 fn asked<A: Accelerator + ?Sized + 'static>(
     name: &str,
     tree: Rc<A>,
@@ -138,14 +138,14 @@ fn asked<A: Accelerator + ?Sized + 'static>(
     modes.iter().map(named).collect()
 }
 
-/// One of ours, asked ray by ray or in batches.
+/// One of our structures, queried ray by ray or in batches.
 struct Ours<A: ?Sized> {
     tree: Rc<A>,
     build_seconds: f64,
     mode: Mode,
 }
 
-/// Rays of a call that takes a batch.
+/// The number of rays in a call that takes a batch.
 const BATCH: usize = 4096;
 
 impl<A: Accelerator + ?Sized> Engine for Ours<A> {
@@ -180,7 +180,7 @@ impl<A: Accelerator + ?Sized> Engine for Ours<A> {
     }
 }
 
-/// What any hit says of where: nothing.
+/// The hit that stands for any hit, which has no location.
 pub(super) const NOWHERE: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
 
 /// Times `ask` over all rays, one by one.
@@ -198,7 +198,7 @@ pub(super) fn loop_over<T: Clone + Default>(
     timed(batch, batch.rays.len(), answers, each, hit)
 }
 
-/// Times `ask` over all rays, so many a call. Answers are written into memory that is already there, as Embree's are.
+/// Times `ask` over all rays, `size` per call. Answers go into memory that is already allocated, as Embree's do.
 #[inline(always)]
 fn timed<T: Clone + Default>(
     batch: &Batch,
@@ -208,7 +208,7 @@ fn timed<T: Clone + Default>(
     hit: impl Fn(&T) -> Option<Hit>,
 ) -> f64 {
     let mut found = vec![T::default(); batch.rays.len()];
-    // Memory that was never written costs page faults, which are nobody's rays.
+    // Memory that was never written costs page faults, which must not count as tracing time.
     found.iter_mut().for_each(|slot| *black_box(slot) = T::default());
     let (size, begun) = (size.max(1), Instant::now());
     for (rays, found) in batch.rays.chunks(size).zip(found.chunks_mut(size)) {

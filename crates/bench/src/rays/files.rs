@@ -1,8 +1,9 @@
-//! Meshes, rays and hits as files, for engines that are measured by hand. Little-endian throughout.
+//! Files of meshes, rays and hits, for engines that are measured separately. Little-endian throughout.
 //!
-//! A mesh is `MSH1`, the numbers of vertices and of triangles (u32), three f32 a vertex, three u32 a triangle. Rays are
-//! `RAY1`, a u32 (0 closest, 1 any), their number (u32), and eight f32 each: origin, least t, direction, greatest t.
-//! Hits are t, u, v (f32) and the primitive (u32, all ones for a miss) a ray, or for any hit a byte a ray.
+//! A mesh is `MSH1`, the numbers of vertices and of triangles (u32), three f32 per vertex, three u32 per triangle. Rays
+//! are `RAY1`, a u32 (0 closest, 1 any), their number (u32), and eight f32 each: origin, minimum t, direction, maximum
+//! t. Hits are t, u, v (f32) and the primitive (u32, all ones for a miss) per ray, or one byte per ray for any-hit
+//! queries.
 
 use super::engines::Answers;
 use super::{Batch, file_error};
@@ -13,7 +14,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::Path;
 
-/// Vertices, each once, and triples of indices into them.
+/// The vertices, each once, and triples of indices into them.
 pub(super) fn indexed(mesh: &TriangleMesh) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let (mut positions, mut known) = (Vec::new(), HashMap::with_capacity(mesh.len()));
     let mut index = |corner: &[f32; 3]| {
@@ -26,7 +27,7 @@ pub(super) fn indexed(mesh: &TriangleMesh) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     (positions, indices)
 }
 
-/// Writes `NAME.msh` and `NAME-CLASS.ray` into a folder, which is made where it is not there.
+/// Writes `NAME.msh` and `NAME-CLASS.ray` to a folder, which is created if it does not exist.
 pub(super) fn dump(folder: &Path, name: &str, mesh: &TriangleMesh, batches: &[Batch]) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|e| file_error("make the folder", folder, e))?;
     write_mesh(&folder.join(format!("{name}.msh")), mesh)?;
@@ -38,7 +39,7 @@ pub(super) fn dump(folder: &Path, name: &str, mesh: &TriangleMesh, batches: &[Ba
 /// Writes a mesh.
 ///
 /// # Errors
-/// When the file cannot be written.
+/// If the file cannot be written.
 pub fn write_mesh(path: &Path, mesh: &TriangleMesh) -> Result<(), Error> {
     let (positions, indices) = indexed(mesh);
     write(path, |file| {
@@ -53,7 +54,7 @@ pub fn write_mesh(path: &Path, mesh: &TriangleMesh) -> Result<(), Error> {
 /// Writes rays.
 ///
 /// # Errors
-/// When the file cannot be written.
+/// If the file cannot be written.
 pub fn write_rays(path: &Path, batch: &Batch) -> Result<(), Error> {
     write(path, |file| {
         file.write_all(b"RAY1")?;
@@ -94,7 +95,7 @@ fn write(path: &Path, work: impl FnOnce(&mut BufWriter<File>) -> std::io::Result
 /// Reads a mesh.
 ///
 /// # Errors
-/// When the file cannot be read, its length is not what its numbers say, or an index names no vertex.
+/// If the file cannot be read, its length does not match its counts, or an index is out of range.
 pub fn read_mesh(path: &Path) -> Result<TriangleMesh, Error> {
     let (mut file, [vertices, triangles]) = open(path, b"MSH1", |[v, t]| 12 * (u64::from(v) + u64::from(t)))?;
     let mut words = || -> Result<[[u8; 4]; 3], Error> {
@@ -112,7 +113,7 @@ pub fn read_mesh(path: &Path) -> Result<TriangleMesh, Error> {
 /// Reads rays; their class is the file's name.
 ///
 /// # Errors
-/// When the file cannot be read, or its length is not what its number says.
+/// If the file cannot be read, or its length does not match its count.
 pub fn read_rays(path: &Path) -> Result<Batch, Error> {
     let (mut file, [kind, count]) = open(path, b"RAY1", |[_, count]| 32 * u64::from(count))?;
     if kind > 1 {
@@ -132,7 +133,7 @@ pub fn read_rays(path: &Path) -> Result<Batch, Error> {
     Ok(Batch { class, any: kind == 1, rays })
 }
 
-/// Opens a file, checks its first four bytes, and that it is as long as its two numbers say.
+/// Opens a file, checks its first four bytes, and checks that its length matches its two counts.
 fn open(
     path: &Path,
     magic: &[u8; 4],

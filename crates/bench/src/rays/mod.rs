@@ -1,9 +1,9 @@
-//! Rays a second: our structures and their rivals, on the same scenes, by the same rays, in turns.
+//! Rays per second: our structures and their competitors on the same scenes, with the same rays, in turns.
 //!
-//! Five classes of rays: `primary` (closest, from the camera, Morton order in tiles of 16²), `ao` (any, short),
-//! `bounce` (closest, diffuse, in the order of pixels), `bounce2` (closest, from where those arrive, shuffled) and
-//! `shadow` (any, to an area light). One thread. Every engine traces a class once a round, the order rotated from
-//! round to round; medians count. Hits are held against those of `bvh`.
+//! There are five classes of rays: `primary` (closest, from the camera, Morton order in tiles of 16²), `ao` (any,
+//! short), `bounce` (closest, diffuse, in pixel order), `bounce2` (closest, from where those hit, shuffled) and
+//! `shadow` (any, to an area light). Everything runs on one thread. Every engine traces a class once per round, in an
+//! order that rotates from round to round, and the medians are reported. Hits are compared with those of `bvh`.
 
 mod classes;
 mod embree;
@@ -25,24 +25,24 @@ use report::Row;
 use scenes::Subject;
 use std::path::{Path, PathBuf};
 
-/// What the benchmark can be told.
+/// The benchmark's options.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Scene files; our own scenes where there are none.
+    /// Scene files; if empty, our own scenes.
     pub scenes: Vec<PathBuf>,
     /// How scene files are read.
     pub read: ReadOptions,
-    /// Our structures; the fastest and `bvh` where there are none.
+    /// Our structures; if empty, the fastest and `bvh`.
     pub accels: Vec<String>,
-    /// Rays a class.
+    /// Rays per class.
     pub count: usize,
-    /// Rounds, of which the median counts.
+    /// The number of rounds; the median is reported.
     pub rounds: u32,
-    /// Rivals in shared libraries: their name (`embree`) and the library.
+    /// Competitors in shared libraries: their name (`embree`) and the library.
     pub against: Vec<(String, PathBuf)>,
-    /// Folder into which meshes and rays are written.
+    /// The folder to which meshes and rays are written.
     pub dump: Option<PathBuf>,
-    /// A mesh file and files of rays, in place of scenes.
+    /// A mesh file, traced by the rays of `rays` instead of scenes.
     pub mesh: Option<PathBuf>,
     /// See `mesh`.
     pub rays: Vec<PathBuf>,
@@ -67,30 +67,30 @@ impl Default for Options {
     }
 }
 
-/// Rays that are asked the same.
+/// Rays for the same kind of query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
-    /// What kind of rays these are.
+    /// The class of the rays.
     pub class: String,
-    /// Whether any hit does, in place of the closest.
+    /// Whether any hit is enough, instead of the closest.
     pub any: bool,
     /// The rays.
     pub rays: Vec<Ray>,
 }
 
-/// How rays are handed over.
+/// How rays are passed to an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
-    /// One a call.
+    /// One per call.
     Single,
-    /// Several a call.
+    /// Several per call.
     Batch,
 }
 
-/// Measures.
+/// Runs the benchmark.
 ///
 /// # Errors
-/// When a file cannot be read or written, a name is not known, or nothing of a scene can be seen.
+/// If a file cannot be read or written, a name is unknown, or nothing in a scene is visible.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let against = engines::load(&options.against)?;
     let mut accels = options.accels.clone();
@@ -117,7 +117,7 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     })
 }
 
-/// One scene: every class by every engine.
+/// Measures one scene: every class with every engine.
 fn measure(
     subject: &Subject,
     batches: &[Batch],
@@ -163,7 +163,7 @@ fn measure(
     Ok(())
 }
 
-/// What `bvh` answers.
+/// The answers of `bvh`.
 fn truth(reference: &Bvh, batch: &Batch) -> Answers {
     use bilux::accel::Accelerator;
     let (query, mut truth) = (Query::default(), Answers::default());
@@ -175,7 +175,7 @@ fn truth(reference: &Bvh, batch: &Batch) -> Answers {
     truth
 }
 
-/// A setting that is wrong because of a file.
+/// An error about a setting that names a faulty file.
 fn file_error(what: &str, path: &Path, why: impl std::fmt::Display) -> Error {
     Error::Settings(format!("cannot {what} '{}': {why}", path.display()))
 }

@@ -1,4 +1,4 @@
-//! Rivals that are crates, each asked as its own examples do. Behind the feature `peers`.
+//! Competitors that are crates, each called as in its own examples. Behind the feature `peers`.
 
 use super::engines::{Answers, Engine, NOWHERE, Named, loop_over};
 use super::{Batch, Mode};
@@ -35,7 +35,7 @@ fn bvh2(triangles: &[Triangle]) -> Bvh2 {
     build_bvh2_from_tris(triangles, BvhBuildParams::very_slow_build(), &mut Duration::default())
 }
 
-/// What its two trees have in common.
+/// What obvhs's two trees have in common.
 trait ObvhsTree {
     fn closest(&self, ray: obvhs::ray::Ray, triangles: &[RtTriangle]) -> RayHit;
     fn any(&self, ray: obvhs::ray::Ray, triangles: &[RtTriangle]) -> bool;
@@ -139,7 +139,7 @@ impl Parry {
         Some(Parry { mesh, build_seconds: begun.elapsed().as_secs_f64() })
     }
 
-    /// The nearest hit. A ray of parry's begins at t = 0, as all of ours do here.
+    /// The closest hit. Parry's rays start at t = 0, as all of ours do here.
     #[inline(always)]
     fn closest(&self, ray: &Ray) -> Option<(u32, f32)> {
         let ([a, b, c], [x, y, z]) = (ray.origin, ray.direction);

@@ -1,10 +1,10 @@
-//! The figures, as JSON and as tables.
+//! The results, as JSON and as tables.
 
 use super::{Mode, Options};
 use crate::table;
 use serde_json::{Value, json};
 
-/// What one engine did with one class on one scene.
+/// The result of one engine for one class on one scene.
 pub(super) struct Row {
     pub(super) scene: String,
     pub(super) triangles: usize,
@@ -37,7 +37,8 @@ impl Mode {
     }
 }
 
-/// A table for each scene: engines down, classes across. Ours with the ratio to the best rival of the same mode.
+/// A table for each scene: engines down, classes across. Our own show their ratio to the best competitor in the same
+/// mode.
 pub(super) fn text(rows: &[Row], options: &Options) -> String {
     let mut scenes: Vec<&str> = rows.iter().map(|row| &*row.scene).collect();
     scenes.dedup();
@@ -88,7 +89,7 @@ fn of_one(scene: &str, rows: &[&Row], options: &Options) -> String {
     table(&title, &header, &cells)
 }
 
-/// What a ray costs as scenes grow, where there are several.
+/// The cost of a ray as scenes grow, if there are several scenes.
 pub(super) fn curve(rows: &[Row]) -> String {
     let mut sizes: Vec<(usize, &str)> = rows.iter().map(|row| (row.triangles, &*row.scene)).collect();
     sizes.sort_unstable();

@@ -22,11 +22,11 @@ pub(super) enum Source {
     Files { mesh: PathBuf, rays: Vec<PathBuf> },
 }
 
-/// Name, generator, and its parameters.
+/// A name, a generator, and its parameters.
 type Own = (&'static str, &'static str, &'static [(&'static str, i64)]);
 
-/// Our own: small and large, even and uneven. Those behind [`USUAL`] are traced when they are named: one figure
-/// from a thousand triangles to ten million.
+/// Our own scenes: small and large, uniform and non-uniform. Those after the first [`USUAL`] are traced only when
+/// named: one model from a thousand triangles to ten million.
 const OWN: [Own; 8] = [
     ("teapots3", "teapots", &[("count", 3), ("tessellation", 8)]),
     ("interior", "interior", &[("detail", 2)]),
@@ -40,7 +40,7 @@ const OWN: [Own; 8] = [
 /// How many are traced unless others are named.
 const USUAL: usize = 4;
 
-/// What the options ask for. A name of one of our own scenes stands for it where there is no such file.
+/// The scenes that the options ask for. The name of one of our own scenes stands for it if there is no such file.
 pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
     let own = |&(name, generator, parameters): &Own| Source::Own { name, generator, parameters };
     if let Some(mesh) = &options.mesh {
@@ -67,7 +67,7 @@ pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
     options.scenes.iter().map(find).collect()
 }
 
-/// Neither a file nor one of our own.
+/// The error for a name that is neither a file nor one of our own scenes.
 fn unknown(path: &Path) -> Error {
     let names = OWN.map(|row| row.0.to_owned());
     let hint = match nearest_name(&path.to_string_lossy(), &names) {
@@ -88,7 +88,7 @@ impl Source {
         }
     }
 
-    /// The mesh, and the rays to trace against it.
+    /// Loads the mesh, and the rays to trace through it.
     pub(super) fn load(&self, options: &Options) -> Result<(Subject, Vec<Batch>), Error> {
         let name = self.name();
         let scene = match self {
@@ -112,7 +112,7 @@ impl Source {
     }
 }
 
-/// All triangles of a scene at its first moment, in the world.
+/// All triangles of a scene at time 0, in world space.
 fn mesh(scene: &SceneBuilder) -> Result<TriangleMesh, Error> {
     let mut corners = Vec::new();
     for object in &scene.objects {
@@ -127,7 +127,7 @@ fn mesh(scene: &SceneBuilder) -> Result<TriangleMesh, Error> {
         .map_err(|e| SceneError::invalid(e.to_string(), &Default::default()).into())
 }
 
-/// Lends the scene's camera, or the one that a bare model gets, for a square picture.
+/// Calls `work` with the scene's camera, or with the one that a bare model gets, for a square picture.
 fn with_camera<T>(scene: &SceneBuilder, work: impl FnOnce(&dyn Camera) -> T) -> Result<T, Error> {
     let mut settings = Parameters::default();
     settings.set("size", Value::Text("64x64".to_owned()));
@@ -137,7 +137,7 @@ fn with_camera<T>(scene: &SceneBuilder, work: impl FnOnce(&dyn Camera) -> T) -> 
     Ok(work(&*camera.1))
 }
 
-/// The first rectangular light: its middle and its edges.
+/// The first rectangular light: its centre and its edges.
 fn light(scene: &SceneBuilder) -> Option<[Vec3; 3]> {
     let spec = scene.lights.iter().find(|spec| spec.kind == "rect")?;
     let vector = |key: &str| {

@@ -1,9 +1,9 @@
-//! What a render takes: CPU seconds of all threads, and the most memory.
+//! The cost of a render: the CPU seconds of all threads, and the peak memory.
 
 use std::fs;
 use std::time::Instant;
 
-/// Runs from when a render begins.
+/// Measures from the start of a render.
 pub(super) struct Clock {
     begun: Instant,
     cpu: Option<f64>,
@@ -11,15 +11,15 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// `threads` are those that will be at work; 0 for all cores.
+    /// Starts the clock. `threads` is the number of threads that will render; 0 for all cores.
     pub(super) fn start(threads: usize) -> Clock {
-        // Forgets the peak so far. Where that is not allowed, what is told is the peak of the whole program.
+        // Resets the peak memory. Where that is not allowed, the result is the peak of the whole program.
         let _ = fs::write("/proc/self/clear_refs", "5");
         Clock { begun: Instant::now(), cpu: cpu_seconds(), threads }
     }
 
-    /// CPU seconds since, in hundredths (where the system does not tell: time by the clock on each thread), and the most
-    /// memory that the program had, in MB of 10⁶ bytes.
+    /// Returns the CPU seconds since the start, to a hundredth (if the system does not report them: elapsed time times
+    /// the number of threads), and the peak memory of the program, in MB of 10⁶ bytes.
     pub(super) fn stop(self) -> (f64, Option<f64>) {
         let elapsed = self.begun.elapsed().as_secs_f64();
         let seconds = match (self.cpu, cpu_seconds()) {
@@ -33,10 +33,10 @@ impl Clock {
     }
 }
 
-/// User and system time of all threads so far, from Linux, which counts in hundredths.
+/// The user and system time of all threads so far, from Linux, which counts in hundredths of a second.
 fn cpu_seconds() -> Option<f64> {
     let text = fs::read_to_string("/proc/self/stat").ok()?;
-    // The second field is the program's name, and may hold blanks.
+    // The second field is the program's name, which may contain spaces.
     let mut fields = text.rsplit_once(')')?.1.split_whitespace().skip(11);
     let mut ticks = || fields.next()?.parse::<f64>().ok();
     Some((ticks()? + ticks()?) / 100.0)

@@ -1,4 +1,4 @@
-//! Error over time as a drawing: both axes logarithmic, a line an integrator.
+//! A plot of error over time: both axes logarithmic, one line per integrator.
 
 use super::table::short;
 use super::{Measured, Row};
@@ -6,7 +6,7 @@ use bilux_math::transcendental::{ln_f64, powf_f64};
 use std::f64::consts::LN_10;
 use std::fmt::Write;
 
-/// One colour an integrator, told apart by colour-blind eyes too. [Wong 2011]
+/// One colour per integrator, distinguishable by colour-blind readers too. [Wong 2011]
 pub(super) const COLOURS: [&str; 7] =
     ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#7f7f7f"];
 
@@ -15,8 +15,8 @@ const HEIGHT: f64 = 280.0;
 /// Left, top, right, bottom.
 const MARGIN: [f64; 4] = [62.0, 14.0, 92.0, 40.0];
 
-/// The drawing, as an `svg` element. Full lines are relMSE, dashed ones the trimmed error, and the grey line the
-/// reference's own.
+/// The plot, as an `svg` element. Solid lines are relMSE, dashed ones the trimmed error, and the grey line is the
+/// reference's own error.
 pub(super) fn svg(scene: &Measured, integrators: &[String]) -> String {
     let axes = Axes::over(scene);
     let mut out =
@@ -59,7 +59,7 @@ pub(super) fn svg(scene: &Measured, integrators: &[String]) -> String {
     out + "</svg>"
 }
 
-/// Names at the ends of the lines, kept apart.
+/// Writes the names at the ends of the lines, spaced so that they do not overlap.
 fn name_lines(out: &mut String, mut labels: Vec<(f64, &String, &str)>) {
     labels.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut lowest = f64::NEG_INFINITY;
@@ -71,7 +71,7 @@ fn name_lines(out: &mut String, mut labels: Vec<(f64, &String, &str)>) {
     }
 }
 
-/// Powers of ten that frame all points.
+/// The ranges of both axes, as powers of ten that frame all points.
 struct Axes {
     seconds: [f64; 2],
     errors: [f64; 2],
@@ -100,7 +100,7 @@ impl Axes {
         MARGIN[1] + (most - log(error)) / (most - least) * (HEIGHT - MARGIN[1] - MARGIN[3])
     }
 
-    /// Lines at 1, 2 and 5 of every power of ten.
+    /// Draws lines at 1, 2 and 5 times every power of ten.
     fn grid(&self, out: &mut String) {
         let (bottom, right) = (HEIGHT - MARGIN[3], WIDTH - MARGIN[2]);
         for value in steps(self.seconds) {
@@ -137,7 +137,7 @@ impl Axes {
     }
 }
 
-/// To base 10, of what is at least a billionth.
+/// The logarithm to base 10 of `x`, or of a billionth if that is larger.
 fn log(x: f64) -> f64 {
     ln_f64(x.max(1e-9)) / LN_10
 }
@@ -148,7 +148,7 @@ fn steps([least, most]: [f64; 2]) -> Vec<f64> {
     let wide = most - least > 2.2;
     let factors: &[f64] = if wide { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let all = powers.flat_map(|power| factors.iter().map(move |f| f * powf_f64(10.0, f64::from(power))));
-    // 10^-2 as the nearest number to 0.01.
+    // 10^-2 as the number nearest to 0.01.
     let rounded = all.map(|x| short(x).parse().unwrap_or(x));
     rounded.filter(|x: &f64| (least..=most).contains(&log(*x))).collect()
 }

@@ -1,20 +1,20 @@
-//! How far pictures are from a reference. All sums in f64; pictures are rows of linear light.
+//! The errors of pictures against a reference. All sums are in f64; pictures are rows of linear light.
 
 use bilux_math::Rgb;
 
-/// Side of the blocks whose means show bias, in pixels.
+/// The side of the blocks whose means reveal bias, in pixels.
 pub const BLOCK: usize = 8;
 
-/// Of how many pixels the worst one is left out where errors are trimmed: 0.1%.
+/// Trimmed errors leave out the worst pixel of every thousand: 0.1%.
 const TRIMMED: usize = 1000;
 
-/// Mean of (x − r)² / (r² + 0.01) over pixels and channels. [Rousselle 2011]
+/// The mean of (x − r)² / (r² + 0.01) over pixels and channels. [Rousselle 2011]
 pub fn relmse(picture: &[Rgb], reference: &[Rgb]) -> f64 {
     let errors = pixel_errors(picture, reference);
     errors.iter().sum::<f64>() / errors.len().max(1) as f64
 }
 
-/// The same without the worst 0.1% of the pixels, so that single bright dots do not drown the rest.
+/// The same without the worst 0.1% of the pixels, so that single fireflies do not dominate.
 pub fn relmse_trimmed(picture: &[Rgb], reference: &[Rgb]) -> f64 {
     let mut errors = pixel_errors(picture, reference);
     errors.sort_by(f64::total_cmp);
@@ -30,14 +30,15 @@ pub(super) fn pixel_errors(picture: &[Rgb], reference: &[Rgb]) -> Vec<f64> {
     picture.iter().zip(reference).map(|(x, r)| error(x, r)).collect()
 }
 
-/// A squared difference relative to the reference's square.
+/// The squared difference relative to the reference's square.
 fn relative(difference: f64, reference: f64) -> f64 {
     difference * difference / (reference * reference + 0.01)
 }
 
-/// The part of the error that more pictures would not take away: the squared bias of the means of blocks, relative as in
-/// [`relmse`], without what the noise of so few pictures adds (the variance of their mean); not below 0. `None` of a
-/// single picture, whose noise cannot be told from bias. What the reference's own noise adds is still in it.
+/// The part of the error that more pictures would not reduce: the squared bias of the block means, relative as in
+/// [`relmse`], minus what the noise of so few pictures contributes (the variance of their mean), and at least 0. `None`
+/// for a single picture, whose noise cannot be distinguished from bias. The noise of the reference itself is still
+/// included.
 pub fn bias2(pictures: &[Vec<Rgb>], reference: &[Rgb], width: usize) -> Option<f64> {
     if pictures.len() < 2 {
         return None;
@@ -55,7 +56,7 @@ pub fn bias2(pictures: &[Vec<Rgb>], reference: &[Rgb], width: usize) -> Option<f
     Some((all / of_reference.len().max(1) as f64).max(0.0))
 }
 
-/// The means of all blocks of `side`² pixels, three channels each; the picture's sides are multiples of it.
+/// The means of all blocks of `side`² pixels, three channels each; the picture's sides are multiples of `side`.
 pub(super) fn block_means(picture: &[Rgb], width: usize, side: usize) -> Vec<f64> {
     let across = width / side;
     let mut sums = vec![0.0; across * (picture.len() / width / side) * 3];
@@ -76,7 +77,7 @@ pub(super) fn mean(picture: &[Rgb]) -> f64 {
 mod tests {
     use super::*;
 
-    /// 16 × 8 pixels, two blocks, of one grey each.
+    /// 16 × 8 pixels: two blocks, each of one grey.
     fn two_blocks(left: f32, right: f32) -> Vec<Rgb> {
         (0..128).map(|i| Rgb::grey(if i % 16 < 8 { left } else { right })).collect()
     }
@@ -103,7 +104,7 @@ mod tests {
         let wanted = (usual * 1997.0 + 4.0 / 1.01) / 1998.0;
         assert!((relmse_trimmed(&picture, &reference) - wanted).abs() < 1e-6);
         assert!(relmse(&picture, &reference) > 400.0);
-        // Of fewer than a thousand, none.
+        // Of fewer than a thousand pixels, none is left out.
         let few = relmse_trimmed(&picture[..999], &reference[..999]);
         assert!((few / relmse(&picture[..999], &reference[..999]) - 1.0).abs() < 1e-12);
     }
@@ -117,7 +118,7 @@ mod tests {
     #[test]
     fn bias_is_what_stays_when_noise_is_taken_away() {
         let reference = two_blocks(1.0, 1.0);
-        // Left without bias, 1 ± 0.2; right 1.5 ± 0.1: by hand, b² = 0.25, v / n = 0.02 / 2.
+        // The left block is unbiased, 1 ± 0.2; the right one is 1.5 ± 0.1: by hand, b² = 0.25, v / n = 0.02 / 2.
         let pictures = [two_blocks(0.8, 1.4), two_blocks(1.2, 1.6)];
         let left = 0.0 - 0.08 / 2.0 / 1.01;
         let right = (0.25 - 0.02 / 2.0) / 1.01;

@@ -1,10 +1,11 @@
-//! What `auto` foresaw of each integrator, beside what was measured: times to the same error, relative to what it chose.
+//! What `auto` predicted for each integrator compared with what was measured: times to the same error, relative to that
+//! of its choice.
 
 use super::table::find;
 use super::{Measured, Row};
 
-/// Multiples of the time that `auto` takes to the same error; `None` where nothing was foreseen, or `auto` was not
-/// measured.
+/// Times to the same error, as multiples of the time that `auto` takes; `None` if nothing was predicted, or `auto` was
+/// not measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Compared {
     pub(super) foreseen: Option<f64>,
@@ -15,7 +16,7 @@ pub(super) struct Compared {
 }
 
 impl Measured {
-    /// A row beside that of `auto` within the same budget.
+    /// Compares a row with that of `auto` within the same budget.
     pub(super) fn compared(&self, row: &Row) -> Compared {
         let Some(auto) = find(self, "auto", row.seconds) else { return Compared::default() };
         let ways = match row.integrator.split_once(':') {

@@ -1,9 +1,9 @@
-//! Light transport: every integrator on eight scenes, each hard in another way, or on scenes of the user's own, for equal
-//! CPU time, against references.
+//! Light transport: every integrator on eight scenes, each difficult in a different way, or on the user's own scenes,
+//! for equal CPU time, against references.
 //!
-//! Of a scene, an integrator and a budget, several pictures are rendered that differ in their seeds only; errors are
-//! medians over these. The number of samples comes from the speed that was measured just before, so that a picture is
-//! still a pure function of its settings. Only rendering counts, not the building of trees.
+//! For each scene, integrator and budget, the benchmark renders several pictures that differ only in their seeds;
+//! errors are medians over these. The number of samples follows from the speed measured just before, so a picture is
+//! still a pure function of its settings. Only rendering is timed, not building trees.
 
 mod cost;
 mod curves;
@@ -31,7 +31,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use subject::{Subject, subjects};
 
-/// Width and height of the pictures: whole blocks of [`BLOCK`] pixels.
+/// The width and height of the pictures: whole blocks of [`BLOCK`] pixels.
 pub const SIZE: (u32, u32) = (128, 96);
 
 /// The scenes, by the names of their generators, each with the file of its reference.
@@ -46,33 +46,33 @@ pub const SCENES: &[(&str, &[u8])] = &[
     ("many-lights", include_bytes!("../../references/many-lights.exr")),
 ];
 
-/// Pictures at most by which a number of samples is found, and the first of their seeds.
+/// The maximum number of trial pictures for finding a number of samples, and the first of their seeds.
 const TRIALS: u64 = 3;
 const TRIAL_SEED: u64 = 1 << 31;
 
-/// What is measured where nothing is asked for, as far as it is there.
+/// The default integrators, as far as they are available.
 const USUAL: [&str; 5] = ["path", "bdpt", "vcm", "sppm", "auto"];
 
-/// What the benchmark can be told.
+/// The benchmark's options.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Names of [`SCENES`]; all of them where there are neither names nor files.
+    /// Names from [`SCENES`]; all of them if there are neither names nor files.
     pub scenes: Vec<String>,
-    /// Scene files of the user's own. Their references are made first.
+    /// The user's own scene files. Their references are rendered first.
     pub files: Vec<PathBuf>,
     /// How files are read.
     pub read: ReadOptions,
-    /// CPU seconds that each of the two integrators spends on the reference of a file.
+    /// The CPU seconds that each of the two integrators spends on the reference of a file.
     pub reference_seconds: f64,
-    /// Names of integrators, `auto:WAYS` for one set of techniques of `auto`; the usual ones where there are none.
+    /// Names of integrators, `auto:WAYS` for one set of techniques of `auto`; if empty, the default ones.
     pub integrators: Vec<String>,
-    /// CPU seconds a picture, of all threads together.
+    /// CPU seconds per picture, summed over all threads.
     pub seconds: Vec<f64>,
-    /// Pictures of each kind, at least 1.
+    /// The number of pictures per scene, integrator and budget, at least 1.
     pub seeds: u32,
-    /// Threads; 0 for all cores.
+    /// The number of threads; 0 for all cores.
     pub threads: u32,
-    /// Folder for a page with pictures and curves.
+    /// The folder for a page with pictures and curves.
     pub report: Option<PathBuf>,
 }
 
@@ -92,21 +92,21 @@ impl Default for Options {
     }
 }
 
-/// What one integrator made of a scene within a budget.
+/// The result of one integrator on a scene within a budget.
 struct Row {
     scene: String,
     integrator: String,
     /// The budget, in CPU seconds.
     seconds: f64,
-    /// What the pictures took in truth.
+    /// The CPU seconds that the pictures actually took.
     took: f64,
     samples: u32,
     relmse: f64,
     relmse_trimmed: f64,
-    /// `None` of a single picture.
+    /// `None` for a single picture.
     bias2: Option<f64>,
     mean: f64,
-    /// `None` where the system does not tell.
+    /// `None` if the system does not report it.
     peak_mb: Option<f64>,
     /// The first of the pictures.
     picture: Vec<Rgb>,
@@ -129,20 +129,20 @@ impl Row {
     }
 }
 
-/// All that was measured of a scene.
+/// Everything that was measured on a scene.
 struct Measured {
     scene: String,
     summary: String,
     reference: Reference,
-    /// How its pictures are shown.
+    /// How its pictures are displayed.
     shown: WriteOptions,
     rows: Vec<Row>,
 }
 
-/// Measures.
+/// Runs the benchmark.
 ///
 /// # Errors
-/// When a scene or an integrator is not known, or the page cannot be written.
+/// If a scene or an integrator is unknown, or the page cannot be written.
 pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let integrators = chosen_integrators(&options.integrators)?;
     if let Some(wrong) = options.seconds.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
@@ -168,18 +168,18 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
 }
 
 impl Options {
-    /// CPU seconds of an integrator on a scene.
+    /// The CPU seconds of an integrator on a scene.
     fn work(&self) -> f64 {
         self.seconds.iter().sum::<f64>() * f64::from(self.seeds.max(1))
     }
 }
 
-/// A run on its way.
+/// A run in progress.
 struct Bench<'a> {
     options: &'a Options,
     tell: ProgressFn<'a>,
     begun: Instant,
-    /// CPU seconds of the pictures that are there, and of all.
+    /// The CPU seconds of the pictures rendered so far, and of all pictures.
     done: f64,
     all: f64,
 }
@@ -202,7 +202,8 @@ impl Bench<'_> {
         Ok(Measured { scene: name, summary, reference, shown, rows })
     }
 
-    /// The pictures of one scene by one integrator within one budget. `speed` is samples of every pixel a CPU second.
+    /// Renders the pictures of one scene by one integrator within one budget. `speed` is samples per pixel per CPU
+    /// second.
     fn cell(&mut self, subject: &Subject, integrator: &str, seconds: f64, speed: f64) -> Result<Row, Error> {
         let (scene, reference) = (&subject.scene, &subject.reference);
         let samples = self.fitting(scene, integrator, seconds, speed)?;
@@ -233,8 +234,8 @@ impl Bench<'_> {
         })
     }
 
-    /// So many samples that a picture takes its budget. What has to be paid once, such as a pilot that decides how to go
-    /// on, makes speeds of short renders wrong: a picture on trial tells.
+    /// The number of samples with which a picture takes its budget. One-off costs, such as a pilot pass that decides
+    /// how to go on, distort the speed of short renders, so trial pictures measure it.
     fn fitting(
         &self,
         scene: &SceneBuilder,
@@ -264,7 +265,7 @@ impl Bench<'_> {
     }
 }
 
-/// Samples of every pixel a CPU second, by ever longer renders until one takes a fifth of the smallest budget.
+/// Measures samples per pixel per CPU second, with ever longer renders until one takes a fifth of the smallest budget.
 fn calibrate(scene: &SceneBuilder, integrator: &str, budgets: &[f64], threads: u32) -> Result<f64, Error> {
     let smallest = budgets.iter().copied().fold(f64::INFINITY, f64::min);
     let mut samples = 1;
@@ -278,7 +279,7 @@ fn calibrate(scene: &SceneBuilder, integrator: &str, budgets: &[f64], threads: u
     }
 }
 
-/// A picture and what it took.
+/// A picture and its cost.
 struct Shot {
     seconds: f64,
     peak_mb: Option<f64>,

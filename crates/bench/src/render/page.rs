@@ -1,4 +1,4 @@
-//! One page for all that was measured, with pictures, maps of errors and curves; it needs no other file.
+//! One self-contained page for all results, with pictures, error maps and curves.
 
 use super::curves::{COLOURS, svg};
 use super::errors::pixel_errors;
@@ -11,7 +11,7 @@ use bilux_math::Rgb;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Writes `index.html` into a folder.
+/// Writes `index.html` to a folder.
 pub(super) fn write(folder: &Path, measured: &[Measured], options: &Options) -> Result<(), Error> {
     let integrators = integrators(measured);
     let mut page = String::from(HEAD);
@@ -35,7 +35,7 @@ pub(super) fn write(folder: &Path, measured: &[Measured], options: &Options) -> 
     Ok(write_atomically(&path, page.as_bytes()).map_err(|e| e.in_file(&path))?)
 }
 
-/// In the order in which they were measured.
+/// The integrators, in the order in which they were measured.
 fn integrators(measured: &[Measured]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for row in measured.iter().flat_map(|scene| &scene.rows) {
@@ -46,7 +46,7 @@ fn integrators(measured: &[Measured]) -> Vec<String> {
     names
 }
 
-/// Scenes by integrators: the error within the longest budget, and how many times below that of `path`.
+/// Scenes by integrators: the error within the longest budget, and how many times below that of `path` it is.
 fn overview(page: &mut String, measured: &[Measured], integrators: &[String]) {
     let _ = write!(page, "<h2>At a glance</h2><table><tr><th>scene</th>");
     for (name, colour) in integrators.iter().zip(COLOURS.iter().cycle()) {
@@ -124,7 +124,7 @@ fn shown(pixels: &[Rgb], options: &WriteOptions) -> Result<Vec<u8>, Error> {
     Ok(write_bytes("png", &picture, options)?)
 }
 
-/// The root of each pixel's relative squared error, from 0 (black) to 1 (pale yellow).
+/// The square root of each pixel's relative squared error, from 0 (black) to 1 (pale yellow).
 fn error_map(row: &Row, reference: &[Rgb]) -> Result<Vec<u8>, Error> {
     let colours = pixel_errors(&row.picture, reference).into_iter().map(|e| ramp(e.sqrt() as f32)).collect();
     let mut picture = Picture::from_rgb(SIZE.0 as usize, SIZE.1 as usize, colours)?;
@@ -137,7 +137,7 @@ fn image(png: &[u8], what: &str) -> String {
     format!("<img width=\"{w}\" height=\"{h}\" alt=\"{what}\" src=\"data:image/png;base64,{}\">", base64(png))
 }
 
-/// [Josefsson 2006]
+/// Encodes bytes as base64. [Josefsson 2006]
 fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let group = |chunk: &[u8]| {

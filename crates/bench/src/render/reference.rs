@@ -1,4 +1,4 @@
-//! References: long renders by two unbiased integrators that have to agree before they are averaged.
+//! References: long renders by two unbiased integrators that must agree before they are averaged.
 
 use super::errors::{block_means, mean};
 use super::subject::{chosen_scenes, generated};
@@ -13,22 +13,22 @@ use serde_json::json;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::path::PathBuf;
 
-/// What a picture should come to.
+/// The expected picture of a scene.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Linear light, in rows.
     pub pixels: Vec<Rgb>,
-    /// Its own error, in the units of relMSE: no error near it means anything.
+    /// Its own error, in the units of relMSE: errors close to it are meaningless.
     pub relmse: f64,
-    /// What it was made of.
+    /// What it was made from.
     pub origin: String,
 }
 
 impl Reference {
-    /// Reads the file of a reference.
+    /// Reads a reference from its file.
     ///
     /// # Errors
-    /// When it is no such file.
+    /// If the file is not a reference.
     pub fn read(bytes: &[u8]) -> Result<Reference, Error> {
         let picture = read_bytes(bytes, Some("exr"), &Limits::default())?;
         let text = |key: &str| picture.metadata.get(key).cloned().unwrap_or_default();
@@ -48,36 +48,36 @@ impl Reference {
 /// How references are made.
 #[derive(Clone, Debug)]
 pub struct ReferenceOptions {
-    /// Folder for the files.
+    /// The folder for the files.
     pub folder: PathBuf,
-    /// Of which scenes; all where there are none.
+    /// The scenes; if empty, all of them.
     pub scenes: Vec<String>,
-    /// CPU seconds of each of the two integrators on a scene.
+    /// The CPU seconds of each of the two integrators on a scene.
     pub seconds: f64,
-    /// Threads; 0 for all cores.
+    /// The number of threads; 0 for all cores.
     pub threads: u32,
 }
 
 /// Integrators that find all light in every scene, in different ways.
 const WITNESSES: [&str; 2] = ["path", "bdpt"];
 
-/// Pictures of each, with seeds of their own, that show how much they vary.
+/// The number of pictures per integrator, each with its own seed, from which the variance is estimated.
 const PARTS: u64 = 16;
 
-/// Seeds that no measurement uses.
+/// The first of the seeds, which no measurement uses.
 const FIRST_SEED: u64 = 1 << 32;
 
-/// Side of the blocks whose means are compared: large enough that these are nearly normal even where few paths find the
-/// light, as Welch's test has them.
+/// The side of the blocks whose means are compared: large enough for the means to be nearly normal, as Welch's test
+/// assumes, even where few paths find the light.
 const SIDE: usize = 32;
 
-/// Two integrators agree where the least p-value of all blocks, corrected for their number, is above this.
+/// Two integrators agree if the minimum p-value over all blocks, corrected for their number, is above this.
 const AGREE: f64 = 1e-3;
 
-/// Makes the files of references. Where the integrators disagree no file is written.
+/// Makes the files of references. If the integrators disagree, no file is written.
 ///
 /// # Errors
-/// When a scene is not known, or a file cannot be written.
+/// If a scene is unknown, or a file cannot be written.
 pub fn make_references(making: &ReferenceOptions, tell: ProgressFn) -> Result<Report, Error> {
     let (mut rows, mut lines) = (Vec::new(), Vec::new());
     for (name, _) in chosen_scenes(&making.scenes)? {
@@ -113,7 +113,7 @@ pub fn make_references(making: &ReferenceOptions, tell: ProgressFn) -> Result<Re
     Ok(Report { rows, text: lines.join("\n"), picture: None })
 }
 
-/// The reference of any scene, and the least p-value where the integrators disagree.
+/// Makes the reference of any scene; also returns the minimum p-value if the integrators disagree.
 pub(super) fn make_reference(
     name: &str,
     scene: &SceneBuilder,
@@ -130,10 +130,10 @@ pub(super) fn make_reference(
     Ok((a.joined(&b), (p <= AGREE).then_some(p)))
 }
 
-/// What one integrator says of a scene.
+/// One integrator's pictures of a scene.
 struct Witness {
     name: &'static str,
-    /// Samples of every pixel in each part.
+    /// Samples per pixel in each part.
     samples: u32,
     parts: Vec<Vec<Rgb>>,
 }
@@ -162,7 +162,7 @@ impl Witness {
         (0..self.parts[0].len()).map(pixel).collect()
     }
 
-    /// The relMSE of the mean, by how much its parts differ.
+    /// The relMSE of the mean, estimated from how much its parts differ.
     fn error_relative_to(&self, reference: &[Rgb]) -> f64 {
         let (mean, count) = (self.mean(), self.parts.len() as f64);
         let error = |i: usize, c: usize| {
@@ -177,8 +177,8 @@ impl Witness {
         all / (3 * mean.len()) as f64
     }
 
-    /// The probability that two integrators with equal means differ by as much in any block: the least of Welch's tests
-    /// over all blocks and channels, corrected for their number. [Welch 1947; Šidák 1967]
+    /// The probability that two integrators with equal means differ by as much in any block: the minimum p-value of
+    /// Welch's tests over all blocks and channels, corrected for their number. [Welch 1947; Šidák 1967]
     fn agreement(&self, other: &Witness) -> f64 {
         let blocks = |w: &Witness| -> Vec<Vec<f64>> {
             w.parts.iter().map(|p| block_means(p, SIZE.0 as usize, SIDE)).collect()
@@ -190,7 +190,7 @@ impl Witness {
         1.0 - powf_f64(1.0 - least, a[0].len() as f64)
     }
 
-    /// Both together, each with the weight that its error over the whole picture deserves.
+    /// Averages both, each weighted according to its error over the whole picture.
     fn joined(&self, other: &Witness) -> Reference {
         let (a, b) = (self.mean(), other.mean());
         let (error_a, error_b) = (self.error_relative_to(&a), other.error_relative_to(&a));
@@ -210,8 +210,8 @@ impl Witness {
     }
 }
 
-/// Keeps eight significant bits of a sample. What is left out is a millionth as relMSE, spread evenly, and the file is half
-/// as long.
+/// Keeps eight significant bits of a sample. What is lost is a millionth as relMSE, spread uniformly, and the file is
+/// half as long.
 fn shortened(x: f32) -> f32 {
     f32::from_bits((x.to_bits() + 0x8000) & !0xffff)
 }

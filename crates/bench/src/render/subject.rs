@@ -1,4 +1,4 @@
-//! What integrators are measured on: scenes that we ship, and files of the user's own.
+//! What the integrators are measured on: built-in scenes, and the user's own files.
 
 use super::reference::make_reference;
 use super::{Options, Reference, ReferenceOptions, SCENES, check};
@@ -8,7 +8,7 @@ use bilux::scene::generators::GENERATORS;
 use bilux::scene::{SceneBuilder, Spec};
 use std::path::Path;
 
-/// A scene to measure on, and what its picture should come to.
+/// A scene to measure on, and its expected picture.
 pub(super) struct Subject {
     pub(super) name: String,
     pub(super) summary: String,
@@ -16,7 +16,7 @@ pub(super) struct Subject {
     pub(super) reference: Reference,
 }
 
-/// All that were asked for. References of files are made here.
+/// All subjects that were asked for. The references of files are made here.
 pub(super) fn subjects(options: &Options, tell: ProgressFn) -> Result<Vec<Subject>, Error> {
     let shipped = if options.scenes.is_empty() && !options.files.is_empty() {
         Vec::new()
@@ -51,7 +51,7 @@ fn of_the_user(file: &Path, options: &Options, tell: ProgressFn) -> Result<Subje
     };
     let (made, p) = make_reference(&file.display().to_string(), &scene, &making, tell)?;
     let summary = match p {
-        // They are averaged all the same: what the user has to know is that the errors below are uncertain.
+        // The pictures are averaged all the same; the user must know that the errors below are uncertain.
         Some(p) => format!("the two integrators of the reference disagree (least p {p:.1e})"),
         None => "a file".to_owned(),
     };
@@ -62,7 +62,7 @@ pub(super) fn generated(name: &str) -> Result<SceneBuilder, Error> {
     bilux::generate(&Spec::new("", name))
 }
 
-/// The rows of [`SCENES`] of these names, in their order there.
+/// The rows of [`SCENES`] with these names, in the order of [`SCENES`].
 pub(super) fn chosen_scenes(names: &[String]) -> Result<Vec<(&'static str, &'static [u8])>, Error> {
     let known: Vec<String> = SCENES.iter().map(|(name, _)| (*name).to_owned()).collect();
     names.iter().try_for_each(|name| check("scene of `bench render`", name, &known))?;

@@ -1,9 +1,9 @@
-//! What was measured, as text: a table a scene, and one that holds `auto` against the others.
+//! The results as text: one table per scene, and one that compares `auto` with the others.
 
 use super::{Measured, Options, Row, SIZE};
 use crate::table;
 
-/// The error that times are told to.
+/// The error for which the table states times.
 pub(super) const TARGET: f64 = 0.01;
 
 pub(super) fn text(measured: &[Measured], options: &Options) -> String {
@@ -25,7 +25,7 @@ pub(super) fn text(measured: &[Measured], options: &Options) -> String {
     text + &of_auto(measured)
 }
 
-/// Columns of a scene's table.
+/// The columns of a scene's table.
 pub(super) const HEADER: [&str; 14] = [
     "integrator",
     "seconds",
@@ -75,7 +75,7 @@ pub(super) fn cells(scene: &Measured, row: &Row) -> Vec<String> {
     ]
 }
 
-/// `auto` against `path` and the best single integrator.
+/// Compares `auto` with `path` and the best single integrator.
 fn of_auto(measured: &[Measured]) -> String {
     let rows = measured.iter().flat_map(|scene| scene.rows.iter().map(move |row| (scene, row)));
     let cells: Vec<Vec<String>> = rows
@@ -104,13 +104,13 @@ pub(super) fn find<'a>(scene: &'a Measured, integrator: &str, seconds: f64) -> O
     scene.rows.iter().find(|row| row.integrator == integrator && row.seconds == seconds)
 }
 
-/// The integrator other than `auto` with the least error.
+/// The integrator other than `auto` with the smallest error.
 pub(super) fn best_single(scene: &Measured, seconds: f64) -> Option<&Row> {
     let single = scene.rows.iter().filter(|row| row.integrator != "auto" && row.seconds == seconds);
     single.min_by(|a, b| a.relmse.total_cmp(&b.relmse))
 }
 
-/// Three digits, whatever the size.
+/// Formats a number with three significant digits.
 pub(super) fn short(x: f64) -> String {
     match x {
         x if x >= 100.0 => format!("{x:.0}"),

@@ -1,24 +1,24 @@
-//! What is seen where there is nothing else, as settings say it.
+//! The setting for what is behind the scene.
 
 use crate::Error;
 use bilux_math::Rgb;
 use bilux_math::colour::srgb_decode;
 use bilux_scene::{Reader, SceneError};
 
-/// What is seen where there is nothing else.
+/// What is visible where the scene has nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
-    /// The scene's own, or what lights it.
+    /// The scene's own background, or whatever lights it.
     Surroundings,
     /// Nothing: the picture gets an alpha channel.
     Transparent,
-    /// Light of one colour, put behind the picture after its tone curve, so that it is what was asked for.
+    /// One colour, put behind the picture after its tone curve, so that it comes out exactly as asked for.
     Colour(Rgb),
 }
 
 impl Background {
-    /// By what users write: `surroundings`, `transparent`, or a colour as screens show it: `white`, `grey`, `black`, `#rrggbb`, or
-    /// `R,G,B` of 0 to 1. `None` for all else.
+    /// Parses what users write: `surroundings`, `transparent`, or a colour as a screen shows it: `white`, `grey`,
+    /// `black`, `#rrggbb`, or `R,G,B` from 0 to 1. Returns `None` for anything else.
     pub fn parse(text: &str) -> Option<Background> {
         match text {
             "surroundings" => Some(Background::Surroundings),
@@ -27,7 +27,7 @@ impl Background {
         }
     }
 
-    /// True where the picture is cut out of its surroundings.
+    /// True if the picture gets an alpha channel that cuts the scene out of its background.
     pub(crate) fn is_cut_out(self) -> bool {
         self != Background::Surroundings
     }
@@ -49,7 +49,7 @@ fn encoded(text: &str) -> Option<[f32; 3]> {
     <[f32; 3]>::try_from(numbers).ok().filter(|c| c.iter().all(|c| (0.0..=1.0).contains(c)))
 }
 
-/// The setting `background`.
+/// Reads the setting `background`.
 pub(super) fn background(reader: &Reader) -> Result<Background, Error> {
     let text = reader.text("background");
     let wrong = || {

@@ -1,5 +1,5 @@
-//! Everything that can be said about a render, from a scene file's `[render]`, a preset or the command line:
-//! all of it the same keys of one table.
+//! Every setting of a render, whether from a scene file's `[render]`, a preset or the command line: all of them use the
+//! same keys of one table.
 
 mod background;
 mod size;
@@ -23,7 +23,7 @@ use studio::{as_orbit, studio};
 /// The values of the setting `denoise`.
 pub const DENOISE: &[&str] = &["display", "auto", "oidn", "builtin", "off"];
 
-/// What `[render]` and `--set` understand, beside the parameters of the integrator.
+/// The settings that `[render]` and `--set` accept, besides the integrator's parameters.
 pub const RENDER: Entry = Entry {
     name: "render",
     summary: "how the picture is made",
@@ -153,65 +153,65 @@ const AXES: &[&str] = &["auto", "x", "y", "z", "-x", "-y", "-z"];
 
 const GROUNDS: &[&str] = &["auto", "shadow", "mirror", "none"];
 
-/// Settings, checked.
+/// Checked settings.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The row of the integrator.
+    /// The integrator's row in the table.
     pub integrator: &'static IntegratorEntry,
-    /// Its parameters.
+    /// The integrator's parameters.
     pub integrator_parameters: Spec,
-    /// Which structure answers the rays.
+    /// The acceleration structure.
     pub accel: AccelChoice,
-    /// How long it may take to build is left to [`Settings::accel_for`].
+    /// Whether [`Settings::accel_for`] decides how long building may take.
     pub build_by_size: bool,
-    /// Columns of the picture.
+    /// The width of the picture in pixels.
     pub width: u32,
-    /// Rows of the picture.
+    /// The height of the picture in pixels.
     pub height: u32,
     /// Samples per pixel.
     pub spp: u32,
     /// What ends the picture before all samples are taken.
     pub stop: Stop,
-    /// Seed.
+    /// The seed of the random numbers.
     pub seed: u64,
-    /// Scattering events after the camera.
+    /// The maximum number of scattering events after the camera.
     pub max_depth: u32,
-    /// Threads; 0 for all cores.
+    /// The number of threads; 0 for all cores.
     pub threads: usize,
-    /// Name or number of the camera.
+    /// The name or number of the camera.
     pub camera: String,
-    /// Where the camera was asked for.
+    /// Where the camera was requested, for messages.
     pub camera_at: Span,
-    /// What is asked of the studio.
+    /// The settings of the studio.
     pub studio: Studio,
-    /// When, in seconds.
+    /// The time to show, in seconds.
     pub time: f32,
-    /// How long light is let in, in seconds.
+    /// How long the shutter is open, in seconds.
     pub shutter: f32,
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f32,
-    /// Name of the pixel filter.
+    /// The name of the pixel reconstruction filter.
     pub filter: String,
-    /// Pictures on surfaces are as coarse as half a pixel.
+    /// Whether image textures are filtered over a footprint of half a pixel.
     pub filters_textures: bool,
-    /// Pixels are sampled from their corner, not from their middle.
+    /// Whether pixels are sampled at their corner instead of their centre.
     pub corner_anchor: bool,
-    /// Stops by which display pictures are brightened.
+    /// The exposure of pictures for a display, in stops.
     pub exposure: f32,
-    /// And those that the picture itself asks for.
+    /// Whether automatic exposure is added to it.
     pub auto_exposure: bool,
-    /// Name of the tone curve.
+    /// The name of the tone curve.
     pub tonemap: String,
-    /// What takes the noise away.
+    /// The denoiser.
     pub denoise: String,
-    /// What is seen where there is nothing else.
+    /// What is visible where the scene has nothing.
     pub background: Background,
-    /// Bytes are proportional to light.
+    /// Whether bytes are proportional to light.
     pub linear_transfer: bool,
 }
 
 impl Settings {
-    /// What a scene wishes, and what the user says, which wins.
+    /// Combines the settings of the scene with those of the user, which take precedence.
     ///
     /// # Errors
     /// As [`Settings::resolve`].
@@ -223,10 +223,11 @@ impl Settings {
         Settings::resolve(&all)
     }
 
-    /// Checks what a file, a preset and the command line say together.
+    /// Checks the combined settings of a file, a preset and the command line.
     ///
     /// # Errors
-    /// An unknown key (with the nearest), a value out of range, an unknown integrator or accelerator.
+    /// If a key is unknown (the message names the nearest one), a value is out of range, or an integrator or
+    /// accelerator is unknown.
     pub fn resolve(all: &Parameters) -> Result<Settings, Error> {
         let is_render_key = |key: &str| RENDER.parameters.iter().any(|p| p.name == key);
         let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
@@ -282,8 +283,8 @@ impl Settings {
 }
 
 impl Settings {
-    /// Warnings about what a user has asked for of another integrator than the one that renders. Scene files may speak to
-    /// several.
+    /// Warns about settings by the user that belong to other integrators than the one that renders. Scene files may
+    /// contain settings for several integrators.
     pub(crate) fn without_use(&self, user: &Parameters) -> Vec<Warning> {
         let has = |entry: &Entry, key: &str| entry.parameters.iter().any(|p| p.name == key);
         let chosen = &self.integrator.entry;
@@ -304,7 +305,7 @@ impl Settings {
     }
 }
 
-/// Samples of a pixel at which a picture ends in any case, where a stop but no number of samples is given.
+/// The maximum number of samples per pixel if a noise level or a time limit is given but no number of samples.
 const MAX_SPP: u32 = 1 << 16;
 
 fn stop(reader: &Reader) -> Stop {
@@ -319,7 +320,8 @@ fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {
     Ok(found.ok_or_else(|| SceneError::unknown("integrator", &name, names, reader.span("integrator")))?)
 }
 
-/// Keys that belong to the chosen integrator; those of others are left out, so that a file can speak to several.
+/// The keys that belong to the chosen integrator. Keys of other integrators are dropped, so that one file can serve
+/// several.
 fn integrator_parameters(
     chosen: &'static IntegratorEntry,
     rest: Vec<(String, bilux_scene::Value, bilux_scene::Span)>,
@@ -338,15 +340,15 @@ fn integrator_parameters(
     Ok(spec)
 }
 
-/// From so many samples a triangle on, the best tree pays: in interiors from about four, and so late a few times over;
-/// where it saves nothing, it then costs a fiftieth of the time of the rays.
+/// The number of samples per triangle from which the best tree is built. In interiors it pays off from about four, so
+/// at this number several times over; where it saves nothing, it costs a fiftieth of the time of the rays here.
 const WORTH_THE_BEST: u64 = 64;
 
-/// About as many as there is time for, where time ends the picture.
+/// Roughly the number of samples that there is time for, if time ends the picture.
 const SAMPLES_A_SECOND: u64 = 1_000_000;
 
 impl Settings {
-    /// The structure for a scene of so many triangles.
+    /// The acceleration structure for a scene of so many triangles.
     pub(crate) fn accel_for(&self, triangles: usize) -> AccelChoice {
         let mut accel = self.accel.clone();
         let in_time =
@@ -371,7 +373,7 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
         if reader.text("bsp_split") == "fuchs" { BspSplit::Fuchs } else { BspSplit::Mean };
     choice.options.bsp_group =
         if reader.text("bsp_group") == "objects" { BspGroup::Objects } else { BspGroup::Polygons };
-    // `auto` is none of them.
+    // `auto` is not a quality: it starts from the default.
     choice.options.quality = Quality::from_name(&reader.text("build")).unwrap_or_default();
     let wanted = CpuLevel::ALL.into_iter().find(|level| level.name() == reader.text("cpu"));
     choice.options.cpu_level = wanted.unwrap_or_default();

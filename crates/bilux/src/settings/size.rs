@@ -1,8 +1,8 @@
-//! The size of a picture, as it is written: `640x480`.
+//! The size of a picture, as users write it: `640x480`.
 
 use bilux_transport::film::MAX_SIDE;
 
-/// Why [`parse_size`] does not take a text, and what to write instead.
+/// Explains why [`parse_size`] rejects a text, and what to write instead.
 pub fn no_size(text: &str) -> String {
     let sides = text.split(|c: char| !c.is_ascii_digit()).filter(|side| !side.is_empty());
     let sides: Vec<u64> = sides.map(|side| side.parse().unwrap_or(u64::MAX)).collect();
@@ -16,7 +16,7 @@ pub fn no_size(text: &str) -> String {
     format!("'{text}' is not a size: {advice}")
 }
 
-/// `640x480` as two numbers that a film can have.
+/// Parses `640x480` as a width and a height that a film can have.
 pub fn parse_size(text: &str) -> Option<(u32, u32)> {
     let (w, h) = text.split_once(['x', 'X', '×'])?;
     let side = |s: &str| s.trim().parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));

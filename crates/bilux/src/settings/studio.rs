@@ -1,10 +1,10 @@
-//! How a model is photographed, as settings say it.
+//! The settings for how the studio photographs a model.
 
 use crate::Error;
 use crate::presets::{Ground, Studio};
 use bilux_scene::{Axis, Reader, SceneError, Value};
 
-/// A pair of numbers as the text that an orbit is: `[30, 15]` in scene files, `--set orbit=30,15`.
+/// Turns a pair of numbers into the text form of an orbit: `[30, 15]` in scene files is `--set orbit=30,15`.
 pub(super) fn as_orbit(value: Value) -> Value {
     let Value::List(pair) = &value else { return value };
     let number = |value: &Value| match value {
@@ -18,7 +18,7 @@ pub(super) fn as_orbit(value: Value) -> Value {
     }
 }
 
-/// What is asked of the studio, where anything is.
+/// What the settings ask of the studio.
 pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
     let orbit = match reader.is_given("orbit") {
         true => {
@@ -51,7 +51,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
     })
 }
 
-/// Azimuth and elevation, in degrees, of `AZ,EL`; `None` for what is none.
+/// Parses `AZ,EL` as azimuth and elevation in degrees; returns `None` for anything else.
 pub fn parse_orbit(text: &str) -> Option<[f32; 2]> {
     let (azimuth, elevation) = text.split_once(',')?;
     let [azimuth, elevation]: [f32; 2] = [azimuth.trim().parse().ok()?, elevation.trim().parse().ok()?];
@@ -79,7 +79,7 @@ mod tests {
         );
         assert!(orbit(list(&[30.0, 15.0, 2.0])).is_err());
         assert!(orbit(list(&[30.0, 95.0])).is_err());
-        // A pair is no size.
+        // A pair is not a size.
         let mut parameters = Parameters::default();
         parameters.set("size", list(&[30.0, 15.0]));
         assert!(Settings::resolve(&parameters).is_err());

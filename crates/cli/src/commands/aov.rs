@@ -1,4 +1,4 @@
-//! `--aov`: what a render gives beside its picture.
+//! `--aov`: what a render writes besides its picture.
 
 use crate::arguments::{Common, Render};
 use crate::interrupt::Interrupt;
@@ -15,7 +15,7 @@ use bilux::transport::{Interval, Strategies, integrators, strategies::LONGEST};
 use bilux::{Job, Outcome};
 use std::path::{Path, PathBuf};
 
-/// Finds out before the work whether what is wanted exists, and has a place.
+/// Checks, before any work, that the outputs asked for exist and have a place to go.
 pub fn check(arguments: &Render) -> anyhow::Result<()> {
     for name in &arguments.aov {
         aovs::find(name, &from_flag("--aov"))?;
@@ -26,17 +26,17 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Those that become layers of the picture.
+/// The outputs that become layers of the picture.
 pub fn layers(arguments: &Render) -> Vec<Aov> {
     Aov::ALL_LAYERS.into_iter().filter(|&aov| wants(arguments, aov)).collect()
 }
 
-/// True when this one is wanted.
+/// True if this output was asked for.
 fn wants(arguments: &Render, aov: Aov) -> bool {
     arguments.aov.iter().any(|name| AOVS.iter().any(|row| row.entry.name == name && row.aov == aov))
 }
 
-/// Finds out whether a picture's integrator can give what is wanted, and has it do so.
+/// Checks that the picture's integrator can provide the outputs, and prepares the job for them.
 pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
     if wants(arguments, Aov::Strategies) && !job.has_strategies() {
         let (name, others) = (job.settings().integrator.entry.name, integrators::with_strategies());
@@ -53,7 +53,7 @@ pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Renders and writes what is wanted beside the picture; false when it was stopped.
+/// Renders and writes the outputs besides the picture; returns false if it was stopped.
 pub fn write(
     arguments: &Render,
     job: &Job,
@@ -99,7 +99,7 @@ pub fn is_exr(path: &Path) -> bool {
     format_of_path(path).is_ok_and(|format| format.entry.name == "exr")
 }
 
-/// `OUT.interval.exr`.
+/// Writes `OUT.interval.exr`.
 fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow::Result<()> {
     let path = output.with_extension("interval.exr");
     if interval.degrees_of_freedom() == 0 {
@@ -121,7 +121,7 @@ fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow
     Ok(())
 }
 
-/// `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets on which all of them are.
+/// Writes `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets that show all of them.
 fn write_strategies(strategies: &Strategies, folder: &Path, options: &WriteOptions) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
     for one in &strategies.pictures {
@@ -137,7 +137,7 @@ fn write_strategies(strategies: &Strategies, folder: &Path, options: &WriteOptio
     Ok(())
 }
 
-/// What is not on the sheets.
+/// The light of paths that are too long for the sheets, as a remark.
 fn longer(strategies: &Strategies, outcome: &Outcome) -> String {
     let light = |pixels: &[bilux::math::Rgb]| -> f64 {
         pixels.iter().filter(|pixel| pixel.is_finite()).map(|pixel| f64::from(pixel.luminance())).sum()

@@ -1,4 +1,4 @@
-//! `bilux bench`: measurements.
+//! `bilux bench`: benchmarks.
 
 use super::{DONE, check_folder, read_options};
 use crate::arguments::{Bench, BenchKind, Common};
@@ -55,7 +55,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// `bench render`, and the making of its references.
+/// Runs `bench render`, or makes its references.
 fn render(
     arguments: &Bench,
     common: &Common,
@@ -83,7 +83,7 @@ fn render(
     Ok(run(&options, tell)?)
 }
 
-/// `bench load`: a process for each file, so that its memory is its own.
+/// Runs `bench load` with one process per file, so that each file's memory is measured on its own.
 fn load(
     arguments: &Bench,
     common: &Common,
@@ -115,13 +115,13 @@ fn load(
     });
     let rows = rows.collect::<anyhow::Result<Vec<_>>>();
     if arguments.scenes.is_empty() {
-        // What was made is of no use any more.
+        // The generated files are no longer needed.
         let _ = std::fs::remove_dir_all(&folder);
     }
     Ok(report(rows?))
 }
 
-/// `bench models`, by this program itself.
+/// Runs `bench models` with this program itself.
 fn models(arguments: &Bench, tell: bilux_bench::ProgressFn) -> anyhow::Result<bilux_bench::Report> {
     use bilux_bench::models::{Options, SECONDS, run};
     let options = Options {
@@ -133,10 +133,10 @@ fn models(arguments: &Bench, tell: bilux_bench::ProgressFn) -> anyhow::Result<bi
     Ok(run(&options, tell)?)
 }
 
-/// What a reference takes of each integrator where nothing is said, in seconds.
+/// The default time in seconds that each integrator spends on a reference.
 const MINUTE: f64 = 60.0;
 
-/// What `bench rays` is told.
+/// The options of `bench rays`.
 fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays::Options> {
     let defaults = bilux_bench::rays::Options::default();
     let (numbers, files): (Vec<&String>, Vec<&String>) =

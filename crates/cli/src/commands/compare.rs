@@ -1,4 +1,4 @@
-//! `bilux compare`: how far a picture is from its reference.
+//! `bilux compare`: how much a picture differs from its reference.
 
 use super::{DONE, check_folder};
 use crate::arguments::{Common, Compare};
@@ -8,12 +8,12 @@ use bilux::pictures::metrics::{HeatMap, METRICS, Pair, Report, heat_map};
 use bilux::pictures::{Picture, TONEMAPS};
 use std::path::Path;
 
-/// A bound is passed.
+/// The exit status when a bound is exceeded.
 const BEYOND: u8 = 1;
-/// There is no answer.
+/// The exit status when there is no answer.
 const TROUBLE: u8 = 2;
 
-/// Exits 0 within the bounds, 1 beyond them, 2 where the pictures cannot be compared.
+/// Exits with 0 within the bounds, 1 outside them, and 2 if the pictures cannot be compared.
 pub fn run(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
     match compare(arguments, common) {
         Err(error) if output::is_closed_pipe(&error) => Err(error),
@@ -67,7 +67,7 @@ fn write_heat_map(picture: &Picture, reference: &Picture, path: &Path) -> anyhow
     Ok(bilux::pictures::write(path, &heat_map(&pair, HeatMap::Flip)?, &Default::default())?)
 }
 
-/// Every bound that does not hold; what is not a number holds none.
+/// Every bound that does not hold; NaN satisfies no bound.
 fn broken_bounds(arguments: &Compare, report: &Report) -> Vec<String> {
     let most = [
         ("flip", arguments.max_flip),

@@ -1,4 +1,4 @@
-//! `bilux convert`: between scene formats, and between picture formats.
+//! `bilux convert`: converts between scene formats, and between picture formats.
 
 use super::{
     DONE, check_choices, check_folder, check_quality, read_options_with, report_warnings, tell_lost_alpha,
@@ -52,7 +52,7 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// True for what is read as a picture, even if it is never written.
+/// True for files that are read as pictures, even in formats that are never written.
 fn is_picture(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.is_some_and(|extension| format_named(extension).is_some())

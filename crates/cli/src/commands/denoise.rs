@@ -1,4 +1,4 @@
-//! `bilux denoise`: a noisy picture into a smooth one.
+//! `bilux denoise`: removes the noise from a picture.
 
 use super::{DONE, check_folder, check_quality, tell_lost_alpha};
 use crate::arguments::{Common, Denoise};
@@ -42,7 +42,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// Which denoiser it was, and how to get a better one.
+/// Which denoiser ran, and how to get a better one.
 fn told(chosen: &Chosen, seconds: f64) -> String {
     let advice = chosen.advice.as_ref().map(|advice| format!("; {advice}")).unwrap_or_default();
     format!("denoised by {} in {seconds:.2} s{advice}", chosen.denoiser.describe())

@@ -1,4 +1,4 @@
-//! `bilux generate`: the scenes that we ship, made by formula.
+//! `bilux generate`: the built-in procedural scenes.
 
 use super::{DONE, check_folder, read_options, report_warnings};
 use crate::arguments::{Common, Generate};

@@ -26,7 +26,7 @@ pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// Meshes that several objects share are counted once.
+/// The meshes; one that several objects share is counted once.
 fn meshes(scene: &SceneBuilder) -> Vec<&Mesh> {
     let mut seen = HashSet::new();
     let meshes = scene.objects.iter().map(|object| &object.mesh);
@@ -128,13 +128,13 @@ fn unit(scene: &SceneBuilder) -> &'static str {
     known.iter().find(|(metres_of, _)| *metres_of == metres(scene)).map_or("", |(_, name)| name)
 }
 
-/// Which way is up, as the format says.
+/// The up axis, as the format defines it.
 fn up(scene: &SceneBuilder) -> &'static str {
     let (bilux::scene::UpHint::Is(axis) | bilux::scene::UpHint::Usually(axis)) = scene.up;
     axis.name()
 }
 
-/// How many points and lines there are, in a line of its own; nothing where there are none.
+/// The numbers of points and lines, on a line of their own; nothing if there are none.
 fn strokes(scene: &SceneBuilder) -> String {
     let sum = |count: fn(&Mesh) -> usize| scene.objects.iter().map(|o| count(&o.mesh)).sum::<usize>();
     match (sum(|mesh| mesh.points.len()), sum(|mesh| mesh.lines.len())) {
@@ -143,7 +143,7 @@ fn strokes(scene: &SceneBuilder) -> String {
     }
 }
 
-/// What is held, and what comes to it when it is rendered.
+/// The memory that the scene holds, and what rendering adds.
 fn memory(memory: &Memory) -> String {
     let mega = |bytes: u64| bytes as f64 / 1e6;
     format!(
@@ -154,7 +154,7 @@ fn memory(memory: &Memory) -> String {
     )
 }
 
-/// What could be chosen from the file, a line each; nothing where it leaves no choice.
+/// The choices that the file offers, one per line; nothing if it offers none.
 fn choices(scene: &SceneBuilder) -> String {
     let named = |(i, name): (usize, &String)| if name.is_empty() { i.to_string() } else { name.clone() };
     let all = |names: &[String]| names.iter().enumerate().map(named).collect::<Vec<_>>();

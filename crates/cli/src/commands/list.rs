@@ -1,4 +1,4 @@
-//! `bilux list`: every table, as people or programs read it.
+//! `bilux list`: every table, as text or as JSON.
 
 use super::DONE;
 use crate::arguments::List;
@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use bilux::math::registry::{Entry, Parameter, ParameterKind};
 use serde_json::json;
 
-/// A table: what people call it, what it holds, and its rows.
+/// A table: its name, a summary of what it holds, and its rows.
 struct Table {
     name: &'static str,
     summary: &'static str,
@@ -20,7 +20,7 @@ macro_rules! rows {
     };
 }
 
-/// Every table that there is.
+/// Every table.
 const TABLES: &[Table] = &[
     Table {
         name: "integrators",
@@ -118,7 +118,7 @@ pub fn run(arguments: &List) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// Prints the JSON schema of scene files.
+/// Prints the JSON Schema of scene files.
 pub fn schema() -> anyhow::Result<u8> {
     let rows = bilux::transport::integrators::INTEGRATORS.iter().map(|row| row.entry);
     let mut settings: Vec<Parameter> = bilux::settings::RENDER.parameters.to_vec();

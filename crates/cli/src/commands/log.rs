@@ -1,4 +1,4 @@
-//! What is said of a picture once it is written: a line for people, or a line of JSON.
+//! What is reported about a picture once it is written: a line of text, or a line of JSON.
 
 use crate::output;
 use bilux::budget::DEFAULT_BUDGET;
@@ -13,15 +13,15 @@ pub struct Rendered<'a> {
     pub outcome: &'a Outcome,
     pub scene: &'a Path,
     pub output: &'a Path,
-    /// Building acceleration structures and the like took so long,
+    /// Seconds spent building acceleration structures and the like.
     pub build_seconds: f64,
-    /// and rendering so long.
+    /// Seconds spent rendering.
     pub seconds: f64,
-    /// From reading the scene to the last byte written.
+    /// Seconds from reading the scene to the last byte written.
     pub total_seconds: f64,
-    /// What denoised it.
+    /// The denoiser that was used.
     pub denoiser: Option<&'a Chosen>,
-    /// `--timeout` ended it.
+    /// Whether `--timeout` ended it.
     pub timed_out: bool,
     /// Why it took longer than its time limit, if it did.
     pub overrun: Option<String>,
@@ -34,12 +34,12 @@ impl Rendered<'_> {
         self.outcome.reached.map_or(self.job.settings().spp, |reached| reached.spp)
     }
 
-    /// The noise that is left, as a part of the light, where it was measured.
+    /// The remaining noise, as a fraction of the light, if it was measured.
     fn noise(&self) -> Option<f32> {
         self.outcome.reached.and_then(|reached| reached.noise)
     }
 
-    /// Tells people: one line, and more of them with `-v`.
+    /// Prints the report as text: one line, and more with `-v`.
     pub fn tell(&self, verbose: u8) {
         let (s, output) = (self.job.settings(), self.output.display());
         if verbose > 0 {
@@ -69,7 +69,7 @@ impl Rendered<'_> {
         }
     }
 
-    /// Says which way is up where that was decided here; once, however many pictures there are.
+    /// Reports the orientation if it was decided here; once, however many pictures there are.
     fn tell_orientation(&self) {
         static SAID: std::sync::Once = std::sync::Once::new();
         if let Some(orientation) = self.job.orientation() {
@@ -95,7 +95,7 @@ impl Rendered<'_> {
             self.seconds,
             outcome.counters.rays as f64 / self.seconds.max(1e-9) / 1e6,
         ));
-        // The samples that measure the noise are in the mean: reported where that may matter.
+        // The samples that measure the noise are also in the mean; this reports the bias where it may matter.
         if let Some(bias) = outcome.reached.and_then(|reached| reached.bias).filter(|bias| *bias >= 0.05) {
             output::say(format_args!(
                 "{output}: stopping by the noise shifts the mean by at most {bias:.2} of the noise"
@@ -103,7 +103,7 @@ impl Rendered<'_> {
         }
     }
 
-    /// Tells programs.
+    /// The report as JSON.
     pub fn json(&self) -> serde_json::Value {
         let (s, outcome) = (self.job.settings(), self.outcome);
         json!({
@@ -116,13 +116,13 @@ impl Rendered<'_> {
     }
 }
 
-/// Tells programs of a scene that could not be rendered.
+/// Prints a line of JSON about a scene that could not be rendered.
 pub fn print_failure(scene: &Path, picture: &Path, error: &anyhow::Error) -> anyhow::Result<()> {
     let (scene, picture) = (scene.to_string_lossy(), picture.to_string_lossy());
     output::print(json!({ "scene": scene, "picture": picture, "error": output::message(error) }))
 }
 
-/// Says when a picture ends of which nobody says when.
+/// Reports the default limits of a render for which nobody set any.
 pub fn tell_budget(output: &Path) {
     let (noise, seconds) = DEFAULT_BUDGET;
     output::say(format_args!(

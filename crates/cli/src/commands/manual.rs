@@ -1,4 +1,4 @@
-//! Completions, man pages and licences, all made from what the binary knows of itself.
+//! Shell completions, man pages and licences, all generated from the binary's own descriptions.
 
 use super::DONE;
 use crate::arguments::Arguments;
@@ -14,7 +14,7 @@ pub fn completions(shell: clap_complete::Shell) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// The main page on standard output, or all pages into a folder.
+/// Prints the main page to standard output, or writes all pages to a folder.
 pub fn pages(folder: Option<&Path>) -> anyhow::Result<u8> {
     match folder {
         Some(folder) => {

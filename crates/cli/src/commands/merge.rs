@@ -1,4 +1,4 @@
-//! `bilux merge`: partial renders into one picture.
+//! `bilux merge`: merges partial renders into one picture.
 
 use super::{DONE, check_folder};
 use crate::arguments::{Common, Merge};
@@ -38,7 +38,7 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
             "the variance of light traced from the lights cannot be merged, and is left out"
         ));
     }
-    // Where a part is still missing, an .exr keeps the sums, so that it can be added later.
+    // If a part is still missing, an .exr keeps the sums, so that it can be added later.
     let mut picture = if is_exr { film.to_partial()? } else { film.to_picture()? };
     layers.push(&mut picture, &film)?;
     bilux::pictures::write(&arguments.output, &picture, &Default::default())?;

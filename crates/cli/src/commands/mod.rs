@@ -1,4 +1,4 @@
-//! One command a file. Each gives the exit status.
+//! One command per file. Each returns the exit status.
 
 mod aov;
 pub mod bench;
@@ -28,10 +28,10 @@ use bilux::pictures::formats::format_of_path;
 use bilux::scene::{SceneBuilder, Span, Warning};
 use std::path::{Path, PathBuf};
 
-/// The work is done.
+/// The exit status of a command that succeeded.
 pub const DONE: u8 = 0;
 
-/// How files are read, as the command line says.
+/// The options for reading files, as the command line sets them.
 fn read_options(common: &Common) -> ReadOptions {
     ReadOptions {
         max_memory: common.max_memory,
@@ -42,7 +42,7 @@ fn read_options(common: &Common) -> ReadOptions {
     }
 }
 
-/// The same with what is chosen in a file, at a time in seconds.
+/// The same, with the choices within a file, at a time in seconds.
 fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptions {
     ReadOptions {
         time,
@@ -58,7 +58,7 @@ fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptio
     }
 }
 
-/// Refuses a choice between things of which the file has none.
+/// Refuses a choice among things that the file does not have.
 fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> {
     if choices.animation.is_some() && scene.inventory.animations.is_empty() {
         bail!("--animation: this file has no animations: leave it out");
@@ -69,7 +69,7 @@ fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// Says each warning once; under `--strict` the first is an error.
+/// Prints each warning; under `--strict` the first one is an error.
 fn report_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> {
     if let (true, Some(first)) = (common.strict, warnings.first()) {
         bail!("{first} (a warning, which --strict makes an error)");
@@ -80,7 +80,7 @@ fn report_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// Finds out before the work whether a file can be written there.
+/// Checks, before any work, that a file can be written there.
 fn check_folder(path: &Path) -> anyhow::Result<()> {
     let folder = folder_of(path);
     if !folder.is_dir() {
@@ -92,7 +92,7 @@ fn check_folder(path: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses a quality for what is not a JPEG.
+/// Refuses a quality for a format other than JPEG.
 fn check_quality(quality: Option<u8>, output: &Path) -> anyhow::Result<()> {
     let format = format_of_path(output)?.entry.name;
     if quality.is_some() && format != "jpeg" {
@@ -101,7 +101,7 @@ fn check_quality(quality: Option<u8>, output: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Warns where a picture is transparent and its format cannot be.
+/// Warns if a picture is transparent and its format cannot be.
 fn tell_lost_alpha(
     picture: &Picture,
     output: &Path,

@@ -1,4 +1,4 @@
-//! `bilux render`: pictures from scenes.
+//! `bilux render`: renders pictures of scenes.
 
 use super::targets::{Target, frame_path, is_stdout, targets};
 use super::{DONE, aov, check_choices, log, read_options_with, report_warnings, stats, time_limit};
@@ -44,7 +44,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
                 if arguments.json && !output::is_closed_pipe(&error) {
                     log::print_failure(&target.scene, &target.output, &error)?;
                 }
-                // One broken scene does not stop the others; what is wrong for all of them does.
+                // One broken scene does not stop the others; an error that concerns all of them does.
                 if targets.len() == 1 || usage::is_command_line(&error) || output::is_closed_pipe(&error) {
                     return Err(error);
                 }
@@ -59,12 +59,13 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     Ok(DONE)
 }
 
-/// Under `--sandbox`: reads scenes with their folders and what options name, and writes beside the picture.
+/// Under `--sandbox`: allows reading the scenes, their folders and the files that options name, and writing to the
+/// picture's folder.
 fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::Result<()> {
     let studio = &arguments.studio;
     let mut confines = Confines::default();
     for scene in targets.iter().map(|target| &target.scene) {
-        // What comes from standard input may name files of the working directory.
+        // A scene on standard input may name files in the working directory.
         confines = confines.reading_scene(if is_stdout(scene) { Path::new("./stdin") } else { scene });
     }
     for file in studio.env.as_deref().into_iter().chain(studio.picture_behind()) {
@@ -82,15 +83,15 @@ fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::R
     confines.enter(common)
 }
 
-/// A scene file, that may have to be read again for another time.
+/// A scene file, which may have to be read again for another time.
 struct Input<'a> {
     path: &'a Path,
-    /// What came from standard input, which can be read but once.
+    /// The bytes from standard input, which can be read only once.
     piped: Option<Vec<u8>>,
     arguments: &'a Render,
     common: &'a Common,
     interrupt: &'a Interrupt,
-    /// When the picture was begun that is rendered next.
+    /// When the picture that is rendered next was started.
     begun: Cell<Instant>,
     /// Every warning so far, for `--json`.
     warnings: RefCell<Vec<String>>,
@@ -124,13 +125,13 @@ impl Input<'_> {
         report_warnings(warnings, self.common)
     }
 
-    /// The scene as it is at a time in seconds, and for frames as it is at all times.
+    /// Reads the scene as it is at a time in seconds; for frames, with its whole movement.
     fn read(&self, time: f32, whole_movement: bool) -> anyhow::Result<SceneBuilder> {
         let choices = &self.arguments.choices;
         let options = ReadOptions { whole_movement, ..read_options_with(self.common, choices, time) };
         let mut scene = match &self.piped {
             Some(bytes) => {
-                // No name: it goes by its first bytes.
+                // There is no file name, so the first bytes decide.
                 let format =
                     Some(&*self.arguments.input_format).filter(|name| *name != "auto").unwrap_or_default();
                 bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
@@ -142,7 +143,7 @@ impl Input<'_> {
         Ok(scene)
     }
 
-    /// The job of a scene, with all that the command line says of it.
+    /// Makes the job for a scene, with everything that the command line says about it.
     fn job(&self, scene: &SceneBuilder, user: &Parameters) -> anyhow::Result<Job> {
         let arguments = self.arguments;
         let mut job = Job::within(scene, user, self.common.max_memory)?;
@@ -225,7 +226,7 @@ fn render_scene(
     let by_default = is_whole && with_default_budget(&scene.settings, &mut user);
     let mut job = input.job(scene, &user)?;
     if scene.inventory.moves() && job.settings().time != arguments.at.unwrap_or(0.0) {
-        // The time was given elsewhere than by --at.
+        // The time was set otherwise than by --at.
         *scene = input.read(job.settings().time, arguments.frames.is_some())?;
         job = input.job(scene, &user)?;
     }
@@ -304,7 +305,7 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     Ok(if outcome.cancelled || !all_aovs { interrupt.exit_status() } else { DONE })
 }
 
-/// Refuses a format of which there is none.
+/// Refuses an unknown scene format.
 fn check_input_format(name: &str) -> anyhow::Result<()> {
     if name == "auto" || bilux::formats::format_named(name).is_some_and(|row| row.reads()) {
         return Ok(());
@@ -314,7 +315,7 @@ fn check_input_format(name: &str) -> anyhow::Result<()> {
     Err(SceneError::unknown("scene format", name, names, &settings_from::from_flag("--input-format")).into())
 }
 
-/// `--stats`.
+/// Writes what `--stats` asks for.
 fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> {
     let Some(path) = &target.stats else { return Ok(()) };
     let stats = stats::of(rendered);
@@ -326,12 +327,12 @@ fn write_stats(target: &Target, rendered: &log::Rendered) -> anyhow::Result<()> 
         .map_err(|error| error.in_file(path))?)
 }
 
-/// True for a part of a picture.
+/// True if only a part of the picture is rendered.
 fn is_part(arguments: &Render) -> bool {
     arguments.samples.is_some() || arguments.crop.is_some()
 }
 
-/// Writes the picture; a part of one goes into an `.exr` with its exact sums. True when it was denoised.
+/// Writes the picture; a partial render goes into an `.exr` with its exact sums. Returns true if it was denoised.
 fn write(
     input: &Input,
     job: &Job,
@@ -368,7 +369,7 @@ fn write(
     Ok(denoiser.is_some())
 }
 
-/// Samples that are no number are counted and located, never hidden.
+/// Reports samples that are not finite or overflowed: they are counted and located, never hidden.
 fn report_sample_failures(outcome: &Outcome) {
     let trouble = outcome.film.trouble();
     if let Some(first) = trouble.first_non_finite {

@@ -1,10 +1,10 @@
-//! What `bilux render --stats` writes.
+//! The statistics that `bilux render --stats` writes.
 
 use super::log::Rendered;
 use bilux::transport::Choice;
 use serde_json::json;
 
-/// Which ways of finding light were chosen, and what was expected of each.
+/// Which set of strategies was chosen, and what was expected of each.
 fn choice(choice: &Choice) -> serde_json::Value {
     let candidates = choice.candidates.iter().map(|candidate| {
         json!({
@@ -14,7 +14,7 @@ fn choice(choice: &Choice) -> serde_json::Value {
     json!({ "chosen": choice.best().name, "candidates": candidates.collect::<Vec<_>>() })
 }
 
-/// What is known of a picture once it is done.
+/// Everything known about a picture once it is done.
 pub fn of(rendered: &Rendered) -> serde_json::Value {
     let Rendered { job, outcome, scene, build_seconds, seconds, .. } = *rendered;
     let (s, c) = (job.settings(), &outcome.counters);

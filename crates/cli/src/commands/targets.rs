@@ -1,4 +1,4 @@
-//! Where the pictures of a render go: found wrong before anything is rendered.
+//! Where the pictures of a render go. Mistakes are found before anything is rendered.
 
 use super::check_folder;
 use crate::arguments::Render;
@@ -12,14 +12,14 @@ pub struct Target {
     pub scene: PathBuf,
     /// `-` for standard output.
     pub output: PathBuf,
-    /// Where its statistics go, if they are wanted.
+    /// Where its statistics go, if they were asked for.
     pub stats: Option<PathBuf>,
 }
 
-/// What may stand in braces in the name of a picture.
+/// The names allowed in braces in the name of a picture.
 const NAMES: [&str; 2] = ["stem", "frame"];
 
-/// Every scene with its picture's name.
+/// Pairs every scene with the name of its picture.
 pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
     check_result(arguments)?;
     check_names("-o", &arguments.output, arguments)?;
@@ -44,7 +44,7 @@ pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
     Ok(targets)
 }
 
-/// Standard output takes one thing: a picture, or text about pictures.
+/// Checks that at most one thing is written to standard output: a picture, or text about pictures.
 fn check_result(arguments: &Render) -> anyhow::Result<()> {
     let stats = arguments.stats.as_deref().is_some_and(is_stdout);
     let takers = [
@@ -60,7 +60,7 @@ fn check_result(arguments: &Render) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses names in braces that stand for nothing, and one name for several pictures.
+/// Refuses unknown names in braces, and one file name for several pictures.
 fn check_names(flag: &str, pattern: &Path, arguments: &Render) -> anyhow::Result<()> {
     let text = pattern.to_string_lossy();
     let numbered = arguments.frames.is_some() || arguments.studio.turntable.is_some();
@@ -111,7 +111,7 @@ pub fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// `{frame}` filled in with four digits; put before the extension where it is missing.
+/// Replaces `{frame}` by four digits; if it is missing, puts them before the extension.
 pub fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
     let text = pattern.to_string_lossy();
     if is_stdout(pattern) {

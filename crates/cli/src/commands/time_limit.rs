@@ -1,12 +1,13 @@
-//! Whether a picture was done within its time limit, and where the time went where it was not.
+//! Whether a picture was done within its time limit, and where the time went if it was not.
 
 use bilux::{Job, Outcome};
 use std::time::Duration;
 
-/// What a picture may take longer than it should, whichever is more: so long, and so much of its limit.
+/// How much longer than its limit a picture may take: the larger of a duration and a fraction of the limit.
 const TOLERANCE: (Duration, f64) = (Duration::from_millis(200), 0.05);
 
-/// One line that says why a picture took longer than its limit, if it did: `before` rendering, `rendering` seconds, and in `all`.
+/// Explains in one line why a picture took longer than its limit, if it did. `before` is the time before rendering,
+/// `rendering` the seconds of rendering, `all` the total.
 pub fn overrun(
     job: &Job,
     outcome: &Outcome,

@@ -1,4 +1,4 @@
-//! Linux: Landlock, which any process may lay upon itself, and never takes off again.
+//! Linux: Landlock, with which any process can restrict itself irrevocably.
 
 use super::Enforcement;
 use anyhow::Context;
@@ -8,10 +8,10 @@ use landlock::{
 };
 use std::path::{Path, PathBuf};
 
-/// What is asked for: files, TCP, and signals and sockets to processes outside. Older kernels do what they can.
+/// What is requested: files, TCP, and signals and sockets to other processes. Older kernels enforce what they can.
 const WANTED: ABI = ABI::V6;
 
-/// What tells how many cores a process may use, which threads are counted by: no secrets of anybody.
+/// The files that say how many cores a process may use, which sets the number of threads. They hold nobody's secrets.
 const SYSTEM: [&str; 3] = ["/sys/fs/cgroup", "/sys/devices/system/cpu", "/proc/self/cgroup"];
 
 /// What this kernel can enforce.
@@ -26,7 +26,7 @@ pub(super) fn available() -> Enforcement {
     }
 }
 
-/// Restricts this thread, and those that it starts from now on.
+/// Restricts this thread, and the threads that it starts from now on.
 pub(super) fn restrict(read: &[PathBuf], write: Option<&Path>) -> anyhow::Result<Enforcement> {
     let failed = "--sandbox: the kernel refuses to restrict this process";
     let rules = Ruleset::default()
@@ -40,7 +40,7 @@ pub(super) fn restrict(read: &[PathBuf], write: Option<&Path>) -> anyhow::Result
         .try_fold(rules, |rules, path| allow(rules, path, AccessFs::ReadFile | AccessFs::ReadDir))
         .context(failed)?;
     if let Some(folder) = write {
-        // A picture is written beside its place, and renamed when it is whole.
+        // A picture is written to a temporary file in the same folder, and renamed when it is complete.
         let rights = AccessFs::WriteFile
             | AccessFs::Truncate
             | AccessFs::MakeReg
@@ -55,7 +55,7 @@ pub(super) fn restrict(read: &[PathBuf], write: Option<&Path>) -> anyhow::Result
     })
 }
 
-/// Adds a rule for a file or a folder; what is not there needs none.
+/// Adds a rule for a file or a folder; a path that does not exist needs none.
 fn allow(
     rules: RulesetCreated,
     path: &Path,
@@ -73,7 +73,7 @@ mod tests {
     use std::io::{Error, ErrorKind};
     use std::net::{TcpListener, TcpStream};
 
-    /// What a faulty decoder might do, and what comes of it.
+    /// What a faulty decoder might attempt, and the outcome.
     fn attempts(folder: &Path, port: u16) -> Vec<(&'static str, Result<(), Error>)> {
         let in_thread = {
             let secret = folder.join("secret");
@@ -108,7 +108,7 @@ mod tests {
         folder
     }
 
-    /// Landlock is of threads: only that of the test is restricted.
+    /// Landlock applies per thread: only the test's own thread is restricted.
     #[test]
     fn the_kernel_refuses_what_a_sandbox_does_not_have() {
         if available() != Enforcement::FilesAndNetwork {

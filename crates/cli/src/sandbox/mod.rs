@@ -1,4 +1,4 @@
-//! `--sandbox`: what a command may still touch once it begins to read what strangers made. Bilux's own checks refuse other
+//! `--sandbox`: what a command may still access once it starts to read untrusted files. Bilux's own checks refuse other
 //! files with a message that names them; the kernel, where it can, refuses them whatever a faulty decoder may try.
 
 #[cfg(target_os = "linux")]
@@ -18,14 +18,14 @@ use std::path::{Path, PathBuf};
 pub enum Enforcement {
     /// Nothing.
     Nothing,
-    /// Which files are opened.
+    /// Which files may be opened.
     Files,
-    /// Which files are opened, and that no TCP connection is made.
+    /// Which files may be opened, and that no TCP connection is made.
     FilesAndNetwork,
 }
 
 impl Enforcement {
-    /// In the words of `-V`.
+    /// The wording that `-V` prints.
     fn describe(self) -> &'static str {
         match self {
             Enforcement::Nothing => "not enforced by this kernel",
@@ -35,41 +35,41 @@ impl Enforcement {
     }
 }
 
-/// What `-V` says about sandboxes here.
+/// What `-V` says about sandboxes on this machine.
 pub fn describe() -> &'static str {
     kernel::available().describe()
 }
 
-/// What a command needs while it runs.
+/// The files that a command needs while it runs.
 #[derive(Debug, Default)]
 pub struct Confines {
-    /// Files, and folders with all that is in them, that may be read.
+    /// Files that may be read, and folders with everything in them.
     read: Vec<PathBuf>,
-    /// The folder of what is written.
+    /// The folder that may be written to.
     write: Option<PathBuf>,
 }
 
 impl Confines {
-    /// A scene file may be read, and so may whatever is in its folder.
+    /// Allows reading a scene file and everything in its folder.
     pub fn reading_scene(mut self, scene: &Path) -> Confines {
         self.read.push(folder_of(scene).to_owned());
         self.reading(scene)
     }
 
-    /// This file may be read.
+    /// Allows reading this file.
     pub fn reading(mut self, file: &Path) -> Confines {
-        // Where it is a link, what it leads to.
+        // If it is a link, its target is what will be opened.
         self.read.extend(std::fs::canonicalize(file));
         self
     }
 
-    /// Files may be written into the folder of this one.
+    /// Allows writing files into this file's folder.
     pub fn writing(mut self, file: &Path) -> Confines {
         self.write = Some(folder_of(file).to_owned());
         self
     }
 
-    /// Refuses a file that is to be written somewhere else.
+    /// Refuses a file that would be written anywhere else.
     pub fn check_written(&self, file: &Path, common: &Common) -> anyhow::Result<()> {
         if !common.sandbox {
             return Ok(());
@@ -78,7 +78,7 @@ impl Confines {
         let Some(folder) = folder else {
             bail!("{}: --sandbox writes no file beside a picture on standard output", file.display());
         };
-        // A link that is in the folder already may lead anywhere.
+        // A link that is already in the folder may lead anywhere.
         let target = file.canonicalize().or_else(|_| folder_of(file).canonicalize().map(|at| at.join("new")));
         if !target.is_ok_and(|target| target.parent() == Some(&folder)) {
             bail!(
@@ -90,8 +90,8 @@ impl Confines {
         Ok(())
     }
 
-    /// From here on nothing else is opened, where `--sandbox` asks for it. It has to come before the first thread is
-    /// started, since threads that run already stay free.
+    /// Restricts the process to these files if `--sandbox` asks for it. This must come before the first thread starts,
+    /// since threads that are already running stay unrestricted.
     pub fn enter(&self, common: &Common) -> anyhow::Result<()> {
         if !common.sandbox {
             return Ok(());
@@ -114,7 +114,7 @@ impl Confines {
     }
 }
 
-/// The folder that a file is in.
+/// The folder that contains a file.
 pub fn folder_of(file: &Path) -> &Path {
     match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

@@ -1,4 +1,4 @@
-//! Systems other than Linux: nothing that a process could lay upon itself by the same means.
+//! Systems other than Linux: a process cannot restrict itself in the same way.
 
 use super::Enforcement;
 use std::path::{Path, PathBuf};

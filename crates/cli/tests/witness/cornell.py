@@ -2,11 +2,12 @@
 
 usage: cornell.py BILUX [--seeds N] [--spp N] [--integrators path,bdpt,vcm,auto] [--boxes gold,...]
 
-Needs `pip install mitsuba numpy`. Boxes: matt, with a ball of glass, of frosted glass, a mirror, brushed metal, and `principled` gold. The two have
-other laws for how rough facets hide each other, and only ours gives back what they reflect twice: with little roughness no block tells. The meshes are written once and read by
-both; all triangles are flat. Blocks of 8 x 8 pixels of 64 x 64 are compared by Welch's t-test over seeds, corrected for
-their number [Sidak 1967]. Prints a line for each box and integrator; ends with 1 if any is less likely than one in ten thousand. Behind it stands our variance over
-Mitsuba's, of the whole ball's pixels and of all: of single samples with `--spp 1 --seeds 100 --integrators path`.
+Needs `pip install mitsuba numpy`. The boxes contain a ball that is diffuse, glass, frosted (rough) glass, a mirror, rough metal or `principled` gold.
+The two renderers use different masking functions for rough microfacets, and only Bilux compensates for multiple scattering between them; with little
+roughness no block reveals the difference. The meshes are written once and read by both renderers; all triangles are flat. Blocks of 8 x 8 pixels of
+64 x 64 are compared by Welch's t-test over seeds, corrected for their number [Sidak 1967]. Prints a line for each box and integrator; exits with 1 if
+any result is less likely than one in ten thousand. Each line ends with the ratio of Bilux's variance to Mitsuba's, over the ball's pixels and over all
+pixels: for the variance of single samples use `--spp 1 --seeds 100 --integrators path`.
 """
 
 import argparse
@@ -22,12 +23,12 @@ SIZE, BLOCK = 64, 8
 WALL, RED, GREEN, LAMP = 0.725, [0.63, 0.065, 0.05], [0.14, 0.45, 0.091], 12.0
 EYE, AT, FOV = [0.0, 1.0, 3.9], [0.0, 1.0, 0.0], 38.0
 UNLIKELY = 1e-4
-# Rows and columns that the ball is in.
+# The rows and columns that the ball covers.
 BALL = np.s_[34:53, 15:34]
 
 ETA, K, GOLD, ROUGHNESS = [0.2, 0.9, 1.1], [3.9, 2.4, 2.2], [0.9, 0.7, 0.3], 0.3
 rgb = lambda value: {"type": "rgb", "value": value}
-# Theirs, and ours. Their roughness alpha is the square of our roughness.
+# Mitsuba's parameters, and Bilux's. Mitsuba's alpha is the square of Bilux's roughness.
 SURFACES = {
     "glass": ({"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}, 'kind = "dielectric"\neta = 1.5'),
     "mirror": (
@@ -78,7 +79,7 @@ def boxes():
         "back": (*quad([-1, 0, -1], [2, 0, 0], [0, 2, 0]), WALL),
         "left": (*quad([-1, 0, -1], [0, 2, 0], [0, 0, 2]), RED),
         "right": (*quad([1, 0, -1], [0, 0, 2], [0, 2, 0]), GREEN),
-        # A lamp gives light on both sides in the one, on one side in the other: its back is covered.
+        # The light emits on both sides in one renderer and on one side in the other, so its back is covered.
         "housing": (*quad([-0.4, 1.97, -0.4], [0.8, 0, 0], [0, 0, 0.8]), 0.0),
     }
     lamp = quad([-0.3, 1.96, -0.3], [0.6, 0, 0], [0, 0, 0.6])
@@ -89,7 +90,7 @@ def boxes():
 
 def write_ply(path, points, faces):
     with open(path, "w", encoding="ascii") as f:
-        # Else Bilux would smooth them.
+        # Otherwise Bilux would smooth the normals.
         f.write(f"ply\nformat ascii 1.0\ncomment shading flat\nelement vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\n")
         f.write(f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
         f.writelines("%.9g %.9g %.9g\n" % tuple(p) for p in points)
@@ -159,7 +160,7 @@ def blocks(pictures):
 
 
 def variance(pictures, where=np.s_[:, :]):
-    """Between the seeds, the mean over pixels and channels."""
+    """The variance over seeds, averaged over pixels and channels."""
     return float(np.array([p[where] for p in pictures], float).var(0, ddof=1).mean())
 
 
@@ -168,7 +169,7 @@ def tail(t, freedom):
     log_c = math.lgamma((freedom + 1) / 2) - math.lgamma(freedom / 2) - 0.5 * math.log(freedom * math.pi)
     density = lambda x: math.exp(log_c - (freedom + 1) / 2 * math.log1p(x * x / freedom))
     n, end = 400, math.atan(t)
-    # x = tan(a) brings the whole line into reach.
+    # x = tan(a) maps the whole line to a finite interval.
     y = [density(math.tan(end + (math.pi / 2 - 1e-9 - end) * i / n)) / math.cos(end + (math.pi / 2 - 1e-9 - end) * i / n) ** 2
          for i in range(n + 1)]
     h = (math.pi / 2 - 1e-9 - end) / n
@@ -176,7 +177,7 @@ def tail(t, freedom):
 
 
 def agreement(a, b):
-    """The least p-value of Welch's test over all blocks and channels, corrected for their number."""
+    """The minimum p-value of Welch's test over all blocks and channels, corrected for their number."""
     va, vb = a.var(0, ddof=1) / len(a), b.var(0, ddof=1) / len(b)
     least = 1.0
     for d, x, y in zip(np.abs(a.mean(0) - b.mean(0)), va, vb):
@@ -195,7 +196,7 @@ def main():
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--integrators", default="path,bdpt,vcm,auto")
     parser.add_argument("--boxes", default=",".join(["matt", *SURFACES]))
-    # A planted bug: what is wrong by this much has to be found out.
+    # A planted bug: an error of this size must be detected.
     parser.add_argument("--brighten", type=float, default=1.0)
     options = parser.parse_args()
     lamp, all_boxes = boxes()

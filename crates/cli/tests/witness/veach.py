@@ -1,11 +1,11 @@
-"""An independent witness for a picture that cannot be ours: Veach's plates in Mitsuba 3, once as their pbrt file says and once as the
-picture that comes with the file has them.
+"""An independent witness for a picture that Bilux cannot reproduce: Veach's plates in Mitsuba 3, once as their pbrt file describes them and once as
+they appear in the picture that comes with the file.
 
 usage: veach.py BILUX FOLDER [--spp N]        FOLDER holds scene-v4.pbrt and TungstenRender.exr
 
-Needs `pip install mitsuba numpy`. Prints FLIP and the differences in the mean of the channels of (1) Bilux and Mitsuba, both by the file: facets
-by Trowbridge and Reitz; (2) Mitsuba and the picture, with Beckmann's facets that reflect 0.30 of what the file says; (3) Bilux and the
-picture, which differ by just that. Ends with 1 if FLIP of the first is 0.05 or more, or a channel of it is 2% off.
+Needs `pip install mitsuba numpy`. Prints FLIP and the differences in the channels' means between (1) Bilux and Mitsuba, both following the file, with
+Trowbridge-Reitz (GGX) microfacets; (2) Mitsuba and the picture, with Beckmann microfacets that reflect 0.30 of what the file says; (3) Bilux and the
+picture, which differ by exactly that. Exits with 1 if FLIP of the first is 0.05 or more, or one of its channels is off by 2%.
 """
 
 import argparse
@@ -26,7 +26,7 @@ rgb = lambda value: {"type": "rgb", "value": value}
 
 
 def directives(text):
-    """Each directive of a pbrt file: its word, its bare texts and numbers, and its parameters by name."""
+    """Each directive of a pbrt file: its keyword, its unnamed texts and numbers, and its parameters by name."""
     tokens = re.findall(r'"[^"]*"|\[[^\]]*\]|[^\s"\[\]]+', re.sub(r"#.*", "", text))
     found = []
     for token in tokens:
@@ -56,7 +56,7 @@ def matrix(numbers):
 
 
 def scene(path, facets, part, spp):
-    """The file as Mitsuba takes it."""
+    """The file as a Mitsuba scene."""
     found, film, materials, light, material, place = {}, {}, {}, None, None, np.eye(4)
     for word, bare, said in directives(open(path).read()):
         if word == "Transform":
@@ -64,7 +64,7 @@ def scene(path, facets, part, spp):
         elif word == "Film":
             film = {axis: int(said[f"{axis}resolution"][0]) for axis in "xy"}
         elif word == "Camera":
-            # Their x points to the left.
+            # pbrt's x axis points to the left.
             to_world = np.linalg.inv(place) @ np.diag([-1.0, 1.0, 1.0, 1.0])
             camera = {"fov": said["fov"][0], "to_world": mi.ScalarTransform4f(to_world)}
         elif word == "MakeNamedMaterial" and said["type"] == "diffuse":
@@ -118,7 +118,7 @@ def main():
         bad = False
         for one, other in (("ours", "said"), ("pictured", "picture"), ("ours", "picture")):
             paths = [picture if name == "picture" else at(name) for name in (one, other)]
-            # A picture above the bound is no error here.
+            # A picture above the bound is not an error here.
             told = subprocess.run([a.bilux, "compare", *paths, "--json"], capture_output=True, text=True)
             flip = json.loads(told.stdout)["flip"]
             off = mean(paths[0]) / mean(paths[1]) - 1

@@ -1,11 +1,11 @@
-//! Command lines that are wrong.
+//! Wrong command lines.
 
 use super::Case;
 
 /// A scene that can be rendered.
 const BALL: &[u8] = b"[[model]]\nshape = \"sphere\"\n";
 
-/// Each in a folder with `triangle.obj`.
+/// Each runs in a folder that contains `triangle.obj`.
 pub(crate) const CASES: &[Case] = &[
     // Names.
     Case::command("a scene that is not there", 1, "render none.obj -o out.png"),

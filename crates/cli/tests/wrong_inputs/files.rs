@@ -1,8 +1,8 @@
-//! Files that are wrong.
+//! Wrong files.
 
 use super::Case;
 
-/// Each with its files.
+/// Each case with its files.
 pub(crate) const CASES: &[Case] = &[
     Case::file("an empty file", 1, &[("empty.obj", b"")], "render empty.obj -o out.png"),
     Case::file(

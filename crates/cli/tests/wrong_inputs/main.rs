@@ -1,9 +1,9 @@
-//! Wrong inputs and command lines, each with the whole answer: `command_lines.txt` and `files.txt` hold what is printed
-//! for every row of the tables beside them. Each answer has to say what is wrong, where, and what to do about it, and has to
-//! read well aloud.
+//! Wrong inputs and command lines, each with the complete answer: `command_lines.txt` and `files.txt` hold what is
+//! printed for every row of the tables next to them. Each answer must say what is wrong, where, and what to do about
+//! it, and must read well aloud.
 //!
-//! After a change that is meant, `BILUX_WRITE_MESSAGES=1 cargo test -p bilux-cli --test wrong_inputs` writes the texts
-//! anew; read what has changed before you commit it.
+//! After an intended change, `BILUX_WRITE_MESSAGES=1 cargo test -p bilux-cli --test wrong_inputs` rewrites the texts;
+//! read what has changed before you commit it.
 
 mod command_lines;
 mod files;
@@ -17,13 +17,13 @@ use tempfile::TempDir;
 struct Case {
     /// What is wrong, in a few words.
     name: &'static str,
-    /// Files that the case needs beside `triangle.obj`, which is always there.
+    /// Files that the case needs besides `triangle.obj`, which is always there.
     files: &'static [(&'static str, &'static [u8])],
-    /// What comes from standard input.
+    /// The bytes on standard input.
     input: &'static [u8],
-    /// The command line without `bilux`; words are separated by spaces.
+    /// The command line without `bilux`, its words separated by spaces.
     command: &'static str,
-    /// The exit status that it has to have.
+    /// The expected exit status.
     status: i32,
 }
 
@@ -33,7 +33,7 @@ impl Case {
         Case { name, files: &[], input: b"", command, status }
     }
 
-    /// A faulty file of this name; the command shows it.
+    /// A case with files of its own, which the command uses.
     const fn file(
         name: &'static str,
         status: i32,
@@ -43,7 +43,7 @@ impl Case {
         Case { name, files, input: b"", command, status }
     }
 
-    /// Runs it in a folder of its own and gives what is in the text.
+    /// Runs the case in a folder of its own and returns its section of the text.
     fn run(&self) -> String {
         let folder = TempDir::new().unwrap();
         let path = folder.path();
@@ -63,7 +63,7 @@ impl Case {
         format!("## {}\n$ bilux {}\n{}\n", self.name, self.command, said.trim_end())
     }
 
-    /// What holds for every answer.
+    /// Checks what must hold for every answer.
     fn check(&self, folder: &Path, status: Option<i32>, said: &str, result: &[u8]) {
         let name = self.name;
         assert_eq!(status, Some(self.status), "{name}: {said}");
@@ -77,11 +77,11 @@ impl Case {
     }
 }
 
-/// What stands in no message: values as Rust prints them, and numbers that are none.
+/// What no message may contain: values as Rust prints them, and NaN.
 const RAW: &[&str] =
     &["Some(", "Err(", "None,", "Utf8Error", "os error", "panicked", " { ", "::", "NaN", "\u{1b}", "\\u{"];
 
-/// Holds a table against the text beside it.
+/// Compares a table with the text next to it.
 fn check_table(cases: &[Case], text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wrong_inputs").join(text);
     let mut now = String::new();
