@@ -194,7 +194,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.ray = vertex.surface.spawn(sample.wi);
     }
 
-    /// Russian roulette by what the path could still carry. [Arvo 1990]
+    /// Russian roulette by the subpath's throughput. [Arvo 1990]
     fn survives(&mut self, u: f32, roulette_depth: u32) -> bool {
         if self.beta.is_black() {
             return false;
