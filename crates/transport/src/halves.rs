@@ -1,5 +1,5 @@
-//! How far a picture's pixels may be off, as told by its two halves: what its first samples say against what the later ones
-//! say. Denoisers go by it.
+//! How far a picture's pixels may be off, estimated from its two halves: its first samples against the later ones.
+//! Denoisers use this estimate.
 
 use crate::error::FilmError;
 use crate::film::Film;
@@ -7,10 +7,10 @@ use bilux_math::Rgb;
 use bilux_pictures::Picture;
 use std::ops::Range;
 
-/// The film's window when it had its first samples: what camera paths have brought, and what light paths have left.
+/// The film's window after its first samples: the light of camera subpaths, and splats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstHalf {
-    /// Of each pixel, so far: half of all of them, or somewhat more where noise or time ended the picture.
+    /// Samples per pixel at that time: half of the total, or somewhat more where noise or time ended the picture.
     pub samples: u32,
     layers: [Vec<Rgb>; 2],
 }
@@ -20,9 +20,11 @@ impl FirstHalf {
         FirstHalf { samples, layers: layers(film, 0..film.window().pixels()) }
     }
 
-    /// The variance of each pixel's mean by camera paths, and of that by light paths, where there are any; of some of the
-    /// window's pixels. Of n samples of variance σ² the first m and the others differ by σ² n / (m (n - m)) in the square, on average. One
-    /// difference tells little of one pixel: neighbours are to be asked too.
+    /// For some of the window's pixels, the variance of each pixel's mean over camera subpaths, and that of its splats,
+    /// where there are any.
+    ///
+    /// Of n samples of variance σ², the mean of the first m and that of the others differ by σ² n / (m (n - m)) in the
+    /// square, on average. A single difference says little about one pixel: neighbours are needed too.
     pub fn variance(&self, film: &Film, pixels: Range<usize>) -> [Vec<Rgb>; 2] {
         let mut now = layers(film, pixels.clone());
         for (layer, counts) in [&film.counts, &film.iterations].into_iter().enumerate() {
@@ -34,20 +36,20 @@ impl FirstHalf {
     }
 }
 
-/// From the mean of all n, that of the first m differs by (n - m)/n of what the two halves differ by.
+/// The mean of the first m differs from that of all n by (n - m)/n of the difference between the two halves.
 fn squared(apart: Rgb, n: u32, m: u32) -> Rgb {
     let scale = if n > m { m as f32 / (n - m) as f32 } else { 0.0 };
     apart * apart * scale
 }
 
-/// What camera paths have brought and, where there are any, what light paths have left.
+/// The light of camera subpaths and, where there are any, splats.
 fn layers(film: &Film, pixels: Range<usize>) -> [Vec<Rgb>; 2] {
     let window = film.window();
     let places = || pixels.clone().map(|i| window.position(i));
     [places().map(|(x, y)| film.sampled(x, y)).collect(), splats(film, pixels.clone())]
 }
 
-/// What light paths have left; nothing where there are none.
+/// The splats; empty where there are none.
 fn splats(film: &Film, pixels: Range<usize>) -> Vec<Rgb> {
     if film.splats.is_empty() {
         return Vec::new();
@@ -55,11 +57,11 @@ fn splats(film: &Film, pixels: Range<usize>) -> Vec<Rgb> {
     pixels.map(|i| film.window().position(i)).map(|(x, y)| film.splatted(x, y)).collect()
 }
 
-/// Adds the layer `variance` to a picture of some rows of a film's window, and where light paths have left any, `light` (which is a part
-/// of the picture) and `light_variance`.
+/// Adds the layer `variance` to a picture of some rows of a film's window, and where there are splats, `light` (a part
+/// of the picture's light) and `light_variance`.
 ///
 /// # Errors
-/// When the picture has another size, or such layers already.
+/// When the picture has a different size, or already has such layers.
 pub fn push_variance(
     picture: &mut Picture,
     rows: Range<usize>,
@@ -77,19 +79,19 @@ pub fn push_variance(
     Ok(())
 }
 
-/// The film at the last two powers of 2: one of them is half of what there is in the end.
+/// The film at the last two powers of 2: one of them is half of the final number of samples.
 #[derive(Default)]
 pub(crate) struct Halves([Option<FirstHalf>; 2]);
 
 impl Halves {
-    /// Looks at a film that has so many samples.
+    /// Records a film that has this many samples.
     pub(crate) fn look(&mut self, film: &Film, samples: u32) {
-        // The older one makes room before there is another.
+        // Drops the older one before storing another.
         self.0[0] = self.0[1].take();
         self.0[1] = Some(FirstHalf::of(film, samples));
     }
 
-    /// The latest that has fewer than these.
+    /// The latest one with fewer samples than this.
     pub(crate) fn before(self, samples: u32) -> Option<FirstHalf> {
         self.0.into_iter().rev().flatten().find(|half| half.samples < samples)
     }
@@ -100,7 +102,7 @@ mod tests {
     use super::*;
     use bilux_math::hash::{hash_words, unit_f32};
 
-    /// Mean of the estimates over many pixels whose samples are even in 0..=1: 1/12 over their number.
+    /// Mean of the estimates over many pixels whose samples are uniform in 0..=1: 1/12 over their number.
     fn estimated(first: u32, all: u32) -> f64 {
         let mut film = Film::new(128, 128, 30).unwrap();
         let mut half = None;

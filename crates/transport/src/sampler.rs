@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn two_single_dimensions_are_no_net() {
-        // The counterpart of the test above: the check must reject points that are not a net.
+        // Negative control of the test above: the check must reject points that are not a net.
         let singles = |s: &mut PixelSampler| Vec2::new(s.next_1d(), s.next_1d());
         assert!(!fills_elementary_intervals(&points(8, 3, singles), 8));
     }
