@@ -14,8 +14,8 @@ use bilux_math::Rgb;
 use bilux_math::hash::hash_words;
 use bilux_pictures::Picture;
 
-/// Number of sample sequences that are scrambled independently. Sample `i` is number `i / REPLICATES` of sequence `i %
-/// REPLICATES`, so a range of samples does not depend on any other.
+/// Number of sample sequences that are scrambled independently. Sample `i` is number `i / REPLICATES` of sequence
+/// `i % REPLICATES`, so a range of samples does not depend on any other.
 pub const REPLICATES: u32 = 8;
 
 const COUNT: usize = REPLICATES as usize;

@@ -93,8 +93,8 @@ fn reversed_sobol_1(index: u32) -> u32 {
     x
 }
 
-/// A nested uniform scrambling of bit-reversed numbers: each bit is flipped by a hash of the bits below it. [Burley
-/// 2020, listing 3; constants of Vegdahl 2021]
+/// A nested uniform scrambling of bit-reversed numbers: each bit is flipped by a hash of the bits below it.
+/// [Burley 2020, listing 3; constants of Vegdahl 2021]
 #[inline]
 fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);

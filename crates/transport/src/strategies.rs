@@ -18,7 +18,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Edges of the longest paths whose strategies have pictures.
+/// Edges of the longest paths whose techniques have pictures.
 pub const LONGEST: u32 = 8;
 
 /// A technique for paths of one length. Ordered by length, then connections before merging, then by vertices from the

@@ -36,7 +36,7 @@ fn told(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
 
 const RADIUS: f32 = 0.012;
 
-/// Of a film as small as a pilot.
+/// Number of pixels of a film as small as a pilot.
 const PIXELS: usize = 128;
 
 /// As many samples as in a round of the pilot, so that their even distribution gains as much.

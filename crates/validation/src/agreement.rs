@@ -98,7 +98,7 @@ pub fn shipped(folder: &Path) -> Result<Vec<(String, SceneBuilder)>, Error> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         all.push((name, bilux::load(&path, &ReadOptions::default())?));
     }
-    // Shown by `cornell.toml`, `teapots.toml` and `teapots-trio.toml`.
+    // Covered by `cornell.toml`, `teapots.toml` and `teapots-trio.toml`.
     let in_files = ["cornell-spheres", "teapots", "trio"];
     for row in GENERATORS.iter().filter(|row| !in_files.contains(&row.entry.name)) {
         all.push((row.entry.name.to_owned(), bilux::generate(&Spec::new("", row.entry.name))?));

@@ -23,7 +23,7 @@ pub fn welch(a: &[f64], b: &[f64]) -> Option<f64> {
     StudentsT::new(0.0, 1.0, freedom).ok().map(|student| 2.0 * student.sf(t))
 }
 
-/// The minimum of so many p-values as one p-value, corrected for their number. [Šidák 1967]
+/// The minimum of `count` p-values as one p-value, corrected for their number. [Šidák 1967]
 pub fn sidak(least: f64, count: usize) -> f64 {
     let n = count as f64;
     // Where the power would round to 1.

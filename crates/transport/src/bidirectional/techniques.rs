@@ -135,8 +135,8 @@ impl<const N: usize> Contribution<N> {
 /// other one finds the light `other` times as often.
 ///
 /// A camera subpath samples a point on the light, or hits the light by chance. Against all other techniques these two
-/// count together as in the balance heuristic. Their joint share is split by the power heuristic [Veach 1997, eq.
-/// 9.17], since one of the two is often so good that any share of the other is noise.
+/// count together as in the balance heuristic. Their joint share is split by the power heuristic
+/// [Veach 1997, eq. 9.17], since one of the two is often so good that any share of the other is noise.
 pub(crate) fn favour(other: f32) -> f32 {
     // The inverse, where squares of large numbers would overflow.
     if other <= 1.0 {

@@ -1,6 +1,6 @@
-//! `light`: light tracing. Paths begin at the lights, and each of their vertices is connected with the camera. [Arvo
-//! 1986] What is visible only in mirrors or through glass is not found, and no other technique adds it: this integrator
-//! exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
+//! `light`: light tracing. Paths begin at the lights, and each of their vertices is connected with the camera.
+//! [Arvo 1986] What is visible only in mirrors or through glass is not found, and no other technique adds it: this
+//! integrator exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{TechniqueCounts, light_vertices, to_camera};

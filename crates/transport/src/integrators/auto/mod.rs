@@ -1,5 +1,5 @@
-//! `auto`: runs a pilot to decide which techniques are worth their time in this scene, and then uses these. [Grittmann
-//! 2022]
+//! `auto`: runs a pilot to decide which techniques are worth their time in this scene, and then uses these.
+//! [Grittmann 2022]
 //!
 //! The pilot depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop, range of
 //! samples, or time. None of the pilot's samples is in the picture.

@@ -39,13 +39,13 @@ const BLOCK: u32 = 4;
 /// Maximum number of pixels of a pilot; and minimum, unless the film has fewer.
 const MAX_PIXELS: u64 = 1024;
 const MIN_PIXELS: u64 = 128;
-/// Between the two, the pilot has one pixel for so many of the film's.
+/// Between the two, the pilot has one pixel for this many of the film's.
 const PART: u64 = 48;
 
 /// Maximum number of photon paths in one of its iterations, and minimum.
 const MAX_LIGHT_PATHS: u64 = 8192;
 pub(super) const MIN_LIGHT_PATHS: u64 = 1024;
-/// Between the two, one for so many of the film's.
+/// Between the two, one photon path for this many of the film's.
 const LIGHT_PART: u64 = 8;
 
 /// The pilot's measurements of a block of pixels, as means over its pixels. Luminances only.
