@@ -15,7 +15,7 @@ use bilux_scene::{
 };
 use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
-    Choice, Features, Film, Filter, BatchMeans, Interval, PixelAnchor, Progress, Reached, RenderError,
+    BatchMeans, Choice, Features, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError,
     RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
 };
 use std::ops::Range;

@@ -1,5 +1,5 @@
-//! Renders a scene made by formula: `picture SCENE INTEGRATOR SAMPLES SIZE OUT.png`, where SCENE is
-//! `still-life` (a matt, a mirror and a glass ball) or a row of `bilux_scene::generators::GENERATORS`.
+//! Renders a procedural scene: `picture SCENE INTEGRATOR SAMPLES SIZE OUT.png`, where SCENE is `still-life` (a plastic,
+//! a mirror and a glass ball) or a row of `bilux_scene::generators::GENERATORS`.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -1,9 +1,9 @@
-//! What else a render can give beside its picture.
+//! Arbitrary output variables (AOVs): what a render can produce besides its picture.
 
 use bilux_math::registry::Entry;
 use bilux_scene::{SceneError, Span};
 
-/// What it is.
+/// One AOV.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aov {
     /// [`crate::strategies()`].
@@ -23,10 +23,10 @@ pub enum Aov {
 }
 
 impl Aov {
-    /// Those that are layers of the picture.
+    /// The AOVs that are layers of the picture.
     pub const ALL_LAYERS: [Aov; 5] = [Aov::Albedo, Aov::Normal, Aov::Depth, Aov::Ids, Aov::Variance];
 
-    /// The name of its layer, where it is one.
+    /// The name of its layer, if it is one.
     pub fn layer(self) -> Option<&'static str> {
         match self {
             Aov::Strategies | Aov::Interval => None,
@@ -38,7 +38,7 @@ impl Aov {
         }
     }
 
-    /// True for what is told of surfaces, whatever light is on them.
+    /// True for properties of surfaces, whatever their lighting.
     pub fn is_feature(self) -> bool {
         self.layer().is_some() && self != Aov::Variance
     }
@@ -49,11 +49,11 @@ impl Aov {
 pub struct AovEntry {
     /// Name, summary, source.
     pub entry: Entry,
-    /// Which one.
+    /// The AOV itself.
     pub aov: Aov,
 }
 
-/// Every one that there is.
+/// All AOVs.
 pub const AOVS: &[AovEntry] = &[
     AovEntry {
         entry: Entry {
@@ -89,7 +89,7 @@ const fn layer(aov: Aov, name: &'static str, summary: &'static str) -> AovEntry 
     AovEntry { entry: Entry { name, summary, source: "", parameters: &[] }, aov }
 }
 
-/// The row of this name, wanted at `at`.
+/// The row with this name, requested at `at`.
 ///
 /// # Errors
 /// When there is none.

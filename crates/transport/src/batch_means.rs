@@ -39,8 +39,7 @@ impl Pixel {
     fn add(&mut self, mean: Rgb, count: u32) {
         let batch = count.saturating_sub(self.count);
         let apart = mean - self.mean;
-        let scale =
-            if batch > 0 { self.count as f32 * count as f32 / batch as f32 } else { 0.0 };
+        let scale = if batch > 0 { self.count as f32 * count as f32 / batch as f32 } else { 0.0 };
         self.squares = self.squares * DECAY + apart * apart * scale;
         (self.mean, self.count) = (mean, count);
     }
@@ -49,7 +48,9 @@ impl Pixel {
 impl BatchMeans {
     /// True when a batch ends with this many samples per pixel: after each of the first four, and then twice an octave.
     pub(crate) fn ends_at(samples: u32) -> bool {
-        samples <= 4 || samples.is_power_of_two() || samples.is_multiple_of(3) && (samples / 3).is_power_of_two()
+        samples <= 4
+            || samples.is_power_of_two()
+            || samples.is_multiple_of(3) && (samples / 3).is_power_of_two()
     }
 
     /// Closes a batch: the film now has this many samples per pixel.

@@ -1,4 +1,4 @@
-//! From the number of a sample to its camera ray, and to what its integrator works with.
+//! From the index of a sample to its camera ray, and to the task of its integrator.
 
 use crate::bidirectional::Photons;
 use crate::emission::{Emission, Guide};
@@ -12,7 +12,7 @@ use bilux_math::{Vec2, warp};
 use bilux_scene::{Camera, CameraSample, Ray, Scene, Tracer, Wavelength};
 use std::sync::Arc;
 
-/// Turns a sample's number into a camera ray and the tools for it.
+/// Turns the index of a sample into a camera ray and the task for it.
 pub(crate) struct CameraRays<'a> {
     pub(crate) scene: &'a Scene,
     camera: &'a dyn Camera,
@@ -21,7 +21,7 @@ pub(crate) struct CameraRays<'a> {
     lights: LightChoice,
     pub(crate) emission: Emission,
     has_lens: bool,
-    /// Camera paths are merged with light paths of the same iteration.
+    /// Camera subpaths are merged with light subpaths of the same iteration.
     merges: bool,
     pub(crate) photons: Option<&'a Photons>,
 }
@@ -39,17 +39,17 @@ impl<'a> CameraRays<'a> {
         CameraRays { scene, camera, integrator, settings, lights, emission, has_lens, merges, photons: None }
     }
 
-    /// For paths that are merged, whatever the integrator does.
+    /// The same for subpaths that are merged, whatever the integrator does.
     pub(crate) fn merging(self) -> CameraRays<'a> {
         CameraRays { merges: true, ..self }
     }
 
-    /// With light paths that are aimed as a guide says.
+    /// The same with light subpaths that are aimed by a guide.
     pub(crate) fn guided(self, guide: Option<Arc<Guide>>) -> CameraRays<'a> {
         CameraRays { emission: Emission::new(self.scene, guide), ..self }
     }
 
-    /// The camera ray of a sample, and what its integrator works with.
+    /// The camera ray of a sample, and the task for its integrator.
     #[inline]
     pub(crate) fn sample<'t>(
         &'t self,
@@ -80,8 +80,8 @@ impl<'a> CameraRays<'a> {
         (self.scene.from_camera(self.camera.ray(&camera_sample)), task)
     }
 
-    /// What splits paths sends those of a sample where light of this wavelength goes. Paths that are merged have to be of the
-    /// same one: then all samples of an iteration have one.
+    /// The wavelength of a sample: dispersion sends its paths where light of this wavelength goes. Subpaths that are
+    /// merged must have the same one, so then all samples of an iteration share it.
     #[cold]
     fn wavelength(&self, seed: u64, sampler: &PixelSampler, number: u32) -> Wavelength {
         const STREAM: u64 = 0x7761_7665;
@@ -92,8 +92,8 @@ impl<'a> CameraRays<'a> {
         Wavelength::sample(sampler.next_1d())
     }
 
-    /// Where on film and lens, and when. What the integrator gives no extent takes the pixel's regular
-    /// pattern, the middle of the lens and the middle of the time that the shutter is open.
+    /// The position on film and lens, and the time. Where the integrator gives an extent of zero, the sample takes the
+    /// pixel's regular pattern, the centre of the lens, and the middle of the shutter interval.
     fn camera_sample(&self, sampler: &mut PixelSampler, x: u32, y: u32, index: u32) -> CameraSample {
         let (spread, settings) = (self.integrator.camera_spread(), self.settings);
         let u_pixel = sampler.next_2d();

@@ -1,52 +1,53 @@
-//! Where light paths begin: at a light, by its power, and as the light itself sends rays. Most of these may go where no
-//! camera sees anything of them. If somebody has found out which of them matter, most begin like those, and the rest as
-//! before, so that none is left out and none counts for too much.
+//! Where light subpaths begin: at a light chosen by its power, along a ray as that light emits it. Most of these rays
+//! may go where no camera sees anything of them. Once a guide has found out which of them matter, most light subpaths
+//! begin like those and the rest as before, so that none is left out and none gets too large a weight.
 
 use crate::light_choice::{sums, weights};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{EmissionSample, Scene};
 use std::sync::Arc;
 
-/// How light paths begin, and with which density.
+/// How light subpaths begin, and with which density.
 pub struct Emission {
-    /// Of each light, by power.
+    /// The probability of each light, by power.
     probabilities: Vec<f32>,
-    /// Of all lights up to each.
+    /// Their cumulative sums.
     cdf: Vec<f32>,
     guide: Option<Arc<Guide>>,
 }
 
-/// How often light paths are aimed at each place: for each light, the unit square of [`bilux_scene::Light::aim`] in cells.
+/// How often light subpaths are aimed at each cell of each light, in a grid on the unit square of
+/// [`bilux_scene::Light::aim`].
 #[derive(Clone, Debug)]
 pub struct Guide {
-    /// Cells of a light on each side of its square.
+    /// Cells along each side of a light's square.
     side: usize,
     /// The probability of each cell, row by row and light by light.
     shares: Vec<f32>,
     cdf: Vec<f32>,
-    /// Of all light paths, those that are not aimed.
+    /// The fraction of light subpaths that are not aimed.
     unaimed: f32,
 }
 
-/// Where a light path begins.
+/// The start of a light subpath.
 #[derive(Clone, Copy)]
 pub(crate) struct Start {
     pub(crate) light: usize,
-    /// The ray; its `pdf_emission` is that of the whole choice.
+    /// The ray; its `pdf_emission` is that of all choices together.
     pub(crate) ray: EmissionSample,
-    /// The cell of the guide that it belongs to; 0 without one.
+    /// The cell of the guide that the ray belongs to; 0 without a guide.
     pub(crate) cell: u16,
 }
 
 impl Emission {
-    /// By power, aimed if there is a guide.
+    /// Starts by power, aimed if there is a guide.
     pub(crate) fn new(scene: &Scene, guide: Option<Arc<Guide>>) -> Emission {
         let bounds = scene.bounds();
         let probabilities = weights(scene.lights().iter().map(|l| l.light.power(&bounds)));
         Emission { cdf: sums(&probabilities), probabilities, guide }
     }
 
-    /// A light, and a ray from it.
+    /// Samples a light, and a ray from it.
     pub(crate) fn sample(
         &self,
         scene: &Scene,
@@ -79,13 +80,14 @@ impl Emission {
         (pdf_emission > 0.0).then_some(Start { light, ray, cell: cell.unwrap_or(0) as u16 })
     }
 
-    /// The probability with which a light path that is not aimed begins at a light.
+    /// The probability that an unaimed light subpath begins at a light.
     #[cfg(test)]
     pub(crate) fn probability(&self, light: usize) -> f32 {
         self.probabilities[light]
     }
 
-    /// The density with which a light path begins at a light, along a line through `p`; the rest as in
+    /// The density with which a light subpath begins at a light, along a line through `p`; the other parameters are
+    /// those of
     /// [`bilux_scene::Light::emission_pdf`].
     pub(crate) fn pdf(
         &self,
@@ -109,15 +111,15 @@ impl Emission {
     }
 }
 
-/// All cells together; where there are so many lights that each would have none, there is no guide.
+/// Maximum number of cells of all lights; where there are so many lights that each would have none, there is no guide.
 const MAX_CELLS: usize = 1 << 14;
 const MAX_SIDE: usize = 32;
 
-/// Of all light paths, those that begin as if there were no guide: what it knows was learned from few.
+/// The fraction of light subpaths that begin as if there were no guide: it has learned from only a few.
 const UNAIMED: f32 = 0.25;
 
 impl Guide {
-    /// Tells cells apart, and aims at none of them.
+    /// A guide that distinguishes cells but aims at none of them.
     pub(crate) fn untaught(scene: &Scene) -> Option<Guide> {
         let lights = scene.lights().len();
         let side = ((MAX_CELLS / lights.max(1)) as f64).sqrt() as usize;
@@ -130,17 +132,17 @@ impl Guide {
         })
     }
 
-    /// How often a light path begins in a cell, given how often one does that is not aimed.
+    /// How often a light subpath begins in a cell, given how often an unaimed one does.
     pub(crate) fn probability(&self, cell: usize, unaimed: f64) -> f64 {
         f64::from(self.unaimed) * unaimed + f64::from(1.0 - self.unaimed) * f64::from(self.shares[cell])
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     pub(crate) fn cells(&self) -> usize {
         self.shares.len()
     }
 
-    /// With cells that are aimed at in proportion to what each is worth, and around them a little; `None` where nothing is
+    /// A guide that aims at cells in proportion to the worth of each, and a little around them; `None` where nothing is
     /// worth anything.
     pub(crate) fn taught(self, worth: &[f64]) -> Option<Guide> {
         let worth = self.blurred(worth);
@@ -149,7 +151,7 @@ impl Guide {
         (all > 0.0 && all.is_finite()).then(|| Guide { cdf: sums(&shares), shares, unaimed: UNAIMED, ..self })
     }
 
-    /// Each cell with half of its neighbours' on either axis.
+    /// Blurs the grid of each light: half of the weight stays in the cell along either axis.
     fn blurred(&self, worth: &[f64]) -> Vec<f64> {
         let side = self.side as i64;
         let blur = |light: &[f64], x: i64, y: i64| -> f64 {
@@ -168,13 +170,13 @@ impl Guide {
             .collect()
     }
 
-    /// The light of a cell, and the cell's lower corner in cells.
+    /// The light of a cell, and the cell's lower corner in units of cells.
     fn place(&self, cell: usize) -> (usize, Vec2) {
         let (light, cell) = (cell / (self.side * self.side), cell % (self.side * self.side));
         (light, Vec2::new((cell % self.side) as f32, (cell / self.side) as f32))
     }
 
-    /// The cell of a ray of light; `None` where it passes none.
+    /// The cell of a light ray; `None` where it passes through none.
     fn cell(&self, scene: &Scene, light: usize, p: Vec3, direction: Vec3) -> Option<usize> {
         let aim = scene.lights()[light].light.aim(&scene.bounds(), p, direction);
         let is_within = |x: f32| (0.0..=1.0).contains(&x);
@@ -184,7 +186,7 @@ impl Guide {
     }
 }
 
-/// What a number picks.
+/// The index that a random number selects.
 fn pick(cdf: &[f32], u: f32) -> Option<usize> {
     let wanted = u * cdf.last()?;
     Some(cdf.partition_point(|&sum| sum <= wanted).min(cdf.len() - 1))

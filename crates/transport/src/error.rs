@@ -9,7 +9,7 @@ use std::ops::Range;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FilmError {
-    /// A side of zero, or absurdly long.
+    /// A side is zero or absurdly long.
     #[error("a picture of {width} x {height} pixels: a side is 1 to {} pixels", crate::film::MAX_SIDE)]
     Size {
         /// Pixels across.
@@ -17,7 +17,7 @@ pub enum FilmError {
         /// Pixels down.
         height: u32,
     },
-    /// A crop that is empty or beyond the film.
+    /// The crop is empty or extends beyond the film.
     #[error(
         "the crop {window} (x, y, width, height) has to have a pixel and to lie within {width} x {height} pixels"
     )]
@@ -29,29 +29,29 @@ pub enum FilmError {
         /// Pixels down the film.
         height: u32,
     },
-    /// The machine has no room.
+    /// There is not enough memory.
     #[error("no room for a film of {pixels} pixels; free some memory or make the picture smaller")]
     NoRoom {
-        /// How many pixels were wanted.
+        /// The requested number of pixels.
         pixels: u64,
     },
-    /// Films of different sizes.
+    /// The films have different sizes.
     #[error(
         "the films are of different sizes, {} x {} and {} x {} pixels; render all parts at one size, with a crop if need be",
         first[0], first[1], second[0], second[1]
     )]
     OtherSize {
-        /// Width and height of the one.
+        /// Width and height of the first film.
         first: [u32; 2],
-        /// Width and height of the other.
+        /// Width and height of the second film.
         second: [u32; 2],
     },
-    /// Films of different scenes or settings.
+    /// The films show different scenes or settings.
     #[error(
         "the films are of different scenes or settings; parts of one picture differ only in samples and crop"
     )]
     OtherPicture,
-    /// Films that hold the same samples.
+    /// Both films hold the same samples.
     #[error(
         "both films hold the samples {}..{} of the pixels {window} (x, y, width, height); each sample may be in one part only",
         samples.start, samples.end
@@ -62,13 +62,13 @@ pub enum FilmError {
         /// Samples that both hold.
         samples: Range<u32>,
     },
-    /// More samples than sums can hold.
+    /// A pixel has more samples than sums can hold.
     #[error("{samples} samples in one pixel; the most is {}", crate::film::MAX_SAMPLES)]
     TooManySamples {
-        /// How many.
+        /// Number of samples.
         samples: u64,
     },
-    /// A picture that is no partial film.
+    /// The picture is not a partial film.
     #[error("this is not a partial film: {what}; make one with --samples or --crop and an .exr name")]
     NotAFilm {
         /// What is missing or wrong.
@@ -86,13 +86,13 @@ pub enum RenderError {
     /// A part of a picture cannot know when the whole is good enough.
     #[error("a target of noise or time is for whole pictures: leave out the crop and the range of samples")]
     StopOfPart,
-    /// Without chance there is no interval.
+    /// An integrator without random numbers has no interval.
     #[error("there is no interval without chance: this integrator samples pixels in a fixed pattern")]
     IntervalOfPattern,
     /// The film cannot be made.
     #[error(transparent)]
     Film(#[from] FilmError),
-    /// The range of samples makes no sense.
+    /// The range of samples is invalid.
     #[error(
         "samples {start}..{end} of {spp} for each pixel: the range has to hold a sample, end within {spp}, and {spp} may be 1 to {}",
         crate::film::MAX_SAMPLES
@@ -102,16 +102,16 @@ pub enum RenderError {
         start: u32,
         /// One after the last.
         end: u32,
-        /// Samples in all.
+        /// Total number of samples.
         spp: u32,
     },
-    /// Paths may not be that long.
+    /// The depth is beyond the maximum.
     #[error("a depth of {depth} scattering events; the most is {}", crate::render::MAX_DEPTH)]
     Depth {
-        /// What was asked for.
+        /// The requested depth.
         depth: u32,
     },
-    /// A pixel that is not on the film.
+    /// The pixel is not on the film.
     #[error("pixel {x},{y} is not on a film of {width} x {height} pixels")]
     Pixel {
         /// Column.
@@ -123,15 +123,15 @@ pub enum RenderError {
         /// Pixels down.
         height: u32,
     },
-    /// A name that no table holds, or a wrong parameter.
+    /// A name is in no table, or a parameter is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The operating system gives no threads.
+    /// The operating system cannot start the threads.
     #[error("cannot start {threads} threads: {reason}; ask for fewer")]
     Threads {
-        /// How many were wanted; 0 for one each core.
+        /// The requested number of threads; 0 for one per core.
         threads: usize,
-        /// Why not.
+        /// The reason.
         reason: String,
     },
 }

@@ -1,6 +1,6 @@
-//! Samples that went wrong: counted and located, pixel by pixel, so that nothing is hidden.
+//! Bad samples: counted and located, pixel by pixel, so that nothing is hidden.
 
-/// What went wrong in one pixel.
+/// The bad samples of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PixelFailures {
     pub(crate) non_finite: u32,
@@ -9,25 +9,25 @@ pub(crate) struct PixelFailures {
     pub(crate) first_overflowed: u32,
 }
 
-/// Where a sample was that went wrong.
+/// The position of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SamplePlace {
     /// Column.
     pub x: u32,
-    /// Row, downwards.
+    /// Row, counted downwards.
     pub y: u32,
     /// Index of the sample within the pixel.
     pub sample: u32,
 }
 
-/// Samples that went wrong.
+/// The bad samples of a film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleFailures {
-    /// How many were infinite or not a number; they are left out of their pixels' means.
+    /// Number of samples that were infinite or NaN; they are left out of their pixels' means.
     pub non_finite: u64,
     /// The first of them, row by row.
     pub first_non_finite: Option<SamplePlace>,
-    /// How many were brighter than the film can hold; they count as the brightest that it can.
+    /// Number of samples that were brighter than the film can hold; they are clamped to its maximum.
     pub overflowed: u64,
     /// The first of them, row by row.
     pub first_overflowed: Option<SamplePlace>,
@@ -46,7 +46,7 @@ impl PixelFailures {
         self.non_finite > 0 || self.overflowed > 0
     }
 
-    /// Adds counts; the first sample is the least of both.
+    /// Adds counts; the first sample is the minimum of both.
     pub(crate) fn absorb(&mut self, other: &PixelFailures) {
         let first = |n: u32, first: u32, m: u32, second: u32| match (n, m) {
             (_, 0) => first,

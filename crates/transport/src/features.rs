@@ -1,10 +1,11 @@
-//! What the camera sees of surfaces, whatever light is on them: albedo, normal, depth and ids, pixel by pixel. Denoisers tell
-//! edges and textures from noise by these, and compositors find things by them.
+//! What the camera sees of surfaces, whatever their lighting: albedo, normal, depth and ids, pixel by pixel. Denoisers
+//! use these features to distinguish edges and textures from noise, and compositors to select objects.
 //!
-//! A pass of its own over the film, with the camera rays of the picture's first samples. Through smooth mirrors and glass it
-//! goes on to what is seen in them, along the likelier of reflection and refraction, so that what they show has its edges
-//! too; depth and ids are those of the first surface itself. Pixels are added up by themselves, each in the order of its samples: the same
-//! bytes for any number of threads, any crop and any range of samples.
+//! They take a pass of their own over the film, with the camera rays of the picture's first samples. At smooth mirrors
+//! and glass a ray goes on, along the more likely of reflection and refraction, to the surface that is visible there,
+//! so that reflected and refracted images have their edges too; depth and ids are those of the first surface. Each
+//! pixel is summed on its own, in the order of its samples: the bytes are the same for any number of threads, any crop
+//! and any range of samples.
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
@@ -20,32 +21,33 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-/// Camera rays of a pixel, also where the picture has fewer samples: denoisers tell by them what mixture of surfaces a pixel on an edge
-/// shows. Where nothing is left to chance, there are no more than the picture has.
+/// Camera rays per pixel, even where the picture has fewer samples: they show denoisers which mixture of surfaces an
+/// edge pixel contains. An integrator without random numbers takes no more of them than the picture has samples.
 pub const FEATURE_SAMPLES: u32 = 8;
 
-/// So many smooth surfaces are looked through or into.
+/// Maximum number of smooth surfaces that a ray is followed through.
 const MAX_SMOOTH: u32 = 12;
 
-/// Planes of a window of the film, in rows, the top one first.
+/// Planes of a window of the film, in rows, the top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {
-    /// The pixels that they are of.
+    /// The pixels that they cover.
     pub window: Window,
-    /// The part of the light that surfaces send on, 0..=1; of lights and sky, what they give, at most 1.
+    /// The fraction of light that surfaces scatter, 0..=1; for lights and the background their emission, at most 1.
     pub albedo: Vec<Rgb>,
-    /// The mean of the shading normals, in the world, on the side that is seen: shorter than 1 where they differ, zero where nothing is
-    /// seen.
+    /// The mean shading normal in world space, on the visible side: shorter than 1 where normals differ, zero where
+    /// nothing is visible.
     pub normal: Vec<Vec3>,
-    /// Metres from the camera along its rays to the first surface, the mean of those that meet one; infinite where none does.
+    /// Metres from the camera along its rays to the first surface, averaged over the rays that hit one; infinite where
+    /// none does.
     pub depth: Vec<f32>,
-    /// One more than the number of the object that a pixel's first sample meets; 0 for none.
+    /// One more than the index of the object that a pixel's first sample hits; 0 for none.
     pub object: Vec<u32>,
     /// The same for its material.
     pub material: Vec<u32>,
 }
 
-/// A pixel while samples are added.
+/// Sums over the samples of one pixel.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     albedo: Rgb,
@@ -56,11 +58,11 @@ struct Sums {
     material: u32,
 }
 
-/// Looks at [`FEATURE_SAMPLES`] samples of each pixel, its first ones, and at no more than fit into `time` if that is
-/// given. `None` when it was stopped.
+/// Evaluates the first [`FEATURE_SAMPLES`] samples of each pixel, and no more than fit into `time` if that is given.
+/// `None` when it was cancelled.
 ///
 /// # Errors
-/// When the size or the crop makes no sense, or the machine gives no room or threads.
+/// When the size or the crop is invalid, or there is not enough memory or no threads.
 pub fn features(
     scene: &Scene,
     camera: &dyn Camera,
@@ -96,7 +98,8 @@ pub fn features(
     Features::of(window, &tiles, done).map(Some)
 }
 
-/// The part of each pixel's first samples whose camera rays meet something, 0..=1, in rows of the film's window, the top one first.
+/// The fraction of each pixel's first samples whose camera rays hit something, 0..=1, in rows of the film's window, the
+/// top row first.
 ///
 /// # Errors
 /// As [`features`].
@@ -126,7 +129,7 @@ pub fn coverage(
     Ok(met)
 }
 
-/// One sample of each pixel of a tile.
+/// Adds one sample to each pixel of a tile.
 fn look(eye: &CameraRays, tile: &Window, sums: &mut [Sums], sample: u32) {
     let mut tracer = Tracer::new(eye.scene, false);
     for (i, sum) in sums.iter_mut().enumerate() {
@@ -167,7 +170,7 @@ impl Sums {
         }
     }
 
-    /// The first surface itself.
+    /// Records the first surface itself.
     fn meet(&mut self, scene: &Scene, surface: &Surface, sample: u32) {
         self.depth += surface.t;
         self.hits += 1;
@@ -178,7 +181,7 @@ impl Sums {
     }
 }
 
-/// What a surface sends on of white light, by the colours of its material, or what it gives out itself if that is more.
+/// The albedo of a surface by the colours of its material, or its emission where that is larger.
 fn albedo(scene: &Scene, surface: &Surface, wo: Vec3) -> Rgb {
     let classic = scene.material(surface).classic(surface);
     let glows = scene.emission(surface, wo);
@@ -209,11 +212,11 @@ impl Features {
         Ok(all)
     }
 
-    /// Adds the layers `albedo`, `normal`, `depth` and `id`, those of them that are wanted, to a picture of some rows of the window,
-    /// counted from its top one.
+    /// Adds the wanted ones of the layers `albedo`, `normal`, `depth` and `id` to a picture of some rows of the window,
+    /// counted from its top row.
     ///
     /// # Errors
-    /// When the picture has another size, or such layers already.
+    /// When the picture has a different size, or already has such layers.
     pub fn push_layers(
         &self,
         picture: &mut Picture,

@@ -1,11 +1,11 @@
-//! The film: fixed-point sums that come out the same in whatever order samples arrive.
+//! The film: fixed-point sums that do not depend on the order in which samples arrive.
 //!
-//! A sample is rounded to a multiple of 2⁻ᵏ and added to a 64-bit integer, so sums do not depend on threads,
-//! tiles or parts. The scale `k` comes from the scene alone ([`scale_exponent`]). Rounding goes up or down by a
-//! hash of pixel and sample, so that it is right on average even for light far below one step.
+//! A sample is rounded to a multiple of 2⁻ᵏ and added to a 64-bit integer, so sums do not depend on threads, tiles or
+//! parts. The scale `k` depends on the scene alone ([`scale_exponent`]). A hash of pixel and sample decides whether to
+//! round up or down, so that sums are right on average even for light far below one step.
 //!
-//! Nothing is hidden: a sample that is infinite or not a number is left out of the mean, one that is beyond the
-//! scale is held at its end, and both are counted and located, pixel by pixel.
+//! Nothing is hidden: a sample that is infinite or NaN is left out of the mean, a sample beyond the scale is clamped,
+//! and both are counted and located, pixel by pixel.
 
 use crate::error::FilmError;
 use crate::failures::{PixelFailures, SampleFailures, SamplePlace};
@@ -16,16 +16,16 @@ use bilux_math::hash::hash_words;
 use bilux_scene::Scene;
 use std::ops::Range;
 
-/// The most samples of one pixel: with [`SAMPLE_BITS`], sums cannot overflow.
+/// Maximum number of samples of one pixel: with [`SAMPLE_BITS`], sums cannot overflow.
 pub const MAX_SAMPLES: u32 = 1 << 22;
 
-/// A sample is held within ±2⁴¹ steps.
+/// A sample is clamped to ±2⁴¹ steps.
 pub(crate) const SAMPLE_BITS: i32 = 41;
 
-/// The longest side, in pixels.
+/// Maximum length of a side, in pixels.
 pub const MAX_SIDE: u32 = 1 << 16;
 
-/// A film, or a window of one. Coordinates are those of the whole film throughout.
+/// A film, or a window of one. All coordinates are those of the whole film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     width: u32,
@@ -34,19 +34,19 @@ pub struct Film {
     scale_exponent: i32,
     pub(crate) sums: Vec<[i64; 3]>,
     pub(crate) counts: Vec<u32>,
-    /// What light paths have left, and of how many iterations, pixel by pixel; empty as long as there is none.
+    /// Splats and the number of their iterations, pixel by pixel; empty as long as there are none.
     pub(crate) splats: Vec<[i64; 3]>,
     pub(crate) iterations: Vec<u32>,
-    /// Empty as long as there is none.
+    /// Bad samples, pixel by pixel; empty as long as there are none.
     pub(crate) trouble: Vec<PixelFailures>,
     pub(crate) coverage: Coverage,
-    /// What the film is of: any text that differs where scene or settings differ; given by the caller. Films
-    /// with different fingerprints do not merge.
+    /// Identifies what the film shows: any text from the caller that differs where scene or settings differ. Films with
+    /// different fingerprints do not merge.
     pub fingerprint: String,
 }
 
-/// The scale for a scene, a pure function of it: the top of the range is 2⁶ times the brightest radiance that
-/// anything gives out, or 2¹⁶ times all that lights give to the middle of the scene, whichever is more.
+/// The scale for a scene, a pure function of it: the top of the range is 2⁶ times the maximum radiance that anything
+/// emits, or 2¹⁶ times all that lights bring to the middle of the scene, whichever is larger.
 pub fn scale_exponent(scene: &Scene) -> i32 {
     let brightest = scene.brightest_radiance() * 64.0;
     let typical = scene.classic_brightness() * 65_536.0;
@@ -62,15 +62,15 @@ fn ilog2(x: f32) -> i32 {
 }
 
 impl Film {
-    /// An empty film of `width` × `height` pixels, whose steps are 2^-`scale_exponent`.
+    /// An empty film of `width` × `height` pixels with steps of 2^-`scale_exponent`.
     ///
     /// # Errors
-    /// When a side is zero or beyond [`MAX_SIDE`], or the machine has no room.
+    /// When a side is zero or beyond [`MAX_SIDE`], or there is not enough memory.
     pub fn new(width: u32, height: u32, scale_exponent: i32) -> Result<Film, FilmError> {
         Film::windowed(width, height, Window::whole(width, height), scale_exponent)
     }
 
-    /// A film of which only a window takes memory.
+    /// A film that stores only a window.
     ///
     /// # Errors
     /// As [`Film::new`]; and when the window is empty or not within the film.
@@ -87,7 +87,7 @@ impl Film {
         Ok(Film { width, height, window, sums, counts, ..Film::part(scale_exponent) })
     }
 
-    /// An empty piece of a film, to be given its place by [`Film::restart`] and its film by [`Film::absorb`].
+    /// An empty piece of a film: [`Film::restart`] sets its window, and [`Film::absorb`] adds it to a film.
     pub(crate) fn part(scale_exponent: i32) -> Film {
         Film {
             width: 0,
@@ -104,42 +104,42 @@ impl Film {
         }
     }
 
-    /// Bytes that a film of this many pixels takes.
+    /// Bytes of memory that a film of this many pixels takes.
     pub const fn memory_bytes(pixels: u64) -> u64 {
         pixels.saturating_mul((size_of::<[i64; 3]>() + size_of::<u32>()) as u64)
     }
 
-    /// Pixels across the whole film.
+    /// Width of the whole film in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Pixels down the whole film.
+    /// Height of the whole film in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The part of the film that is kept.
+    /// The part of the film that is stored.
     pub fn window(&self) -> Window {
         self.window
     }
 
-    /// Sums count in steps of 2 to the minus this.
+    /// The sums count steps of 2 to the power of minus this.
     pub fn scale_exponent(&self) -> i32 {
         self.scale_exponent
     }
 
-    /// Which samples of which pixels are in.
+    /// Which samples of which pixels the film holds.
     pub fn coverage(&self) -> &Coverage {
         &self.coverage
     }
 
-    /// Notes that these samples of these pixels are in; [`Film::merge`] goes by it.
+    /// Records that the film holds these samples of these pixels; [`Film::merge`] relies on it.
     pub fn cover(&mut self, window: Window, samples: Range<u32>) {
         self.coverage.insert(window, samples);
     }
 
-    /// Adds a sample of radiance to a pixel within the window; beyond it, nothing happens.
+    /// Adds a sample of radiance to a pixel within the window; outside it nothing happens.
     #[inline]
     pub fn add(&mut self, x: u32, y: u32, sample: u32, radiance: Rgb) {
         let Some(index) = self.window.index(x, y) else { return };
@@ -176,10 +176,10 @@ impl Film {
         &mut self.trouble[index]
     }
 
-    /// Adds another film's samples. In whatever order films are merged, the sums are the same.
+    /// Adds another film's samples. The sums are the same in whatever order films are merged.
     ///
     /// # Errors
-    /// When the films are of different sizes, scales or fingerprints, when both hold a sample, or when a pixel
+    /// When the films have different sizes, scales or fingerprints, when both hold the same sample, or when a pixel
     /// would get more than [`MAX_SAMPLES`].
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
         if (self.width, self.height) != (other.width, other.height) {
@@ -228,7 +228,7 @@ impl Film {
         Ok(())
     }
 
-    /// Adds the sums of a film whose window lies within this one's; coverage is left as it is.
+    /// Adds the sums of a film whose window lies within this one's; the coverage stays as it is.
     pub(crate) fn absorb(&mut self, part: &Film) {
         for (row, y) in (part.window.y..part.window.y + part.window.height).enumerate() {
             let Some(start) = self.window.index(part.window.x, y) else { continue };
@@ -249,7 +249,7 @@ impl Film {
         }
     }
 
-    /// Empties the piece and moves its window.
+    /// Clears the piece and moves its window.
     pub(crate) fn restart(&mut self, window: Window) {
         self.window = window;
         let pixels = window.pixels();
@@ -260,7 +260,7 @@ impl Film {
         self.trouble.clear();
     }
 
-    /// What went wrong, over all pixels.
+    /// The bad samples of all pixels together.
     pub fn trouble(&self) -> SampleFailures {
         let mut total = SampleFailures::default();
         for (index, pixel) in self.trouble.iter().enumerate() {
@@ -280,25 +280,25 @@ impl Film {
         total
     }
 
-    /// How many samples a pixel's mean is of.
+    /// The number of samples in a pixel's mean.
     pub fn samples(&self, x: u32, y: u32) -> u32 {
         self.window.index(x, y).map_or(0, |index| self.counts[index])
     }
 
-    /// The light of a pixel: the mean of its samples and what light paths have left; black where there is nothing, not
-    /// a number where all samples were bad.
+    /// The light of a pixel: the mean of its samples plus its splats; black where there is nothing, NaN where all
+    /// samples were bad.
     pub fn pixel(&self, x: u32, y: u32) -> Rgb {
         let step = exp2(-self.scale_exponent);
         let light = |index| self.mean(index) + self.splat_mean(index, step);
         self.window.index(x, y).map_or(Rgb::BLACK, light)
     }
 
-    /// The mean of a pixel's own samples, without what light paths have left.
+    /// The mean of a pixel's own samples, without splats.
     pub fn sampled(&self, x: u32, y: u32) -> Rgb {
         self.window.index(x, y).map_or(Rgb::BLACK, |index| self.mean(index))
     }
 
-    /// What light paths have left in a pixel.
+    /// The splats of a pixel.
     pub fn splatted(&self, x: u32, y: u32) -> Rgb {
         let step = exp2(-self.scale_exponent);
         self.window.index(x, y).map_or(Rgb::BLACK, |index| self.splat_mean(index, step))
@@ -316,14 +316,14 @@ impl Film {
         }
     }
 
-    /// The means of the whole film in rows, the top one first; black beyond the window.
+    /// The light of the whole film in rows, the top row first; black outside the window.
     pub fn to_rgb(&self) -> Vec<Rgb> {
         let whole = Window::whole(self.width, self.height);
         (0..whole.pixels()).map(|i| whole.position(i)).map(|(x, y)| self.pixel(x, y)).collect()
     }
 }
 
-/// Light in steps of the film, rounded up or down by chance, and whether it was more than the film can hold.
+/// Light in steps of the film, stochastically rounded, and whether it was more than the film can hold.
 #[inline]
 pub(crate) fn to_steps(light: Rgb, scale_exponent: i32, dither: u64) -> ([i64; 3], bool) {
     const LIMIT: i64 = 1 << SAMPLE_BITS;
@@ -338,7 +338,7 @@ pub(crate) fn to_steps(light: Rgb, scale_exponent: i32, dither: u64) -> ([i64; 3
     (all, overflowed)
 }
 
-/// The greatest integer that is not above `x`, for `x` within ±2⁶². On old levels of the machine `f64::floor` is a call.
+/// The greatest integer ≤ `x`, for `x` within ±2⁶². At old instruction-set levels `f64::floor` is a function call.
 #[inline]
 fn floor(x: f64) -> i64 {
     let towards_zero = x as i64;
@@ -350,7 +350,7 @@ fn exp2(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// As many zeros as asked for, or an error where the machine has no room.
+/// This many zeros, or an error where there is not enough memory.
 pub(crate) fn zeroed<T: Clone + Default>(count: usize) -> Result<Vec<T>, FilmError> {
     let mut buffer = Vec::new();
     buffer.try_reserve_exact(count).map_err(|_| FilmError::NoRoom { pixels: count as u64 })?;

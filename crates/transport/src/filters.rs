@@ -1,5 +1,5 @@
-//! Pixel filters. Points are drawn in proportion to the filter (filter importance sampling, [Ernst 2006]), so
-//! that each sample counts fully and only in its own pixel.
+//! Pixel filters. Points are sampled in proportion to the filter (filter importance sampling, [Ernst 2006]), so each
+//! sample counts fully and only in its own pixel.
 
 use crate::error::RenderError;
 use bilux_math::Vec2;
@@ -14,13 +14,13 @@ use std::f64::consts::PI;
 pub struct FilterEntry {
     /// Name, summary, source.
     pub entry: Entry,
-    /// Where it ends, in pixels from the middle.
+    /// Its extent from the centre, in pixels.
     pub radius: f64,
-    /// Its height, of any scale, at a distance from the middle as a fraction of the radius; not negative.
+    /// Its height, at any scale, at a distance from the centre as a fraction of the radius; not negative.
     pub shape: fn(f64) -> f64,
 }
 
-/// Every filter that there is; the first is the default.
+/// All filters; the first is the default.
 pub const FILTERS: &[FilterEntry] = &[
     FilterEntry { entry: filter("box", "all points of the pixel alike", ""), radius: 0.5, shape: |_| 1.0 },
     FilterEntry {
@@ -47,11 +47,11 @@ const fn filter(name: &'static str, summary: &'static str, source: &'static str)
     Entry { name, summary, source, parameters: &[] }
 }
 
-/// A filter, ready to draw from.
+/// A filter, ready for sampling.
 #[derive(Clone, Debug)]
 pub struct Filter {
     name: &'static str,
-    /// `quantiles[i]` is the distance from the middle within which `i / PIECES` of the filter lies.
+    /// `quantiles[i]` is the distance from the centre within which `i / PIECES` of the filter lies.
     quantiles: Vec<f32>,
 }
 
@@ -81,10 +81,10 @@ impl Filter {
         Filter { name: row.entry.name, quantiles: (0..=PIECES).map(quantile).collect() }
     }
 
-    /// The filter of this name.
+    /// The filter with this name.
     ///
     /// # Errors
-    /// When no row has it.
+    /// When there is none.
     pub fn named(name: &str) -> Result<Filter, RenderError> {
         let names = FILTERS.iter().map(|row| row.entry.name);
         match FILTERS.iter().find(|row| row.entry.name == name) {
@@ -98,18 +98,18 @@ impl Filter {
         self.name
     }
 
-    /// A point relative to the pixel's middle, in pixels; exactly the middle for `(½, ½)`.
+    /// A point relative to the pixel's centre, in pixels; exactly the centre for `(½, ½)`.
     #[inline]
     pub fn sample(&self, u: Vec2) -> Vec2 {
         Vec2::new(self.sample_axis(u.x), self.sample_axis(u.y))
     }
 
-    /// How far it reaches from the middle on each axis, in pixels.
+    /// Its extent from the centre on each axis, in pixels.
     pub fn radius(&self) -> f32 {
         self.quantiles[PIECES]
     }
 
-    /// Density of [`Filter::sample`] along one axis, at a distance from the middle in pixels.
+    /// Density of [`Filter::sample`] along one axis, at a distance from the centre in pixels.
     pub fn density(&self, x: f32) -> f32 {
         let x = x.abs();
         let after = self.quantiles.partition_point(|&q| q <= x);
@@ -142,7 +142,7 @@ mod tests {
         }
     }
 
-    /// Greatest difference between the share of drawn points below a place and the filter's own share.
+    /// Maximum difference between the fraction of sampled points below a position and the filter's own fraction.
     fn distance(filter: &Filter, row: &FilterEntry) -> f64 {
         const N: usize = 20_000;
         let share = |low: f64, high: f64| {
@@ -164,7 +164,7 @@ mod tests {
             let off = distance(&Filter::new(row), row);
             assert!(off < 1e-3, "{}: off by {off}", row.entry.name);
         }
-        // The twin: a filter drawn by another's quantiles is found out.
+        // Negative control: a filter sampled by another's quantiles is detected.
         assert!(distance(&Filter::new(&FILTERS[2]), &FILTERS[3]) > 1e-2);
     }
 

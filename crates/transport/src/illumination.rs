@@ -1,6 +1,8 @@
-//! How well a scene's own light lights what a camera sees, were all of it of clay: by this a studio tells whether it is needed.
+//! How well a scene's own lights illuminate what a camera sees, if everything were clay: the studio uses this to decide
+//! whether it is needed.
 //!
-//! A pure function of the scene and the camera: the same numbers for any number of threads, without a clock.
+//! A pure function of the scene and the camera: it returns the same numbers for any number of threads, and reads no
+//! clock.
 
 use crate::light_choice::LightChoice;
 use crate::sampler::PixelSampler;
@@ -10,27 +12,27 @@ use rayon::prelude::*;
 
 /// Rows and columns of points on the film.
 const GRID: u32 = 40;
-/// Paths of each.
+/// Paths per point.
 const SAMPLES: u32 = 12;
-/// Scattering events of a path at most.
+/// Maximum number of scattering events of a path.
 const MAX_BOUNCES: u32 = 3;
-/// Surfaces of glass that a ray goes straight through at most.
+/// Maximum number of glass surfaces that a ray passes straight through.
 const MAX_PANES: usize = 32;
-/// What clay reflects.
+/// The albedo of clay.
 const CLAY: f32 = 0.5;
-/// A white surface that sends on less radiance than this is dark.
+/// A white surface with less outgoing radiance than this is dark.
 const DARK: f32 = 0.05;
 
-/// How a scene's own light lights what its camera sees.
+/// How a scene's own lights illuminate what its camera sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Illumination {
-    /// The part of the film where surfaces are seen that give no light themselves, glass apart.
+    /// The fraction of the film that shows surfaces that are neither emissive nor glass.
     pub surfaces: f32,
-    /// The part of these that the light reaches.
+    /// The fraction of these surfaces that light reaches.
     pub lit: f32,
 }
 
-/// Looks at a scene through a camera.
+/// Measures a scene through a camera.
 pub fn illumination(scene: &Scene, camera: &dyn Camera) -> Illumination {
     let lights = LightChoice::new(scene);
     let of_row = |y: u32| {
@@ -45,7 +47,8 @@ pub fn illumination(scene: &Scene, camera: &dyn Camera) -> Illumination {
     Illumination { surfaces: seen as f32 / (GRID * GRID) as f32, lit: lit as f32 / seen.max(1) as f32 }
 }
 
-/// The radiance, as luminance, that a white surface would send on at a point of the film; `None` where no surface is seen that could.
+/// The outgoing radiance, as luminance, of a white surface at a point of the film; `None` where the camera sees no such
+/// surface.
 fn at_point(tracer: &mut Tracer, camera: &dyn Camera, lights: &LightChoice, x: u32, y: u32) -> Option<f32> {
     let scene = tracer.scene;
     let film = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / GRID as f32;
@@ -65,7 +68,7 @@ fn at_point(tracer: &mut Tracer, camera: &dyn Camera, lights: &LightChoice, x: u
     Some(sum / SAMPLES as f32)
 }
 
-/// What a path of scattering brings to a white surface.
+/// The light that one path of scattering events brings to a white surface.
 fn path(
     tracer: &mut Tracer,
     lights: &LightChoice,
@@ -87,7 +90,7 @@ fn path(
     if light.is_finite() { light } else { 0.0 }
 }
 
-/// The radiance that a white surface sends on of the light that comes straight from lights.
+/// The outgoing radiance of a white surface from direct light.
 fn direct(
     tracer: &mut Tracer,
     lights: &LightChoice,
@@ -113,12 +116,12 @@ fn direct(
     sum
 }
 
-/// True when nothing but glass is between a ray's ends.
+/// True when nothing but glass lies between the ends of a ray.
 fn is_seen(tracer: &mut Tracer, ray: Ray, n: Vec3) -> bool {
     tracer.ending_on(&ray, n, |tracer| beyond_glass(tracer, ray).is_none())
 }
 
-/// What a ray meets first that is no glass.
+/// The first surface along a ray that is not glass.
 fn beyond_glass(tracer: &mut Tracer, mut ray: Ray) -> Option<Surface> {
     for _ in 0..MAX_PANES {
         let surface = tracer.closest(&ray)?;

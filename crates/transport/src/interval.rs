@@ -1,10 +1,10 @@
-//! Between which bounds a pixel's light lies: 95% intervals of Student's t. [Student 1908]
+//! The 95% confidence interval of a pixel's light, by Student's t. [Student 1908]
 //!
-//! Samples of one sequence are spread evenly, each where the others are not, so their variance says little about the error
-//! of their mean. Where an interval is wanted, samples are taken in turn from [`REPLICATES`] sequences that are scrambled
-//! independently: the sequences' means *are* independent, and their spread tells the error of the mean of all, with
-//! whatever even spreading gains within each. [Owen 1997] Light that was followed from its source belongs to the replicate of its
-//! iteration, as camera paths do, so that a pixel's interval is of all of its light; what pixels have in common is in
+//! Samples of one sequence are evenly distributed, each where the others are not, so their variance says little about
+//! the error of their mean. Where an interval is wanted, samples are taken in turn from [`REPLICATES`] sequences that
+//! are scrambled independently: the sequences' means *are* independent, and their spread gives the error of the overall
+//! mean, with whatever even distribution gains within each. [Owen 1997] Splats belong to the replicate of their
+//! iteration, as camera subpaths do, so a pixel's interval covers all of its light; what pixels have in common shows in
 //! the interval of a block.
 
 use crate::error::FilmError;
@@ -14,40 +14,40 @@ use bilux_math::Rgb;
 use bilux_math::hash::hash_words;
 use bilux_pictures::Picture;
 
-/// Sequences of samples that are scrambled independently. Sample `i` is number `i / REPLICATES` of sequence
-/// `i % REPLICATES`, so that any range of samples is what it is by itself.
+/// Number of sample sequences that are scrambled independently. Sample `i` is number `i / REPLICATES` of sequence
+/// `i % REPLICATES`, so a range of samples does not depend on any other.
 pub const REPLICATES: u32 = 8;
 
 const COUNT: usize = REPLICATES as usize;
 
-/// Half the width of a 95% interval in standard errors, by degrees of freedom from 1 on. [Student 1908]
+/// Half-width of a 95% interval in standard errors, by degrees of freedom from 1 on. [Student 1908]
 const QUANTILES: [f64; COUNT - 1] =
     [12.706_205, 4.302_653, 3.182_446, 2.776_445, 2.570_582, 2.446_912, 2.364_624];
 
-/// The seed of a sample's sequence, and its number there.
+/// The seed of a sample's sequence, and the sample's index there.
 #[inline]
 pub(crate) fn replicate(seed: u64, sample: u32) -> (u64, u32) {
     const KEY: u64 = 0x7265_706c_6963_6174;
     (hash_words([seed ^ KEY, u64::from(sample % REPLICATES)]), sample / REPLICATES)
 }
 
-/// The light of each replicate, and the intervals that it gives.
+/// The light of each replicate, and the intervals that follow from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interval {
     window: Window,
-    /// Samples of a pixel in each replicate.
+    /// Samples per pixel in each replicate.
     counts: [u32; COUNT],
-    /// The mean light of each replicate, pixel by pixel. Means that are corrected by each sample stay exact where sums would
-    /// lose what is much smaller than they are.
+    /// The mean light of each replicate, pixel by pixel. A running mean stays exact where a sum would lose values much
+    /// smaller than itself.
     means: Vec<[[f32; 3]; COUNT]>,
 }
 
-/// A mean, and how far to both sides of it the interval reaches.
+/// A mean, and the half-width of its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
-    /// Half the width of the 95% interval.
+    /// Half-width of the 95% interval.
     pub half_width: f64,
 }
 
@@ -56,13 +56,13 @@ impl Interval {
         Ok(Interval { window, counts: [0; COUNT], means: zeroed(window.pixels())? })
     }
 
-    /// Bytes that the intervals of so many pixels take while they are rendered.
+    /// Bytes of memory that the intervals of this many pixels take during rendering.
     pub const fn memory_bytes(pixels: u64) -> u64 {
         pixels.saturating_mul(size_of::<[[f32; 3]; COUNT]>() as u64)
     }
 
-    /// Adds one sample of every pixel, which is all that is on the film. What is not finite counts as black: the interval
-    /// becomes the wider.
+    /// Adds one sample of every pixel, which is all that the film holds. Light that is not finite counts as black,
+    /// which makes the interval wider.
     pub(crate) fn add(&mut self, sample: u32, film: &Film) {
         let replicate = (sample % REPLICATES) as usize;
         self.counts[replicate] += 1;
@@ -76,29 +76,29 @@ impl Interval {
         }
     }
 
-    /// The pixels that have one.
+    /// The pixels that have an interval.
     pub fn window(&self) -> Window {
         self.window
     }
 
-    /// Samples of each pixel.
+    /// Samples per pixel.
     pub fn samples(&self) -> u32 {
         self.counts.iter().sum()
     }
 
-    /// One less than there are replicates with samples.
+    /// One less than the number of replicates with samples.
     pub fn degrees_of_freedom(&self) -> u32 {
         (self.counts.iter().filter(|&&count| count > 0).count() as u32).saturating_sub(1)
     }
 
-    /// Half the width of an interval in standard errors; infinite where one sample is all.
+    /// Half-width of an interval in standard errors; infinite where there is only one sample.
     pub fn quantile(&self) -> f64 {
         let below = self.degrees_of_freedom().checked_sub(1);
         below.map_or(f64::INFINITY, |i| QUANTILES[i as usize])
     }
 
-    /// The mean luminance of a block of pixels and its interval: what pixels have in common (a light path that several of
-    /// them see) does not average out, and is in. Of one pixel, or of many.
+    /// The mean luminance of a block of one or more pixels, and its interval: what pixels have in common (a light path
+    /// that several of them see) does not average out, and is included.
     pub fn luminance(&self, block: &Window) -> Estimate {
         self.estimate(block, |light| f64::from(Rgb::from_array(light).luminance()))
     }
@@ -108,7 +108,7 @@ impl Interval {
         self.estimate(block, |light| f64::from(light[channel]))
     }
 
-    /// Where replicates have different numbers of samples n, the variance of a mean is taken to be σ²/n.
+    /// Where replicates have different numbers of samples n, the variance of a mean is assumed to be σ²/n.
     fn estimate(&self, block: &Window, value: impl Fn([f32; 3]) -> f64) -> Estimate {
         let block = block.intersection(&self.window);
         let mut means = [0.0; COUNT];
@@ -129,11 +129,11 @@ impl Interval {
         Estimate { mean, half_width: self.quantile() * error }
     }
 
-    /// Half the widths of the pixels' intervals as a linear picture of the window: red, green, blue, and as a further channel
-    /// that of luminance.
+    /// The half-widths of the pixels' intervals as a linear picture of the window: red, green, blue, and luminance as
+    /// an extra channel.
     ///
     /// # Errors
-    /// When there is no room for it.
+    /// When there is not enough memory.
     pub fn to_picture(&self) -> Result<Picture, FilmError> {
         let pixels = || (0..self.window.pixels()).map(|i| self.window.position(i)).map(Window::pixel);
         let half = |estimate: Estimate| estimate.half_width as f32;
@@ -178,7 +178,7 @@ mod tests {
         interval.add(1, &film([2.0, 2.0]));
         let left = interval.channel(&Window::pixel((0, 0)), 0);
         assert_eq!((left.mean, left.half_width), (1.5, 0.5 * QUANTILES[0]));
-        // What one pixel has more the other has less: together they are known.
+        // What one pixel gains the other loses: their mean is certain.
         let both = interval.channel(&Window::whole(2, 1), 2);
         assert_eq!((both.mean, both.half_width), (2.0, 0.0));
     }

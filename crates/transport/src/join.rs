@@ -1,37 +1,37 @@
-//! The layers of parts of a picture, put together as their films are.
+//! Merges the layers of a picture's parts, as their films are merged.
 
 use crate::error::FilmError;
 use crate::film::Film;
 use bilux_pictures::Picture;
 use std::collections::BTreeMap;
 
-/// Layers that are the same in every part that has the pixel.
+/// Layers whose values are the same in every part that has the pixel.
 const EVEN: [&str; 3] = ["albedo.", "normal.", "depth."];
-/// The same, of whole numbers.
+/// The same for integer layers.
 const IDS: &str = "id.";
-/// The variance of a pixel's mean, which falls as samples come together.
+/// The variance of a pixel's mean, which falls as samples are merged.
 const VARIANCE: &str = "variance.";
 
-/// Layers of parts, by name.
+/// The merged layers of all parts, by name.
 #[derive(Default)]
 pub struct JoinedLayers {
-    /// Of each pixel of the whole film: sums, and the samples that they are of.
+    /// Values for each pixel of the whole film.
     floats: BTreeMap<String, Vec<f32>>,
     integers: BTreeMap<String, Vec<u32>>,
-    /// Samples of a pixel in the parts so far; none are counted where there is no variance.
+    /// Samples of each pixel in the parts so far.
     samples: Vec<u32>,
     left_out: bool,
 }
 
 impl JoinedLayers {
-    /// Adds the layers of a part, of which `film` is the light.
+    /// Adds the layers of a part; `film` holds its light.
     pub fn add(&mut self, part: &Picture, film: &Film) {
         let (window, size) = (film.window(), film.width() as usize * film.height() as usize);
         let whole = |i: usize| {
             let (x, y) = window.position(i);
             y as usize * film.width() as usize + x as usize
         };
-        // What light paths have left belongs to the whole film, and its layers do not fall apart by pixels.
+        // Splats belong to the whole film: their layers cannot be divided by pixels.
         let has_light = part.channel("light.R").is_some();
         self.left_out |= has_light;
         self.samples.resize(size, 0);
@@ -48,7 +48,7 @@ impl JoinedLayers {
                     kept[at] = sample;
                     continue;
                 }
-                // The variance of a mean of means, each for its part of the samples.
+                // The variance of a mean of means, each weighted by its share of the samples.
                 let (x, y) = window.position(i);
                 let (before, new) = (self.samples[at] as f32, film.samples(x, y) as f32);
                 let all = (before + new).max(1.0);
@@ -66,7 +66,7 @@ impl JoinedLayers {
         }
     }
 
-    /// True where parts had layers that cannot be put together.
+    /// True where parts had layers that cannot be merged.
     pub fn left_out(&self) -> bool {
         self.left_out
     }
@@ -74,7 +74,7 @@ impl JoinedLayers {
     /// Adds the layers to a picture of a film's window.
     ///
     /// # Errors
-    /// When the picture has another size, or such layers already.
+    /// When the picture has a different size, or already has such layers.
     pub fn push(&self, picture: &mut Picture, film: &Film) -> Result<(), FilmError> {
         let window = film.window();
         let places = || {

@@ -1,8 +1,8 @@
-//! How light gets to the film: samplers, the film, tiles, and one file per integrator.
+//! Light transport: samplers, the film, tiles, and one file per integrator.
 //!
-//! An integrator ([`INTEGRATORS`]) answers what radiance comes along a ray; [`render()`] asks it for every sample
-//! of every pixel and adds up the [`Film`]. At a fixed number of samples the film is a pure function of scene,
-//! settings and seed: the same bytes for any number of threads, any crop, and any split into ranges of samples.
+//! An integrator ([`INTEGRATORS`]) estimates the radiance along a ray; [`render()`] calls it for every sample of every
+//! pixel and accumulates the [`Film`]. With a fixed number of samples the film is a pure function of scene, settings
+//! and seed: the bytes are the same for any number of threads, any crop, and any split into sample ranges.
 
 pub mod aovs;
 mod batch_means;

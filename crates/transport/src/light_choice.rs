@@ -1,13 +1,15 @@
-//! Which lights to sample: all of a few; of many one, more often where there is more to come.
+//! Which lights to sample: all if there are few; otherwise one, chosen more often the more light it brings.
 
 use bilux_math::hash::{hash_words, unit_f32};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{Light, Scene};
 use std::ops::Range;
 
-/// A probability for every light of a scene. Where there are few, each is always sampled: a shadow ray costs less
-/// than the noise of a choice that is blind to the place. Otherwise by what it brings to the scene's objects, were nothing
-/// between, with a tenth shared out alike, so that a weak light close by is never forgotten.
+/// A probability for every light of a scene.
+///
+/// Where there are few lights, each is always sampled: a shadow ray costs less than the noise of a choice that ignores
+/// position. Otherwise the probability follows the unoccluded light that it brings to the scene's objects, with a tenth
+/// distributed uniformly, so that a weak light close by is never neglected.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
     probabilities: Vec<f32>,
@@ -16,13 +18,13 @@ pub struct LightChoice {
     few: bool,
 }
 
-/// So many lights are all sampled.
+/// Up to this many lights are all sampled.
 const FEW: usize = 4;
 
 const SHARED_ALIKE: f64 = 0.1;
 
 impl LightChoice {
-    /// For the lights of a scene, in their order.
+    /// Computes the probabilities of a scene's lights, in their order.
     pub fn new(scene: &Scene) -> LightChoice {
         let places = places(scene);
         LightChoice::weighted(scene.lights().iter().map(|l| irradiance(&*l.light, &places, scene)))
@@ -37,13 +39,13 @@ impl LightChoice {
         LightChoice { cdf: sums(&probabilities), probabilities, few }
     }
 
-    /// True when all lights are always sampled, whatever number is given.
+    /// True when all lights are always sampled, whatever the random number.
     #[inline]
     pub fn takes_all(&self) -> bool {
         self.few
     }
 
-    /// Which lights to sample: those of the range whose probability is above 0.
+    /// The lights to sample: those of the range whose probability is above 0.
     #[inline]
     pub fn sample(&self, u: f32) -> Range<usize> {
         if self.few {
@@ -61,12 +63,12 @@ impl LightChoice {
     }
 }
 
-/// So many places tell what lights bring.
+/// Number of points at which lights are compared.
 const PLACES: u64 = 64;
-/// What it brings to so many of them, the ones where it is most, is left out: nobody is as close to a lamp as its own shade.
+/// Number of points to leave out, those where a light is strongest: nothing but its own shade is that close to a lamp.
 const CLOSEST: usize = 8;
 
-/// Vertices of some objects, each object as likely as the next. What power says of lights from infinity grows with
+/// Vertices of some objects, each object equally likely. Power would be no measure: for infinite lights it grows with
 /// the scene's bounds, and so with every empty yard of a floor.
 fn places(scene: &Scene) -> Vec<Vec3> {
     let (objects, spheres) = (scene.geometry().objects(), scene.geometry().spheres());
@@ -83,7 +85,7 @@ fn places(scene: &Scene) -> Vec<Vec3> {
     (0..PLACES).filter_map(place).collect()
 }
 
-/// What a light brings to some places on average, were nothing between, as luminance; never nothing of one that shines.
+/// The mean unoccluded irradiance of a light at some points, as luminance; never 0 for a light that emits.
 fn irradiance(light: &dyn Light, places: &[Vec3], scene: &Scene) -> f32 {
     let at = |(i, place): (usize, &Vec3)| {
         let number = |k: u64| unit_f32(hash_words([i as u64, k]) as u32);
@@ -111,7 +113,7 @@ pub(crate) fn weights(powers: impl Iterator<Item = f32>) -> Vec<f32> {
     powers.iter().map(by_power).collect()
 }
 
-/// Of all up to each.
+/// Cumulative sums.
 pub(crate) fn sums(probabilities: &[f32]) -> Vec<f32> {
     let mut sum = 0.0;
     let add = |p: &f32| {

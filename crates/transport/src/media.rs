@@ -1,38 +1,38 @@
-//! What is between surfaces: nothing, or glass and water that absorb, where they overlap by priority.
+//! Media between surfaces: nothing, or absorbing glass and water, which have priorities where they overlap.
 //!
-//! Glass and the water in it touch nowhere exactly: one is modelled to reach a little into the other, and where both are
-//! the medium of the greater priority is. The surface of the lesser one in there separates nothing: paths pass it, and
-//! it is no event. [Schmidt 2002]
+//! The surfaces of glass and of the water in it never coincide exactly: one is modelled to reach a little into the
+//! other, and where the two overlap, the medium of higher priority wins. The surface of the other one separates nothing
+//! in there: paths pass through it without an event. [Schmidt 2002]
 //!
-//! Materials without a priority take no part. Their refractive index is over that of whatever is around them.
+//! Materials without a priority take no part. Their refractive index is relative to whatever surrounds them.
 
 use bilux_math::transcendental::exp;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, Nested, Ray, Scene, Surface, Tracer, Wavelength};
 
-/// So many media may lie in each other; more are passed as if they were not there.
+/// Maximum number of nested media; further ones are ignored.
 const MAX_NESTED: usize = 4;
 
 /// No object.
 const NONE: u32 = u32::MAX;
 
-/// Rays that look for what they start in pass so many surfaces at most.
+/// Maximum number of surfaces that a ray passes to find the media that it starts in.
 const MAX_SURFACES: usize = 64;
 
-/// What a path is in.
+/// The media that a path is in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Media {
-    /// Objects of a priority around.
+    /// Surrounding objects that have a priority.
     around: [u32; MAX_NESTED],
-    /// Absorption of what the path goes through, as far as is known.
+    /// Absorption of the medium that the path travels through, as far as it is known.
     sigma_a: Rgb,
 }
 
 impl Media {
-    /// Nothing around.
+    /// No media.
     const AIR: Media = Media { around: [NONE; MAX_NESTED], sigma_a: Rgb::BLACK };
 
-    /// What a path starts in: what it would leave without having entered it.
+    /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
         let (mut media, scene) = (Media::AIR, tracer.scene);
         if !scene.has_nested() {
@@ -53,8 +53,8 @@ impl Media {
         media
     }
 
-    /// What a ray of unit direction meets first that separates two media, and the light that is left until there. From
-    /// then on these are the media on the side that it comes from.
+    /// The first surface along a ray of unit direction that separates two media, and the transmittance up to there.
+    /// Afterwards these are the media on the side that the ray comes from.
     #[inline]
     pub(crate) fn closest(&mut self, tracer: &mut Tracer, ray: &Ray) -> Option<(Surface, Rgb)> {
         let scene = tracer.scene;
@@ -78,8 +78,10 @@ impl Media {
         }
     }
 
-    /// The light that is left at the end of a ray that begins in these media, `distance` metres long; `None` where
-    /// something is between its ends. Of light from infinity `distance` is 0: beyond the last surface nothing absorbs. `n` is the
+    /// The transmittance of a ray that begins in these media and is `distance` metres long; `None` where something
+    /// blocks it.
+    ///
+    /// For light from infinity `distance` is 0: beyond the last surface nothing absorbs. `n` is the
     /// [normal](Scene::normal_towards) of the surface that the ray ends on at parameter 1; zero where there is none.
     #[inline]
     pub(crate) fn visible(&self, tracer: &mut Tracer, ray: &Ray, distance: f32, n: Vec3) -> Option<Rgb> {
@@ -106,7 +108,7 @@ impl Media {
         Some(passed * transmittance(media.sigma_a, (distance - begin * length).max(0.0)))
     }
 
-    /// How a surface scatters light of a wavelength that separates these media from others.
+    /// The BSDF at a wavelength of a surface that separates these media from others.
     #[inline]
     pub(crate) fn bsdf(&self, scene: &Scene, surface: &Surface, wavelength: &Wavelength) -> Bsdf {
         let bsdf = scene.material(surface).bsdf(surface);
@@ -125,7 +127,7 @@ impl Media {
         }
     }
 
-    /// The media in which a path goes on from a surface where it came along `wo`.
+    /// The media in which a path continues from a surface that it reached along `wo`.
     #[inline]
     pub(crate) fn towards(&self, scene: &Scene, surface: &Surface, wo: Vec3, direction: Vec3) -> Media {
         let mut media = *self;
@@ -135,7 +137,8 @@ impl Media {
         media
     }
 
-    /// On arrival: what is left is around, whether the path has entered it or begun there; what is entered is not.
+    /// On arrival: a medium that the ray leaves is around, whether the path entered it or began there; one that it
+    /// enters is not.
     #[inline]
     fn arrive(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
         let leaves = surface.n_geom.dot(direction) > 0.0;
@@ -150,7 +153,7 @@ impl Media {
         }
     }
 
-    /// On passing a surface.
+    /// On crossing a surface.
     #[inline]
     fn cross(&mut self, scene: &Scene, surface: &Surface, direction: Vec3) {
         let enters = direction.dot(surface.n_geom) < 0.0;
@@ -169,8 +172,8 @@ impl Media {
         }
     }
 
-    /// False for a surface of a medium where one of greater priority is. Of equal ones it is that of the object that
-    /// comes first in the scene, so that it is the same from both ends of a path.
+    /// False for the surface of a medium inside one of higher priority. Of equal priorities the object that comes first
+    /// in the scene wins, so that the result is the same from both ends of a path.
     #[inline]
     fn separates(&self, scene: &Scene, surface: &Surface) -> bool {
         if !scene.has_nested() {
@@ -185,7 +188,7 @@ impl Media {
         }
     }
 
-    /// The medium that prevails.
+    /// The medium of highest priority.
     fn strongest(&self, scene: &Scene) -> Option<(u32, Nested)> {
         let media = self.around.iter().filter(|&&object| object != NONE);
         let media = media.filter_map(|&object| Some((object, scene.material_of(object).nested()?)));
@@ -215,17 +218,17 @@ impl Media {
     }
 }
 
-/// Greater for what comes first.
+/// Greater for the object that comes first.
 fn other_first(object: u32) -> std::cmp::Reverse<u32> {
     std::cmp::Reverse(object)
 }
 
-/// The same ray, from behind a surface that it has met.
+/// The same ray, from behind a surface that it has hit.
 fn beyond(ray: &Ray, surface: &Surface) -> Ray {
     Ray { t_min: surface.t.next_up(), exclude: surface.primitive, ..*ray }
 }
 
-/// The share of light that is left after a distance in metres, by Beer's law.
+/// Transmittance over a distance in metres, by Beer's law.
 #[inline]
 pub(crate) fn transmittance(sigma_a: Rgb, distance: f32) -> Rgb {
     if sigma_a.is_black() { Rgb::WHITE } else { sigma_a.map(|sigma| exp(-sigma * distance)) }

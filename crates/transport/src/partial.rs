@@ -1,4 +1,4 @@
-//! Films as pictures, and partial films that lose nothing: their sums travel as integer layers of an EXR.
+//! Films as pictures, and lossless partial films: their sums are stored as integer layers of an EXR.
 
 use crate::error::FilmError;
 use crate::failures::PixelFailures;
@@ -8,10 +8,10 @@ use bilux_pictures::Picture;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// Marks a picture as a partial film, and says how it is laid out.
+/// Marks a picture as a partial film, and gives the version of its layout.
 const FORMAT: (&str, &str) = ("bilux.film", "1");
 
-/// More pieces than any sane set of parts has; keeps checks of strangers' files short.
+/// More pieces than any sane set of parts has; keeps checks of untrusted files short.
 const MAX_PIECES: usize = 4096;
 
 /// The names of the sums' planes: the lower and the upper halves of each channel.
@@ -20,7 +20,7 @@ const SUMS: [[&str; 2]; 3] =
 
 const SAMPLES: &str = "samples";
 
-/// The same for what light paths have left, where there are any.
+/// The same for splats, where there are any.
 const SPLATS: [[&str; 2]; 3] =
     [["splats.R.low", "splats.R.high"], ["splats.G.low", "splats.G.high"], ["splats.B.low", "splats.B.high"]];
 
@@ -33,26 +33,26 @@ impl Film {
     /// The whole film as a linear picture; black where there are no samples.
     ///
     /// # Errors
-    /// When there is no room for it.
+    /// When there is not enough memory.
     pub fn to_picture(&self) -> Result<Picture, FilmError> {
         Ok(Picture::from_rgb(self.width() as usize, self.height() as usize, self.to_rgb())?)
     }
 
-    /// A part of the film as a linear picture; black beyond the film's own window.
+    /// A part of the film as a linear picture; black outside the film's own window.
     ///
     /// # Errors
-    /// When there is no room for it.
+    /// When there is not enough memory.
     pub fn window_to_picture(&self, window: Window) -> Result<Picture, FilmError> {
         let pixels =
             (0..window.pixels()).map(|i| window.position(i)).map(|(x, y)| self.pixel(x, y)).collect();
         Ok(Picture::from_rgb(window.width as usize, window.height as usize, pixels)?)
     }
 
-    /// The film's window with all that [`Film::from_partial`] needs to go on from here, to be written as EXR.
-    /// Other programs see the picture.
+    /// The film's window with everything that [`Film::from_partial`] needs to continue from here, to be written as EXR.
+    /// Other programs see an ordinary picture.
     ///
     /// # Errors
-    /// When there is no room for it.
+    /// When there is not enough memory.
     pub fn to_partial(&self) -> Result<Picture, FilmError> {
         let mut picture = self.window_to_picture(self.window())?;
         push_sums(&mut picture, SUMS, &self.sums)?;
@@ -80,7 +80,7 @@ impl Film {
     /// The film that [`Film::to_partial`] was made from.
     ///
     /// # Errors
-    /// When the picture is no partial film, or says things of itself that cannot be.
+    /// When the picture is not a partial film, or states impossible values.
     pub fn from_partial(picture: &Picture) -> Result<Film, FilmError> {
         let text = |key: &str| match picture.metadata.get(key) {
             Some(text) => Ok(text.as_str()),
@@ -166,7 +166,7 @@ impl PixelFailures {
     }
 }
 
-/// Such as `0,0,64,64:0..16;64,0,64,64:0..8`.
+/// Formats a coverage, such as `0,0,64,64:0..16;64,0,64,64:0..8`.
 fn coverage_text(coverage: &Coverage) -> String {
     let piece =
         |(window, samples): &(Window, Range<u32>)| format!("{window}:{}..{}", samples.start, samples.end);

@@ -1,4 +1,4 @@
-//! Passes over the film: all its tiles, some samples of each pixel, by all threads.
+//! Passes over the film: all its tiles, some samples of each pixel, on all threads.
 
 use crate::camera_rays::CameraRays;
 use crate::error::{FilmError, RenderError};
@@ -14,10 +14,10 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// The most samples of each pixel in one pass over the film.
+/// Maximum number of samples of each pixel in one pass over the film.
 const PASS: u32 = 32;
 
-/// Some passes over all tiles, by all threads.
+/// Runs some passes over all tiles, on all threads.
 pub(crate) fn all_passes(
     pool: &rayon::ThreadPool,
     eye: CameraRays,
@@ -46,7 +46,7 @@ pub(crate) fn all_passes(
     Ok(Rendered { film, counters, cancelled, choice, reached, interval, batch_means })
 }
 
-/// Ranges of samples that double in length, so that the first picture is there soon.
+/// Ranges of samples that double in length, so that a first picture appears soon.
 pub(crate) fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
     let (mut start, mut passes) = (samples.start, Vec::new());
     while start < samples.end {
@@ -57,24 +57,24 @@ pub(crate) fn passes(samples: &Range<u32>) -> Vec<Range<u32>> {
     passes
 }
 
-/// One rendering, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
+/// One render, as its threads share it. Job `j` is tile `j % tiles` in pass `j / tiles`.
 struct Work<'a> {
     eye: CameraRays<'a>,
     progress: &'a dyn Progress,
     tiles: Vec<Window>,
     passes: Vec<Range<u32>>,
     next: AtomicU64,
-    /// Jobs that were taken but not finished.
+    /// Jobs that were started but not finished.
     dropped: Mutex<Vec<u64>>,
     film: Mutex<Film>,
-    /// What light paths have left in passes that are not finished.
+    /// Splats of passes that are not finished.
     iterations: Mutex<BTreeMap<usize, Iterations>>,
     /// Why there is no film.
     failed: Mutex<Option<FilmError>>,
 }
 
 impl<'a> Work<'a> {
-    /// One thread's share.
+    /// Runs one thread's share of the jobs.
     fn run(&self) -> Counters {
         let mut tracer = Tracer::new(self.eye.scene, self.eye.settings.count_work);
         let scale = scale_exponent(self.eye.scene);
@@ -107,7 +107,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// False when it was stopped on the way.
+    /// Renders a tile; false when it was cancelled on the way.
     fn render_tile(
         &self,
         tile: Window,
@@ -132,7 +132,7 @@ impl<'a> Work<'a> {
         true
     }
 
-    /// Keeps what the light paths of a tile have left, and gives it to the film when it is the last of its pass.
+    /// Collects the splats of a tile, and adds them to the film after the last tile of its pass.
     fn take_splats(&self, pass: usize, splats: &mut Splats) -> Result<(), FilmError> {
         let mut all = self.iterations.lock().unwrap_or_else(PoisonError::into_inner);
         let iterations = match all.entry(pass) {

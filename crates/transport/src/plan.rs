@@ -1,44 +1,44 @@
-//! What an integrator that chooses has chosen, and why.
+//! The choice of an integrator that chooses, and the reasons for it.
 
 use crate::integrators::PixelIntegrator;
 use bilux_scene::Counters;
 use std::fmt;
 
-/// A choice among sets of ways of finding light.
+/// A choice among sets of techniques.
 pub struct Plan {
-    /// What makes the picture.
+    /// The integrator that renders the picture.
     pub integrator: Box<dyn PixelIntegrator>,
     /// The choice.
     pub choice: Choice,
-    /// What the rays took by which it was made.
+    /// The work of the rays that led to it.
     pub counters: Counters,
 }
 
-/// What was chosen, and what else there was.
+/// The chosen set of techniques, and its rivals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// Which of the rivals.
+    /// Index of the chosen candidate.
     pub chosen: usize,
-    /// What there was to choose from.
+    /// All sets to choose from.
     pub candidates: Vec<Candidate>,
 }
 
-/// A set of ways, and what is expected of it.
+/// A set of techniques, and the estimates for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// What it is called where it is asked for: a value of the parameter `ways` of `auto`.
+    /// Its value of the parameter `ways` of `auto`.
     pub techniques: &'static str,
     /// Expected relative variance of one sample of a pixel.
     pub error: f64,
-    /// The part of the light that it cannot find, 0..=1.
+    /// The fraction of the light that it cannot find, 0..=1.
     pub lost: f64,
-    /// What a sample of a pixel takes, in nanoseconds of no machine in particular.
+    /// Cost of one sample of a pixel, in nanoseconds of no machine in particular.
     pub nanoseconds: f64,
 }
 
-/// So much of the light more or less is none.
+/// Differences up to this fraction of the light are ignored.
 const MAY_BE_LOST: f64 = 1e-4;
 
 impl Candidate {
@@ -54,7 +54,7 @@ impl Candidate {
 }
 
 impl Choice {
-    /// The set that was chosen.
+    /// The chosen set.
     pub fn best(&self) -> &Candidate {
         &self.candidates[self.chosen]
     }

@@ -1,11 +1,11 @@
 //! The tile loop: every sample of every pixel, on all cores, into one film.
 
+use crate::batch_means::BatchMeans;
 use crate::bidirectional::Photons;
 use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
 use crate::film::{Film, MAX_SAMPLES, scale_exponent};
 use crate::filters::Filter;
-use crate::batch_means::BatchMeans;
 use crate::integrators::PixelIntegrator;
 use crate::interval::Interval;
 use crate::passes::{all_passes, passes};
@@ -18,64 +18,64 @@ use bilux_scene::{Camera, Scene};
 use std::ops::Range;
 use std::time::Instant;
 
-/// Scattering events after the camera where nothing else is said.
+/// Default number of scattering events after the camera.
 pub const DEFAULT_MAX_DEPTH: u32 = 16;
 
-/// The greatest depth that may be asked for.
+/// The maximum depth that may be requested.
 pub const MAX_DEPTH: u32 = 1000;
 
 /// Side of a tile, in pixels.
 pub(crate) const TILE: u32 = 16;
 
-/// Enough for trees of rays as deep as [`MAX_DEPTH`].
+/// Enough for ray trees as deep as [`MAX_DEPTH`].
 const STACK_BYTES: usize = 16 << 20;
 
-/// What is to be rendered, apart from scene, camera and integrator.
+/// What to render, apart from scene, camera and integrator.
 #[derive(Clone, Debug)]
 pub struct RenderSettings {
-    /// Pixels across the whole film.
+    /// Width of the whole film in pixels.
     pub width: u32,
-    /// Pixels down the whole film.
+    /// Height of the whole film in pixels.
     pub height: u32,
-    /// Samples of each pixel in all.
+    /// Total number of samples per pixel.
     pub spp: u32,
-    /// Which of them are to be taken now.
+    /// The range of them to take now.
     pub samples: Range<u32>,
-    /// Which pixels; `None` for all.
+    /// The pixels to render; `None` for all.
     pub crop: Option<Window>,
-    /// Another seed gives other noise.
+    /// A different seed gives different noise.
     pub seed: u64,
-    /// How many threads; 0 for one each core.
+    /// Number of threads; 0 for one per core.
     pub threads: usize,
-    /// Greatest number of scattering events after the camera; 0 is emission only.
+    /// Maximum number of scattering events after the camera; 0 is emission only.
     pub max_depth: u32,
-    /// Where in a pixel its middle sample lies.
+    /// Where in a pixel its central sample lies.
     pub pixel_anchor: PixelAnchor,
-    /// How samples spread around the pixel's middle.
+    /// How samples spread around the pixel's centre.
     pub filter: Filter,
     /// Count nodes and triangle tests, not only rays.
     pub count_work: bool,
-    /// What may end it before all samples are taken.
+    /// What may end the picture before all samples are taken.
     pub stop: Stop,
-    /// Take samples in independent replicates, which tell how far their mean may be off ([`Rendered::interval`]). These are
-    /// other samples, a little less evenly spread.
+    /// Take samples in independent replicates, which show how far their mean may be off ([`Rendered::interval`]). These
+    /// are different samples, a little less evenly distributed.
     pub interval: bool,
     /// Estimate the variance of each pixel ([`Rendered::batch_means`]), which denoisers need.
     pub batch_means: bool,
 }
 
-/// Which point stands for a pixel.
+/// The point that represents a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PixelAnchor {
-    /// Its middle.
+    /// Its centre.
     #[default]
     Centre,
-    /// Its upper left corner, at integer coordinates, as older renderers have it.
+    /// Its upper left corner, at integer coordinates, as in older renderers.
     Corner,
 }
 
 impl RenderSettings {
-    /// Every sample of a film of this size.
+    /// All samples of a film of this size.
     pub fn new(width: u32, height: u32, spp: u32) -> RenderSettings {
         RenderSettings {
             width,
@@ -99,8 +99,8 @@ impl RenderSettings {
         self.crop.unwrap_or(Window::whole(self.width, self.height))
     }
 
-    /// How many samples an integrator takes: of those that follow light from its sources, all that the whole film has,
-    /// whatever part of it is wanted, since the light of any may land there.
+    /// The number of samples that an integrator takes. Integrators that trace light subpaths take all samples of the
+    /// whole film, whatever part of it is requested, since any light subpath may contribute there.
     pub fn sample_count(&self, integrator: &dyn PixelIntegrator) -> u64 {
         self.walked(integrator).pixels() as u64 * self.samples.len() as u64
     }
@@ -110,7 +110,7 @@ impl RenderSettings {
         if integrator.splats() { Window::whole(self.width, self.height) } else { self.window() }
     }
 
-    /// As integrators that choose see them: the choice is the same with an interval and without.
+    /// The settings that choosing integrators see: the choice is the same with an interval and without.
     pub(crate) fn as_planned(&self) -> RenderSettings {
         RenderSettings { interval: false, batch_means: false, ..self.clone() }
     }
@@ -141,17 +141,17 @@ impl RenderSettings {
     }
 }
 
-/// Whom to tell how far it is, and who may stop it. Called from many threads, about once for each tile.
+/// Receives progress, and may cancel the work. Called from many threads, about once per tile.
 pub trait Progress: Sync {
-    /// So many samples and rays more.
+    /// This many more samples and rays have been taken.
     fn advance(&self, samples: u64, rays: u64);
-    /// So many samples are going to be taken.
+    /// This many samples will be taken.
     fn begin(&self, _samples: u64) {}
-    /// True when the work is to stop; what is finished is kept.
+    /// True when the work must stop; what is finished is kept.
     fn is_cancelled(&self) -> bool;
 }
 
-/// Nobody to tell, and nobody to stop it.
+/// Ignores progress, and never cancels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
@@ -162,30 +162,31 @@ impl Progress for Silent {
     }
 }
 
-/// What came of it.
+/// The result of a render.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// The film; [`Film::trouble`] tells of samples that went wrong.
+    /// The film; [`Film::trouble`] reports bad samples.
     pub film: Film,
-    /// What the rays took; only `rays` unless [`RenderSettings::count_work`] was on.
+    /// The work of tracing; only `rays` unless [`RenderSettings::count_work`] was on.
     pub counters: Counters,
-    /// True when it was stopped. Then [`Film::coverage`] tells which samples are in; each is there whole.
+    /// True when it was cancelled. Then [`Film::coverage`] states which samples the film holds; each of them is
+    /// complete.
     pub cancelled: bool,
-    /// What an integrator that chooses has chosen.
+    /// The choice of an integrator that chooses.
     pub choice: Option<Choice>,
-    /// How far it came, where it could end early ([`RenderSettings::stop`]).
+    /// Its state when it ended, where it could end early ([`RenderSettings::stop`]).
     pub reached: Option<Reached>,
-    /// Between which bounds pixels lie, where it was asked for ([`RenderSettings::interval`]): of whole iterations, also
-    /// where it was stopped.
+    /// The pixels' confidence intervals, where requested ([`RenderSettings::interval`]): of whole iterations, even if
+    /// it was cancelled.
     pub interval: Option<Interval>,
     /// Batches of samples, which give the variance of each pixel, where it was asked for ([`RenderSettings::batch_means`]).
     pub batch_means: Option<BatchMeans>,
 }
 
-/// Renders the samples asked for.
+/// Renders the requested samples.
 ///
 /// # Errors
-/// When the size, crop, range of samples or depth makes no sense, or the machine gives no room or threads.
+/// When the size, crop, range of samples or depth is invalid, or there is not enough memory or no threads.
 pub fn render(
     scene: &Scene,
     camera: &dyn Camera,
@@ -256,7 +257,7 @@ pub fn render(
     Ok(Rendered { interval, batch_means: batches, ..rendered })
 }
 
-/// All that stays the same while a picture is rendered.
+/// Everything that stays the same while a picture is rendered.
 struct Run<'a> {
     scene: &'a Scene,
     camera: &'a dyn Camera,
@@ -302,7 +303,7 @@ impl<'a> Run<'a> {
         Ok(rendered)
     }
 
-    /// The same, one sample after the other, so that each gets into its replicate.
+    /// The same, one sample after the other, so that each goes into its replicate.
     fn take_each(
         &self,
         samples: &Range<u32>,
@@ -325,7 +326,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// As many as are wanted.
+/// A pool of the requested number of threads.
 pub(crate) fn threads(settings: &RenderSettings) -> Result<rayon::ThreadPool, RenderError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(settings.threads)

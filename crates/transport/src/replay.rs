@@ -1,4 +1,4 @@
-//! One sample once more, with all that happens on its way.
+//! Replays one sample, with all events along its path.
 
 use crate::bidirectional::{Merging, Photons};
 use crate::camera_rays::CameraRays;
@@ -14,20 +14,20 @@ use bilux_math::Rgb;
 use bilux_scene::{Camera, Ray, Scene, Tracer};
 use std::fmt;
 
-/// A sample's story; its `Display` is for people.
+/// The record of a sample; its `Display` is for people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replay {
-    /// Which sample.
+    /// The sample.
     pub place: SamplePlace,
-    /// The ray that the camera sent.
+    /// The camera ray.
     pub ray: Ray,
-    /// What happened on the way.
+    /// The events along the path.
     pub events: Vec<Event>,
-    /// What came of it in its own pixel.
+    /// The radiance in its own pixel.
     pub radiance: Rgb,
-    /// Pixels in which its light path has left something.
+    /// Number of pixels that its light subpath contributes to.
     pub splats: usize,
-    /// How many rays it took.
+    /// Number of rays traced.
     pub rays: u64,
 }
 

@@ -1,46 +1,46 @@
-//! Points of the unit square: Sobol' sequences, scrambled by hashes. [Burley 2020]
+//! Points of the unit square: Sobol' sequences with hash-based scrambling. [Burley 2020]
 //!
-//! A point is a pure function of seed, pixel, sample index and dimension; nothing is remembered from one sample
-//! to the next. Each pair of dimensions is the (0, 2)-sequence of Sobol' in an order and with a scrambling of
-//! its own, so that any first 2ⁿ samples of a pixel are spread evenly over the square.
+//! A point is a pure function of seed, pixel, sample index and dimension; no state is carried from one sample to the
+//! next. Each pair of dimensions is the (0, 2)-sequence of Sobol' with a shuffling and a scrambling of its own, so any
+//! first 2ⁿ samples of a pixel are evenly distributed over the square.
 
 use bilux_math::Vec2;
 use bilux_math::hash::{hash_words, mix64, unit_f32};
 
 /// The random numbers of one sample of one pixel, in order.
 ///
-/// They come in streams: [`PixelSampler::enter`] begins one for each vertex of a path (or node of a tree of
-/// rays), so that what is drawn at one vertex never shifts what is drawn at the next.
+/// They come in streams: [`PixelSampler::enter`] begins one for each vertex of a path (or node of a ray tree), so the
+/// numbers used at one vertex never shift those used at the next.
 #[derive(Clone, Debug)]
 pub struct PixelSampler {
     pixel: u64,
-    /// The sample's number, its bits turned around.
+    /// The sample's index with its bits reversed.
     reversed_index: u32,
     stream: u64,
     dimension: u32,
 }
 
 impl PixelSampler {
-    /// The numbers of one sample.
+    /// The random numbers of one sample.
     pub fn new(seed: u64, x: u32, y: u32, index: u32) -> PixelSampler {
         let pixel = hash_words([seed, u64::from(x) << 32 | u64::from(y)]);
         PixelSampler { pixel, reversed_index: index.reverse_bits(), stream: pixel, dimension: 0 }
     }
 
-    /// Passes over so many numbers or points that nobody asks for: what follows is the same as if they had been drawn.
+    /// Skips this many numbers or points that are not needed: what follows is the same as if they had been generated.
     #[inline]
     pub fn skip(&mut self, draws: u32) {
         self.dimension += draws;
     }
 
-    /// Begins the stream of this number; that of a new sampler is another one.
+    /// Begins the stream with this number; a new sampler begins with a different one.
     #[inline]
     pub fn enter(&mut self, stream: u64) {
         self.stream = mix64(self.pixel ^ mix64(stream.wrapping_add(0x9e37_79b9_7f4a_7c15)));
         self.dimension = 0;
     }
 
-    /// The next number, `[0, 1)`.
+    /// The next number in `[0, 1)`.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
         let key = self.key();
@@ -48,7 +48,7 @@ impl PixelSampler {
         unit_f32(scramble_reversed(reversed_sobol_0(index), (key >> 32) as u32).reverse_bits())
     }
 
-    /// The next point, `[0, 1)²`.
+    /// The next point in `[0, 1)²`.
     #[inline]
     pub fn next_2d(&mut self) -> Vec2 {
         let key = self.key();
@@ -67,21 +67,21 @@ impl PixelSampler {
     }
 }
 
-/// A regular pattern over the pixel, for integrators that draw no random numbers: multiples of the inverse
-/// powers of the plastic number. The first point is the middle. [Roberts 2018]
+/// A regular pattern over the pixel, for integrators that use no random numbers: multiples of the inverse powers of the
+/// plastic number. The first point is the pixel's centre. [Roberts 2018]
 pub fn regular_pattern(index: u32) -> Vec2 {
     const STEP: [u32; 2] = [3_242_174_889, 2_447_445_414];
     let at = |step: u32| unit_f32(0x8000_0000u32.wrapping_add(index.wrapping_mul(step)));
     Vec2::new(at(STEP[0]), at(STEP[1]))
 }
 
-/// First dimension of the sequence, its bits turned around: the index itself. [Sobol 1967]
+/// First dimension of the sequence, bit-reversed: the index itself. [Sobol 1967]
 #[inline]
 fn reversed_sobol_0(index: u32) -> u32 {
     index
 }
 
-/// Second dimension, likewise: the index times Pascal's triangle modulo 2, here in five steps rather than 32.
+/// Second dimension, bit-reversed: the index times Pascal's triangle modulo 2, here in five steps rather than 32.
 #[inline]
 fn reversed_sobol_1(index: u32) -> u32 {
     let mut x = index;
@@ -93,8 +93,8 @@ fn reversed_sobol_1(index: u32) -> u32 {
     x
 }
 
-/// A nested uniform scrambling of numbers whose bits are turned around: each bit is flipped by a hash of those below
-/// it. [Burley 2020, listing 3; constants of Vegdahl 2021]
+/// A nested uniform scrambling of bit-reversed numbers: each bit is flipped by a hash of the bits below it.
+/// [Burley 2020, listing 3; constants of Vegdahl 2021]
 #[inline]
 fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -109,7 +109,7 @@ fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// The second dimension by its direction numbers, one for each bit.
+    /// The second dimension from its direction numbers, one for each bit.
     fn sobol_1_by_definition(mut index: u32) -> u32 {
         let (mut direction, mut x) = (1u32 << 31, 0);
         while index != 0 {
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn two_single_dimensions_are_no_net() {
-        // The twin of the test above: what is not a net has to be told from one.
+        // Negative control of the test above: the check must reject points that are not a net.
         let singles = |s: &mut PixelSampler| Vec2::new(s.next_1d(), s.next_1d());
         assert!(!fills_elementary_intervals(&points(8, 3, singles), 8));
     }

@@ -1,8 +1,8 @@
-//! The shadow of a model on a ground that is not seen itself, as alpha: laid over the ground as it would be without the model,
-//! black of this alpha gives the ground with its shadow.
+//! The shadow that a model casts on an invisible ground, as alpha: black with this alpha, composited over the ground as
+//! it would be without the model, gives the ground with its shadow.
 //!
-//! Of light that comes straight from lights: the part that the model keeps from the ground. Where the model shades nothing, alpha is exactly
-//! 0, without noise.
+//! Only direct light counts: alpha is the fraction of it that the model blocks. Where the model casts no shadow, alpha
+//! is exactly 0, without noise.
 
 use crate::camera_rays::CameraRays;
 use crate::error::RenderError;
@@ -15,35 +15,38 @@ use bilux_math::Vec3;
 use bilux_scene::{Camera, LightSample, Ray, Scene, Surface, Tracer};
 use rayon::prelude::*;
 
-/// Points on lights that are tried for each pixel, at least.
+/// Minimum number of points on lights that are sampled for each pixel.
 const MIN_SAMPLES: u32 = 128;
-/// The random numbers are others than those of the picture's paths.
+/// A stream of random numbers apart from those of the picture's paths.
 const STREAM: u64 = 0x7368_6164;
-/// Surfaces of glass that light goes straight through at most.
+/// Maximum number of glass surfaces that light passes straight through.
 const MAX_PANES: usize = 32;
 
-/// What catches the shadow, and of what.
+/// The surface that catches the shadow, and the objects that cast it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadowCatcher {
-    /// The number of the object that is the ground: one that the camera looks through.
+    /// The object index of the ground, which is invisible to camera rays.
     pub ground: u32,
-    /// So many of the scene's objects are of the file or the studio; after these come the surfaces of lamps, which cast no shadow.
+    /// The first `objects` objects come from the file or the studio; the emissive surfaces of lights follow, and cast
+    /// no shadow.
     pub objects: u32,
 }
 
-/// A pixel's ground while points on lights are tried.
+/// Sums over the samples of one pixel.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    /// Camera rays that meet the model, and that meet the ground.
+    /// Camera rays that hit the model, and that hit the ground.
     model: u32,
     ground: u32,
-    /// Light on the ground with the model and without.
+    /// Light on the ground with the model and without it.
     with: f64,
     without: f64,
 }
 
-/// The alpha of each pixel: 1 where the model is seen, on the ground the part of the light that it keeps from there, in rows of the
-/// film's window, the top one first. `samples` are those of the picture.
+/// The alpha of each pixel: 1 where the model is visible, and on the ground the fraction of light that the model
+/// blocks.
+///
+/// Pixels are in rows of the film's window, the top row first. `samples` is the picture's number of samples per pixel.
 ///
 /// # Errors
 /// As [`crate::features()`].
@@ -78,7 +81,7 @@ pub fn shadow_alpha(
     Ok(alpha)
 }
 
-/// Lights that would be there without the model, and the probability of each.
+/// Indices of the lights that remain without the model, as far as their probability is above 0.
 fn lamps(scene: &Scene, catcher: ShadowCatcher) -> Vec<usize> {
     let of_model: Vec<usize> =
         (0..catcher.objects).filter_map(|object| scene.light_index_of(object)).collect();
@@ -107,7 +110,7 @@ impl Sums {
         let n =
             if ground.n_geom.dot(Vec3::from(ray.direction)) > 0.0 { -ground.n_geom } else { ground.n_geom };
         for _ in 0..tries {
-            // One of them, each as likely: they are few in a studio.
+            // Chooses one light uniformly: a studio has few.
             let picked = (sampler.next_1d() * lights.len() as f32) as usize;
             let u = sampler.next_2d();
             let Some(&light) = lights.get(picked.min(lights.len().saturating_sub(1))) else { return };
@@ -132,7 +135,8 @@ impl Sums {
     }
 }
 
-/// The part of a light that the model lets through to the ground; `None` where a lamp is in its way, model or not.
+/// The fraction of a light that the model lets through to the ground; `None` where another light is in the way, with or
+/// without the model.
 fn passed(
     tracer: &mut Tracer,
     ground: &Surface,
@@ -148,7 +152,7 @@ fn passed(
         }
         let material = tracer.scene.material(&surface).classic(&surface);
         if material.thin || surface.n_geom.dot(direction) < 0.0 {
-            // Once for each body: where the light comes in.
+            // Each body counts once: where the light enters it.
             left *= material.kt.luminance();
         }
         if material.kt.is_black() {

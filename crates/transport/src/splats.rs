@@ -1,9 +1,8 @@
-//! Light that was followed from its source and arrives at the film wherever it will, in fixed point as all sums.
+//! Splats: the light of light subpaths, which may arrive anywhere on the film, in fixed point like all sums.
 //!
-//! One sample of every pixel is one iteration: as many light paths as the *whole* film has pixels, whatever part of it
-//! is kept. What they leave is added up without being divided; a pixel's mean divides by the iterations that are in. An
-//! iteration counts when all of its light paths have arrived, and not before, since half of them would be half of the
-//! light.
+//! One sample of every pixel is one iteration: as many light subpaths as the *whole* film has pixels, whatever part of
+//! it is stored. Splats are summed without division; a pixel's mean divides by the iterations that the film holds. An
+//! iteration counts only once all of its light subpaths have arrived, since half of them would be half of the light.
 
 use crate::bidirectional::{Contribution, LightPathVisitor, Tally, Technique};
 use crate::error::FilmError;
@@ -16,7 +15,7 @@ use bilux_math::hash::hash_words;
 use bilux_math::{Rgb, Vec2};
 use std::sync::{Mutex, PoisonError};
 
-/// What light paths leave on the film, pixel by pixel.
+/// The splats of light subpaths, pixel by pixel.
 #[derive(Clone)]
 pub struct Splats<'a> {
     filter: &'a Filter,
@@ -24,7 +23,7 @@ pub struct Splats<'a> {
     size: Vec2,
     window: Window,
     scale_exponent: i32,
-    /// Which light path, and how many splats it has left.
+    /// The current light subpath, and the number of its splats.
     path: [u64; 2],
     sample: u32,
     pub(crate) deposits: Vec<Deposit>,
@@ -33,7 +32,7 @@ pub struct Splats<'a> {
 /// A splat's share in one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Deposit {
-    /// The pixel's place in the film's window.
+    /// The pixel's index in the film's window.
     pub(crate) index: u32,
     pub(crate) steps: [i64; 3],
     pub(crate) trouble: PixelFailures,
@@ -56,14 +55,15 @@ impl<'a> Splats<'a> {
         }
     }
 
-    /// Whose splats the next are: those of the light path of a pixel and sample.
+    /// Begins the splats of the light subpath of a pixel and sample.
     pub(crate) fn begin(&mut self, x: u32, y: u32, sample: u32) {
         self.path = [u64::from(x) << 32 | u64::from(y), u64::from(sample) << 32];
         self.sample = sample;
     }
 
-    /// Light at a point of the film (0..=1 on both axes, y downwards), as an estimate of the integral over the whole
-    /// film of importance times radiance, the film's area being 1. Each pixel whose filter reaches the point has its share.
+    /// Adds light at a point of the film (0..=1 on both axes, y downwards), as an estimate of the integral over the
+    /// whole film of importance times radiance, the film's area being 1. Each pixel whose filter reaches the point gets
+    /// its share.
     pub fn add(&mut self, film: Vec2, light: Rgb) {
         self.path[1] += 1;
         if light.is_black() {
@@ -72,7 +72,7 @@ impl<'a> Splats<'a> {
         let at = film * self.size;
         let reach = self.filter.radius();
         let range = |at: f32| {
-            // A pixel reaches its middle ± radius: one more on each side costs little, and rounding nothing.
+            // A pixel reaches its centre ± radius: one more on each side costs little, and makes rounding harmless.
             let first = (at - self.anchor - reach).floor().max(0.0);
             (first as u32, (at - self.anchor + reach).floor().max(0.0) as u32 + 1)
         };
@@ -116,7 +116,7 @@ impl<const N: usize> Tally<N> for Splats<'_> {
     }
 }
 
-/// What the camera sees of the light paths of one iteration, where they are followed before its camera paths.
+/// The splats of one iteration's light subpaths, where they are traced before its camera subpaths.
 pub(crate) struct IterationSplats<'a> {
     settings: &'a RenderSettings,
     scale_exponent: i32,
@@ -154,11 +154,11 @@ impl<'a, const N: usize> LightPathVisitor<N> for IterationSplats<'a> {
     }
 }
 
-/// The splats of some iterations while they come in.
+/// The splats of some iterations as they arrive.
 pub(crate) struct Iterations {
     sums: Vec<[i64; 3]>,
     trouble: Vec<(u32, PixelFailures)>,
-    /// Tiles of the film whose light paths are still to come.
+    /// Tiles of the film whose light subpaths have not arrived yet.
     pub(crate) tiles_left: usize,
 }
 
@@ -167,7 +167,7 @@ impl Iterations {
         Ok(Iterations { sums: zeroed(pixels)?, trouble: Vec::new(), tiles_left: tiles })
     }
 
-    /// Takes over what the light paths of one tile have left.
+    /// Takes over the splats of one tile.
     pub(crate) fn take(&mut self, deposits: &mut Vec<Deposit>) {
         for deposit in deposits.drain(..) {
             add(&mut self.sums[deposit.index as usize], deposit.steps);
@@ -212,7 +212,7 @@ impl Film {
     }
 }
 
-/// More than can be added is told as overflow long before.
+/// Sums saturate here, but overflow is reported long before.
 pub(crate) fn add(sum: &mut [i64; 3], more: [i64; 3]) {
     for (sum, more) in sum.iter_mut().zip(more) {
         *sum = sum.saturating_add(more);

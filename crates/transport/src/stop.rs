@@ -1,4 +1,4 @@
-//! When a picture is good enough, or has taken long enough. Both are asked between passes over the whole film.
+//! When a picture is good enough, or has taken long enough. Both are checked between passes over the whole film.
 
 use crate::film::Film;
 use crate::render::RenderSettings;
@@ -8,36 +8,36 @@ use std::time::{Duration, Instant};
 /// What ends a picture before all of its samples are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stop {
-    /// Noise that is low enough: see [`Reached::noise`].
+    /// The noise that is low enough: see [`Reached::noise`].
     pub noise: Option<f32>,
-    /// Time that may pass.
+    /// The time that may pass.
     pub time_limit: Option<Duration>,
 }
 
-/// How far a picture has come that may end early.
+/// The state of a picture that may end early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// Samples of each pixel.
+    /// Samples per pixel.
     pub spp: u32,
-    /// What is left of the noise, where it was asked for: the standard error of a pixel as a part of the light around
-    /// it, as a mean over blocks of 8 × 8 pixels. What is darker than [`DARK`] of the mean counts as that bright.
+    /// The remaining noise, where a target was set: the standard error of a pixel relative to the light around it, as a
+    /// mean over blocks of 8 × 8 pixels. Light darker than [`DARK`] of the picture's mean counts as that bright.
     pub noise: Option<f32>,
-    /// How far it may have shifted the mean that the samples by which noise was told are in it: at most so much, in standard
+    /// Upper bound of the bias that arises because the samples that measure the noise are in the mean: in standard
     /// errors of a pixel, as a root mean square over pixels.
     ///
-    /// Let eₙ be a pixel's error after n samples, σₙ its standard deviation, T the number of samples at which the picture
-    /// ends. The shift is Σₙ E[eₙ·1(T = n)], and 1(T = n) is the same for all pixels. Errors of different pixels have nothing in
-    /// common, so by Bessel's inequality the squares of their correlations with 1(T = n) add up to at most 1 over all N
-    /// pixels, and the shift in units of σ is at most Σₙ √(P(T = n)(1 - P(T = n)) / N), which is 2/√N for five n that are
-    /// all as likely, and less for fewer. It asks nothing of a pixel's samples among themselves. Where pixels see the
-    /// same light paths, N is as many as see different ones.
+    /// Let eₙ be a pixel's error after n samples, σₙ its standard deviation, T the number of samples at which the
+    /// picture ends. The bias is Σₙ E[eₙ·1(T = n)], and 1(T = n) is the same for all pixels. Errors of different pixels
+    /// are independent, so by Bessel's inequality the squares of their correlations with 1(T = n) add up to at most 1
+    /// over all N pixels, and the bias in units of σ is at most Σₙ √(P(T = n)(1 - P(T = n)) / N), which is 2/√N for
+    /// five n that are equally likely, and less for fewer. The bound assumes nothing about how the samples of one pixel
+    /// depend on each other. Where pixels see the same light paths, N is the number of pixels that see different ones.
     pub bias: Option<f32>,
 }
 
-/// So dark, as a part of the picture's mean, that nobody sees the noise of what is darker.
+/// The fraction of the picture's mean below which noise is not visible.
 pub const DARK: f32 = 0.3;
 
-/// Side of a block whose noise is told as one number, in pixels.
+/// Side of a block that has one noise value, in pixels.
 const BLOCK: u32 = 8;
 
 impl Stop {
@@ -47,21 +47,21 @@ impl Stop {
     }
 }
 
-/// Watches a film while samples are added.
+/// Watches a film as samples are added.
 pub(crate) struct StopMonitor {
     stop: Stop,
     begun: Instant,
     samples: Range<u32>,
-    /// How many of them are in.
+    /// How many of them the film holds.
     pub(crate) done: u32,
-    /// Luminances of the film when it had so many samples, at the last two powers of 2: later samples are told from
-    /// earlier ones by what they changed.
+    /// Sample counts and luminances of the film at the last two powers of 2: the change since then separates later
+    /// samples from earlier ones.
     snapshots: [Option<(u32, Vec<f32>)>; 2],
     pub(crate) reached: Option<Reached>,
 }
 
 impl StopMonitor {
-    /// So much time was spent before the first sample.
+    /// `spent` is the time that passed before the first sample.
     pub(crate) fn new(settings: &RenderSettings, spent: Duration) -> StopMonitor {
         let samples = settings.samples.clone();
         let time_limit = settings.stop.time_limit.map(|limit| limit.saturating_sub(spent));
@@ -69,10 +69,10 @@ impl StopMonitor {
         StopMonitor { stop, begun: Instant::now(), samples, done: 0, snapshots: [None, None], reached: None }
     }
 
-    /// The next samples to take; `None` when it is enough.
+    /// The next samples to take; `None` when the picture is done.
     pub(crate) fn next(&mut self) -> Option<Range<u32>> {
         let left = self.samples.len() as u32 - self.done;
-        // In quarters of a power of 2, so that not much more is taken than was needed.
+        // In quarters of a power of 2, so that few more samples are taken than needed.
         let mut length =
             (self.done.next_power_of_two() / if self.done.is_power_of_two() { 4 } else { 8 }).max(1);
         if let Some(limit) = self.stop.time_limit
@@ -90,7 +90,7 @@ impl StopMonitor {
         (length > 0).then(|| start..start + length)
     }
 
-    /// Looks at the film after some more samples.
+    /// Inspects the film after some more samples.
     pub(crate) fn look(&mut self, film: &Film, samples: &Range<u32>) {
         self.done += samples.len() as u32;
         let mut noise = None;
@@ -111,7 +111,7 @@ impl StopMonitor {
         self.reached?.noise
     }
 
-    /// About how many samples of a pixel it is going to be, as far as can be told.
+    /// Estimates the final number of samples per pixel.
     pub(crate) fn expected(&self) -> u32 {
         let most = self.samples.len() as u32;
         if self.done == 0 {
@@ -131,7 +131,8 @@ impl StopMonitor {
         by_time.min(by_noise).clamp(done, f64::from(most)) as u32
     }
 
-    /// Of n samples the mean differs from that of the first m of them by σ²(1/m - 1/n) in the square; its own error is σ²/n.
+    /// Measures the noise: the squared difference between the mean of n samples and that of the first m of them is
+    /// σ²(1/m - 1/n); the squared error of the mean itself is σ²/n.
     fn measure(&self, now: &[f32], film: &Film) -> Option<f32> {
         let (m, before) = self.snapshots.iter().flatten().find(|(m, _)| *m < self.done)?;
         let to_own = f64::from(*m) / f64::from(self.done - m);

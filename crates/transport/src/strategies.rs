@@ -1,5 +1,5 @@
-//! Each strategy's own picture: what joining `s` vertices from the light with `t` from the camera finds, with the weight
-//! that it has among all others and without. [Veach 1997, fig. 10.3]
+//! A picture of each technique: what connecting `s` vertices from the light with `t` from the camera finds, with its
+//! MIS weight and without. [Veach 1997, fig. 10.3]
 
 use crate::bidirectional::{Contribution, Photons, Tally, Technique};
 use crate::camera_rays::CameraRays;
@@ -18,43 +18,44 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Edges of the longest paths whose strategies have pictures.
+/// Edges of the longest paths whose techniques have pictures.
 pub const LONGEST: u32 = 8;
 
-/// A way of finding paths of one length. In order of their lengths, then of vertices from the light.
+/// A technique for paths of one length. Ordered by length, then connections before merging, then by vertices from the
+/// light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Strategy {
-    /// Edges of its paths, one more than they scatter.
+    /// Edges of its paths, one more than their scattering events.
     pub edges: u32,
-    /// True where the last vertices of both subpaths count as one, false where an edge joins them.
+    /// True where the last vertices of both subpaths are merged, false where an edge connects them.
     pub merges: bool,
-    /// Vertices from the light, the light's own included.
+    /// Vertices from the light, including the one on the light.
     pub s: u32,
 }
 
-/// The pictures of all strategies that have found anything.
+/// The pictures of all techniques that have found anything.
 pub struct Strategies {
-    /// Which pixels.
+    /// The pixels that they cover.
     pub window: Window,
-    /// In order of the strategies.
+    /// In order of the techniques.
     pub pictures: Vec<StrategyPicture>,
-    /// What the rays took.
+    /// The work that tracing took.
     pub counters: Counters,
 }
 
-/// What one strategy has found: pixels of the window in rows, the top one first.
+/// What one technique has found: pixels of the window in rows, the top row first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrategyPicture {
-    /// Which one.
+    /// The technique.
     pub strategy: Strategy,
-    /// Its share of the picture: all shares together are the picture, longer paths aside.
+    /// Its weighted contribution: all of them add up to the picture, except for longer paths.
     pub weighted: Vec<Rgb>,
-    /// All light of paths of this length, as far as this strategy finds it.
+    /// All light of paths of this length, as far as this technique finds it.
     pub unweighted: Vec<Rgb>,
 }
 
 impl Strategy {
-    /// Vertices from the camera, the camera's own included.
+    /// Vertices from the camera, including the one at the camera.
     pub fn t(&self) -> u32 {
         self.edges + 1 + u32::from(self.merges) - self.s
     }
@@ -73,9 +74,10 @@ impl fmt::Display for Strategy {
     }
 }
 
-/// Renders the samples asked for, strategy by strategy; `None` when it was stopped, or the integrator has none
-/// ([`PixelIntegrator::has_strategies`]). The same paths as [`crate::render()`] follows, whatever may have ended that
-/// early.
+/// Renders the requested samples, technique by technique.
+///
+/// `None` when it was cancelled, or the integrator has no techniques ([`PixelIntegrator::has_strategies`]). It traces
+/// the same paths as [`crate::render()`], whatever may have ended that early.
 ///
 /// # Errors
 /// As [`crate::render()`].
@@ -87,7 +89,7 @@ pub fn strategies(
     progress: &dyn Progress,
 ) -> Result<Option<Strategies>, RenderError> {
     settings.check()?;
-    // Refuses senseless sizes.
+    // Rejects invalid sizes.
     Film::windowed(settings.width, settings.height, settings.window(), scale_exponent(scene))?;
     if !integrator.has_strategies() {
         return Ok(None);
@@ -119,15 +121,16 @@ pub fn strategies(
     Ok(Some(sums.means(settings, scale_exponent(scene))?))
 }
 
-/// Weighted and not.
+/// Weighted and unweighted.
 type Both<T> = [T; 2];
 
-/// What all strategies have found in all samples so far.
+/// What all techniques have found in all samples so far.
 #[derive(Default)]
 struct Sums {
-    /// In the pixel of the camera path. Each pixel is added to in the order of its samples, so that floating point does.
+    /// In the pixel of the camera subpath. Each pixel is summed in the order of its samples, so that floating point
+    /// suffices.
     here: BTreeMap<Strategy, Vec<Both<Rgb>>>,
-    /// Light paths seen from the camera.
+    /// Splats of light subpaths.
     there: BTreeMap<Strategy, Both<Iterations>>,
     counters: Counters,
 }
@@ -210,13 +213,13 @@ impl Sums {
     }
 }
 
-/// What all strategies find in a tile.
+/// What all techniques find in a tile.
 pub struct Layers<'a> {
     settings: &'a RenderSettings,
     scale_exponent: i32,
-    /// The part of the tile that is wanted.
+    /// The requested part of the tile.
     window: Window,
-    /// Whose sample it is: column, row and number.
+    /// The current sample: column, row and index.
     place: [u32; 3],
     here: BTreeMap<Strategy, Vec<Both<Rgb>>>,
     there: BTreeMap<Strategy, Both<Splats<'a>>>,
@@ -256,7 +259,7 @@ impl Tally<1> for Layers<'_> {
             splats.begin(x, y, sample);
             [splats.clone(), splats]
         });
-        // Here every pixel has a light path that is seen, also where fewer make the picture.
+        // Here every pixel has a light subpath that is splatted, even where fewer make the picture.
         splats[0].add(film, found.weighted() * found.own.0[0]);
         splats[1].add(film, found.light);
     }

@@ -1,4 +1,4 @@
-//! What an integrator works with while it looks at one sample.
+//! What an integrator works with during one sample.
 
 use crate::bidirectional::Photons;
 use crate::emission::Emission;
@@ -7,34 +7,34 @@ use crate::sampler::PixelSampler;
 use bilux_math::Rgb;
 use bilux_scene::{Camera, Scene, Tracer, Wavelength};
 
-/// One sample's tools: whom to ask for hits, where random numbers come from, how long paths may be.
+/// The tools of one sample: the tracer for hits, the source of random numbers, the maximum path length.
 pub struct Task<'a, 's> {
-    /// Answers rays, and counts them.
+    /// Traces rays, and counts them.
     pub tracer: &'a mut Tracer<'s>,
     /// The random numbers of this sample.
     pub sampler: PixelSampler,
-    /// That of this sample's paths, wherever they begin.
+    /// The wavelength of this sample's paths, wherever they begin.
     pub wavelength: Wavelength,
-    /// Greatest number of scattering events after the camera; 0 is emission only.
+    /// Maximum number of scattering events after the camera; 0 is emission only.
     pub max_depth: u32,
-    /// Where rays come from.
+    /// The camera.
     pub camera: &'a dyn Camera,
-    /// Picks lights by what they give.
+    /// Chooses lights by what they bring.
     pub lights: &'a LightChoice,
-    /// Where light paths begin.
+    /// Starts light subpaths.
     pub emission: &'a Emission,
-    /// What the light paths of this iteration have left, where paths are merged.
+    /// The photons of this iteration's light subpaths, where subpaths are merged.
     pub photons: Option<&'a Photons>,
-    /// What happened on the way, if anybody wants to know.
+    /// Events along the path, if they are recorded.
     pub events: Option<Vec<Event>>,
 }
 
-/// Something that happened to a sample.
+/// An event along the path of a sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Scattering events before it.
     pub depth: u32,
-    /// What happened, for people.
+    /// A description for people.
     pub what: String,
 }
 
@@ -44,14 +44,14 @@ impl<'s> Task<'_, 's> {
         self.tracer.scene
     }
 
-    /// What the channels see of light that a whole path brings: once a surface has [split](bilux_scene::Bsdf::splits) it,
-    /// it is of one wavelength.
+    /// The light of a whole path as the colour channels see it: once a surface has [split](bilux_scene::Bsdf::splits)
+    /// the path, it carries a single wavelength.
     #[inline]
     pub fn seen(&self, light: Rgb, is_split: bool) -> Rgb {
         if is_split { light * self.wavelength.weight } else { light }
     }
 
-    /// Notes what happens, if anybody wants to know; else nothing is made.
+    /// Records an event; if events are not recorded, `what` is not called.
     #[inline]
     pub fn note(&mut self, depth: u32, what: impl FnOnce() -> String) {
         if let Some(events) = &mut self.events {

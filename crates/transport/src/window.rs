@@ -8,7 +8,7 @@ use std::ops::Range;
 pub struct Window {
     /// First column.
     pub x: u32,
-    /// First row, downwards.
+    /// First row, counted downwards.
     pub y: u32,
     /// Columns.
     pub width: u32,
@@ -23,17 +23,17 @@ impl fmt::Display for Window {
 }
 
 impl Window {
-    /// A whole film.
+    /// The window of a whole film.
     pub const fn whole(width: u32, height: u32) -> Window {
         Window { x: 0, y: 0, width, height }
     }
 
-    /// One pixel, at a column and row.
+    /// The window of one pixel, at a column and row.
     pub const fn pixel((x, y): (u32, u32)) -> Window {
         Window { x, y, width: 1, height: 1 }
     }
 
-    /// How many pixels it has.
+    /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
     }
@@ -51,13 +51,13 @@ impl Window {
         u64::from(self.y) + u64::from(self.height)
     }
 
-    /// True when all of `other` is within.
+    /// True when all of `other` lies within it.
     pub fn contains(&self, other: &Window) -> bool {
         let starts = other.x >= self.x && other.y >= self.y;
         starts && other.right() <= self.right() && other.bottom() <= self.bottom()
     }
 
-    /// What both have; empty where they are apart.
+    /// The common part; empty where they do not overlap.
     pub fn intersection(&self, other: &Window) -> Window {
         let (x, y) = (self.x.max(other.x), self.y.max(other.y));
         let width = self.right().min(other.right()).saturating_sub(u64::from(x)) as u32;
@@ -65,7 +65,7 @@ impl Window {
         Window { x, y, width, height }
     }
 
-    /// The smallest rectangle around both.
+    /// The smallest rectangle that contains both.
     pub fn union(&self, other: &Window) -> Window {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         let width = (self.right().max(other.right()) - u64::from(x)) as u32;
@@ -73,7 +73,7 @@ impl Window {
         Window { x, y, width, height }
     }
 
-    /// The place of a pixel, row by row; `None` where it is not within.
+    /// The index of a pixel, row by row; `None` where it lies outside.
     #[inline]
     pub fn index(&self, x: u32, y: u32) -> Option<usize> {
         let (column, row) = (x.wrapping_sub(self.x), y.wrapping_sub(self.y));
@@ -81,13 +81,13 @@ impl Window {
             .then(|| row as usize * self.width as usize + column as usize)
     }
 
-    /// The pixel at a place: column and row.
+    /// The pixel at an index: column and row.
     pub fn position(&self, index: usize) -> (u32, u32) {
         let width = self.width as usize;
         (self.x + (index % width) as u32, self.y + (index / width) as u32)
     }
 
-    /// Square tiles of this side that cover the window, row by row.
+    /// Square tiles with this side length that cover the window, row by row.
     pub fn tiles(&self, side: u32) -> Vec<Window> {
         let steps = |length: u32| (0..length.div_ceil(side)).map(move |i| i * side);
         let tile = |dx: u32, dy: u32| Window {
@@ -107,12 +107,12 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// The pieces, in no order that means anything.
+    /// The pieces, in no particular order.
     pub fn pieces(&self) -> &[(Window, Range<u32>)] {
         &self.pieces
     }
 
-    /// Adds a piece, joined to one that it continues.
+    /// Adds a piece, merged with those that it continues.
     pub fn insert(&mut self, window: Window, samples: Range<u32>) {
         if window.is_empty() || samples.is_empty() {
             return;
@@ -127,7 +127,7 @@ impl Coverage {
         self.pieces.push(piece);
     }
 
-    /// Adds all pieces of another.
+    /// Adds all pieces of another coverage.
     pub fn extend(&mut self, other: &Coverage) {
         for (window, samples) in &other.pieces {
             self.insert(*window, samples.clone());

@@ -1,5 +1,5 @@
-//! Light within what absorbs it: a block of index 1, whose surface bends nothing and reflects nothing, around the lamp,
-//! the surfaces and the camera. Every edge of a path, whichever way it was found, is dimmed by Beer's law.
+//! Light inside an absorbing medium: a block of index 1, whose surface neither refracts nor reflects, around the light,
+//! the surfaces and the camera. Beer's law attenuates every edge of a path, whichever technique found it.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn block(builder: &mut SceneBuilder, sigma: Rgb) {
     let bounds = Aabb { min: Vec3::new(-7.0, -1.0, -7.0), max: Vec3::new(7.0, 6.0, 7.0) };
     let air = Spec::new("", "dielectric").with("eta", 1.0f32).with("absorption", sigma);
     put(builder, "block", Arc::new(cuboid(bounds)), air.clone().with("priority", Value::Integer(2)));
-    // In it, a block that counts less, and therefore changes nothing: rays pass its surface.
+    // In it, a block of lower priority, which therefore changes nothing: rays pass its surface.
     let inner = Aabb { min: Vec3::new(-5.0, -0.5, -1.0), max: Vec3::new(0.6, 0.9, 0.9) };
     let idle = air.with("absorption", 3.0f32).with("priority", Value::Integer(1));
     put(builder, "idle block", Arc::new(cuboid(inner)), idle);
@@ -40,8 +40,8 @@ fn mean(scene: &Scene, name: &str, settings: &RenderSettings) -> Rgb {
     pixels.iter().copied().sum::<Rgb>() / pixels.len() as f32
 }
 
-/// Radiance of a small piece of matt floor below a point light, on average over the film: albedo / π · I cosθ / d², and e
-/// to the minus σ times the way from the lamp to the floor and on to the camera.
+/// Radiance of a small piece of diffuse floor below a point light, averaged over the film: albedo / π · I cosθ / d²,
+/// times e to the minus σ times the distance from the light to the floor and on to the camera.
 #[test]
 fn a_lamp_a_floor_and_a_camera_in_one_block_follow_beer() {
     let mut builder = SceneBuilder::default();
@@ -82,11 +82,11 @@ fn a_lamp_a_floor_and_a_camera_in_one_block_follow_beer() {
             );
         }
     }
-    // The way to the camera alone, forgotten, is seen.
+    // Forgetting the distance to the camera alone would be noticed.
     assert!(wanted(0, 0.0) > 1.2 * wanted(0, 1.0));
 }
 
-/// Light that has come by several edges, in a block, from a panel that paths meet by themselves as well.
+/// Light that arrives over several edges, in a block, from a panel that paths also hit by chance.
 fn indirect(sigma: Rgb) -> Scene {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.8, 0.7, 0.6)));
@@ -100,7 +100,7 @@ fn indirect(sigma: Rgb) -> Scene {
     built(&builder)
 }
 
-/// Scattering alone knows of no join: what it meets is dimmed along each ray that it follows.
+/// BSDF sampling alone makes no connections: the light that it finds is attenuated along each ray that it traces.
 #[test]
 fn joins_are_dimmed_as_the_ways_that_are_followed() {
     let (scene, clear) = (indirect(SIGMA), indirect(Rgb::BLACK));
@@ -109,7 +109,7 @@ fn joins_are_dimmed_as_the_ways_that_are_followed() {
         let p = agreement(&followed, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
         assert!(p > UNLIKELY, "scattering and {name}: p = {p}");
     }
-    // The twin: a block that takes a tenth less.
+    // Negative control: a block that absorbs a tenth less.
     let wrong = blocks(&indirect(SIGMA * 0.9), &*integrator("bdpt"), 700);
     assert!(agreement(&followed, &wrong) < UNLIKELY);
     let unhindered = blocks(&clear, &*integrator("path scattering"), 800);

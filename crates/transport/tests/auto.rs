@@ -1,4 +1,4 @@
-//! `auto`: what its first look foresees is what comes, and it chooses what it should.
+//! `auto`: its pilot's predictions come true, and it chooses what it should.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn choice(scene: &Scene, spec: &Spec, settings: &RenderSettings) -> Choice {
     shoot(scene, &*integrators::build(spec).unwrap(), settings).choice.unwrap()
 }
 
-/// Under a panel.
+/// Lit by a panel.
 fn corner() -> SceneBuilder {
     let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0));
     without_mirrors(panel.with("intensity", 10.0f32))
@@ -28,7 +28,7 @@ fn corner() -> SceneBuilder {
 const SETS: [&str; 8] =
     ["path", "path-light", "bdpt", "path-few", "path-photons", "path-light-few", "path-light-photons", "vcm"];
 
-/// Told which set to take, whatever it foresees.
+/// `auto` with a prescribed set, whatever its pilot predicts.
 fn told(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
     let spec = auto().with("ways", techniques).with("radius", RADIUS).with("alpha", 1.0f32);
     integrators::build(&spec.with("aim", aim)).unwrap()
@@ -36,15 +36,15 @@ fn told(techniques: &'static str, aim: bool) -> Box<dyn PixelIntegrator> {
 
 const RADIUS: f32 = 0.012;
 
-/// Of a film as small as a pilot.
+/// Number of pixels of a film as small as a pilot.
 const PIXELS: usize = 128;
 
-/// With as many samples as a turn of a pilot, so that as much is gained by their being spread evenly.
+/// As many samples as in a round of the pilot, so that their even distribution gains as much.
 fn film(seed: u64) -> RenderSettings {
     RenderSettings { seed, max_depth: 6, ..RenderSettings::new(16, 8, 8) }
 }
 
-/// The relative variance of a pixel, times its samples, as [`Choice`] has it.
+/// The relative variance of a pixel, times its samples, as in [`Choice`].
 fn measured(scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u64) -> f64 {
     let (mut sums, mut squares) = (vec![0.0; PIXELS], vec![0.0; PIXELS]);
     for seed in 0..pictures {
@@ -104,7 +104,7 @@ fn open_daylight_is_left_to_path() {
     assert!(film("auto") == film("path"), "then it is path, to the bit");
 }
 
-/// A glass ball above a floor, under a small lamp.
+/// A glass ball above a floor, under a small light.
 fn burning_glass() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.7f32));
@@ -124,7 +124,7 @@ fn a_caustic_is_worth_light_paths() {
     assert!(path.time_to_error() > 5.0 * choice.best().time_to_error(), "{choice}");
 }
 
-/// What aims lights of every kind: at the ball, whatever is infinitely far too.
+/// The burning glass under each kind of light that can be aimed: at the ball, even from infinity.
 fn lit_by(light: &str) -> SceneBuilder {
     let mut builder = burning_glass();
     let kept = std::mem::take(&mut builder.lights);
@@ -149,7 +149,7 @@ fn lit_by(light: &str) -> SceneBuilder {
 fn aimed_light_paths_find_the_same_light_with_less_noise() {
     for light in ["rect", "sphere", "point", "spot", "sun", "sky"] {
         let scene = built(&lit_by(light));
-        // What only light paths find, `path` is no measure of.
+        // `path` is no reference for what only light subpaths find.
         let p =
             agreement(&blocks(&scene, &*told("bdpt", false), 0), &blocks(&scene, &*told("bdpt", true), 100));
         assert!(p > 1e-4, "{light}: p = {p}");
@@ -157,7 +157,7 @@ fn aimed_light_paths_find_the_same_light_with_less_noise() {
             continue;
         }
         let [plain, aimed] = [false, true].map(|aim| measured(&scene, &*told("path-light", aim), 24));
-        // A sky has no caustics that paths from the camera would not find with less noise.
+        // A sky has no caustics that camera subpaths would not find with less noise.
         let bound = if light == "sky" { 2.0 } else { 1.05 };
         assert!(aimed < bound * plain, "{light}: {aimed} with aim, {plain} without");
     }
@@ -171,7 +171,7 @@ fn light_that_path_cannot_find_is_not_lost() {
     let settings = RenderSettings::new(192, 192, 1);
     let chosen = choice(&scene, &auto().with("merge", "never"), &settings);
     assert!(chosen.candidates[0].lost > 0.01 && chosen.best().name != "path", "{chosen}");
-    // What the mirror makes of the lamp, seen in the mirror, only photons find.
+    // Only photons find the mirror's caustic where it is reflected in the mirror itself.
     assert!(chosen.candidates[2].lost > 1e-3 && chosen.candidates[5].lost < 1e-6, "{chosen}");
     assert!(choice(&scene, &auto(), &settings).best().name.contains("photons"), "{chosen}");
 }

@@ -35,13 +35,13 @@ fn lamps_of_one_side_light_what_is_in_front_of_them() {
         let spec = Spec::new("", "rect").with("position", Vec3::new(0.5, 3.2, 0.5)).with("radiance", 8.0f32);
         built(&without_mirrors(spec.with("edge_u", edge_u).with("sides", sides)))
     };
-    // Its front is below, as that of a lamp in a ceiling.
+    // Its front faces down, like that of a lamp in a ceiling.
     assert_like_path("lamp in front", &panel(Vec3::X, "front"), &["light", "bdpt", "vcm"]);
     let settings = RenderSettings::new(16, 16, 16);
     let lit = |scene: &Scene, name: &str| shoot(scene, &*integrator(name), &settings).film.to_rgb();
     let [front, both] = ["front", "both"].map(|sides| lit(&panel(Vec3::X, sides), "path"));
     assert!(front == both, "what is in front of it is lit otherwise than by both sides");
-    // Turned up it shines at nothing.
+    // Turned up it lights nothing.
     for name in ["path", "light", "bdpt", "vcm", "sppm", "auto"] {
         let brightest = |sides: &str| {
             let pixels = lit(&panel(-Vec3::X, sides), name);
@@ -90,7 +90,7 @@ fn spheres_and_photons_come_to_the_same() {
     }
 }
 
-/// A panel over a ball of some material, and a matt one.
+/// A panel over a ball of some material, and a diffuse one.
 fn panel_over(material: Spec) -> SceneBuilder {
     let panel = Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32);
     let mut builder = without_mirrors(panel);
@@ -171,7 +171,7 @@ fn normal_maps_look_the_same_from_both_ends() {
             object.mesh = Arc::new(mesh);
         }
         builder.materials[0].parameters.set("normal", Value::Texture(0));
-        // From low above the floor, where many normals face away.
+        // The camera is low above the floor, where many normals face away.
         builder.cameras.clear();
         look(&mut builder, Vec3::new(0.0, 0.6, 4.0), Vec3::new(0.0, 0.4, 0.0), 40.0);
         assert_like_path(name, &built(&builder), &["light", "bdpt"]);
@@ -214,7 +214,7 @@ fn a_mixture_with_a_mirror_in_it_looks_the_same_from_both_ends() {
     assert!(p > UNLIKELY, "enamel: path and vcm: p = {p}");
 }
 
-/// No camera path finds what a mirror sends on from a light without extent.
+/// No camera subpath finds the light that a mirror reflects from a light without extent.
 fn without_small_lights(mut builder: SceneBuilder) -> SceneBuilder {
     builder.lights.retain(|light| !["point", "spot", "directional"].contains(&light.kind.as_str()));
     builder
@@ -228,7 +228,7 @@ fn mirrors_and_glass_under_many_lights_look_the_same_from_both_ends() {
 
 #[test]
 fn light_paths_find_what_mirrors_make_of_small_lights() {
-    // A floor, lit by a point before a mirror: by the point, and by its image behind the mirror.
+    // A floor and a point light in front of a mirror: lit by the light, and by its image behind the mirror.
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
     let mirror = Spec::new("", "mirror").with("reflectance", 1.0f32);
@@ -237,7 +237,7 @@ fn light_paths_find_what_mirrors_make_of_small_lights() {
     look(&mut builder, Vec3::new(0.5, 4.0, 0.6), Vec3::new(0.5, 0.0, 0.5), 20.0);
     let scene = built(&builder);
     let settings = RenderSettings::new(16, 16, 256);
-    // Radiance by a point light of unit intensity, on average over the film.
+    // Mean radiance over the film, from a point light of unit intensity.
     let lit_by = |light: Vec3| {
         let at = |i: usize| {
             let film = Vec2::new((i % 16) as f32 + 0.5, (i / 16) as f32 + 0.5) / 16.0;
@@ -256,7 +256,7 @@ fn light_paths_find_what_mirrors_make_of_small_lights() {
         let found = pixels.iter().map(|pixel| pixel.g).sum::<f32>() / 256.0;
         assert!((found / wanted - 1.0).abs() < tolerance, "{name}: {found}, not {wanted}");
     }
-    // Or else the test could not tell one from the other.
+    // Otherwise the test could not distinguish one from the other.
     assert!(by_image > 0.05 * by_point);
 }
 
@@ -290,7 +290,7 @@ fn lenses_and_cameras_without_perspective() {
 
 #[test]
 fn every_filter_spreads_splats_as_it_spreads_samples() {
-    // A bright edge, whose blur is that of the filter.
+    // A bright edge, blurred by the filter.
     let mut builder = SceneBuilder::default();
     put(
         &mut builder,
@@ -328,14 +328,14 @@ fn without_merging_vcm_is_bdpt_to_the_bit() {
 
 #[test]
 fn merging_comes_to_the_same() {
-    // Its blur is far below what these pictures can tell apart.
+    // Its blur is far below what these pictures can resolve.
     let scene = built(&without_mirrors(
         Spec::new("", "rect").with("position", Vec3::new(-0.5, 2.5, 0.0)).with("intensity", 10.0f32),
     ));
     let path = blocks(&scene, &*integrator("path"), 0);
     let spec = |name: &str| Spec::new("", name).with("radius", 0.01f32);
     let unjoined = spec("vcm").with("joins", false);
-    // Light paths of a part of the pixels only, seen from the camera for all of them.
+    // Light subpaths for only a part of the pixels, connected with the camera on behalf of all.
     let few = unjoined.clone().with("light_paths", bilux_scene::Value::Integer(90));
     let unshown = spec("vcm").with("splats", false);
     let alone = unjoined.clone().with("splats", false);
@@ -351,14 +351,15 @@ fn merging_comes_to_the_same() {
 
 #[test]
 fn merging_finds_what_mirrors_hide_at_both_ends() {
-    // The floor of a small light before a mirror, itself seen in the mirror: lit by the light, and by its image.
+    // The floor under a small light in front of a mirror, itself seen in the mirror: lit by the light, and by its
+    // image.
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
     let mirror = Spec::new("", "mirror").with("reflectance", 1.0f32);
     put(&mut builder, "mirror", quad(Vec3::new(-9.0, 0.0, -1.0), Vec3::X * 18.0, Vec3::Y * 9.0), mirror);
     builder.lights.push(Spec::new("", "point").with("position", Vec3::Y).with("intensity", 1.0f32));
     let (seen, image) = (Vec3::new(0.5, 0.0, -0.5), Vec3::new(0.0, 1.0, -2.0));
-    // Towards where the mirror shows that place.
+    // Looks towards where the mirror shows that point.
     look(&mut builder, Vec3::new(0.5, 2.0, 2.5), Vec3::new(0.5, 0.0, -1.5), 4.0);
     let scene = built(&builder);
     let lit_by = |light: Vec3| {
@@ -381,7 +382,7 @@ fn with_some_radius(name: &str) -> Box<dyn PixelIntegrator> {
     if name == "bdpt" { integrator(name) } else { with_radius(name, 0.02) }
 }
 
-/// Camera paths that are a little too bright, beside splats that are right.
+/// Camera subpaths that are a little too bright, next to splats that are right.
 struct Wrong(Box<dyn PixelIntegrator>);
 
 impl PixelIntegrator for Wrong {

@@ -8,7 +8,7 @@ use bilux_scene::{SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, integrators};
 use common::{built, diffuse, floor, look, put, quad, shoot};
 
-/// The one pixel that a narrow camera sees, depth and integrator given.
+/// The single pixel that a narrow camera sees, for a given integrator and depth.
 fn seen(builder: &SceneBuilder, integrator: &Spec, max_depth: u32) -> Rgb {
     let settings = RenderSettings { max_depth, ..RenderSettings::new(1, 1, 1) };
     shoot(&built(builder), &*integrators::build(integrator).unwrap(), &settings).film.pixel(0, 0)
@@ -27,7 +27,7 @@ fn lamp(name: &str, position: Vec3, colour: Rgb) -> Spec {
     Spec::new(name, "point").with("position", position).with("classic", colour)
 }
 
-/// A shiny floor under two lamps and ambient light, seen from 45 degrees.
+/// A shiny floor under two lights and ambient light, viewed at 45 degrees.
 fn shiny_floor() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     let phong = Spec::new("", "phong")
@@ -45,7 +45,7 @@ fn shiny_floor() -> SceneBuilder {
     builder
 }
 
-/// Equation 1 for [`shiny_floor`], in its own words.
+/// Equation 1 for [`shiny_floor`], written out.
 fn equation_1(reflect: bool) -> Rgb {
     let (kd, ka, ks, n) = (Rgb::new(0.5, 0.3, 0.1), 0.2, 0.4, Vec3::Y);
     let eye = Vec3::new(0.0, 1.0, 1.0).normalize();
@@ -78,7 +78,7 @@ fn depth_0_is_emission_only() {
     }
 }
 
-/// A sheet above the floor between it and the left lamp (at half its way), too far aside for the right one.
+/// A sheet above the floor, half-way between it and the left light, too far aside for the right one.
 fn sheet_before_left() -> SceneBuilder {
     let mut builder = shiny_floor();
     let sheet = quad(Vec3::new(-0.9, 1.0, -0.3), Vec3::X * 0.8, Vec3::Z * 0.6);
@@ -139,7 +139,7 @@ fn an_infinite_viewer_looks_straight_from_the_film() {
     assert!((local.pixel(2, 6) - infinite.pixel(2, 6)).g.abs() > 1e-3);
 }
 
-/// A small patch that gives out this colour, around a point, facing along `n`.
+/// A small patch that emits this colour, around a point, facing along `n`.
 fn target(builder: &mut SceneBuilder, at: Vec3, n: Vec3, half: f32, colour: Rgb) {
     let frame = bilux_math::Frame::from_normal(n);
     let (u, v) = (frame.s * half, frame.t * half);
@@ -181,7 +181,7 @@ fn schlick(cos_outside: f32) -> f32 {
     0.04 + 0.96 * powf(1.0 - cos_outside, 5.0)
 }
 
-/// A block of glass seen under an angle, with a small target where Snell's law says that the eye looks.
+/// A block of glass viewed at an angle, with a small target where Snell's law sends the view.
 fn through_block(degrees: f32, index: f32, material: Spec) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     block(&mut builder, 1.0, material);
@@ -202,7 +202,7 @@ fn glass_refracts_by_snells_law_in_and_out() {
         let through = 1.0 - schlick(cos(degrees.to_radians()));
         let found = seen(&through_block(degrees, 1.5, glass()), &whitted(), 2);
         assert_near(found, GLOW * through * through);
-        // The twin: where another index sends the eye, there is nothing.
+        // Negative control: where another index sends the view, there is nothing.
         if degrees > 0.0 {
             assert_eq!(seen(&through_block(degrees, 1.45, glass()), &whitted(), 2), Rgb::BLACK);
         }
@@ -226,7 +226,7 @@ fn glass_absorbs_by_its_thickness() {
     let glass = Spec::new("", "dielectric").with("absorption", sigma);
     let left = sigma.map(|s| exp(-s));
     assert_near(seen(&through_block(0.0, 1.5, glass.clone()), &whitted(), 2), GLOW * left * 0.96 * 0.96);
-    // From within the glass, half of the way is left.
+    // From within the glass, half of the distance remains.
     let mut inside = through_block(0.0, 1.5, glass);
     inside.cameras.clear();
     look(&mut inside, Vec3::new(0.0, 0.0, -0.5), Vec3::new(0.0, 0.0, -3.0), 0.02);

@@ -1,4 +1,4 @@
-//! Light that glass parts by wavelengths: where it goes is known, and both ends of a path agree on it.
+//! Dispersion: light that glass splits by wavelength goes where theory says, and both ends of a path agree on it.
 
 mod common;
 
@@ -16,7 +16,7 @@ use std::sync::Arc;
 const ETA: f64 = 1.728;
 const ABBE: f64 = 28.4;
 
-/// The prism's angle.
+/// The prism's apex angle.
 const ANGLE: f64 = std::f64::consts::FRAC_PI_3;
 
 /// Cauchy's formula by its two constants.
@@ -26,7 +26,7 @@ fn index(nm: f64) -> f64 {
     ETA + b / (nm * nm) - b / (d * d)
 }
 
-/// What is refracted of light that falls in under this angle, and the angle at which it goes on.
+/// The fraction of light that is transmitted at this angle of incidence, and the angle of refraction.
 fn refracted(angle: f64, index: f64) -> (f64, f64) {
     let inner = asin_f64(sin_f64(angle) / index);
     let (s, p) = (angle - inner, angle + inner);
@@ -34,8 +34,7 @@ fn refracted(angle: f64, index: f64) -> (f64, f64) {
     (1.0 - 0.5 * (across * across + along * along), inner)
 }
 
-/// Where light of a wavelength goes that falls on the prism under this angle: how far it is turned, and how much of it gets
-/// there.
+/// The deviation of light of a wavelength that falls on the prism at this angle, and the fraction that is transmitted.
 fn turned(angle: f64, nm: f64) -> (f64, f64) {
     let (entered, first) = refracted(angle, index(nm));
     let second = ANGLE - first;
@@ -43,14 +42,14 @@ fn turned(angle: f64, nm: f64) -> (f64, f64) {
     (angle + out - ANGLE, entered * left)
 }
 
-/// A beam on a prism, under the angle at which light of a wavelength is turned the least; and a wall far behind it that
-/// glows where light comes from that is turned more than that.
+/// A beam on a prism, at the angle of minimum deviation for a wavelength; and a wall far behind it that glows where
+/// light of greater deviation goes.
 fn spectrum(nm: f64, dispersion: f64) -> Scene {
     let half = ANGLE * 0.5;
     let incidence = asin_f64(index(nm) * sin_f64(half));
     let least = 2.0 * incidence - ANGLE;
-    // In the plane of x and z, whose normal is the prism's axis. Its first edge is at x = 1; the beam falls on the side that
-    // faces -z there, and is turned towards -x.
+    // All in the plane of x and z, whose normal is the prism's axis. The prism's first edge is at x = 1; the beam falls
+    // on the side that faces -z there, and is deviated towards -x.
     let along = |angle: f64| {
         let (sin, cos) = sin_cos_f64(angle);
         DVec3::new(-sin, 0.0, cos)
@@ -58,12 +57,12 @@ fn spectrum(nm: f64, dispersion: f64) -> Scene {
     let mut builder = SceneBuilder::default();
     let glass = Spec::new("", "dielectric").with("eta", ETA as f32).with("dispersion", dispersion as f32);
     put(&mut builder, "prism", Arc::new(shapes::prism(Vec3::ZERO, 1.0, 4.0, 3)), glass);
-    // Inside, light of that wavelength goes along x = const: it comes from half of the turn before.
+    // Inside, light of that wavelength travels along x = const: it has half of its deviation behind it.
     let beam = along(-0.5 * least);
     let middle = DVec3::new(0.25, 0.0, 0.0);
     let (forth, across) = (along(0.5 * least), along(0.5 * least + std::f64::consts::FRAC_PI_2));
     let far = 2e3;
-    // Its edge lies on the ray that is turned the least, from where that leaves the prism.
+    // The wall's edge lies on the ray of minimum deviation, from where that leaves the prism.
     let leaves = DVec3::new(0.25, 0.0, 0.75 * tan_f64(half));
     let corner = leaves + forth * far - DVec3::Y * far;
     let wall = quad(corner.as_vec3(), (across * far).as_vec3(), (DVec3::Y * 2.0 * far).as_vec3());
@@ -75,14 +74,14 @@ fn spectrum(nm: f64, dispersion: f64) -> Scene {
     built(&builder)
 }
 
-/// The light of a film by channels.
+/// The mean light of a film, by channel.
 fn means(scene: &Scene, name: &str) -> [f64; 3] {
     let settings = RenderSettings { max_depth: 2, ..RenderSettings::new(8, 8, 4096) };
     let pixels = shoot(scene, &*integrator(name), &settings).film.to_rgb();
     [0, 1, 2].map(|c| pixels.iter().map(|pixel| f64::from(pixel[c])).sum::<f64>() / 64.0)
 }
 
-/// What is to be seen there.
+/// The light that theory predicts there.
 fn wanted(nm: f64) -> [f64; 3] {
     let incidence = asin_f64(index(nm) * sin_f64(ANGLE * 0.5));
     let least = 2.0 * incidence - ANGLE;
@@ -107,14 +106,14 @@ fn a_prism_turns_each_wavelength_by_its_angle() {
     for nm in [450.0, 500.0, 550.0, 600.0, 650.0] {
         for name in ["path", "bdpt", "vcm", "sppm"] {
             let off = off(nm, 20.0 / ABBE, name);
-            // In the middle of the spectrum as much as light of 0.3 nm.
+            // In the middle of the spectrum this is as much as light of 0.3 nm.
             assert!(off < 4e-3, "{name}, {nm} nm: {off}");
         }
     }
-    // The light that is told apart is neither none nor all.
+    // The wall separates the light: it receives neither none nor all of it.
     let [red, green, blue] = wanted(550.0);
     assert!(red < 0.1 && (0.2..0.8).contains(&green) && blue > 0.7, "{red}, {green}, {blue}");
-    // The twin: glass that parts colours by a fiftieth less.
+    // Negative control: glass that disperses a fiftieth less.
     let off = off(620.0, 20.0 / (ABBE * 1.02), "path");
     assert!(off > 4e-3, "other glass passes: {off}");
 }
@@ -132,7 +131,7 @@ fn glass_that_parts_colours_loses_none_of_them() {
     for name in ["path", "vcm"] {
         let mut left = [const { Vec::new() }; 3];
         for seed in 0..8 {
-            // Only the prism: frosted glass loses a little at each reflection between its facets.
+            // Only the prism: rough glass loses a little energy at each reflection between its microfacets.
             let pixels = shoot(&scene, &*integrator(name), &settings(seed)).film.to_rgb();
             let sum = (0..256).filter(|i| i % 16 < 8).map(|i| pixels[i]).sum::<Rgb>();
             (0..3).for_each(|c| left[c].push(f64::from(sum[c]) / 128.0));
@@ -144,7 +143,7 @@ fn glass_that_parts_colours_loses_none_of_them() {
     }
 }
 
-/// What a prism throws on a wall of the light of a lamp far away: blue on the left, red on the right.
+/// What a prism projects on a wall from a distant light: blue on the left, red on the right.
 fn on_a_wall(lamp: Spec, glass: Spec, dispersion: f32) -> Scene {
     let mut builder = SceneBuilder::default();
     let glass = glass.with("eta", 1.4f32).with("dispersion", dispersion);
@@ -174,7 +173,7 @@ fn merging(name: &str) -> Box<dyn PixelIntegrator> {
     integrators::build(&Spec::new("", name).with("radius", 0.002f32)).unwrap()
 }
 
-/// Dispersion as no glass has it, so that a mistake shows.
+/// More dispersion than any glass has, so that a mistake shows.
 const STRONG: f32 = 6.0;
 
 #[test]
@@ -193,7 +192,7 @@ fn parted_light_is_the_same_from_both_ends() {
             let p = agreement(&path, &blocks(&scene, &*other, 100 * (i as u64 + 1)));
             assert!(p > UNLIKELY, "{kind}: path and {name}: p = {p}");
         }
-        // Or else the test could not tell it from glass that parts nothing.
+        // Otherwise the test could not distinguish it from glass without dispersion.
         let plain = on_a_wall(lamp, glass, 0.0);
         let right = blocks(&scene, &*integrator("bdpt"), 800);
         let p = agreement(&right, &blocks(&plain, &*integrator("bdpt"), 900));
@@ -201,7 +200,7 @@ fn parted_light_is_the_same_from_both_ends() {
     }
 }
 
-/// Frosted flint in water that disperses too: what counts is the ratio of their indices, at each wavelength.
+/// Rough flint in water that disperses too: what counts is the ratio of their indices, at each wavelength.
 #[test]
 fn parted_light_in_water_is_the_same_from_both_ends() {
     let under_water = |eta: f32, dispersion: f32| {
@@ -226,19 +225,19 @@ fn parted_light_in_water_is_the_same_from_both_ends() {
     };
     let scene = under_water(1.33, STRONG);
     let path = blocks(&scene, &*integrator("path"), 0);
-    // Not `light`: few of its paths come through, too few for their mean to be normally distributed.
+    // Not `light`: too few of its paths come through for their mean to be normally distributed.
     for (i, name) in ["bdpt", "vcm"].into_iter().enumerate() {
         let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
         assert!(p > UNLIKELY, "path and {name}: p = {p}");
     }
-    // Where the two are one, they are one at every wavelength, and there is nothing to be seen of the prism.
+    // Where the two indices are equal, they are equal at every wavelength, and the prism is invisible.
     let same = blocks(&under_water(1.6, STRONG), &*integrator("path"), 0);
     let p = agreement(&same, &blocks(&under_water(1.6, 0.0), &*integrator("path"), 400));
     let q = agreement(&path, &blocks(&under_water(1.33, 0.0), &*integrator("path"), 500));
     assert!(p < UNLIKELY && q < UNLIKELY, "water that parts nothing passes: p = {p}, {q}");
 }
 
-/// One that changes the wavelength of a sample before its camera path is followed, and after photons were.
+/// Changes the wavelength of a sample before its camera subpath is traced, and after photons were.
 struct Wrong(Box<dyn PixelIntegrator>, fn(&mut Task));
 
 impl PixelIntegrator for Wrong {
@@ -284,7 +283,7 @@ fn mistakes_with_wavelengths_are_found_out() {
     }
 }
 
-/// The still life, its glass dispersing.
+/// The still life with dispersive glass.
 fn parted_still_life() -> SceneBuilder {
     let mut builder = still_life();
     builder.materials.iter_mut().filter(|spec| spec.kind == "dielectric").for_each(|spec| {
@@ -316,7 +315,7 @@ fn a_picture_of_parted_light_is_one_picture() {
     assert_eq!(shoot(&scene, &*unmerged, &whole).film, shoot(&scene, &*integrator("bdpt"), &whole).film);
 }
 
-/// What meets no glass that disperses is what it was without, to the bit.
+/// Paths that hit no dispersive glass are the same as without it, to the bit.
 #[test]
 fn other_paths_know_nothing_of_wavelengths() {
     let mut builder = still_life();

@@ -1,4 +1,4 @@
-//! What denoisers and compositors are told of surfaces, where it is known without rendering.
+//! Features of surfaces for denoisers and compositors, where they are known without rendering.
 
 mod common;
 
@@ -34,12 +34,12 @@ fn a_floor_is_told_as_it_is() {
     assert!(found.albedo.iter().all(|&albedo| near(albedo, RED)));
     assert!(found.normal.iter().all(|n| n.distance(Vec3::Y) < 1e-4));
     assert!((found.depth[middle] - 2.0).abs() < 1e-3, "{}", found.depth[middle]);
-    // Along the rays, not straight down.
+    // Depth is measured along the rays, not straight down.
     assert!(found.depth[0] > 2.2);
     assert!(found.object.iter().chain(&found.material).all(|&id| id == 1));
 }
 
-/// The mirror leans by 45° and shows the wall behind the camera; the sky is around it.
+/// The mirror is tilted by 45° and shows the ceiling; the sky is around it.
 #[test]
 fn mirrors_show_what_is_seen_in_them() {
     let mut builder = SceneBuilder::default();
@@ -62,16 +62,16 @@ fn mirrors_show_what_is_seen_in_them() {
     let middle = 33 * 16 + 16;
     assert!(near(found.albedo[middle], RED * 0.5), "{:?}", found.albedo[middle]);
     assert!(found.normal[middle].distance(Vec3::NEG_Y) < 1e-4, "{}", found.normal[middle]);
-    // Depth and ids are of the mirror itself.
+    // Depth and ids are those of the mirror itself.
     assert!((found.depth[middle] - 8.0).abs() < 0.1, "{}", found.depth[middle]);
     assert_eq!((found.object[middle], found.material[middle]), (1, 1));
-    // Sky: what it gives, at most 1; and nothing to be near to or to belong to.
+    // Sky: its emission, at most 1; no depth and no id.
     assert!(near(found.albedo[33 * 16], Rgb::new(0.25, 1.0, 0.5)));
     assert_eq!((found.normal[33 * 16], found.object[33 * 16]), (Vec3::ZERO, 0));
     assert_eq!(found.depth[33 * 16], f32::INFINITY);
 }
 
-/// Edges of a picture of one sample are as well known as those of others: denoisers rebuild them by that.
+/// A picture of one sample knows its edges as well as others do: denoisers rebuild them from the features.
 #[test]
 fn few_samples_have_the_features_of_many() {
     let builder = still_life();

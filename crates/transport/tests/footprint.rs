@@ -1,4 +1,4 @@
-//! Textures as coarse as half a pixel: less noise, the same picture, from both ends.
+//! Textures filtered over half a pixel: less noise, the same picture, from both ends.
 
 mod common;
 
@@ -11,14 +11,14 @@ use common::statistics::{assert_like_path, assert_unlike_path};
 use common::{ball, built, diffuse, floor, integrator, look, put, shoot, sky};
 use std::sync::Arc;
 
-/// A floor over which a picture is repeated so often.
+/// A floor over which a texture repeats this often.
 fn tiled(half: f32, tiles: f32) -> Arc<Mesh> {
     let mut mesh = (*floor(0.0, half)).clone();
     mesh.uvs = [Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X].map(|uv| uv * tiles).to_vec();
     Arc::new(mesh)
 }
 
-/// Squares of black and white, two texels wide.
+/// A checkerboard of black and white squares, two texels wide.
 fn board(side: usize) -> Texture {
     let texel = |i: usize| [((i / 2 + i / side / 2) % 2 * 255) as u8; 3];
     let texels = (0..side * side).map(|i| [texel(i)[0], texel(i)[1], texel(i)[2], 255]).collect();
@@ -34,7 +34,7 @@ fn far_floor(texture: Texture) -> SceneBuilder {
     builder
 }
 
-/// The same with textures as they are, and as coarse as a picture of so many rows lets them be.
+/// The scene with unfiltered textures, and with textures filtered for a picture of this many rows.
 fn both(builder: &SceneBuilder, rows: u32) -> [Scene; 2] {
     let camera = built(builder).cameras()[0].1.clone();
     [built(builder), built(builder).filtered(camera, rows)]
@@ -64,7 +64,7 @@ fn a_far_board_has_a_third_of_the_noise_at_most_and_the_same_mean() {
         let found = pixels(&filtered, 64, 1024);
         let (a, b) = (mean(&found), mean(&wanted));
         assert!((a / b - 1.0).abs() < 0.01, "{a}, not {b}");
-        // Many samples show the same picture, pixel by pixel.
+        // With many samples the picture is the same, pixel by pixel.
         let off = mean_square(&found, &wanted).sqrt();
         assert!(off < 0.02 * b, "{off} of {b}");
     }
@@ -72,7 +72,8 @@ fn a_far_board_has_a_third_of_the_noise_at_most_and_the_same_mean() {
 
 #[test]
 fn a_surface_that_is_near_is_the_same_to_the_bit() {
-    // Texels are wider than a quarter of a pixel everywhere; what is not blended, and what is cut off, has no levels.
+    // Texels are wider than a quarter of a pixel everywhere; textures without interpolation, and cut-outs, have no
+    // levels.
     let cut = Texture { threshold: Some(0.5), ..board(512) };
     let nearest = Texture { filter: Filter::Nearest, ..board(512) };
     for texture in [board(16), nearest, cut] {
@@ -81,15 +82,15 @@ fn a_surface_that_is_near_is_the_same_to_the_bit() {
     }
 }
 
-/// Noise in every texel, squared.
+/// Squared noise in every texel.
 fn grain(seed: u64, number: impl Fn(f32) -> f32, is_data: bool) -> Arc<Texture> {
     let noise = |i: usize| unit_f32(hash_words([seed, i as u64]) as u32);
     let texel = |i: usize| Rgb::grey(number(noise(i) * noise(i)));
     Arc::new(Texture::new("", 64, 64, (0..64 * 64).map(texel).collect(), is_data))
 }
 
-/// A floor and a ball with what is far finer than a pixel: light where their coat is dark and dark where it is clear, so that how
-/// coarse they are shows in the mean; and of a roughness as fine.
+/// A floor and a ball with textures far finer than a pixel: the base is light where the coat is dark, and dark where it
+/// is clear, so that the width of the filter shows in the mean; their roughness varies as finely.
 fn fine_grain() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     builder.textures.push(grain(1, |x| x, false));
@@ -117,7 +118,7 @@ fn what_is_coarser_looks_the_same_from_both_ends() {
     assert_like_path("fine grain", &filtered, &["light", "bdpt", "vcm", "auto"]);
 }
 
-/// A planted bug: a footprint as it is seen from the lamp, where a light path comes from.
+/// A planted bug: a footprint as seen from the light, where a light subpath comes from.
 #[test]
 fn a_footprint_that_hangs_on_the_path_is_found_out() {
     let builder = fine_grain();

@@ -1,4 +1,4 @@
-//! Surfaces that are there in part: leaves and lace cut out by pictures, gauze.
+//! Surfaces with opacity: leaves and lace cut out by textures, and gauze.
 
 mod common;
 
@@ -16,7 +16,7 @@ fn sheet(height: f32, half: f32) -> Arc<Mesh> {
     Arc::new(mesh)
 }
 
-/// A sheet over a floor below a lamp and a weak sky.
+/// A sheet over a floor, under a light and a weak sky.
 fn sheet_over_a_floor(material: Spec, lamp: f32) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
@@ -24,7 +24,7 @@ fn sheet_over_a_floor(material: Spec, lamp: f32) -> SceneBuilder {
     let panel = Spec::new("", "rect").with("position", Vec3::new(-0.3, 2.5, 0.2)).with("intensity", lamp);
     builder.lights.push(panel);
     sky(&mut builder, 0.2);
-    // Rows of holes with soft edges, and one that is there in part.
+    // Cut-outs with soft edges, and a column of partial opacity.
     let texels = [1.0, 0.0, 1.0, 0.3, 0.0, 0.0, 1.0, 0.3, 1.0, 1.0, 0.0, 0.3, 0.5, 0.5, 0.5, 0.0];
     builder.textures.push(Arc::new(Texture::new("", 4, 4, texels.map(Rgb::grey).to_vec(), true)));
     look(&mut builder, Vec3::new(0.0, 2.2, 4.0), Vec3::new(0.0, 0.3, 0.0), 40.0);
@@ -45,7 +45,7 @@ fn what_has_holes_looks_the_same_from_both_ends() {
     }
 }
 
-/// A planted bug: a surface that stops a quarter more light than it says.
+/// A planted bug: a surface that stops a quarter more light than it states.
 #[test]
 fn what_stops_too_much_is_found_out() {
     let gauze = |opacity: f32| {
@@ -55,7 +55,7 @@ fn what_stops_too_much_is_found_out() {
     assert_unlike_path(&gauze(0.4), &gauze(0.5), &["bdpt", "vcm"]);
 }
 
-/// A sheet before a sky lets the rest of it through, and glows by its share.
+/// A sheet in front of a sky lets the rest of the sky's light through, and emits its share.
 #[test]
 fn a_share_of_the_surface_gives_that_share_of_the_light() {
     let seen = |material: Spec| {
@@ -68,12 +68,12 @@ fn a_share_of_the_surface_gives_that_share_of_the_light() {
         let pixels = shoot(&built(&builder), &*integrator("path"), &settings).film.to_rgb();
         pixels.iter().map(|p| f64::from(p.g)).sum::<f64>() / pixels.len() as f64
     };
-    // Of 65,536 rays the share strays by 0.002.
+    // With 65,536 rays the fraction deviates by 0.002.
     let black = seen(diffuse(0.0f32).with("opacity", 0.3f32));
     assert!((black - 0.35).abs() < 0.004, "{black}");
     let glowing = seen(diffuse(0.0f32).with("emission", 2.0f32).with("opacity", 0.25f32));
     assert!((glowing - 0.875).abs() < 0.012, "{glowing}");
-    // What is not there at all, or all there, leaves nothing to chance.
+    // An opacity of 0 or 1 leaves nothing to chance.
     assert_eq!(seen(diffuse(0.0f32).with("opacity", 0.0f32)), 0.5);
     assert_eq!(seen(diffuse(0.0f32).with("opacity", 1.0f32)), 0.0);
 }

@@ -1,4 +1,4 @@
-//! How often what is told of a picture's error is true.
+//! How often the error that is stated for a picture is true.
 
 mod common;
 
@@ -17,10 +17,10 @@ use std::sync::LazyLock;
 
 const SIDE: u32 = 16;
 
-/// Seeds whose pictures are held against the truth.
+/// Number of seeds whose pictures are compared with the truth.
 const SEEDS: u64 = 100;
 
-/// A matt and a satin ball on a table under a panel: all of its light is found from both ends.
+/// A diffuse and a glossy ball on a table under a panel: all of the light is found from both ends.
 fn two_balls() -> Scene {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "table", floor(0.0, 1.6), diffuse(Rgb::new(0.7, 0.5, 0.3)));
@@ -42,14 +42,15 @@ fn take(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSettin
     shoot(scene, integrator, settings).interval.unwrap()
 }
 
-/// Those that claim to be right on average.
+/// The integrators that claim to be unbiased.
 fn unbiased() -> [(&'static str, Box<dyn PixelIntegrator>); 4] {
     let auto = integrators::build(&Spec::new("", "auto").with("merge", "never")).unwrap();
     let named = |name: &'static str| (name, integrator(name));
     [named("path"), named("bdpt"), named("light"), ("auto", auto)]
 }
 
-/// The share of windows whose interval, made `width` times as wide, holds the truth. What has no noise is no proof of anything, and is left out.
+/// The fraction of windows whose interval, scaled by `width`, contains the truth. Windows without noise prove nothing,
+/// and are left out.
 fn coverage(pictures: &[Interval], truth: &Interval, side: u32, width: f64) -> f64 {
     let (mut held, mut all) = (0, 0);
     for window in truth.window().tiles(side) {
@@ -66,7 +67,7 @@ fn coverage(pictures: &[Interval], truth: &Interval, side: u32, width: f64) -> f
 
 const SPP: u32 = 64;
 
-/// The scene and what is known of it: by a hundred times as many samples as pictures have.
+/// The scene, and its reference picture with a hundred times as many samples as the tested pictures.
 static KNOWN: LazyLock<(Scene, Interval)> = LazyLock::new(|| {
     let scene = two_balls();
     let truth = take(&scene, &*integrator("path"), &settings(1000, 100 * SPP));
@@ -85,22 +86,22 @@ fn nineteen_of_twenty_intervals_hold_the_truth() {
         let pictures: Vec<Interval> = (0..SEEDS).map(one).collect();
         let [blocks, pixels] = [4, 1].map(|side| coverage(&pictures, truth, side, 1.0));
         assert!(is_honest(blocks), "{name}: {blocks} of the blocks, {pixels} of the pixels");
-        // A pixel's few samples may all miss what is rare there.
+        // A pixel's few samples may all miss a rare contribution.
         assert!((0.9..=0.97).contains(&pixels), "{name}: {pixels} of the pixels");
-        // The twin: intervals that are too narrow.
+        // Negative control: intervals that are too narrow.
         let narrow = coverage(&pictures, truth, 4, 0.8);
         assert!(!is_honest(narrow), "{name}: {narrow} with four fifths of the width");
     };
-    // So small a film is one tile, and busies one thread.
+    // A film this small is one tile, and keeps one thread busy.
     std::thread::scope(|threads| {
         unbiased().into_iter().for_each(|each| drop(threads.spawn(|| hold(each))));
     });
 }
 
-/// So few samples that even spreading makes most of the difference.
+/// So few samples that their even distribution makes most of the difference.
 const FEW: u32 = 16;
 
-/// What one would tell from the samples of a plain picture, by taking runs of its one sequence for independent.
+/// What one would estimate from the samples of a plain picture, by treating runs of its one sequence as independent.
 fn as_if_independent(scene: &Scene, integrator: &dyn PixelIntegrator, seed: u64) -> Vec<Estimate> {
     let run = |k: u32| {
         let samples = k * FEW / REPLICATES..(k + 1) * FEW / REPLICATES;
@@ -174,8 +175,8 @@ fn what_leaves_nothing_to_chance_has_no_interval() {
     }
 }
 
-/// How far means over many seeds are from the truth, block by block, in standard errors of these means: the largest of all,
-/// as the probability of one so large or larger. [Šidák 1967]
+/// How far means over many seeds are from the truth, block by block, in standard errors of these means: the largest
+/// deviation, as the probability of one at least as large. [Šidák 1967]
 fn agreement_with(truth: &Interval, blocks: &[Vec<f64>]) -> f64 {
     let least = |(window, means): (Window, &Vec<f64>)| {
         let (mean, error) = estimate(means);
@@ -202,7 +203,7 @@ fn a_rule_that_ends_the_whole_film_does_not_shift_its_mean() {
         assert_eq!(reached.bias, Some(2.0 / SIDE as f32));
         let interval = rendered.interval.unwrap();
         tiles.iter().zip(&mut ended).for_each(|(tile, all)| all.push(interval.luminance(tile).mean));
-        // The twin: each block is taken twice, and the one that looks better is kept.
+        // Negative control: each block is taken twice, and the one that looks better is kept.
         let twice = [seed, seed + SEEDS].map(|seed| take(scene, &*path, &settings(seed, 4)));
         for (tile, all) in tiles.iter().zip(&mut chosen) {
             let [a, b] = [0, 1].map(|i| twice[i].luminance(tile));
@@ -212,7 +213,7 @@ fn a_rule_that_ends_the_whole_film_does_not_shift_its_mean() {
     let (film, blocks) = (agreement_with(truth, &ended), agreement_with(truth, &chosen));
     assert!(film > 1e-3, "{film}; pictures by their number of samples: {ends:?}");
     assert!(blocks < 1e-3, "{blocks}");
-    // The bound that is told holds for what happens: Σ √(P(1 - P)) is at most 2.
+    // The stated bound holds for the observed distribution: Σ √(P(1 - P)) is at most 2.
     let share = |n: &u64| *n as f64 / SEEDS as f64;
     let sum: f64 = ends.values().map(|n| (share(n) * (1.0 - share(n))).sqrt()).sum();
     assert!(ends.len() > 1 && sum <= 2.0, "{sum}: {ends:?}");

@@ -1,4 +1,5 @@
-//! Mistakes that other renderers have made, looked for here. `docs/trust.md` lists them all, with those that other tests look for.
+//! Mistakes that other renderers have made, tested for here. `docs/trust.md` lists them all, including those that other
+//! tests cover.
 
 mod common;
 
@@ -9,8 +10,8 @@ use bilux_transport::{RenderSettings, Silent, integrators, strategies};
 use common::statistics::{UNLIKELY, agreement, blocks};
 use common::{ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky, without_mirrors};
 
-/// Two matt leaves that meet at a sharp angle, with a lamp before them: where they meet, vertices of both ends lie ever closer
-/// together.
+/// Two diffuse leaves that meet at a sharp angle, with a light in front of them: towards the edge, vertices of both
+/// subpaths come ever closer together.
 fn crevice() -> Scene {
     let mut builder = SceneBuilder::default();
     let hinge = Vec3::new(-1.0, 0.0, 0.0);
@@ -22,7 +23,7 @@ fn crevice() -> Scene {
     built(&builder)
 }
 
-/// pbrt-v3 #69: vertices of both ends that lie very close together give a spike when they are joined.
+/// pbrt-v3 #69: connecting vertices of both subpaths that lie very close together gives a spike.
 #[test]
 fn vertices_that_lie_close_together_give_no_spike() {
     let scene = crevice();
@@ -32,7 +33,7 @@ fn vertices_that_lie_close_together_give_no_spike() {
     for seed in 0..40 {
         let settings = RenderSettings { seed, max_depth: 5, ..RenderSettings::new(32, 32, 1) };
         let found = strategies(&scene, camera, &*bdpt, &settings, &Silent).unwrap().unwrap();
-        // Of joins (s, t > 1) each pixel has one: the camera path's last vertex with one of the light path.
+        // Each pixel has one connection (s, t > 1): the camera subpath's last vertex with one of the light subpath.
         let joins = found.pictures.iter().filter(|one| one.strategy.s > 1 && one.strategy.t() > 1);
         for picture in joins {
             let greatest = |pixels: &[Rgb]| pixels.iter().map(|pixel| pixel.g).fold(0.0, f32::max);
@@ -40,15 +41,15 @@ fn vertices_that_lie_close_together_give_no_spike() {
             unweighted = unweighted.max(greatest(&picture.unweighted));
         }
     }
-    // A path's light over the sum of the densities of all ways is no more than over that of the way that meets the lamp by
-    // chance, in which it is the lamp's radiance, 1, times what surfaces reflect.
+    // A path's light over the sum of the densities of all techniques is at most that over the density of hitting the
+    // light by chance, for which it is the light's radiance, 1, times what surfaces reflect.
     assert!(weighted > 0.0 && weighted <= 1.0, "{weighted}");
-    // The twin: without weights the same joins do spike.
+    // Negative control: without weights the same connections do spike.
     assert!(unweighted > 100.0, "{unweighted}");
 }
 
-/// Photons that fall on one face of a coarse mesh and are merged with on the next, which they graze, count by the face that
-/// they fell on.
+/// Photons that fall on one face of a coarse mesh and are merged on the next, which they graze, are weighted by the
+/// face that they fell on.
 #[test]
 fn photons_from_around_a_bend_give_no_spike() {
     let mut builder = SceneBuilder::default();
@@ -64,15 +65,15 @@ fn photons_from_around_a_bend_give_no_spike() {
     let square = |(a, b): (&Rgb, &Rgb)| f64::from(a.g - b.g) * f64::from(a.g - b.g) / 1024.0;
     let error: f64 = merged.iter().zip(&picked).map(square).sum();
     let mean = picked.iter().map(|pixel| f64::from(pixel.g)).sum::<f64>() / 1024.0;
-    // Counted by the face that is merged with, they give 6.4.
+    // Weighted by the face where they are merged, they give 6.4.
     assert!(error < 3.0 * mean * mean, "{error} where there is {mean}");
 }
 
-/// Mitsuba 0.6 #132: a bright dot where a point light stands in the picture. It has no extent, so it is not seen.
+/// Mitsuba 0.6 #132: a bright dot where a point light is in view. It has no extent, so it must be invisible.
 #[test]
 fn lamps_without_extent_leave_no_dot_where_they_stand() {
     let mut builder = SceneBuilder::default();
-    // Something for lamps to light, out of sight; and what is seen behind them is black.
+    // Something for the lights to illuminate, out of view; the surface behind them is black.
     put(&mut builder, "floor", floor(-3.0, 1.0), diffuse(0.5f32));
     let wall = quad(Vec3::new(-3.0, -2.0, -1.0), Vec3::X * 6.0, Vec3::Y * 4.0);
     put(&mut builder, "wall", wall, diffuse(0.0f32));
@@ -89,7 +90,7 @@ fn lamps_without_extent_leave_no_dot_where_they_stand() {
     for name in ["path", "light", "bdpt", "vcm", "sppm", "auto"] {
         assert_eq!(brightest(&builder, name), 0.0, "{name}");
     }
-    // The twin: with an extent, however small, they are seen there.
+    // Negative control: with an extent, however small, they are visible there.
     let bulb = Spec::new("", "sphere").with("position", place).with("radius", 0.02f32);
     builder.lights.push(bulb.with("radiance", 100.0f32));
     for name in ["path", "light", "bdpt", "vcm", "sppm", "auto"] {
@@ -97,7 +98,7 @@ fn lamps_without_extent_leave_no_dot_where_they_stand() {
     }
 }
 
-/// A glowing mesh of triangles of many sizes, askew.
+/// An emissive mesh of triangles of many sizes, rotated and stretched.
 fn under_a_mesh(stretch: f64, instanced: bool) -> SceneBuilder {
     let mut builder = without_mirrors(Spec::new("", "point").with("intensity", 0.0f32));
     builder.lights.clear();
@@ -111,7 +112,7 @@ fn under_a_mesh(stretch: f64, instanced: bool) -> SceneBuilder {
     builder
 }
 
-/// Mitsuba 3 #42: light paths from meshes that give light are not as bright as camera paths that find them.
+/// Mitsuba 3 #42: light subpaths from emissive meshes are not as bright as camera subpaths that find them.
 #[test]
 fn meshes_that_give_light_look_the_same_from_both_ends() {
     for instanced in [false, true] {
@@ -120,7 +121,7 @@ fn meshes_that_give_light_look_the_same_from_both_ends() {
         for (i, name) in ["light", "bdpt"].into_iter().enumerate() {
             let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
             assert!(p > UNLIKELY, "{name}, instanced: {instanced}: p = {p}");
-            // The twin: areas before they were stretched, of which light paths would give more.
+            // Negative control: areas as if from before a stretch, with which light subpaths bring more.
             let other = built(&under_a_mesh(1.15, instanced));
             let p = agreement(&path, &blocks(&other, &*integrator(name), 100 * (i as u64 + 3)));
             assert!(p < UNLIKELY, "{name} passes with other areas: p = {p}");
@@ -128,7 +129,7 @@ fn meshes_that_give_light_look_the_same_from_both_ends() {
     }
 }
 
-/// SORT #5: the sky is missing where paths are joined.
+/// SORT #5: the sky is missing where subpaths are connected.
 #[test]
 fn the_sky_is_found_by_joins_and_light_paths_too() {
     let mut builder = without_mirrors(Spec::new("", "environment").with("zenith", 1.0f32));
@@ -138,7 +139,7 @@ fn the_sky_is_found_by_joins_and_light_paths_too() {
         let p = agreement(&path, &blocks(&scene, &*unmerged(name), 100 * (i as u64 + 1)));
         assert!(p > UNLIKELY, "{name}: p = {p}");
     }
-    // The twin: a sky a tenth darker is told apart.
+    // Negative control: a sky that is a tenth darker is detected.
     builder.lights[0] = Spec::new("", "environment").with("zenith", 0.9f32);
     let p = agreement(&path, &blocks(&built(&builder), &*integrator("bdpt"), 500));
     assert!(p < UNLIKELY, "p = {p}");
@@ -149,7 +150,7 @@ fn unmerged(name: &str) -> Box<dyn bilux_transport::PixelIntegrator> {
     integrators::build(&if name == "vcm" { spec.with("radius", 0.0f32) } else { spec }).unwrap()
 }
 
-/// A matt ball in a block of frosted glass, lit from outside; with the camera in the glass as well, or outside of it.
+/// A diffuse ball in a block of rough glass, lit from outside; the camera is in the glass as well, or outside it.
 fn in_glass(eta: f32, inside: bool) -> Scene {
     let mut builder = SceneBuilder::default();
     let bounds = bilux_math::Aabb { min: Vec3::new(-1.5, -1.0, -1.5), max: Vec3::new(1.5, 1.2, 2.5) };
@@ -164,8 +165,8 @@ fn in_glass(eta: f32, inside: bool) -> Scene {
     built(&builder)
 }
 
-/// Radiance grows by η² on its way into glass, importance does not: whoever mixes them up is wrong by 2.25 where an odd number
-/// of boundaries lies between the lamp and the camera.
+/// Radiance grows by η² on its way into glass, importance does not: an integrator that mixes them up is wrong by a
+/// factor of 2.25 where an odd number of boundaries lies between the light and the camera.
 #[test]
 fn what_is_seen_from_within_glass_is_the_same_from_both_ends() {
     for inside in [true, false] {
@@ -175,7 +176,7 @@ fn what_is_seen_from_within_glass_is_the_same_from_both_ends() {
             let p = agreement(&path, &blocks(&scene, &*integrator(name), 100 * (i as u64 + 1)));
             assert!(p > UNLIKELY, "{name}, inside: {inside}: p = {p}");
         }
-        // The twin: a factor of (1.5 / 1.4)² is told apart.
+        // Negative control: a factor of (1.5 / 1.4)² is detected.
         let p = agreement(&path, &blocks(&in_glass(1.4, inside), &*integrator("bdpt"), 500));
         assert!(!inside || p < UNLIKELY, "another index passes: p = {p}");
     }

@@ -1,5 +1,5 @@
-//! More lights than are all sampled, large and bright enough that paths meet them by themselves: whoever weighs what is met
-//! has to know how seldom each light is chosen.
+//! More lights than are all sampled, large and bright enough that paths hit them by chance: MIS weights must include
+//! how rarely each light is chosen.
 
 mod common;
 
@@ -13,8 +13,8 @@ fn path(sampling: &str) -> Box<dyn PixelIntegrator> {
     integrators::build(&Spec::new("", "path").with("sampling", sampling)).unwrap()
 }
 
-/// A floor, a wall, a matt and a glossy ball among six large panels close by, of which no two are equally bright, under a
-/// bright sky.
+/// A floor, a wall, a diffuse and a glossy ball among six large panels close by, no two of which are equally bright,
+/// under a bright sky.
 fn large_lights() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
@@ -60,7 +60,7 @@ fn all_three_samplings_of_path_find_the_same_light_of_many_large_lights() {
         let p = agreement(a, b);
         assert!(p > UNLIKELY, "{name}: p = {p}");
     }
-    // The twin: two hundredths too bright are found out.
+    // Negative control: light that is two hundredths too bright is detected.
     let brighter: Vec<Vec<f64>> = mis.iter().map(|b| b.iter().map(|sum| sum * 1.02).collect()).collect();
     assert!(agreement(&brighter, &scattering) < UNLIKELY);
 }
@@ -69,13 +69,13 @@ fn all_three_samplings_of_path_find_the_same_light_of_many_large_lights() {
 fn many_large_lights_look_the_same_from_both_ends() {
     let right = built(&large_lights());
     assert_like_path("many large lights", &right, &["light", "bdpt", "vcm"]);
-    // The twin: a sky that is a tenth darker.
+    // Negative control: a sky that is a tenth darker.
     let mut wrong = large_lights();
     wrong.lights.last_mut().unwrap().parameters.set("radiance", 0.72f32);
     assert_unlike_path(&right, &built(&wrong), &["bdpt"]);
 }
 
-/// A matt floor sees nothing but lights of radiance 1, some of them panels and the rest of them sky: it shows its albedo.
+/// A diffuse floor sees nothing but lights of radiance 1, some of them panels and the rest sky: it shows its albedo.
 #[test]
 fn panels_and_sky_of_one_radiance_are_an_even_sky() {
     let mut builder = SceneBuilder::default();
@@ -83,7 +83,7 @@ fn panels_and_sky_of_one_radiance_are_an_even_sky() {
     for i in 0..6 {
         let place = Vec3::new(1.0 * (i % 3) as f32 - 1.5, 1.0, (i / 3) as f32 - 1.0);
         let panel = Spec::new("", "rect").with("position", place).with("radiance", 1.0f32);
-        // Black, so that nothing is scattered to and fro.
+        // Black, so that no light is scattered back and forth.
         builder.lights.push(panel.with("edge_u", Vec3::X).with("edge_v", Vec3::Z));
     }
     sky(&mut builder, 1.0);

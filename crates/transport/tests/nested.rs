@@ -1,4 +1,4 @@
-//! Media that overlap: what separates them is what their priorities say, from both ends of a path.
+//! Overlapping media: their priorities decide what separates them, from both ends of a path.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn medium(eta: f32, absorption: f32, priority: f32) -> Spec {
 const WATER: (f32, f32) = (1.33, 0.3);
 const GLASS: (f32, f32) = (1.6, 0.5);
 
-/// A metre of glass under a metre of water that reaches a little into it, over a bright floor.
+/// A metre of glass under a metre of water that extends a little into it, over a bright floor.
 fn slabs(water: f32, glass: f32) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     let bright = diffuse(0.0f32).with("emission", 1.0f32);
@@ -39,8 +39,8 @@ fn slabs(water: f32, glass: f32) -> SceneBuilder {
     builder
 }
 
-/// What comes through layers straight on, all reflections between them added up: from the top, index, absorption and
-/// thickness of each.
+/// Transmittance of layers at normal incidence, with all interreflections summed: index, absorption and thickness of
+/// each layer, from the top.
 fn through(layers: &[(f32, f32, f32)]) -> f32 {
     let index = |i: usize| if i == 0 { 1.0 } else { layers.get(i - 1).map_or(1.0, |layer| layer.0) };
     let reflected = |i: usize| {
@@ -76,7 +76,7 @@ fn light_through_overlapping_slabs_is_what_fresnel_and_beer_say() {
     assert!((glass_wins / water_wins - 1.0).abs() > 0.02);
 }
 
-/// A glass ball and a water ball that overlap, with a lamp in both.
+/// A glass ball and a water ball that overlap, with a light in both.
 fn overlapping(roughness: f32, priorities: [f32; 2]) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
@@ -102,7 +102,7 @@ fn overlapping_media_look_the_same_from_both_ends() {
             let p = agreement(&path, &blocks(&scene, &*integrator(other), 100 * (i as u64 + 1)));
             assert!(p > 1e-4, "{name}: path and {other}: p = {p}");
         }
-        // Or else the test could not tell who has priority.
+        // Otherwise the test could not tell which medium has priority.
         let other = built(&overlapping(roughness, [1.0, 2.0]));
         assert!(agreement(&path, &blocks(&other, &*integrator("path"), 50)) < 1e-4);
     }

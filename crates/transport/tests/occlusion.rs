@@ -1,4 +1,4 @@
-//! Ambient occlusion against a form factor that is known.
+//! Ambient occlusion against a known form factor.
 
 mod common;
 
@@ -7,7 +7,7 @@ use bilux_scene::{SceneBuilder, Spec};
 use bilux_transport::{RenderSettings, integrators};
 use common::{built, diffuse, floor, integrator, look, put, quad, shoot};
 
-/// A floor, and beside the point (0, 0, 0) at distance 1 a wall of height 2 without ends.
+/// A floor, and at distance 1 from the point (0, 0, 0) an endless wall of height 2.
 fn beside_a_wall() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 50.0), diffuse(0.5f32));
@@ -27,7 +27,7 @@ fn mean(spec: Option<Spec>) -> f64 {
 
 #[test]
 fn a_wall_closes_its_form_factor() {
-    // An endless wall of height h at distance d takes (1 - d/√(d² + h²))/2 of a floor's cosine-weighted sky.
+    // An endless wall of height h at distance d covers (1 - d/√(d² + h²))/2 of a floor's cosine-weighted sky.
     let open = 1.0 - (1.0 - 1.0 / 5f64.sqrt()) / 2.0;
     let seen = mean(None);
     assert!((seen - open).abs() < 0.01, "{seen} is open, and {open} should be");

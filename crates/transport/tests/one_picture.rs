@@ -1,4 +1,4 @@
-//! A picture is a function of scene, settings and seed: never of threads, crops, parts or who stops it.
+//! A picture is a function of scene, settings and seed: threads, crops, parts and cancellation make no difference.
 
 mod common;
 
@@ -16,7 +16,7 @@ fn settings() -> RenderSettings {
     RenderSettings { threads: 2, seed: 7, ..RenderSettings::new(37, 21, 5) }
 }
 
-/// Everything but how the coverage is put together.
+/// Everything except how the coverage is composed.
 fn same(a: &Film, b: &Film) -> bool {
     a.to_rgb() == b.to_rgb()
         && a.to_partial().unwrap().integer_planes() == b.to_partial().unwrap().integer_planes()
@@ -110,7 +110,7 @@ fn cook_without_extents_is_whitted_to_the_bit() {
         shoot(&scene, &*integrator, &settings).film
     };
     assert_eq!(cook("extent", 0.0), whitted);
-    // The twin: each extent alone changes the picture, so that the scene really has something to spread.
+    // Negative control: each extent alone changes the picture, so the scene really has something to spread over.
     let extents = ["pixel", "gloss", "translucency", "lights", "lens", "shutter"];
     for on in extents {
         let spec = extents.iter().filter(|e| **e != on).fold(Spec::new("", "cook"), |s, e| s.with(e, 0.0f32));
@@ -119,7 +119,7 @@ fn cook_without_extents_is_whitted_to_the_bit() {
     }
 }
 
-/// Stops after so many samples.
+/// Cancels after this many samples.
 struct StopAfter(AtomicU64, u64);
 
 impl Progress for StopAfter {
@@ -149,7 +149,7 @@ fn what_is_done_when_stopped_is_whole_and_known() {
     }
 }
 
-/// Not a number in one sample of one pixel.
+/// Returns NaN for rays towards the upper right.
 struct Broken;
 
 impl PixelIntegrator for Broken {

@@ -1,4 +1,4 @@
-//! `path` against closed forms, and its ways of finding light against each other.
+//! `path` against closed forms, and its sampling techniques against each other.
 
 mod common;
 
@@ -26,7 +26,7 @@ fn means(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSetti
     (0..8).map(mean).collect()
 }
 
-/// Every mean within this of the truth, relatively, or within five standard errors.
+/// Every mean lies within five standard errors of the truth, with a small relative allowance.
 fn assert_mean(found: &[Rgb], wanted: f64) {
     for c in 0..3 {
         let (mean, error) = estimate(&channel(found, c));
@@ -59,7 +59,7 @@ fn inside_a_glowing_shell_light_adds_up_to_the_geometric_series() {
         let settings = RenderSettings { max_depth: 1000, ..RenderSettings::new(8, 8, 32) };
         let found = means(&built(&builder), &*path("mis"), &settings);
         assert_mean(&found, 1.0 / (1.0 - f64::from(albedo)));
-        // With an end to paths, the series ends too.
+        // With a limit on the length of paths, the series ends too.
         let settings = RenderSettings { max_depth: 2, ..settings };
         let found = means(&built(&builder), &*path("mis"), &settings);
         assert_mean(&found, f64::from(1.0 + albedo + albedo * albedo));
@@ -79,7 +79,7 @@ fn clear_glass_in_a_white_furnace_cannot_be_seen() {
         );
         let settings = RenderSettings { max_depth: 1000, ..RenderSettings::new(16, 16, 16) };
         let film = shoot(&built(&builder), &*path.unwrap(), &settings).film;
-        // Radiance within glass is η² times that outside, and comes back to what it was on the way out.
+        // Radiance within glass is η² times that outside, and returns to its former value on the way out.
         let wanted = if camera < 1.0 { 1.5 * 1.5 } else { 1.0 };
         for pixel in film.to_rgb() {
             assert!((pixel.g - wanted).abs() < 2e-4 * wanted, "{pixel:?} from {camera}, thin: {thin}");
@@ -89,7 +89,7 @@ fn clear_glass_in_a_white_furnace_cannot_be_seen() {
 
 #[test]
 fn a_mirror_ball_loses_no_light_at_its_silhouette() {
-    // There the interpolated normal would send light into the triangle.
+    // At the silhouette, reflection about the interpolated normal would send light into the triangle.
     let mut builder = SceneBuilder::default();
     let mirror = Spec::new("", "mirror").with("reflectance", 1.0f32);
     put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 8, true), mirror);
@@ -118,7 +118,7 @@ fn all_ways_of_finding_light_agree() {
         let p = agreement(&mis, &blocks(&scene, &*path(sampling), seed));
         assert!(p > 1e-4, "mis and {sampling}: p = {p}");
     }
-    // The twin: light that is five hundredths too bright is found out.
+    // Negative control: light that is five hundredths too bright is detected.
     let p = agreement(&mis, &blocks(&scene, &Wrong(path("lights"), 1.05), 300));
     assert!(p < 1e-4, "a wrong density passes: p = {p}");
 }
@@ -149,7 +149,8 @@ fn a_backdrop_is_seen_and_lights_nothing() {
     assert!(near(seen(above, Vec3::ZERO), Rgb::BLACK), "it lights no floor");
     assert!(near(seen(above, mirror), Rgb::BLACK), "nor the floor in the mirror");
     assert!(near(seen(below, mirror), colour), "it is seen in the mirror");
-    // Beside surroundings it is what the camera sees, and they are what the mirror shows, and what lights the floor.
+    // With an environment as well, the camera sees the backdrop; the mirror shows the environment, which also lights
+    // the floor.
     let lit = Rgb::grey(0.7);
     builder.lights.push(Spec::new("", "environment").with("radiance", lit));
     for integrator in
@@ -175,7 +176,7 @@ fn a_backdrop_is_seen_and_lights_nothing() {
 
 #[test]
 fn glass_absorbs_along_the_way_and_also_what_it_holds() {
-    // A black ball with a glowing core in a block of glass is dimmed by what glass is before it.
+    // A black, glowing square in a ball of glass is dimmed by the glass in front of it.
     let sigma = Rgb::new(0.2, 0.6, 1.2);
     let mut builder = SceneBuilder::default();
     let glass = Spec::new("", "dielectric").with("eta", 1.0f32).with("absorption", sigma);

@@ -1,5 +1,5 @@
-//! No random number decides two things: where one does, what is drawn together is not as likely as the product says, and
-//! the mean is wrong in scenes that tell the two apart.
+//! No random number decides two things. Where one does, the joint probability is not the product of the two, and the
+//! mean is wrong in scenes that reveal the correlation.
 
 mod common;
 
@@ -9,8 +9,8 @@ use bilux_transport::{RenderSettings, integrators};
 use common::statistics::estimate;
 use common::{ball, built, diffuse, floor, look, put, quad, shoot, sky};
 
-/// A red mirror and a green matt surface, each for a half of the light: which of them was drawn tells the colour that a
-/// path goes on with.
+/// A red mirror and a green diffuse surface, each for half of the light: the choice of lobe decides the colour with
+/// which a path continues.
 fn two_coloured(builder: &mut SceneBuilder) -> Spec {
     let mirror = Spec::new("", "mirror").with("reflectance", Rgb::new(0.9, 0.2, 0.4));
     let matt = Spec::new("", "diffuse").with("reflectance", Rgb::new(0.1, 0.5, 0.2));
@@ -21,7 +21,8 @@ fn two_coloured(builder: &mut SceneBuilder) -> Spec {
 
 const ALBEDO: [f64; 3] = [0.5, 0.35, 0.3];
 
-/// Means and standard errors of the channels over pictures of several seeds, with roulette from the first event on.
+/// Means and standard errors of the channels over pictures of several seeds, with Russian roulette from the first event
+/// on.
 fn found(scene: &Scene, kind: &str, sampling: &str, settings: &RenderSettings) -> [(f64, f64); 3] {
     let spec = Spec::new("", kind).with("roulette_depth", Value::Integer(0));
     let spec = if sampling.is_empty() { spec } else { spec.with("sampling", sampling) };

@@ -1,4 +1,4 @@
-//! Surfaces that the camera sees from their front alone, and looks through from behind.
+//! Surfaces that the camera sees only from the front, and looks through from behind.
 
 mod common;
 
@@ -12,14 +12,14 @@ use common::{
 };
 use std::sync::Arc;
 
-/// An upright wall that turns its back to whoever looks from +z.
+/// An upright wall with its back to a viewer at +z.
 fn wall() -> Arc<Mesh> {
     let mut mesh = (*quad(Vec3::new(-1.2, 0.05, 1.2), Vec3::Y * 1.1, Vec3::X * 2.4)).clone();
     mesh.uvs = vec![Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];
     Arc::new(mesh)
 }
 
-/// A floor and a ball behind a wall, and a lamp on this side of it.
+/// A floor and a ball behind a wall, and a light in front of it.
 fn behind(wall: Arc<Mesh>, material: Spec) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
@@ -57,7 +57,7 @@ fn what_is_seen_from_its_front_looks_the_same_from_both_ends() {
     }
 }
 
-/// Planted bugs: light paths that do not reach the camera through a back, and those that show it the back.
+/// Planted bugs: light subpaths that do not reach the camera through a back, and those that show it the back.
 #[test]
 fn backs_that_light_paths_do_not_know_are_found_out() {
     let grey = || diffuse(0.5f32);
@@ -65,7 +65,7 @@ fn backs_that_light_paths_do_not_know_are_found_out() {
     assert_unlike_path(&right, &wrong, &["light", "bdpt"]);
 }
 
-/// What is behind the back is seen as if nothing were before it, in the shade that it gives.
+/// What lies behind the back is visible as if nothing were in front of it, in the shadow that it casts.
 #[test]
 fn a_back_is_looked_through_and_gives_shade() {
     let seen = |lid: Arc<Mesh>| {
@@ -80,7 +80,7 @@ fn a_back_is_looked_through_and_gives_shade() {
     };
     let facing_down = quad(Vec3::new(-3.0, 1.0, -3.0), Vec3::X * 6.0, Vec3::Z * 6.0);
     assert_eq!(seen(floor(1.0, 3.0)), 0.0, "its front is black");
-    // As seen from the floor's middle, the lid covers this much of the sky. [Howell 2010, C-11]
+    // As seen from the floor's centre, the lid covers this much of the sky. [Howell 2010, C-11]
     let side = 3.0 / 10f32.sqrt();
     let covered = f64::from(4.0 / std::f32::consts::PI * side * atan(side));
     let shaded = seen(facing_down);
@@ -93,14 +93,14 @@ fn backs_are_the_same_whatever_finds_them() {
     assert_same_whatever_finds(&builder);
 }
 
-/// An upright sheet of two one-sided shells, the one that looks at the camera `gap` behind the one that looks away.
+/// An upright sheet of two one-sided shells; the one that faces the camera is `gap` behind the one that faces away.
 fn sheet(builder: &mut SceneBuilder, gap: f32, material: &Spec) {
     let (corner, up, right) = (Vec3::new(-1.2, 0.05, 1.2), Vec3::Y * 1.1, Vec3::X * 2.4);
     put(builder, "seen", quad(corner, right, up), one_sided(material.clone()));
     put(builder, "before it", quad(corner + Vec3::Z * gap, up, right), one_sided(material.clone()));
 }
 
-/// A stage for a sheet: light from before it and from behind it.
+/// A stage for a sheet: light from in front of it and from behind it.
 fn stage(build: impl FnOnce(&mut SceneBuilder)) -> Scene {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));
@@ -115,7 +115,7 @@ fn stage(build: impl FnOnce(&mut SceneBuilder)) -> Scene {
     built(&builder)
 }
 
-/// Materials of sheets: one that is lit, one that glows.
+/// Materials of sheets: one that is lit, one that emits.
 fn of_sheets() -> [(&'static str, Spec); 2] {
     let sign = diffuse(0.3f32).with("emission", Rgb::new(1.0, 0.7, 0.3)).with("emission_sides", "front");
     [("paper", diffuse(Rgb::new(0.3, 0.5, 0.8))), ("sign", sign)]
@@ -134,7 +134,7 @@ fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
         for gap in [0.0, 1e-4] {
             let two = stage(|builder| sheet(builder, gap, &material));
             for (i, other) in ["path"].iter().chain(&ALL).enumerate() {
-                // Merging is biased. Between luminous shells it loses 0.9%: see docs/adr/0023-shells.md.
+                // Merging is biased. Between emissive shells it loses 0.9%: see docs/adr/0023-shells.md.
                 let merge = if (name, *other) == ("sign", "auto") { "never" } else { "auto" };
                 let spec = Spec::new("", other);
                 let spec = if *other == "auto" { spec.with("merge", merge) } else { spec };
@@ -147,7 +147,7 @@ fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
     }
 }
 
-/// Planted bug: shells that are looked through and shade each other, as a canopy does what is below it.
+/// Planted bug: shells that the camera looks through but that shade each other, as a canopy shades what is below it.
 #[test]
 fn shells_that_shade_each_other_are_found_out() {
     let (_, paper) = &of_sheets()[0];
@@ -156,7 +156,7 @@ fn shells_that_shade_each_other_are_found_out() {
     assert_unlike_path(&right, &wrong, &["path", "light", "bdpt", "vcm", "sppm", "auto"]);
 }
 
-/// A ball of two shells, of the classic modes too.
+/// A ball of two shells, in the classic modes too.
 #[test]
 fn a_ball_of_two_shells_looks_like_a_ball() {
     let seen = |outer: Option<f32>, mode: &str| {

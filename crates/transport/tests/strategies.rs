@@ -1,4 +1,4 @@
-//! Pictures of single strategies: weighted they add up to the picture, and unweighted they all have the same mean.
+//! Pictures of single techniques: weighted they add up to the picture, and unweighted they all have the same mean.
 
 mod common;
 
@@ -15,8 +15,8 @@ fn of(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Strategies
     strategies(scene, &*scene.cameras()[0].1, &*integrator, settings, &Silent).unwrap().unwrap()
 }
 
-/// Matt bodies that do not touch, so that no two vertices come close and the variance of each strategy is finite; a panel
-/// that is large, seen through a lens that is too.
+/// Diffuse bodies that do not touch, so that no two vertices come close and the variance of each technique is finite; a
+/// large panel, seen through a large lens.
 fn matt() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.8, 0.6, 0.5)));
@@ -32,7 +32,7 @@ fn matt() -> SceneBuilder {
     builder
 }
 
-/// Block sums (2 × 2 blocks, three channels) of every strategy's unweighted picture, `[block][picture]`.
+/// Block sums (2 × 2 blocks, three channels) of every technique's unweighted picture, `[block][picture]`.
 type Blocks = BTreeMap<Strategy, Vec<Vec<f64>>>;
 
 const PICTURES: u64 = 24;
@@ -53,8 +53,8 @@ fn unweighted(scene: &Scene, integrator: &Spec, first_seed: u64, settings: &Rend
     all
 }
 
-/// The least p-value over all strategies against that which picks a point on a light, of other samples, corrected for the
-/// number of strategies. [Šidák 1967]
+/// The minimum p-value over all techniques against light sampling (s = 1), with other samples, corrected for the number
+/// of techniques. [Šidák 1967]
 fn least(all: &Blocks, picked: &Blocks) -> (f64, Option<Strategy>) {
     let (mut least, mut count, mut which) = (1.0, 0, None);
     for (strategy, blocks) in all {
@@ -68,13 +68,13 @@ fn least(all: &Blocks, picked: &Blocks) -> (f64, Option<Strategy>) {
     (1.0 - bilux_math::transcendental::powf_f64(1.0 - least, f64::from(count)), which)
 }
 
-/// Without light that the camera sees directly, of which there is but one strategy.
+/// Without light that the camera sees directly, for which there is only one technique.
 fn longer(mut blocks: Blocks) -> Blocks {
     blocks.retain(|strategy, _| strategy.edges > 1);
     blocks
 }
 
-/// The same with one strategy that many times as bright.
+/// The same with one technique brighter by this factor.
 fn spoilt(all: &Blocks, strategy: &Strategy, factor: f64) -> Blocks {
     let mut wrong = all.clone();
     wrong.get_mut(strategy).unwrap().iter_mut().flatten().for_each(|sum| *sum *= factor);
@@ -86,12 +86,12 @@ fn all_strategies_find_the_same_light() {
     let (scene, bdpt) = (built(&matt()), Spec::new("", "bdpt").with("roulette_depth", Value::Integer(1)));
     let settings = RenderSettings { max_depth: 3, ..RenderSettings::new(16, 16, 256) };
     let [all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &bdpt, seed, &settings)));
-    // Paths of 2 to 4 edges in 3 to 5 ways each.
+    // Paths of 2 to 4 edges, by 3 to 5 techniques each.
     assert_eq!(all.len(), 3 + 4 + 5);
     let (p, which) = least(&all, &picked);
     assert!(p > UNLIKELY, "p = {p}, {which:?}");
 
-    // Each of them on its own is known from one that is a little too bright, or is counted twice.
+    // Each of them on its own is detected when it is a little too bright, or counted twice.
     for strategy in all.keys() {
         let (p, which) = least(&spoilt(&all, strategy, 2.0), &picked);
         assert!(p < UNLIKELY && which == Some(*strategy), "{strategy} counted twice passes: p = {p}");
@@ -109,7 +109,7 @@ fn merging_finds_the_same_light_with_a_small_radius() {
     let vcm = Spec::new("", "vcm").with("radius", 0.02f32).with("alpha", 1.0f32);
     let [mut all, picked] = [0, 100].map(|seed| longer(unweighted(&scene, &vcm, seed, &settings)));
     all.retain(|strategy, _| strategy.merges);
-    // Of 2 to 4 edges, at each vertex between.
+    // Paths of 2 to 4 edges, merged at each vertex in between.
     assert_eq!(all.len(), 1 + 2 + 3);
     let (p, which) = least(&all, &picked);
     assert!(p > UNLIKELY, "p = {p}, {which:?}");
@@ -131,7 +131,7 @@ fn weighted_strategies_add_up_to_the_picture() {
                 let (x, y) = strategies.window.position(i);
                 let sum = strategies.pictures.iter().fold(Rgb::BLACK, |sum, one| sum + one.weighted[i]);
                 let pixel = film.pixel(x, y);
-                // Steps of the film, and single precision.
+                // Rounding of the film's steps, and of single precision.
                 let error = (0..3).map(|c| (sum[c] - pixel[c]).abs()).fold(0.0, f32::max);
                 assert!(
                     error < 1e-5 * (1.0 + pixel.max_channel()),
@@ -144,7 +144,7 @@ fn weighted_strategies_add_up_to_the_picture() {
 
 #[test]
 fn light_paths_of_a_part_of_the_pixels_are_weighted_as_in_the_picture() {
-    // There the photons are seen by the camera; here every pixel has a light path of its own.
+    // There the photons are connected with the camera; here every pixel has a light subpath of its own.
     let scene = built(&matt());
     let vcm = Spec::new("", "vcm")
         .with("joins", false)

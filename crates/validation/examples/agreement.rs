@@ -1,13 +1,14 @@
-//! Renders every shipped scene with every unbiased integrator, and holds their pictures against each other block by block.
+//! Renders every shipped scene with every unbiased integrator, and compares their pictures block by block.
 //!
 //! ```text
 //! cargo run --release -p bilux-validation --example agreement -- [--seconds N] [--scenes A,B] [--size 64x48] [--seed N]
 //! ```
-//! Each integrator has so many seconds for each scene (3, unless told otherwise). A line each pair: how many blocks and
-//! channels were compared, of how many nothing can be said yet, how far apart two right means would lie (one standard
-//! error), the least p-value corrected for their number, and the histogram of all p-values from 0 to 1, which is even where
-//! both have the same mean. An integrator is also compared with itself, which shows that the test itself is right. A pair
-//! that seems to disagree is rendered once more, with other seeds and four times the samples. Exits with 1 when it still does.
+//! Each integrator has N seconds for each scene (3 by default). Each pair has a line: how many blocks and channels were
+//! compared, how many are still undecided, how far apart two right means would lie (one standard error), the minimum
+//! p-value corrected for their number, and the histogram of all p-values from 0 to 1, which is uniform where both have
+//! the same mean. An integrator is also compared with itself, which shows that the test itself is right. A pair that
+//! seems to disagree is rendered once more, with other seeds and four times the samples. Exits with 1 when it still
+//! disagrees.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 use bilux_validation::agreement::{Comparison, Evidence, Stage, Technique, shipped, stages, ways};
@@ -17,7 +18,7 @@ use std::error::Error;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Less likely than this by chance: looked at again, and then told.
+/// A p-value below this is checked once more, and then reported.
 const UNLIKELY: f64 = 1e-3;
 
 struct Arguments {
@@ -68,7 +69,7 @@ fn line(pair: &str, found: &Comparison, more: &str) {
     );
 }
 
-/// All pairs of ways on one stage: whether all agree, and of how many cells that can be said.
+/// Compares all pairs of techniques on one stage: whether all agree, and the number of decided cells.
 fn check(stage: &Stage, arguments: &Arguments, all: &mut All) -> Result<(bool, usize), Box<dyn Error>> {
     let ways: Vec<Technique> = ways();
     let mut rendered = Vec::new();

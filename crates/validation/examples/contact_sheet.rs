@@ -1,11 +1,11 @@
-//! Our pictures of models beside the screenshots that come with them, on one sheet.
+//! Our pictures of models next to the screenshots that come with them, on one sheet.
 //!
 //! ```text
 //! cargo run --release -p bilux-validation --example contact_sheet -- MODELS OUT [--spp N] [--at SECONDS] [--only A,B]
 //! ```
-//! MODELS is a folder of models as the Khronos group hands them out: NAME/glTF-Binary/NAME.glb or NAME/glTF/NAME.gltf, and
-//! NAME/screenshot. OUT is a folder: OUT/NAME.png is rendered where it is not there yet, with no options but its size and
-//! samples, and OUT/sheet.png has them all, ours on the left. Screenshots that move (GIF) are not shown.
+//! MODELS is a folder of models in the layout of the Khronos group: NAME/glTF-Binary/NAME.glb or NAME/glTF/NAME.gltf,
+//! and NAME/screenshot. OUT is a folder: OUT/NAME.png is rendered if it does not exist yet, with no options except its
+//! size and samples, and OUT/sheet.png shows them all, ours on the left. Animated screenshots (GIF) are not shown.
 #![expect(clippy::print_stdout, reason = "a program, whose output this is")]
 
 use bilux::Job;
@@ -16,9 +16,9 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Pixels of a picture's sides.
+/// Side of a picture, in pixels.
 const SIZE: usize = 256;
-/// Pairs of pictures in a row.
+/// Pairs of pictures per row.
 const ACROSS: usize = 4;
 
 type Failure = Box<dyn Error>;
@@ -85,7 +85,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The scene file of a model's folder.
+/// The scene file in a model's folder.
 fn model_of(folder: &Path) -> Option<PathBuf> {
     let with_extension = |sub: &str, wanted: &str| {
         let entries = fs::read_dir(folder.join(sub)).ok()?;
@@ -113,7 +113,7 @@ fn screenshot(folder: &Path) -> Option<Picture> {
         .find_map(|path| bilux::pictures::read(path).ok())
 }
 
-/// A picture no larger than the others, in the middle of a square.
+/// A picture, reduced to the size of the others, in the middle of a square.
 fn fitted(picture: &Picture) -> Result<Picture, Failure> {
     let small = downscaled(picture, picture.width().max(picture.height()).div_ceil(SIZE))?;
     let mut pixels = vec![Rgb::grey(0.05); SIZE * SIZE];

@@ -1,16 +1,17 @@
-//! Do all unbiased integrators find the same light? Shipped scenes as small pictures, compared block by block.
+//! Whether all unbiased integrators find the same light: shipped scenes as small pictures, compared block by block.
 //!
-//! Each way renders [`PICTURES`] pictures that differ in their seeds only. For every block of [`BLOCK`]² pixels and every
-//! channel, Welch's test says how likely two ways with one mean would differ as much as these do. [Jung 2020]
+//! Each technique renders [`PICTURES`] pictures that differ only in their seeds. For every block of [`BLOCK`]² pixels
+//! and every channel, Welch's test gives the probability that two techniques with the same mean differ by as much as
+//! these. [Jung 2020]
 //!
 //! Only light that both find is compared:
-//! - `light` sees nothing through a mirror or through glass: it is compared in blocks whose surfaces all scatter into more
-//!   than single directions.
-//! - `path` (and `auto`, which may be it) finds no light that lamps without extent send through a mirror or through glass.
-//!   In scenes with such lamps it is compared under lamps that have some.
+//! - `light` finds nothing that is seen in a mirror or through glass: it is compared in blocks where no visible surface
+//!   has a delta lobe.
+//! - `path` (and `auto`, which may choose it) finds no light that lights without extent send through a mirror or
+//!   through glass. In scenes with such lights it is compared under lights that have an extent.
 //!
-//! A mean of few and unequal parts is not normally distributed, and Welch's test of such means is wrong: cells that are not
-//! known to 3% of their light yet, or whose pictures are skewed, are left undecided. The whole picture is a cell too.
+//! The mean of a few unequal contributions is not normally distributed, and Welch's test is wrong for such means: cells
+//! whose light is not known to 3% yet, or whose pictures are skewed, stay undecided. The whole picture is a cell too.
 
 use crate::chi_square::uniforms;
 use crate::statistics::{estimate, is_skewed, sidak, welch};
@@ -28,29 +29,29 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Pictures of each way.
+/// Number of pictures per technique.
 pub const PICTURES: usize = 32;
 
 /// Side of a block, in pixels.
 pub const BLOCK: usize = 8;
 
-/// Where one standard error is more than this part of the light, too little has been found to tell anything.
+/// Where one standard error exceeds this fraction of the light, too little has been found for a decision.
 const COARSE: f64 = 0.03;
 
-/// A way of finding light.
+/// A technique for finding light.
 #[derive(Clone, Debug)]
 pub struct Technique {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// The integrator and its parameters.
     pub spec: Spec,
-    /// It finds what lamps without extent send through mirrors and glass.
+    /// It finds what lights without extent send through mirrors and glass.
     pub finds_points: bool,
     /// It finds what is seen in mirrors or through glass.
     pub finds_mirrored: bool,
 }
 
-/// All unbiased ways.
+/// All unbiased techniques.
 pub fn ways() -> Vec<Technique> {
     let way =
         |name, spec, finds_points, finds_mirrored| Technique { name, spec, finds_points, finds_mirrored };
@@ -63,26 +64,26 @@ pub fn ways() -> Vec<Technique> {
     ]
 }
 
-/// A scene to be rendered small.
+/// A scene to be rendered at a small size.
 pub struct Stage {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Scene and camera.
     pub scene: Scene,
     /// Size and depth; samples and seed are set for each picture.
     pub settings: RenderSettings,
-    /// Some of its lamps have no extent.
+    /// Some of its lights have no extent.
     pub has_points: bool,
-    /// Blocks in which no mirror and no glass is seen.
+    /// Blocks in which no mirror and no glass is visible.
     plain: Vec<bool>,
-    /// Of each cell, the light of lamps and sky themselves, which all ways find alike.
+    /// For each cell, the directly visible light of lights and sky, which all techniques find alike.
     seen: Vec<f64>,
 }
 
-/// Every scene that we ship: those in the folder, and those that have a generator and no file there, by name.
+/// All scenes that we ship: those in the folder, and those that have a generator and no file there, by name.
 ///
 /// # Errors
-/// When one cannot be read or made.
+/// When one cannot be read or generated.
 pub fn shipped(folder: &Path) -> Result<Vec<(String, SceneBuilder)>, Error> {
     let mut files: Vec<_> = std::fs::read_dir(folder)
         .into_iter()
@@ -97,7 +98,7 @@ pub fn shipped(folder: &Path) -> Result<Vec<(String, SceneBuilder)>, Error> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         all.push((name, bilux::load(&path, &ReadOptions::default())?));
     }
-    // Shown by `cornell.toml`, `teapots.toml` and `teapots-trio.toml`.
+    // Covered by `cornell.toml`, `teapots.toml` and `teapots-trio.toml`.
     let in_files = ["cornell-spheres", "teapots", "trio"];
     for row in GENERATORS.iter().filter(|row| !in_files.contains(&row.entry.name)) {
         all.push((row.entry.name.to_owned(), bilux::generate(&Spec::new("", row.entry.name))?));
@@ -105,7 +106,7 @@ pub fn shipped(folder: &Path) -> Result<Vec<(String, SceneBuilder)>, Error> {
     Ok(all)
 }
 
-/// The scene as it is, and where lamps of it have no extent, also as if they had.
+/// The scene as it is, and where lights of it have no extent, also a version in which they have.
 ///
 /// # Errors
 /// When something in it is wrong.
@@ -173,7 +174,7 @@ impl Stage {
         self.across() * (self.settings.height as usize / BLOCK)
     }
 
-    /// Whether everything that is seen in a block scatters into more than single directions, as far as many rays tell.
+    /// True where no surface that is visible in a block has a delta lobe, as far as many rays show.
     fn is_plain(&self, block: usize) -> bool {
         const RAYS: u64 = 4096;
         let corner = Vec2::new((block % self.across()) as f32, (block / self.across()) as f32);
@@ -194,12 +195,12 @@ impl Stage {
         })
     }
 
-    /// Whether two ways can be compared here.
+    /// True where two techniques can be compared here.
     pub fn compares(&self, a: &Technique, b: &Technique) -> bool {
         !self.has_points || (a.finds_points && b.finds_points)
     }
 
-    /// Sums of all blocks and channels over pictures of so many samples.
+    /// Sums of all blocks and channels over pictures of this many samples.
     ///
     /// # Errors
     /// When memory is short.
@@ -237,7 +238,7 @@ impl Stage {
         Ok(Evidence { cells, spp: settings.spp })
     }
 
-    /// The pictures of a way, with as many samples as can be taken in about so many seconds by the clock.
+    /// The pictures of a technique, with as many samples as it takes in about this many seconds by the clock.
     ///
     /// # Errors
     /// As [`Stage::render`].
@@ -257,7 +258,7 @@ impl Stage {
         }
     }
 
-    /// Two ways against each other, on what both find.
+    /// Compares two techniques, on the light that both find.
     pub fn compare(
         &self,
         (a, of_a): (&Technique, &Evidence),
@@ -267,7 +268,7 @@ impl Stage {
         self.comparison(&of_a.cells, &of_b.cells, |cell| everywhere || self.plain[cell / 3])
     }
 
-    /// The first half of a way's pictures against the second: what differs there is chance.
+    /// Compares the first half of a technique's pictures with the second: any difference there is chance.
     pub fn against_itself(&self, of: &Evidence) -> Comparison {
         let half = |first: bool| -> Vec<Vec<f64>> {
             let of_cell = |cell: &Vec<f64>| {
@@ -312,22 +313,23 @@ impl Stage {
     }
 }
 
-/// What can be said of a cell.
+/// The verdict on a cell.
 enum Judged {
-    /// There is no light beside that of the lamps themselves.
+    /// There is no light apart from that of the lights themselves.
     Empty,
     /// Too little has been found.
     Undecided,
-    /// The chance that equal means differ so much, and one standard error of their difference as a part of the light.
+    /// The probability that equal means differ by as much, and one standard error of their difference as a fraction of
+    /// the light.
     Decided { p: f64, error: f64 },
 }
 
-/// Of two sets of pictures of a cell, of which `seen` is the light of lamps themselves. That one way finds nothing at all
-/// is told only where it is `sure` to find something: it may just not have happened yet.
+/// Judges two sets of pictures of a cell, in which `seen` is the light of the lights themselves. That one technique
+/// finds nothing at all counts only where it is `sure` to find something: it may just not have happened yet.
 fn judge(pair: [&[f64]; 2], seen: f64, sure: bool) -> Judged {
     let estimates = pair.map(estimate);
     let light = estimates.map(|(mean, _)| mean).into_iter().fold(0.0, f64::max) - seen;
-    // The lamps' edges are not the same in all pictures.
+    // The lights' edges are not the same in all pictures.
     if light < 1e-2 * seen || light <= 0.0 {
         return Judged::Empty;
     }
@@ -342,30 +344,30 @@ fn judge(pair: [&[f64]; 2], seen: f64, sure: bool) -> Judged {
     Judged::Decided { p, error: (estimates[0].1 + estimates[1].1).sqrt() / light }
 }
 
-/// What the pictures of one way say.
+/// The evidence of one technique's pictures.
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// `[block * 3 + channel][picture]`: sums over the block.
     pub cells: Vec<Vec<f64>>,
-    /// Samples of each pixel in each picture.
+    /// Samples per pixel in each picture.
     pub spp: u32,
 }
 
-/// What two sets of pictures say of each other.
+/// The comparison of two sets of pictures.
 #[derive(Clone, Debug, Default)]
 pub struct Comparison {
-    /// Of every cell that says something, the whole picture included.
+    /// P-values of all decided cells, the whole picture included.
     pub p_values: Vec<f64>,
-    /// Those of single blocks' green channel, which are nearly independent of each other.
+    /// P-values of single blocks' green channel, which are nearly independent of each other.
     pub green: Vec<f64>,
-    /// Cells of which nothing can be said yet.
+    /// Number of cells that are not decided yet.
     pub undecided: usize,
-    /// The median of one standard error of a block's difference, as a part of its light.
+    /// The median of one standard error of a block's difference, as a fraction of its light.
     pub error: Option<f64>,
 }
 
 impl Comparison {
-    /// The least p-value, corrected for the number of cells; 1 where none could be decided.
+    /// The minimum p-value, corrected for the number of cells; 1 where none could be decided.
     pub fn least(&self) -> f64 {
         sidak(self.p_values.iter().copied().fold(1.0, f64::min), self.p_values.len().max(1))
     }

@@ -1,4 +1,4 @@
-//! What every BSDF promises, checked on any of them: see DESIGN, "Contract suites".
+//! The contract of every BSDF, as checks that run on any of them: see DESIGN, "Contract suites".
 
 use crate::chi_square::{p_value, uniforms};
 use crate::tally::Tally;
@@ -7,20 +7,20 @@ use bilux_math::{Rgb, Vec2, Vec3, warp};
 use bilux_scene::bsdf::{Bsdf, Lobe};
 use bilux_scene::{BsdfSample, TransportMode};
 
-/// A way of scattering with its three functions, so that a bug can be planted in any of them. Directions are
-/// local, with the normal as z.
+/// A BSDF as its three functions, so that a bug can be planted in any of them. Directions are local, with the normal as
+/// z.
 pub struct Scatterer {
     /// f·|cosθi|.
     pub eval: Box<dyn Fn(Vec3, Vec3, TransportMode) -> Rgb>,
     /// Density of `sample`.
     pub pdf: Box<dyn Fn(Vec3, Vec3, TransportMode) -> f32>,
-    /// A direction.
+    /// Samples a direction.
     pub sample: SampleFn,
-    /// Normal of the surface, where it is not that of the scattering.
+    /// The geometric normal, where it differs from the shading normal.
     pub n_geom: Vec3,
 }
 
-/// `wo`, a number that chooses, two for the direction, the mode.
+/// `wo`, a random number for the choice of lobe, two for the direction, and the mode.
 pub type SampleFn = Box<dyn Fn(Vec3, f32, Vec2, TransportMode) -> Option<BsdfSample>>;
 
 impl From<Lobe> for Scatterer {
@@ -45,12 +45,12 @@ impl From<Bsdf> for Scatterer {
     }
 }
 
-/// What is promised beyond the contract that holds for all.
+/// What a BSDF promises beyond the contract that holds for all.
 #[derive(Clone, Copy, Debug)]
 pub struct Promise {
     /// eval(a, b)·|cos a| = eval(b, a)·|cos b|.
     pub reciprocal: bool,
-    /// A white one loses no light.
+    /// A white one loses no energy.
     pub lossless: bool,
 }
 
@@ -65,17 +65,17 @@ pub const CHECKS: [(&str, Check); 7] = [
     ("lobes of zero chance give no sample", samples_are_sound),
 ];
 
-/// One check: what it found wrong, if anything.
+/// One check; an error describes what is wrong.
 pub type Check = fn(&Scatterer, Promise) -> Result<(), String>;
 
 const RADIANCE: TransportMode = TransportMode::Radiance;
 const IMPORTANCE: TransportMode = TransportMode::Importance;
 /// Samples of each χ² test and of each mean.
 const SAMPLES: u64 = 60_000;
-/// Chance of a false alarm of one suite over all its directions, shared out after Šidák.
+/// Probability of a false alarm of one suite over all its directions, divided among them after Šidák.
 const SIGNIFICANCE: f64 = 1e-4;
 
-/// Known directions: above and below the surface, steep and grazing.
+/// Test directions: above and below the surface, steep and grazing.
 fn known_directions() -> Vec<Vec3> {
     let at = |degrees: f32, turn: f32| {
         let (sin, cos) = sin_cos(degrees.to_radians());
@@ -85,7 +85,7 @@ fn known_directions() -> Vec<Vec3> {
     vec![at(5.0, 0.3), at(35.0, 2.0), at(62.0, 4.0), at(80.0, 5.5), -at(40.0, 1.0)]
 }
 
-/// χ² of `sample` against `pdf`; the share of delta samples is held against their probabilities instead.
+/// χ² test of `sample` against `pdf`; delta samples are compared with their probabilities instead.
 pub fn samples_follow_the_density(s: &Scatterer, _promise: Promise) -> Result<(), String> {
     let directions = known_directions();
     let bound = SIGNIFICANCE / directions.len() as f64;
@@ -110,7 +110,7 @@ fn draw(s: &Scatterer, wo: Vec3, stream: u64, i: u64, mode: TransportMode) -> Op
     (s.sample)(wo, choice, u, mode)
 }
 
-/// Each delta direction is drawn as often as its probability says, within five standard deviations.
+/// Each delta direction is sampled as often as its probability states, within five standard deviations.
 fn shares_follow(s: &Scatterer, wo: Vec3, stream: u64) -> Result<(), String> {
     for transmits in [false, true] {
         let of_side: Vec<f64> = (0..SAMPLES)
@@ -129,7 +129,7 @@ fn shares_follow(s: &Scatterer, wo: Vec3, stream: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// What `sample` says of its direction is what `eval` and `pdf` say of it.
+/// The weight and the density of a sample agree with `eval` and `pdf` for its direction.
 pub fn weight_times_density_is_eval(s: &Scatterer, _promise: Promise) -> Result<(), String> {
     let directions = known_directions().into_iter().enumerate();
     let both_modes = directions.flat_map(|(i, wo)| [(i, wo, RADIANCE), (i, wo, IMPORTANCE)]);
@@ -149,8 +149,8 @@ pub fn weight_times_density_is_eval(s: &Scatterer, _promise: Promise) -> Result<
     Ok(())
 }
 
-/// Helmholtz where promised; else refracted radiance is importance over the square of the relative index, and
-/// importance is radiance with the directions exchanged.
+/// Helmholtz reciprocity where promised; otherwise refracted radiance is importance over the square of the relative
+/// index, and importance is radiance with the directions exchanged.
 pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), String> {
     for (i, wo) in known_directions().into_iter().enumerate() {
         for k in 0..500 {
@@ -165,7 +165,7 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
             } else if let (Some(r), Some(t)) =
                 (draw(s, wo, 200 + i as u64, k, RADIANCE), draw(s, wo, 200 + i as u64, k, IMPORTANCE))
             {
-                // Snell's law, about the normal of the surface or of the facet that lies between the directions.
+                // Snell's law, about the normal of the surface or of the microfacet between the directions.
                 let sin = |d: Vec3| (1.0 - d.z * d.z).max(0.0).sqrt();
                 let eta = if r.transmits && r.is_delta { sin(wo) / sin(r.wi) } else { r.eta };
                 let exchanged = (s.eval)(r.wi, wo, IMPORTANCE).luminance() * r.wi.z.abs();
@@ -186,8 +186,8 @@ pub fn reciprocity_or_adjoint(s: &Scatterer, promise: Promise) -> Result<(), Str
     Ok(())
 }
 
-/// ⟨g, S h⟩ = ⟨S* g, h⟩: light that falls in as `h` and is looked at as `g` is the same, whether directions are drawn
-/// for radiance from where it is looked at or for importance from where it falls in. [Veach 1997, 4.4]
+/// ⟨g, S h⟩ = ⟨S* g, h⟩: incident light `h` that is measured with `g` gives the same, whether directions are sampled
+/// for radiance from the measuring side or for importance from the incident side. [Veach 1997, 4.4]
 pub fn the_same_from_both_ends(s: &Scatterer, _promise: Promise) -> Result<(), String> {
     let tested = known_directions();
     let shape = |d: Vec3, about: Vec3| {
@@ -220,7 +220,7 @@ pub fn the_same_from_both_ends(s: &Scatterer, _promise: Promise) -> Result<(), S
     Ok(())
 }
 
-/// Of no channel more goes out than came in; all of it where promised.
+/// In no channel does more light leave than arrived; all of it leaves where promised.
 pub fn energy(s: &Scatterer, promise: Promise) -> Result<(), String> {
     for (i, wo) in known_directions().into_iter().enumerate() {
         let weights: Vec<Rgb> = (0..SAMPLES)
@@ -243,7 +243,7 @@ pub fn energy(s: &Scatterer, promise: Promise) -> Result<(), String> {
     Ok(())
 }
 
-/// A direction without width has no density that `eval` or `pdf` could give.
+/// A delta direction has no density that `eval` or `pdf` could return.
 pub fn delta_lobes_hide(s: &Scatterer, _promise: Promise) -> Result<(), String> {
     for (i, wo) in known_directions().into_iter().enumerate() {
         let samples: Vec<BsdfSample> =
@@ -259,7 +259,7 @@ pub fn delta_lobes_hide(s: &Scatterer, _promise: Promise) -> Result<(), String> 
     Ok(())
 }
 
-/// Directions are of unit length, weights finite and not negative, densities positive, sides as said.
+/// Directions have unit length, weights are finite and not negative, densities are positive, and sides are as stated.
 pub fn samples_are_sound(s: &Scatterer, _promise: Promise) -> Result<(), String> {
     for (i, wo) in known_directions().into_iter().enumerate() {
         for x in (0..2000).filter_map(|k| draw(s, wo, 500 + i as u64, k, RADIANCE)) {

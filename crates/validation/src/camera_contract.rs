@@ -1,5 +1,5 @@
-//! What every camera promises: that it sees a point where its ray through that point began, as densely as its rays
-//! are there.
+//! What every camera promises: it sees a point where its ray through that point began, with the density of its rays
+//! there.
 
 use crate::chi_square::uniforms;
 use crate::tally::Tally;
@@ -15,15 +15,15 @@ pub const CHECKS: [(&str, Check); 5] = [
     ("nothing is seen behind or beside the film", nothing_is_seen_elsewhere),
 ];
 
-/// One check of a camera at a time in seconds: what it found wrong, if anything.
+/// One check of a camera at a time in seconds; an error describes what is wrong.
 pub type Check = fn(&dyn Camera, f32) -> Result<(), String>;
 
 const SAMPLES: u64 = 40_000;
-/// Chance of a false alarm of a check.
+/// Probability of a false alarm of a check.
 const SIGNIFICANCE: f64 = 1e-5;
-/// Cells of the film along each side.
+/// Cells along each side of the film.
 const CELLS: usize = 4;
-/// What stands for all of them.
+/// The index that stands for all cells.
 const ALL: usize = CELLS * CELLS;
 
 fn sample(stream: u64, i: u64, time: f32) -> CameraSample {
@@ -31,7 +31,7 @@ fn sample(stream: u64, i: u64, time: f32) -> CameraSample {
     CameraSample { film, lens: warp::sample_disc(uniforms(stream + 1, i).1), time }
 }
 
-/// Some rays and how far along them to look.
+/// Some rays, each with a distance along it.
 fn some(camera: &dyn Camera, stream: u64, time: f32) -> impl Iterator<Item = (CameraSample, Ray, f32)> {
     (0..500).map(move |i| {
         let sample = sample(stream, i, time);
@@ -43,12 +43,12 @@ fn at(ray: &Ray, t: f32) -> Vec3 {
     Vec3::from(ray.at(t))
 }
 
-/// `connect` is the inverse of `ray`, but for rounding.
+/// `connect` is the inverse of `ray`, except for rounding.
 pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (sample, ray, t) in some(camera, 0, time) {
         let (point, origin) = (at(&ray, t), Vec3::from(ray.origin));
         let seen = camera.connect(point, sample.lens, time).ok_or(format!("{point} is not seen"))?;
-        // The point is rounded in every coordinate; so is everything on the way back.
+        // The point is rounded in every coordinate, and so is everything on the way back.
         let size = point.abs().max_element() + origin.abs().max_element();
         let aside = 8.0 * f32::EPSILON * size;
         let on_film = 2.0 * aside * camera.density(&ray, t).sqrt() * edge(camera, time) + 8.0 * f32::EPSILON;
@@ -63,7 +63,7 @@ pub fn rays_come_back(camera: &dyn Camera, time: f32) -> Result<(), String> {
     Ok(())
 }
 
-/// How much longer than wide, or wider than long, the film is.
+/// The square root of the film's aspect ratio, longer side over shorter.
 fn edge(camera: &dyn Camera, time: f32) -> f32 {
     let away = |x: f32, y: f32| {
         let ray = camera.ray(&CameraSample { film: Vec2::new(x, y), lens: Vec2::ZERO, time });
@@ -74,7 +74,7 @@ fn edge(camera: &dyn Camera, time: f32) -> f32 {
     ratio.max(1.0 / ratio)
 }
 
-/// One over the area, across the ray, of what neighbours on the film go through.
+/// The density is one over the area, perpendicular to the ray, that neighbours on the film cover.
 pub fn density_is_that_of_rays(camera: &dyn Camera, time: f32) -> Result<(), String> {
     const STEP: f32 = 1.0 / 512.0;
     for (sample, ray, t) in some(camera, 10, time) {
@@ -96,7 +96,7 @@ pub fn density_is_that_of_rays(camera: &dyn Camera, time: f32) -> Result<(), Str
     Ok(())
 }
 
-/// `density` says of a ray what `connect` says of its points.
+/// `density` of a ray agrees with `connect` for its points.
 pub fn rays_know_their_density(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (sample, ray, t) in some(camera, 20, time) {
         let seen = camera.connect(at(&ray, t), sample.lens, time).ok_or("a point is not seen")?;
@@ -108,8 +108,8 @@ pub fn rays_know_their_density(camera: &dyn Camera, time: f32) -> Result<(), Str
     Ok(())
 }
 
-/// On a square before the camera, askew, random points that ask the camera count as much in each cell of the film as
-/// random rays that meet it.
+/// On a tilted square in front of the camera, random points connected with the camera count as much in each cell of the
+/// film as random rays that hit the square.
 pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), String> {
     let middle = camera.ray(&CameraSample { film: Vec2::splat(0.45), lens: Vec2::ZERO, time });
     let (forward, distance) = (Vec3::from(middle.direction), 3.0);
@@ -152,7 +152,7 @@ pub fn planes_are_seen_as_met(camera: &dyn Camera, time: f32) -> Result<(), Stri
     Ok(())
 }
 
-/// `None` for what is off the film, or on the other side of the lens.
+/// `connect` returns `None` for points off the film, or on the other side of the lens.
 pub fn nothing_is_seen_elsewhere(camera: &dyn Camera, time: f32) -> Result<(), String> {
     for (i, (inside, ray, t)) in some(camera, 50, time).enumerate() {
         let behind = at(&ray, -t);

@@ -9,20 +9,20 @@ use std::f32::consts::{PI, TAU};
 /// Cells of the sphere: bands of equal angle, since sharp lobes crowd around the poles too, times sectors.
 const BANDS: usize = 24;
 const SECTORS: usize = 24;
-/// Directions on each side of a cell at which the density is added up.
+/// Directions along each side of a cell at which the density is summed.
 const FINE: usize = 24;
 /// Cells are pooled until this many samples are expected in each. [Cochran 1954]
 const MIN_EXPECTED: f64 = 5.0;
 
-/// Two uniform numbers and a third, the `i`-th of a stream.
+/// The `i`-th uniform number and uniform point of a stream.
 pub fn uniforms(stream: u64, i: u64) -> (f32, Vec2) {
     let a = hash_words([stream, i, 0]);
     let b = hash_words([stream, i, 1]);
     (unit_f32(a as u32), Vec2::new(unit_f32((a >> 32) as u32), unit_f32(b as u32)))
 }
 
-/// The probability of a deviation at least as large as the one seen, if `sample` draws from `pdf` (in solid
-/// angle). Samples that come back as `None` are held against what the density lacks to 1.
+/// The probability of a deviation at least as large as the observed one, if `sample` samples from `pdf` (over solid
+/// angle). Samples that return `None` are compared with what the density lacks to 1.
 pub fn p_value(
     samples: u64,
     stream: u64,
@@ -52,7 +52,7 @@ fn cell_of(d: Vec3) -> usize {
     band.min(BANDS - 1) * SECTORS + sector.min(SECTORS - 1)
 }
 
-/// The density over one cell, by the midpoints of a fine grid.
+/// The integral of the density over one cell, by the midpoints of a fine grid.
 fn integral(cell: usize, pdf: &impl Fn(Vec3) -> f32) -> f64 {
     let (band, sector) = (cell / SECTORS, cell % SECTORS);
     let mut sum = 0.0;

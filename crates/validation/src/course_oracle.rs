@@ -1,5 +1,5 @@
-//! An independent reading of what the course's renderer does to an `.asc` file: triangle after triangle into a
-//! depth buffer, in f64, nothing shared with Bilux. What `--preset course` with `cast` is held against.
+//! An independent implementation of what the course's renderer does to an `.asc` file: it draws triangle after triangle
+//! into a depth buffer, in f64, and shares nothing with Bilux. `--preset course` with `cast` is compared with it.
 
 #![allow(clippy::approx_constant, reason = "0.7071 is what that renderer has, not the square root of a half")]
 
@@ -10,9 +10,9 @@ type V3 = [f64; 3];
 
 const BACKGROUND: [u8; 3] = [128, 112, 96];
 
-/// The picture's RGB bytes, row by row from the top; `None` when a vertex does not have eight numbers.
+/// The picture's RGB bytes, row by row from the top; `None` unless every vertex has eight numbers.
 ///
-/// The text is keywords, each with three vertices of `x y z nx ny nz u v`. Triangles that reach behind the
+/// The text consists of keywords, each with three vertices of `x y z nx ny nz u v`. Triangles that extend behind the
 /// image plane are left out.
 pub fn course_picture(asc: &str) -> Option<Vec<u8>> {
     picture_in(&OracleView::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0), asc)
@@ -39,7 +39,7 @@ fn triangles(asc: &str) -> Option<Vec<[(V3, V3); 3]>> {
     whole.then(|| numbers.chunks(24).map(|t| [vertex(t), vertex(&t[8..]), vertex(&t[16..])]).collect())
 }
 
-/// A corner on its way to the screen.
+/// A corner in screen space.
 #[derive(Clone, Copy)]
 struct Corner {
     /// In pixels, y down.
@@ -47,13 +47,13 @@ struct Corner {
     y: f64,
     /// Behind the image plane, which is at the camera's position.
     is_behind: bool,
-    /// What x and y are divided by: 1 at the camera's position, and 0 at the eye behind it.
+    /// The divisor of x and y: 1 at the camera's position, and 0 at the eye behind it.
     divisor: f64,
     /// In camera space.
     normal: V3,
 }
 
-/// Model and camera in one.
+/// The transforms of model and camera in one.
 struct OracleView {
     position: V3,
     axes: [V3; 3],
@@ -88,7 +88,7 @@ impl OracleView {
     }
 }
 
-/// About x by 45 degrees, then about y by 30.
+/// Rotates about x by 45 degrees, then about y by 30.
 fn turn([x, y, z]: V3) -> V3 {
     let (y, z) = (0.7071 * y + 0.7071 * z, -0.7071 * y + 0.7071 * z);
     [0.866 * x - 0.5 * z, y, 0.5 * x + 0.866 * z]
@@ -113,7 +113,7 @@ fn draw([a, b, c]: &[Corner; 3], depth: &mut [f64], picture: &mut [u8]) {
             if weights.iter().any(|&w| w < 0.0) {
                 continue;
             }
-            // On the screen 1/divisor is linear, and so is everything over it.
+            // On the screen 1/divisor is linear, and so is everything divided by it.
             let over = [weights[0] / a.divisor, weights[1] / b.divisor, weights[2] / c.divisor];
             let divisor = 1.0 / over.iter().sum::<f64>();
             let pixel = j * SIZE + i;
@@ -139,7 +139,7 @@ fn shade(n: V3) -> [u8; 3] {
     let mut colour = [0.1 * 0.3; 3];
     for (l, light) in LIGHTS {
         let l = unit(l);
-        // Both on the back: the normal is the wrong way round. One on each side: no light.
+        // Viewer and light both behind: the normal is the wrong way round. One on each side: no light.
         let n = match (dot(n, l) >= 0.0, dot(n, e) >= 0.0) {
             (true, true) => n,
             (false, false) => scale(n, -1.0),
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_wall_across_the_view_is_shaded_by_hand() {
-        // Model space is turned back, so that the wall faces the camera: world normal -z of the camera.
+        // Model space is rotated back, so that the wall faces the camera: its world normal is the camera's -z.
         let view = OracleView::new([-10.0, 5.0, -10.0], [0.0; 3], [0.0, 1.0, 0.0], 35.0);
         let [x, y, z] = view.axes;
         let back = |v: V3| {
@@ -198,13 +198,13 @@ mod tests {
         let asc = format!("triangle\n{}\n{}\n{}\n", vertex(-1.0, -1.0), vertex(3.0, -1.0), vertex(-1.0, 3.0));
         let picture = course_picture(&asc).unwrap();
         let pixel = |i: usize, j: usize| &picture[3 * (j * SIZE + i)..][..3];
-        // N·L is 0, .7071, .7071, and R·E the same less R = 2 (N·L) N - L: .7071 each, whose 32nd power is 2⁻¹⁶.
+        // N·L is 0, .7071, .7071. R·E, with R = 2 (N·L) N - L, is the same, and the 32nd power of .7071 is 2⁻¹⁶.
         let wanted = [0.9 + 0.2, 0.2 + 0.7, 0.3 + 0.3].map(|sum| 0.03 + 0.7 * 0.70711 * sum);
         for (found, wanted) in pixel(128, 128).iter().zip(wanted) {
             assert!((f64::from(*found) - 255.0 * wanted).abs() <= 1.0, "{found} for {wanted}");
         }
         assert_eq!(pixel(2, 2), [128, 112, 96]);
-        // The corner at (-1, -1) lies left of the middle and below it, by 128 / (15 tan 17.5° + 1) = 22.3 pixels.
+        // The corner at (-1, -1) lies left of the centre and below it, by 128 / (15 tan 17.5° + 1) = 22.3 pixels.
         assert_eq!(pixel(110, 146), pixel(128, 128));
         assert_eq!(pixel(146, 110), pixel(128, 128));
         assert_eq!(pixel(104, 140), BACKGROUND);
@@ -212,8 +212,8 @@ mod tests {
         assert_eq!(course_picture("triangle 1 2 3"), None);
     }
 
-    /// First and last columns of a few rows in which a picture by the course's renderer itself, an example that the
-    /// course hands out, shows the square from 0 to 20 in x and z.
+    /// First and last columns of a few rows in which an example picture that the course hands out, made by its own
+    /// renderer, shows the square from 0 to 20 in x and z.
     #[test]
     fn a_square_is_where_a_picture_of_the_course_shows_it() {
         let view = OracleView::new([-3.0, -25.0, -4.0], [7.8, 0.7, 6.5], [-0.2, 1.0, 0.0], 63.7);

@@ -1,4 +1,4 @@
-//! What every light promises: that it sends what it is found to give, by the densities that it says.
+//! What every light promises: it emits what direct sampling of it finds, with the densities that it states.
 
 use crate::chi_square::uniforms;
 use crate::tally::Tally;
@@ -6,17 +6,17 @@ use bilux_math::{Vec2, Vec3};
 use bilux_scene::{EmissionSample, Light, Scene, Tracer};
 use std::sync::Arc;
 
-/// A light in a scene at a time.
+/// A light in a scene at a given time.
 pub struct LightCase {
-    /// What it is.
+    /// Its name.
     pub name: String,
-    /// Where it stands; with a surface, it is one of the objects.
+    /// The scene; if the light has a surface, that is one of the objects.
     pub scene: Scene,
     /// The light.
     pub light: Arc<dyn Light>,
-    /// When it is asked, in seconds.
+    /// The time of evaluation, in seconds.
     pub time: f32,
-    /// Luminance of its power then, in W, where [`Light::power`] speaks of another time.
+    /// Luminance of its power at that time, in W, where [`Light::power`] is for another time.
     pub power: Option<f64>,
 }
 
@@ -32,16 +32,16 @@ pub const CHECKS: [(&str, Check); 8] = [
     ("flux through a plane is the same both ways", flux_is_the_same_both_ways),
 ];
 
-/// One check: what it found wrong, if anything.
+/// One check; an error describes what is wrong.
 pub type Check = fn(&LightCase) -> Result<(), String>;
 
-/// Rays of each mean.
+/// Number of rays for each mean.
 const SAMPLES: u64 = 40_000;
-/// Chance of a false alarm of each check.
+/// Probability of a false alarm of each check.
 const SIGNIFICANCE: f64 = 1e-5;
-/// Cells of the plane along each side.
+/// Cells along each side of the plane.
 const CELLS: usize = 4;
-/// What stands for all of them.
+/// The index that stands for all cells.
 const ALL: usize = CELLS * CELLS;
 
 impl LightCase {
@@ -54,13 +54,13 @@ impl LightCase {
     }
 }
 
-/// Luminance that a ray carries over its density: its share of the power.
+/// Luminance that a ray carries, over its density: its share of the power.
 fn power_of(sample: &EmissionSample) -> f64 {
     f64::from(sample.le.luminance() * sample.cos()) / f64::from(sample.pdf_emission)
 }
 
-/// Directions are unit vectors away from the light, densities positive; what is infinitely far starts outside of the
-/// scene and aims at it.
+/// Directions are unit vectors away from the light, and densities are positive; rays of infinite lights start outside
+/// the scene and aim at it.
 pub fn samples_are_sound(case: &LightCase) -> Result<(), String> {
     let bounds = case.scene.bounds();
     for sample in case.samples(0, 2000).flatten() {
@@ -83,7 +83,7 @@ pub fn samples_are_sound(case: &LightCase) -> Result<(), String> {
     Ok(())
 }
 
-/// `emission_pdf` says of a sample's own numbers what the sample says.
+/// `emission_pdf` for a sample's own values is the density that the sample states.
 pub fn densities_are_as_said(case: &LightCase) -> Result<(), String> {
     let bounds = case.scene.bounds();
     for sample in case.samples(2, 2000).flatten() {
@@ -119,7 +119,7 @@ impl LightCase {
     }
 }
 
-/// A ray passes what it was aimed at, with the density besides that `unaimed_pdf` says of it.
+/// A ray passes through the point that it is aimed at, and the rest of its density is what `unaimed_pdf` states.
 pub fn aimed_rays_go_where_they_should(case: &LightCase) -> Result<(), String> {
     let bounds = case.scene.bounds();
     for (aim, sample) in case.aimed(16, 2000) {
@@ -133,7 +133,7 @@ pub fn aimed_rays_go_where_they_should(case: &LightCase) -> Result<(), String> {
     Ok(())
 }
 
-/// Rays that are aimed at everything alike carry the power; of a light infinitely far those that pass the scene's sphere.
+/// Uniformly aimed rays carry the power; for an infinite light, those that pass through the scene's sphere.
 pub fn what_is_aimed_everywhere_is_the_power(case: &LightCase) -> Result<(), String> {
     let bounds = case.scene.bounds();
     let aim_pdf = f64::from(case.light.aim_pdf(&bounds));
@@ -150,7 +150,7 @@ pub fn what_is_aimed_everywhere_is_the_power(case: &LightCase) -> Result<(), Str
     Ok(())
 }
 
-/// A receiver on the ray, asking back, finds the light where it started, with the same density and strength.
+/// A receiver on the ray that looks back finds the light where the ray started, with the same density and strength.
 pub fn direct_light_finds_what_was_sent(case: &LightCase) -> Result<(), String> {
     let mut tracer = Tracer::new(&case.scene, false);
     let (mut asked, mut missed) = (0, 0);
@@ -163,7 +163,8 @@ pub fn direct_light_finds_what_was_sent(case: &LightCase) -> Result<(), String> 
         } else {
             match found_on_surface(case, &mut tracer, &sample) {
                 Some(found) => found,
-                // Another triangle may be met where two touch, or the next wall be too near to stand between.
+                // Another triangle may be hit where two touch, or the next wall may be too near for a receiver in
+                // between.
                 None => {
                     missed += 1;
                     Ok(())
@@ -194,7 +195,7 @@ fn found_of_delta(case: &LightCase, sample: &EmissionSample, peak: f32) -> Resul
     let found = case.light.sample_li(receiver, case.time, Vec2::splat(0.5)).ok_or("dark")?;
     let spread = if case.light.is_infinite() { 1.0 } else { distance * distance };
     let (li, le) = (found.li.luminance() * spread, sample.le.luminance());
-    // The soft edge of a cone is steep, beside the rounding of its cosine.
+    // The soft edge of a cone is steep compared with the rounding of its cosine.
     check((li - le).abs() < 1e-3 * peak && found.wi.dot(-sample.direction) > 1.0 - 1e-5, || {
         format!("finds {found:?}")
     })
@@ -224,7 +225,7 @@ fn found_on_surface(
     let wanted = case.light.direct_pdf(sample, receiver);
     let pdf = case.light.li_pdf_solid_angle(receiver, -sample.direction, Some(&hit));
     let converted = wanted * hit.p.distance_squared(receiver) / sample.cos();
-    // Where the density depends on the cosine it is as uncertain as the place of a grazing hit on something small.
+    // Where the density depends on the cosine, it is as uncertain as the position of a grazing hit on something small.
     let rough = 1e-4 / (sample.cos() * sample.cos());
     let tolerance = if wanted == sample.pdf_direct { 1e-5 } else { rough };
     let exact = near(area, wanted, tolerance) && near(pdf, converted, tolerance.max(1e-3));
@@ -234,7 +235,7 @@ fn found_on_surface(
     }))
 }
 
-/// A ray along a picked direction meets the light there, with the density that it was picked with.
+/// A ray in a sampled direction hits the light there, with the density with which it was sampled.
 pub fn picked_is_met(case: &LightCase) -> Result<(), String> {
     if case.light.is_delta() {
         return Ok(());
@@ -248,7 +249,7 @@ pub fn picked_is_met(case: &LightCase) -> Result<(), String> {
         let mut ray = bilux_scene::Ray::new(from.to_array(), sample.wi.to_array());
         ray.time = case.time;
         let hit = tracer.closest(&ray).filter(|hit| case.scene.light_of(hit.object).is_some());
-        // Not where the block is in the way, or the light in its own.
+        // Not where the block is in the way, or the light itself.
         let distance = sample.point.map(|point| point.distance(from));
         let is_there = match (&hit, distance) {
             (Some(hit), Some(distance)) => {
@@ -269,8 +270,8 @@ pub fn picked_is_met(case: &LightCase) -> Result<(), String> {
     check(missed * 4 <= 3 * asked, || format!("{missed} of {asked} are not met"))
 }
 
-/// A square in the scene receives as much in each of its cells from rays that the light sends and from points that
-/// ask for it. What stands between is not looked at, nor what the light leaves to others to find.
+/// A square in the scene receives as much in each of its cells from rays that the light emits as from points that
+/// sample the light. Occlusion is ignored, and so is light that this light leaves to other techniques.
 pub fn flux_is_the_same_both_ways(case: &LightCase) -> Result<(), String> {
     let corner = Vec3::new(-0.8, 0.25, -1.0);
     let (side_u, side_v) = (Vec3::new(1.6, 0.3, 0.0), Vec3::new(0.0, 0.2, 2.0));

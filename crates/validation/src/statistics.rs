@@ -1,4 +1,4 @@
-//! Whether two ways of making a picture have the same mean, told from pictures of different seeds. [Jung 2020]
+//! Whether two methods of rendering have the same mean, estimated from pictures with different seeds. [Jung 2020]
 
 use bilux_math::transcendental::{exp_f64, powf_f64};
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -10,8 +10,8 @@ pub fn estimate(values: &[f64]) -> (f64, f64) {
     (mean, values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0) / n)
 }
 
-/// Probability that two sets of values with one mean differ by as much as these; of at least two values each. `None` where
-/// nothing varies and nothing differs, which says nothing. [Welch 1947]
+/// Probability that two sets of values with the same mean differ by as much as these; each has at least two values.
+/// `None` where nothing varies and nothing differs, which is no evidence. [Welch 1947]
 pub fn welch(a: &[f64], b: &[f64]) -> Option<f64> {
     let ((mean_a, va), (mean_b, vb)) = (estimate(a), estimate(b));
     if va + vb == 0.0 {
@@ -23,15 +23,15 @@ pub fn welch(a: &[f64], b: &[f64]) -> Option<f64> {
     StudentsT::new(0.0, 1.0, freedom).ok().map(|student| 2.0 * student.sf(t))
 }
 
-/// The least of so many p-values as one, corrected for their number. [Šidák 1967]
+/// The minimum of `count` p-values as one p-value, corrected for their number. [Šidák 1967]
 pub fn sidak(least: f64, count: usize) -> f64 {
     let n = count as f64;
     // Where the power would round to 1.
     if least * n < 1e-9 { least * n } else { 1.0 - powf_f64(1.0 - least, n) }
 }
 
-/// True where the mean is not normally distributed, because what varies is a few values that are rare and large: skewness
-/// over the root of their number, which is 1 where one value alone differs from the rest.
+/// True where the mean is not normally distributed, because the variance comes from a few rare, large values: skewness
+/// over the root of the number of values, which is 1 where one value alone differs from the rest.
 pub fn is_skewed(values: &[f64]) -> bool {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -40,7 +40,7 @@ pub fn is_skewed(values: &[f64]) -> bool {
     variance > 0.0 && moment(|d| d * d * d).abs() > 0.25 * variance * variance.sqrt() * n.sqrt()
 }
 
-/// How many values, 0..=1, lie in each tenth.
+/// The number of values, 0..=1, in each tenth.
 pub fn histogram(p_values: &[f64]) -> [usize; 10] {
     let mut bins = [0; 10];
     p_values.iter().for_each(|p| bins[((p * 10.0) as usize).min(9)] += 1);
@@ -54,7 +54,7 @@ pub fn bars(bins: &[usize]) -> String {
     bins.iter().map(|&count| BARS[(count * 8).div_ceil(most)]).collect()
 }
 
-/// The chance that evenly distributed values, 0..=1 and independent, look less even than these do. [Kolmogorov 1933]
+/// The probability that independent, uniform values in 0..=1 look less uniform than these do. [Kolmogorov 1933]
 pub fn evenness(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -76,7 +76,7 @@ mod tests {
     use crate::chi_square::uniforms;
     use bilux_math::transcendental::ln_f64;
 
-    /// Sums of so many numbers of a distribution, each from a number 0..1.
+    /// Sums of this many numbers of a distribution, each from a uniform number in 0..1.
     fn sums(stream: u64, groups: usize, of: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
         let one = |i: usize| value(f64::from(uniforms(stream, i as u64).0));
         (0..groups).map(|g| (0..of).map(|i| one(g * of + i)).sum()).collect()

@@ -1,5 +1,5 @@
-//! All unbiased integrators find the same light, block by block: the short form of the example `agreement`, which runs over
-//! every scene that we ship. What is compared is found wrong when it is.
+//! All unbiased integrators find the same light, block by block: the short form of the example `agreement`, which runs
+//! over every scene that we ship. The comparison also detects integrators that are wrong.
 
 use bilux_math::Rgb;
 use bilux_scene::{Ray, SceneBuilder, Spec, Value};
@@ -7,7 +7,7 @@ use bilux_transport::{PixelIntegrator, Splats, Task, integrators};
 use bilux_validation::agreement::{Evidence, Stage, Technique, stages, ways};
 use bilux_validation::statistics::{evenness, histogram};
 
-/// Less likely than this by chance: a bug.
+/// A p-value below this means a bug, not chance.
 const UNLIKELY: f64 = 1e-4;
 
 const PICTURES: usize = 16;
@@ -21,7 +21,7 @@ fn of_way(stage: &Stage, way: &Technique, seed: u64) -> Evidence {
     pictures(stage, &*integrators::build(&way.spec).unwrap(), spp, seed)
 }
 
-/// Scenes whose light is soon found: matt, mirrors and glass, lamps, a sun and a sky.
+/// Scenes whose light is found quickly: diffuse surfaces, mirrors and glass, lights, a sun and a sky.
 fn scenes() -> Vec<(&'static str, SceneBuilder)> {
     let spheres = Spec::new("", "cornell-spheres").with("level", Value::Integer(2));
     let teapot = bilux::generate(&Spec::new("", "teapot")).unwrap();
@@ -58,7 +58,7 @@ fn all_unbiased_integrators_agree_block_by_block() {
         }
     }
     assert!(decided > 300, "only {decided} cells are decided");
-    // The test itself: where nothing differs but the seeds, p-values are even.
+    // The test itself: where nothing differs but the seeds, p-values are uniform.
     let even = evenness(&by_chance);
     assert!(even > 1e-3, "{:?}", histogram(&by_chance));
 }

@@ -1,5 +1,5 @@
-//! Pictures whose light is known by a formula, or by an integral that is written here once more in f64. What each
-//! test accepts it would not accept a few percent off: that is asserted at the same samples.
+//! Pictures whose light is known in closed form, or by an integral that is computed once more here in f64. Each test
+//! would reject a value a few percent off: that is asserted with the same samples.
 
 use bilux_math::transcendental::{acos_f64, asin_f64, cos_f64, exp_f64, sin_f64, tan_f64};
 use bilux_math::{Aabb, Rgb, Vec2, Vec3};
@@ -11,11 +11,11 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// Pictures of each mean, and its standard error.
+/// Number of pictures for each mean and its standard error.
 const SEEDS: u64 = 16;
-/// Less likely than this by chance: wrong.
+/// A p-value below this means an error, not chance.
 const UNLIKELY: f64 = 1e-5;
-/// What rounding may explain, of a mean.
+/// The fraction of a mean that rounding may explain.
 const ROUNDING: f64 = 5e-4;
 
 fn put(builder: &mut SceneBuilder, mesh: Mesh, material: Spec) {
@@ -38,7 +38,7 @@ fn built(builder: &SceneBuilder) -> Scene {
     builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap()
 }
 
-/// Pictures of different seeds, each as its pixels.
+/// Pictures with different seeds, each as its pixels.
 fn pictures(scene: &Scene, integrator: &Spec, settings: &RenderSettings) -> Vec<Vec<Rgb>> {
     let integrator = integrators::build(integrator).unwrap();
     let box_filter = FILTERS.iter().find(|row| row.entry.name == "box").unwrap();
@@ -58,7 +58,7 @@ fn means(pictures: &[Vec<Rgb>], channel: usize) -> Vec<f64> {
     pictures.iter().map(mean).collect()
 }
 
-/// The chance that values whose true mean is `exact` have a mean at least as far from it. [Student 1908]
+/// The probability that values whose true mean is `exact` have a mean at least as far from it. [Student 1908]
 fn p_value(values: &[f64], exact: f64) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -70,7 +70,8 @@ fn p_value(values: &[f64], exact: f64) -> f64 {
     2.0 * StudentsT::new(0.0, 1.0, n - 1.0).unwrap().sf(off / (variance / n).sqrt().max(f64::MIN_POSITIVE))
 }
 
-/// That is it, and neither 3% more nor less; of photons, whose merging is noisy, neither 10%.
+/// The mean is `exact`, and neither 3% more nor less would pass; with photons, whose merging is noisy, neither would
+/// 10%.
 fn assert_mean(name: &str, values: &[f64], exact: f64) {
     let more = if name.contains("sppm") { 0.1 } else { 0.03 };
     let p = p_value(values, exact);
@@ -86,7 +87,7 @@ fn named(names: &[&'static str]) -> Vec<Spec> {
     names.iter().map(|&name| Spec::new("", name)).collect()
 }
 
-/// All that are to be right; photons are counted on discs that are large enough to meet some.
+/// All integrators that must be right; photons are gathered over discs that are large enough to contain some.
 fn all() -> Vec<Spec> {
     let mut integrators = named(&["path", "light", "bdpt", "vcm", "auto"]);
     integrators.push(Spec::new("", "sppm").with("radius", 0.05f32));
@@ -131,7 +132,7 @@ fn mean_over_square(x: f64, of: impl Fn([f64; 2]) -> f64) -> f64 {
     sum / (side * side) as f64
 }
 
-/// Irradiance of the floor at `[x, z]` by a polygon of radiance 1 that lies above it all. [Lambert 1760]
+/// Irradiance of the floor at `[x, z]` from a polygon of radiance 1 that lies entirely above it. [Lambert 1760]
 fn by_polygon(corners: &[[f64; 3]], [x, z]: [f64; 2]) -> f64 {
     let unit = |[a, b, c]: [f64; 3]| {
         let to = [a - x, b, c - z];
@@ -148,13 +149,13 @@ fn by_polygon(corners: &[[f64; 3]], [x, z]: [f64; 2]) -> f64 {
     (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
 }
 
-/// The floor under a lamp, about `x`, as each integrator sees it, against its irradiance.
+/// Compares the floor under a light, around `x`, as each integrator renders it, with its irradiance.
 fn check_direct(name: &str, x: f32, irradiance: f64, add: impl Fn(&mut SceneBuilder)) {
     let mut builder = SceneBuilder::default();
     let middle = Vec3::new(x, 0.0, 0.0);
     put(&mut builder, quad(middle, Vec3::X * 1.5, Vec3::Z * 1.5), diffuse(0.5f32));
     add(&mut builder);
-    // Below the lamp, which the film therefore does not see.
+    // Below the light, which the film therefore does not see.
     plan(&mut builder, middle + Vec3::Y * 0.05, middle, 1.0);
     let scene = built(&builder);
     for integrator in all() {
@@ -176,7 +177,7 @@ fn a_disc_lights_the_floor_as_lambert_says() {
         let angle = |i: u32| TAU * f64::from(i) / f64::from(sides);
         (0..sides).map(|i| [radius * cos_f64(angle(i)), height, radius * sin_f64(angle(i))]).collect()
     };
-    // Of so many sides it is a disc: E = π r² / (r² + h²).
+    // With this many sides it is a disc: E = π r² / (r² + h²).
     let (r, h) = (0.5, 1.2);
     let axis = by_polygon(&around(10_000, r, h), [0.0; 2]);
     assert!((axis / (PI * r * r / (r * r + h * h)) - 1.0).abs() < 1e-6, "{axis}");
@@ -205,8 +206,8 @@ fn a_sphere_lights_the_floor_as_if_from_its_middle() {
     }
 }
 
-/// Share of light that a slab of glass of this thickness lets through, at an angle of incidence in radians: what
-/// both faces let pass, absorbed in between, and all that goes to and fro within. [Born 1999, 7.6.1]
+/// Fraction of light that a slab of glass of this thickness transmits, at an angle of incidence in radians:
+/// transmission through both faces, absorption in between, and all interreflections within. [Born 1999, 7.6.1]
 fn through_slab(eta: f64, thickness: f64, sigma_a: f64, angle: f64) -> f64 {
     let (sin_i, cos_i) = (sin_f64(angle), cos_f64(angle));
     let cos_t = (1.0 - sin_i * sin_i / (eta * eta)).sqrt();
@@ -246,7 +247,7 @@ fn a_slab_of_glass_absorbs_by_beer_and_reflects_by_fresnel() {
                 let name = format!("{}, {degrees} degrees, channel {channel}", integrator.kind);
                 let values = means(&pictures, channel);
                 assert_mean(&name, &values, exact);
-                // Nor would it do to forget the slant in the glass.
+                // Nor would it pass to forget the slant in the glass.
                 let straight = through_slab(f64::from(eta), f64::from(thickness) * 0.85, sigma_a, angle);
                 let p = p_value(&values, straight);
                 assert!(sigma_a == 0.0 || p < UNLIKELY, "{name} passes for {straight}: p = {p:.1e}");
@@ -255,7 +256,7 @@ fn a_slab_of_glass_absorbs_by_beer_and_reflects_by_fresnel() {
     }
 }
 
-/// Which part of a disc of radius 1 lies to the left of `x`.
+/// The fraction of a disc of radius 1 that lies to the left of `x`.
 fn left_of(x: f64) -> f64 {
     if x.abs() >= 1.0 {
         return f64::from(u8::from(x > 0.0));
@@ -267,7 +268,7 @@ fn left_of(x: f64) -> f64 {
 fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
     const COLUMNS: usize = 24;
     let (aperture, focus, fov) = (0.08f64, 2.0f64, 12.0f64);
-    // A matt half-plane, lit along the line of sight, at several distances.
+    // A diffuse half-plane, lit along the line of sight, at several distances.
     for distance in [1.2, 2.0, 3.5] {
         let mut builder = SceneBuilder::default();
         let side = 1.0f32;
@@ -279,10 +280,10 @@ fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
         let eye = eye.with("fov", fov as f32).with("aperture", aperture as f32).with("focus", focus as f32);
         builder.cameras.push(CameraSpec { spec: eye, keyframes: Vec::new() });
         let scene = built(&builder);
-        // What is seen at `x`, -1..=1 across the film, through a lens of radius `aperture`.
+        // The light at `x`, -1..=1 across the film, through a lens of radius `aperture`.
         let seen = |x: f64, aperture: f64| {
             let at_focus = x * focus * tan_f64(fov.to_radians() / 2.0);
-            // From the point `l` of the lens through that in focus: x = l (1 - d / f) + at_focus d / f < 0.
+            // From the point `l` of the lens through the point in focus: x = l (1 - d / f) + at_focus d / f < 0.
             let (edge, blur) = (-at_focus * distance / focus, aperture * (1.0 - distance / focus).abs());
             if blur == 0.0 { f64::from(u8::from(edge > 0.0)) } else { left_of(edge / blur) }
         };
@@ -304,7 +305,7 @@ fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
                     let values: Vec<f64> = pictures.iter().map(mean).collect();
                     p_value(&values, column(i, aperture))
                 };
-                // Not where hardly a ray passes the edge on either side: such values are not normally distributed.
+                // Not where hardly any ray passes the edge on either side: such values are not normally distributed.
                 let is_rare = |i: usize| {
                     let part = column(i, aperture);
                     (part > 0.0 && part < 0.02) || (part > 0.98 && part < 1.0)
@@ -325,12 +326,14 @@ fn a_lens_is_sharp_where_it_is_focused_and_blurs_by_its_formula_elsewhere() {
     }
 }
 
-/// Height of the ring of radius 1, as high as light from `SLANT` over its rim falls short of its middle.
+/// Height of the ring of radius 1, and slope of the light: light that grazes the rim lands at the ring's centre.
 const SLANT: f64 = 0.6;
 
-/// What reaches the floor in a mirroring ring of radius `ring` on the bins of a strip along the light's way, in units of
-/// the irradiance there without the ring: straight over the rim, and by one reflection. The latter is the sum over all
-/// places of the wall, of which each sends its light along a line on the floor: the envelope of these is the nephroid.
+/// The light that reaches the floor in a mirroring ring of radius `ring`, in the bins of a strip along the light's
+/// direction, in units of the irradiance there without the ring: directly over the rim, and by one reflection.
+///
+/// The reflected light is the sum over all points of the wall, each of which sends its light along a line on the floor:
+/// the envelope of these lines is the nephroid.
 fn in_ring(ring: f64, bins: usize, half_width: f64) -> Vec<f64> {
     const BEAMS: i32 = 20_000;
     const STEPS: i32 = 2_000;
@@ -342,8 +345,8 @@ fn in_ring(ring: f64, bins: usize, half_width: f64) -> Vec<f64> {
         }
     };
     for i in 0..BEAMS {
-        // A beam of the light, `b` aside of the middle, that goes along +x and meets the wall under the angle of this
-        // sine: at a height that grows with the way which it still has to go down to the floor.
+        // A beam of the light, `b` aside of the centre, that travels along +x and hits the wall at the angle with this
+        // sine: the higher it hits, the farther it still travels before it reaches the floor.
         let b = ((f64::from(i) + 0.5) / f64::from(BEAMS) * 2.0 - 1.0) * ring;
         let sine = b / ring;
         let cosine = (1.0 - sine * sine).sqrt();
@@ -353,8 +356,8 @@ fn in_ring(ring: f64, bins: usize, half_width: f64) -> Vec<f64> {
         let light = step * 2.0 * ring / f64::from(BEAMS);
         for k in 0..STEPS {
             let way = (f64::from(k) + 0.5) * step;
-            // In units of the way that light goes while it falls by the height of the ring, 1: over the rim where it
-            // comes in, under it where it is reflected, and before it meets the wall again.
+            // In units of the distance that light travels while it falls by the height of the ring, 1: over the rim
+            // where it comes in, below it where it is reflected, and before it hits the wall again.
             if way + chord > 1.0 && way < chord.min(1.0) {
                 add(wall[0] + back[0] * way, wall[1] + back[1] * way, light);
             }
@@ -395,14 +398,14 @@ fn a_ring_of_metal_draws_the_nephroid() {
     plan(&mut builder, Vec3::Y * 3.0, Vec3::ZERO, 2.0);
     let scene = built(&builder);
     let expected = in_ring(1.0, BINS, 0.05);
-    // The cusp lies half-way from the middle to the wall, and opens towards it.
+    // The cusp lies half-way from the centre to the wall, and opens towards it.
     let brightest = |light: &[f64]| light.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
     let is_cusp = |bin: usize| (BINS * 3 / 4..BINS * 3 / 4 + 2).contains(&bin);
     assert!(is_cusp(brightest(&expected)), "{expected:.3?}");
     for integrator in named(&["light", "bdpt", "vcm", "sppm"]) {
         let settings = RenderSettings { max_depth: 2, ..RenderSettings::new(BINS as u32, BINS as u32, 64) };
         let pictures = pictures(&scene, &integrator, &settings);
-        // The two middle rows.
+        // The two central rows.
         let strip = |i: usize| -> Vec<f64> {
             let mean = |p: &Vec<Rgb>| {
                 [BINS / 2 - 1, BINS / 2].map(|y| f64::from(p[y * BINS + i].g)).iter().sum::<f64>() / 2.0
@@ -411,7 +414,7 @@ fn a_ring_of_metal_draws_the_nephroid() {
         };
         let found: Vec<f64> = (0..BINS).map(|i| strip(i).iter().sum::<f64>() / SEEDS as f64).collect();
         let least = |expected: &[f64]| {
-            // Not where the wall itself is.
+            // Skips the wall itself.
             let of_bin = |i: usize| p_value(&strip(i), expected[i]);
             (1..BINS - 1).map(of_bin).fold(1.0, f64::min) * BINS as f64
         };
@@ -425,16 +428,16 @@ fn a_ring_of_metal_draws_the_nephroid() {
     }
 }
 
-/// Light from straight above on the floor, under a ball of clear glass whose middle hangs at `height`, by the distance from
-/// its axis in steps of `step`, in units of the irradiance without the ball: each ring of light is bent where it enters the
-/// ball and where it leaves, and lands on a ring of the floor. [Born 1999, 4.2 and 1.5.2]
+/// Light from straight above on the floor, under a ball of smooth glass whose centre hangs at `height`, by the distance
+/// from its axis in steps of `step`, in units of the irradiance without the ball: each ring of light is refracted where
+/// it enters the ball and where it leaves, and lands on a ring of the floor. [Born 1999, 4.2 and 1.5.2]
 fn under_ball(eta: f64, height: f64, step: f64, count: usize) -> Vec<f64> {
     const RINGS: i32 = 1_000_000;
     let mut sums = vec![0.0; count];
     for i in 0..RINGS {
         let from_axis = BALL * (f64::from(i) + 0.5) / f64::from(RINGS);
         let (incident, bent) = (asin_f64(from_axis / BALL), asin_f64(from_axis / BALL / eta));
-        // Where it leaves, as an angle from the top, and by how much it is turned then.
+        // Where it leaves, as an angle from the top, and its deviation by then.
         let (leaves, turned) = (incident + PI - 2.0 * bent, 2.0 * (incident - bent));
         let lands = BALL * sin_f64(leaves) - tan_f64(turned) * (height + BALL * cos_f64(leaves));
         let along = (cos_f64(incident) - eta * cos_f64(bent)) / (cos_f64(incident) + eta * cos_f64(bent));
@@ -449,7 +452,7 @@ fn under_ball(eta: f64, height: f64, step: f64, count: usize) -> Vec<f64> {
     sums.iter().enumerate().map(|(i, sum)| sum / (square(i + 1) - square(i))).collect()
 }
 
-/// Radius of the ball of glass, in metres; behind its middle it has its focus at η R / (2 η - 2).
+/// Radius of the glass ball, in metres; its focus lies η R / (2 η - 2) behind its centre.
 const BALL: f64 = 0.3;
 
 #[test]
@@ -473,7 +476,7 @@ fn a_ball_of_glass_gathers_light_at_its_focus_and_spreads_it_behind() {
             let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
             f64::from((origin - direction * (origin.y / direction.y)).length())
         };
-        // Pixels are told apart by how far from the axis their middles lie.
+        // Pixels are grouped by the distance of their centres from the axis.
         let farthest = from_axis(0.0, 0.0) * 1.0001;
         let group = |i: usize| {
             let middle = from_axis((i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5);

@@ -1,4 +1,4 @@
-//! Every registered BSDF and material keeps its contract, and every check of it can fail.
+//! Every registered BSDF and material keeps its contract, and every check can fail.
 
 use bilux_math::frame::reflect;
 use bilux_math::hash::{hash_words, unit_f32};
@@ -46,7 +46,7 @@ fn every_registered_material_keeps_the_contract_too() {
         let bsdf = material.bsdf(&flat_surface());
         let reciprocal = row.entry.name != "dielectric";
         for (check, run) in CHECKS {
-            // Mixtures of delta and wide lobes have no density of their own to hold samples against.
+            // Mixtures of delta and non-delta lobes have no density of their own to compare samples with.
             if row.entry.name == "phong" && check != "energy" {
                 continue;
             }
@@ -56,7 +56,7 @@ fn every_registered_material_keeps_the_contract_too() {
     }
 }
 
-/// Shading normals as meshes have them: hardly turned, turned, and turned beyond what a triangle can see.
+/// Shading normals as in meshes: barely tilted, tilted, and tilted beyond what a triangle can see.
 fn turned() -> [Vec3; 3] {
     [Vec3::new(0.05, 0.0, 1.0), Vec3::new(-0.3, 0.4, 1.0), Vec3::new(0.9, -0.7, 0.6)].map(Vec3::normalize)
 }
@@ -99,7 +99,7 @@ fn sums_of_lobes_about_a_turned_normal_do_too() {
     }
 }
 
-/// Lobes with and without width, each with its weight.
+/// Delta and non-delta lobes, each with its weight.
 fn mixture(n_shade: Vec3, n_geom: Vec3) -> Bsdf {
     let cases: Vec<(&str, Lobe)> = BSDFS.iter().flat_map(|row| (row.cases)()).collect();
     let part = |name: &str| {
@@ -118,7 +118,7 @@ fn a_normal_that_faces_away_is_bent_back() {
     let (light, facing) = (Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
     let mode = TransportMode::Radiance;
     assert_eq!(plain.eval(facing, light, mode), bent.eval(facing, light, mode));
-    // Just before and just behind the normal's horizon there is no seam.
+    // There is no seam just before and just behind the normal's horizon.
     let seen = |x: f32| bent.eval(Vec3::new(-x, 0.0, 0.8).normalize(), light, mode).g;
     assert!(
         (seen(0.5999) - plain.eval(Vec3::new(-0.5999, 0.0, 0.8).normalize(), light, mode).g).abs() < 1e-3
@@ -165,7 +165,7 @@ fn a_mixture_gives_each_part_its_share() {
         let sample = both.sample(wo, choice, u, TransportMode::Radiance).unwrap();
         sums[usize::from(sample.is_delta)] += f64::from(sample.weight.g) / N as f64;
         let (f, pdf) = both.eval_and_pdf(wo, sample.wi, TransportMode::Radiance);
-        // What a light in that direction would be weighted with: the density of the wide part alone.
+        // The density that an MIS weight of a light in that direction uses: that of the non-delta part alone.
         assert!(sample.is_delta || (f.g / pdf - sample.weight.g).abs() < 1e-5);
     }
     assert!((sums[0] - 0.75).abs() < 0.005 && (sums[1] - 0.05).abs() < 0.001, "{sums:?}");
@@ -233,7 +233,7 @@ fn flat_surface() -> Surface {
     }
 }
 
-/// A lobe with one of its functions spoilt, and the check that has to see it.
+/// A lobe with a bug in one of its functions, and the check that must detect it.
 fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     let lambert = Lobe::Lambert(Lambert { albedo: Rgb::WHITE });
     let glass =
@@ -277,7 +277,7 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     let mut not_divided = Scatterer::from(frosted);
     not_divided.eval = Box::new(move |wo, wi, _| frosted.eval(wo, wi, TransportMode::Importance));
     let mut round = Scatterer::from(frosted);
-    // Facets turned about the normal: right on average over all directions, and nowhere.
+    // Microfacets rotated about the normal: right on average over all directions, and nowhere.
     let across = |v: Vec3| Vec3::new(-v.y, v.x, v.z);
     round.pdf = Box::new(move |wo, wi, _| frosted.pdf_solid_angle(across(wo), across(wi)));
     let mut forgetful = Scatterer::from(Bsdf::new(turned()[1], Vec3::Z, [Some(lambert), None, None]));
@@ -309,7 +309,8 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
     ]
 }
 
-/// A mirror whose interpolated normal fails: from a light too, the triangle's is only taken where it does.
+/// A mirror that applies the camera's rule to light subpaths too: it uses the triangle's normal only where the
+/// interpolated one fails.
 fn ruled_as_from_a_camera() -> Scatterer {
     let (n_shade, n_geom) = (turned()[1], Vec3::Z);
     let mirror = Lobe::Mirror(Mirror { reflectance: Rgb::WHITE });

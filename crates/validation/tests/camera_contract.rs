@@ -1,4 +1,4 @@
-//! Every registered camera keeps its contract, and every check of it can fail.
+//! Every registered camera keeps its contract, and every check can fail.
 
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::cameras::{CameraSpec, build};
@@ -55,7 +55,7 @@ fn every_camera_keeps_its_contract() {
     }
 }
 
-/// A camera with what it says of points spoilt.
+/// A camera whose connections have a bug.
 struct Spoilt {
     camera: Arc<dyn Camera>,
     spoil: Spoil,
@@ -89,7 +89,7 @@ impl Camera for Spoilt {
     }
 }
 
-/// A bug, the camera that has it, the check that has to see it.
+/// A bug, the camera that has it, and the check that must detect it.
 const PLANTED: &[(&str, &str, &str, Spoil)] = &[
     ("a lens not looked at", "lens", "a ray's points are seen where it began", |c, from, _, time| {
         c.connect(from, Vec2::ZERO, time)

@@ -1,17 +1,18 @@
-//! Progressive merging converges as it should: with its radius, bias and noise fall by the powers that [Knaus 2011] derive.
+//! Progressive merging converges as it should: with its radius, bias and noise fall by the powers that [Knaus 2011]
+//! derives.
 //!
-//! A floor is seen in a mirror that is also what lights it, by a lamp without extent: all of its light passes the mirror at both
-//! ends, so that nothing but merging finds it, in `vcm` as in `sppm`. What it should be, `path` says of the same floor with
-//! the mirror unfolded: a lamp and a camera above it, no noise.
+//! A floor is seen in a mirror that also lights it, from a light without extent: all of its light passes the mirror at
+//! both ends, so only merging finds it, in `vcm` as in `sppm`. The truth comes from `path` on the same floor with the
+//! mirror unfolded: a light and a camera above it, no noise.
 //!
-//! The area of the disc of iteration i is as i^(α - 1). Where the light is smooth, the bias of an iteration is as its area, and its
-//! variance as one over that; of the mean of N iterations
+//! The area of the disc of iteration i is proportional to i^(α - 1). Where the light is smooth, the bias of an
+//! iteration is proportional to its area, and its variance to one over that; for the mean of N iterations
 //!
-//! - the bias is as the mean of i^(α - 1), which for many is as N^(α - 1),
-//! - the variance is as the mean of i^(1 - α) over N, for many as N^(-α). [Knaus 2011, eq. 14-20]
+//! - the bias is proportional to the mean of i^(α - 1), for large N to N^(α - 1),
+//! - the variance is proportional to the mean of i^(1 - α) over N, for large N to N^(-α). [Knaus 2011, eq. 14-20]
 //!
-//! With α = 0.75 and N from 2 to 128 these sums have slopes of -0.21 and -0.78 against log N. Bias and variance that were
-//! measured are held against the sums themselves.
+//! With α = 0.75 and N from 2 to 128 these sums have slopes of -0.21 and -0.78 against log N. The measured bias and
+//! variance are compared with the sums themselves.
 
 use bilux_math::transcendental::{ln_f64, powf_f64};
 use bilux_math::{Rgb, Vec3};
@@ -25,20 +26,21 @@ use std::sync::Arc;
 const SIDE: u32 = 12;
 const ITERATIONS: [u32; 4] = [2, 8, 32, 128];
 
-/// Pictures of so many iterations: few of them have more noise beside their bias.
+/// Pictures for each number of iterations: those of few iterations have more noise relative to their bias.
 const SEEDS: [u64; 4] = [160, 80, 40, 24];
 
-/// Discs by which bias is measured, and such by which noise is: few of an iteration's light paths fall into one of the latter,
-/// and these are as good as independent, however evenly all are spread. As parts of the scene's radius.
+/// Initial disc radii for measuring bias, and for measuring noise, as fractions of the scene's radius. Few of an
+/// iteration's light subpaths fall into a disc of the second kind, and these are practically independent, however
+/// evenly all are distributed.
 const LARGE: f32 = 0.13;
 const SMALL: f32 = 0.008;
 
-/// The mirror above the floor, and what is below it.
+/// Heights of the mirror above the floor, and of the light and the eye below it.
 const MIRROR: f32 = 1.0;
 const LAMP: f32 = 0.9;
 const EYE: f32 = 0.6;
 
-/// The floor as it is lit and seen in the mirror above it, or straight by a lamp and from an eye where that shows them.
+/// The floor, lit and seen in the mirror above it, or directly by a light and from an eye at their mirror images.
 fn floor(mirrored: bool) -> Scene {
     let mut builder = SceneBuilder::default();
     let mut put = |height: f32, material: Spec| {
@@ -104,7 +106,7 @@ fn slope(values: [f64; 4]) -> f64 {
     covariance / x.iter().map(|x| (x - mx) * (x - mx)).sum::<f64>()
 }
 
-/// The slopes of bias and variance that the radii of this α give.
+/// The slopes of bias and variance that follow from the radii of this α.
 fn expected(alpha: f64) -> [f64; 2] {
     let mean =
         |n: u32, power: f64| (1..=n).map(|i| powf_f64(f64::from(i), power)).sum::<f64>() / f64::from(n);
@@ -112,7 +114,7 @@ fn expected(alpha: f64) -> [f64; 2] {
     [slope(bias), slope(ITERATIONS.map(|n| mean(n, 1.0 - alpha) / f64::from(n)))]
 }
 
-/// What `vcm` or `sppm` is measured to be, with discs of this radius at first.
+/// Measurements of `vcm` or `sppm`, with discs of this initial radius.
 fn all(name: &str, radius: f32, alpha: f32) -> [Measured; 4] {
     let still = picture(&floor(false), &Spec::new("", "path"), &RenderSettings::new(SIDE, SIDE, 256));
     let truth = still.iter().sum::<f64>() / still.len() as f64;
@@ -121,7 +123,7 @@ fn all(name: &str, radius: f32, alpha: f32) -> [Measured; 4] {
     [0, 1, 2, 3].map(|i| measured(&scene, &integrator, truth, ITERATIONS[i], SEEDS[i]))
 }
 
-/// The slope of the bias. It has to be known well for that.
+/// The slope of the bias, which must be known well for that.
 fn slope_of_bias(name: &str, alpha: f32) -> f64 {
     let all = all(name, LARGE, alpha);
     for (n, one) in ITERATIONS.iter().zip(&all) {
@@ -134,10 +136,12 @@ fn slope_of_variance(name: &str, alpha: f32) -> f64 {
     slope(all(name, SMALL, alpha).map(|one| one.variance))
 }
 
-/// What is accepted. Biases that are known to a tenth at worst, over a factor of 64, give their slope to 0.017; three times that,
-/// and a little for light that is not quite of second degree over the largest discs. Of 24 pictures with some hundred discs side by
-/// side, a variance is known to 4%, and its slope to 0.01; what is there beside the noise of independent photons (how evenly
-/// light paths are spread) may take a few times that.
+/// Accepted deviations.
+///
+/// Biases that are known to a tenth at worst, over a factor of 64, give their slope to 0.017; the tolerance is three
+/// times that, and a little more for light that is not quite of second degree over the largest discs. From 24 pictures
+/// with some hundred discs side by side, a variance is known to 4%, and its slope to 0.01; what there is besides the
+/// noise of independent photons (the even distribution of light subpaths) may take a few times that.
 const TOLERANCES: [f64; 2] = [0.06, 0.06];
 
 #[test]
@@ -148,7 +152,7 @@ fn bias_and_noise_of_photons_fall_as_their_radius_says() {
         assert!((found[0] - bias).abs() < TOLERANCES[0], "{name}: {} of the bias, not {bias}", found[0]);
         assert!((found[1] - variance).abs() < TOLERANCES[1], "{name}: {}, not {variance}", found[1]);
     }
-    // A radius that does not shrink leaves all of its bias; one that shrinks too fast is told apart as well.
+    // A radius that does not shrink keeps all of its bias; one that shrinks too fast is detected as well.
     for alpha in [1.0, 0.5] {
         let found = slope_of_bias("sppm", alpha);
         assert!((found - bias).abs() > 2.0 * TOLERANCES[0], "a radius by α = {alpha} passes: {found}");

@@ -1,4 +1,4 @@
-//! `--preset course` with `cast` is the picture of the course's renderer, within a grey level.
+//! `--preset course` with `cast` gives the picture of the course's renderer, within a grey level.
 #![allow(clippy::print_stderr, reason = "a test that skips says so")]
 
 use bilux_math::Vec3;
@@ -9,7 +9,7 @@ use bilux_validation::course_oracle::{SIZE, course_picture};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// The corners of an `.asc` file as a mesh, read as plainly as can be.
+/// The corners of an `.asc` file as a mesh, read as simply as possible.
 fn mesh_of(asc: &str) -> Mesh {
     let numbers: Vec<f32> = asc.split_whitespace().filter_map(|word| word.parse().ok()).collect();
     let vector = |v: &[f32]| Vec3::new(v[0], v[1], v[2]);
@@ -22,7 +22,7 @@ fn mesh_of(asc: &str) -> Mesh {
     }
 }
 
-/// What we make of the file: the preset, `cast`, and bytes in proportion to light.
+/// Our picture of the file: the preset, `cast`, and bytes proportional to light.
 fn ours(asc: &str) -> Vec<u8> {
     let mut scene = SceneBuilder::default();
     let material = scene.add_material(Spec::new("", "diffuse"));
@@ -65,7 +65,7 @@ fn teapot_file() -> String {
     asc
 }
 
-/// Where an edge passes a pixel's corner by less than f32 can tell, the two may see different things.
+/// Where an edge passes a pixel's corner more closely than f32 resolves, the two may see different things.
 const ON_EDGES: usize = 4;
 
 #[test]

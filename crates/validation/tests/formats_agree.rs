@@ -1,17 +1,17 @@
-//! One scene, whichever format it came in through: the same picture, by Welch's test over blocks of pixels and seeds.
+//! One scene gives the same picture from every format, by Welch's test over blocks of pixels and seeds.
 
 use bilux::formats::{WriteOptions, read, read_bytes, write};
 use bilux::prelude::*;
 use bilux_validation::statistics::{sidak, welch};
 use std::path::Path;
 
-/// Less likely than this by chance: a bug.
+/// A p-value below this means a bug, not chance.
 const UNLIKELY: f64 = 1e-4;
 const SEEDS: i64 = 6;
 /// Blocks of the picture in each direction.
 const BLOCKS: usize = 8;
 
-/// A box and a ball of glass on a floor under lights of every kind that glTF has, and a panel.
+/// A box and a glass ball on a floor under lights of every kind that glTF has, and a panel.
 const SCENE: &str = r#"
 [camera]
 position = [0, 2, 6]
@@ -77,7 +77,7 @@ fn scene() -> SceneBuilder {
     scene
 }
 
-/// For each block and channel its mean by each seed.
+/// The mean of each block and channel, for each seed.
 fn blocks(scene: &SceneBuilder, first_seed: i64) -> Vec<Vec<f64>> {
     let mut blocks = vec![Vec::new(); BLOCKS * BLOCKS * 3];
     for seed in 0..SEEDS {
@@ -120,7 +120,7 @@ fn what_formats_hold_looks_the_same_in_all_of_them() {
         let p = agreement(&ours, &blocks(&back, 100 * (i as i64 + 1)));
         assert!(p > UNLIKELY, "{file}: p = {p}");
     }
-    // A planted bug: a panel brighter by a twentieth.
+    // A planted bug: a light brighter by a twentieth.
     let mut brighter = original.clone();
     for spec in &mut brighter.lights {
         if spec.kind == "point" {
@@ -131,7 +131,7 @@ fn what_formats_hold_looks_the_same_in_all_of_them() {
     assert!(p < UNLIKELY, "a light brighter by a twentieth passes: p = {p}");
 }
 
-/// Formats of bare meshes, seen by the same camera under the same lights, all of one matt material.
+/// Formats of bare meshes, rendered with the same camera and lights, all with one diffuse material.
 #[test]
 fn bare_meshes_look_the_same_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
@@ -141,7 +141,7 @@ fn bare_meshes_look_the_same_in_every_format() {
         for material in &mut scene.materials {
             *material = Spec::new(&material.name, "diffuse").with("reflectance", 0.6f32);
         }
-        // These lights are all there is: no studio is put around them.
+        // These lights are all there is: no studio is added.
         scene.surroundings_unsaid = false;
         scene.warnings.clear();
         scene

@@ -1,4 +1,4 @@
-//! Every registered light and every kind of luminous mesh keeps its contract, and every check of it can fail.
+//! Every registered light and every kind of emissive mesh keeps its contract, and every check can fail.
 
 use bilux_math::glam::DVec3;
 use bilux_math::{Aabb, DMat4, Motion, MotionKey, Quat, Rgb, Transform, Vec2, Vec3};
@@ -12,7 +12,7 @@ use bilux_validation::light_contract::{CHECKS, LightCase};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A block to be lit, and whatever is added.
+/// A block to be lit, and whatever `add` adds.
 fn case(name: &str, time: f32, add: impl FnOnce(&mut SceneBuilder)) -> LightCase {
     let mut builder = SceneBuilder::default();
     let grey = builder.add_material(Spec::new("grey", "diffuse"));
@@ -26,12 +26,12 @@ fn case(name: &str, time: f32, add: impl FnOnce(&mut SceneBuilder)) -> LightCase
 
 const RADIANCE: Rgb = Rgb { r: 3.0, g: 2.0, b: 1.0 };
 
-/// A mesh that gives light on both sides, moved.
+/// A mesh with a motion that emits on both sides.
 fn luminous(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
     luminous_on(2.0, name, mesh, motion, instanced, time)
 }
 
-/// The same that gives light in front.
+/// The same, emitting only in front.
 fn in_front(name: &str, mesh: Mesh, motion: &Motion, instanced: bool, time: f32) -> LightCase {
     luminous_on(1.0, name, mesh, motion, instanced, time)
 }
@@ -50,7 +50,7 @@ fn luminous_on(sides: f64, name: &str, mesh: Mesh, motion: &Motion, instanced: b
         let material = builder.add_material(glowing);
         let object = Object::new("lamp", Arc::new(mesh), material);
         builder.objects.push(Object { motion: motion.clone(), instanced, ..object.clone() });
-        // A twin that gives no light, so that the lamp is not the only instance of its mesh.
+        // A copy that does not emit, so that the light is not the only instance of its mesh.
         let aside = Motion::still(shifted(DVec3::new(9.0, 3.0, 0.0)));
         builder.objects.insert(0, Object { motion: aside, material: 0, instanced, ..object });
     });
@@ -92,7 +92,7 @@ fn luminous_meshes() -> Vec<LightCase> {
     ]
 }
 
-/// A panel of 1 by 0.8 metres that gives light by a picture, most of which is black.
+/// A panel of 1 by 0.8 metres whose emission is a texture, most of which is black.
 fn by_picture(sides: f64) -> LightCase {
     let texel = |i: usize| if i == 9 { RADIANCE * 7.0 } else { RADIANCE * (i % 4) as f32 * 0.2 };
     let picture = Texture::new("sign", 4, 4, (0..16).map(texel).collect(), false);
@@ -174,22 +174,22 @@ fn every_light_keeps_its_contract() {
     }
 }
 
-/// A light that is spoilt.
+/// A light with a bug.
 struct Spoilt {
     light: Arc<dyn Light>,
     spoil: Spoil,
 }
 
-/// What of it is spoilt.
+/// Where the bug is.
 #[derive(Clone, Copy)]
 enum Spoil {
-    /// The rays that it sends.
+    /// In the rays that it emits.
     Sent(fn(EmissionSample) -> EmissionSample),
-    /// The rays that are aimed.
+    /// In the rays that are aimed.
     Aimed(fn(EmissionSample) -> EmissionSample),
-    /// What is picked on it.
+    /// In light sampling.
     Picked(fn(LightSample) -> LightSample),
-    /// The density with which a start is picked.
+    /// In the density with which a start is sampled.
     Density(fn(f32, &EmissionSample) -> f32),
 }
 
@@ -265,7 +265,7 @@ impl Light for Spoilt {
 
 type Bug = (&'static str, &'static str, &'static str, Spoil);
 
-/// A bug, the light that has it, the check that has to see it.
+/// A bug, the light that has it, and the check that must detect it.
 const PLANTED: &[Bug] = &[
     (
         "a scene seen from within",
@@ -458,8 +458,8 @@ fn rays_of_a_lamp_far_from_the_origin_do_not_meet_it() {
     }
 }
 
-/// Of a lamp alone nothing is ever in the way of what is picked on it, from anywhere further from it than an f32 is coarse
-/// there.
+/// A light that is alone never blocks the points sampled on it, from anywhere that is farther from it than f32 is
+/// coarse there.
 #[test]
 fn a_sphere_is_not_in_its_own_light() {
     for (at, radius) in [(Vec3::Y * 3.0, 0.5), (Vec3::new(900.0, -700.0, 800.0), 0.5), (Vec3::X * 40.0, 0.01)]
@@ -477,7 +477,7 @@ fn a_sphere_is_not_in_its_own_light() {
             let ray =
                 bilux_scene::Ray { t_max, ..bilux_scene::Ray::new(p.to_array(), (point - p).to_array()) };
             assert!(!tracer.occluded(&ray), "{sample:?} from {p}");
-            // And yet the ray ends close to it, where an f32 tells its sides apart.
+            // And yet the ray ends close to it, where f32 can distinguish its sides.
             let is_coarse = radius < 0.1 || up < 0.2 || sample.cos() < 0.1;
             assert!(is_coarse || sample.clearance < 0.02, "{sample:?}");
         }

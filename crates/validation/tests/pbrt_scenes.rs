@@ -1,16 +1,17 @@
 //! The shared pbrt scenes against the pictures that came with them, which another renderer made, in red, green and blue
-//! as we do. Means of blocks of pixels are held against each other, channel by channel.
+//! as we do. Means of blocks of pixels are compared, channel by channel.
 //!
-//! The headers of the files were edited since: the pictures' depths are their own. That of the Cornell box has all light;
-//! that of Veach's plates has direct light alone. Its plates have a distribution of facets without long tails and reflect
-//! about a third of what the file says, so that of them only the colour is compared, which their refractive index tells.
+//! The headers of the files were edited since: the pictures' depths are their own. The picture of the Cornell box has
+//! all light; that of Veach's plates has direct light alone. Its plates have a microfacet distribution without long
+//! tails and reflect about a third of what the file states, so only their colour is compared, which follows from their
+//! refractive index.
 #![allow(clippy::print_stdout, reason = "a test that skips says so")]
 
 use bilux::pictures::Picture;
 use bilux::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// By how much the mean of a channel may differ.
+/// Maximum relative difference of the mean of a channel.
 const MAX_OFF: f64 = 0.02;
 
 fn shared(scene: &str) -> Option<PathBuf> {
@@ -34,7 +35,7 @@ impl Pixels {
         Pixels { width: picture.width(), height: picture.height(), colours: picture.to_rgb().unwrap() }
     }
 
-    /// The mean of a part, whose ends are fractions of the sides: left, right, top, bottom.
+    /// The mean of a region, whose ends are fractions of the sides: left, right, top, bottom.
     fn mean(&self, [left, right, top, bottom]: [f64; 4]) -> [f64; 3] {
         let columns = (left * self.width as f64) as usize..(right * self.width as f64) as usize;
         let rows = (top * self.height as f64) as usize..(bottom * self.height as f64) as usize;
@@ -47,7 +48,7 @@ impl Pixels {
     }
 }
 
-/// The picture that came with a scene, in as many columns as ours: each pixel the mean of a block.
+/// The picture that came with a scene, in as many columns as ours: each pixel is the mean of a block.
 fn reference(folder: &Path, width: usize) -> Pixels {
     let picture = bilux::pictures::read(folder.join("TungstenRender.exr")).unwrap();
     let fine = Pixels::of(&picture.into_linear());
@@ -61,7 +62,7 @@ fn reference(folder: &Path, width: usize) -> Pixels {
     Pixels { width, height, colours: (0..width * height).map(block).collect() }
 }
 
-/// Our picture of a scene, which `change` has its hands on first.
+/// Our picture of a scene, after `change` has modified it.
 fn ours(folder: &Path, settings: &[(&str, Value)], change: impl Fn(&mut SceneBuilder)) -> Pixels {
     let mut scene = bilux::load(&folder.join("scene-v4.pbrt"), &Default::default()).unwrap();
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
@@ -76,7 +77,7 @@ fn cornell_box(folder: &Path, change: impl Fn(&mut SceneBuilder)) -> Pixels {
         ("size", "64x64".into()),
         ("spp", Value::Integer(144)),
         ("max_depth", Value::Integer(32)),
-        // Then no light of one block comes from another.
+        // With the box filter, no light of one block comes from another.
         ("filter", "box".into()),
         ("integrator", "path".into()),
     ];
@@ -94,14 +95,14 @@ fn plates(folder: &Path, change: impl Fn(&mut SceneBuilder)) -> Pixels {
     ours(folder, &settings, change)
 }
 
-/// The greatest relative difference of the mean of any channel.
+/// The maximum relative difference of the mean of any channel.
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|c| (a[c] / b[c] - 1.0).abs()).fold(0.0, f64::max)
 }
 
 const WHOLE: [f64; 4] = [0.0, 1.0, 0.0, 1.0];
 
-/// Parts of the Cornell box: the walls, the floor, both boxes, the light.
+/// Regions of the Cornell box: the walls, the floor, both boxes, the light.
 const IN_THE_BOX: [[f64; 4]; 8] = [
     [0.02, 0.1, 0.25, 0.6],
     [0.9, 0.98, 0.25, 0.7],
@@ -110,11 +111,11 @@ const IN_THE_BOX: [[f64; 4]; 8] = [
     [0.1, 0.45, 0.95, 1.0],
     [0.3, 0.45, 0.45, 0.9],
     [0.5, 0.7, 0.7, 0.95],
-    // Whole pixels of ours.
+    // Whole pixels of our picture.
     [26.0 / 64.0, 37.0 / 64.0, 5.0 / 64.0, 6.0 / 64.0],
 ];
 
-/// Parts of the plates' scene without plates: the wall, the floor, the middle of the great light.
+/// Regions of the plates' scene without plates: the wall, the floor, the middle of the large light.
 const AROUND_THE_PLATES: [[f64; 4]; 5] = [
     [0.0, 0.3, 0.0, 0.3],
     [0.75, 1.0, 0.0, 0.6],
@@ -127,12 +128,12 @@ const AROUND_THE_PLATES: [[f64; 4]; 5] = [
 const ON_THE_PLATES: [[f64; 4]; 4] =
     [[0.62, 0.68, 0.38, 0.48], [0.62, 0.68, 0.54, 0.6], [0.46, 0.54, 0.68, 0.73], [0.4, 0.6, 0.82, 0.87]];
 
-/// The greatest difference over parts.
+/// The maximum difference over all regions.
 fn greatest(a: &Pixels, b: &Pixels, parts: &[[f64; 4]]) -> f64 {
     parts.iter().map(|part| apart(a.mean(*part), b.mean(*part))).fold(0.0, f64::max)
 }
 
-/// Colours alone: each channel over the sum of all.
+/// Chromaticity alone: each channel over the sum of all.
 fn hue(c: [f64; 3]) -> [f64; 3] {
     let sum: f64 = c.iter().sum();
     c.map(|channel| channel / sum)
@@ -196,7 +197,7 @@ fn veachs_plates_agree_with_their_picture_in_light_and_colour() {
     assert!(off.iter().any(|off| *off > 0.02), "another metal would be seen: {off:?}");
 }
 
-/// A scene from a text, rendered.
+/// Renders a scene from text.
 fn of_text(format: &str, text: &str, size: &str, spp: i64) -> Pixels {
     let scene = bilux::formats::read_bytes(text.as_bytes(), format, None, "scene", &Default::default());
     let scene = scene.unwrap_or_else(|error| panic!("{error}"));
@@ -219,7 +220,7 @@ fn coated_diffuse_reflects_what_two_layers_do() {
         Material "coateddiffuse" "rgb reflectance" [.5 .8 .2] "float roughness" 0
         Shape "sphere""#;
     let seen = of_text("pbrt", text, "8x8", 512).mean(WHOLE);
-    // The boundary turns 0.04 back outside and 0.5964 of what comes evenly from below. [Egan 1973]
+    // The boundary reflects 0.04 back outside, and 0.5964 of the uniform light from below. [Egan 1973]
     let of = |rho: f64| 0.04 + 0.96 * 0.4036 * rho / (1.0 - 0.5964 * rho);
     assert!(apart(seen, [of(0.5), of(0.8), of(0.2)]) < 0.01, "{seen:?}");
 }

@@ -1,4 +1,4 @@
-//! `principled` keeps the contract of scattering over its parameters, in their corners and between.
+//! `principled` keeps the BSDF contract over its parameters, at their extremes and in between.
 
 use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::materials::{MaterialInputs, build};
@@ -6,7 +6,7 @@ use bilux_scene::{Bsdf, Primitive, Spec, Surface, TransportMode, Wavelength};
 use bilux_validation::bsdf_contract::{CHECKS, Promise, Scatterer};
 use bilux_validation::chi_square::uniforms;
 
-/// A point where the material's picture of normals, if it has one, turned that of the mesh.
+/// A point at which a normal map, if there is one, has turned the mesh's normal.
 fn surface(n_shade: Vec3, n_smooth: Vec3) -> Surface {
     Surface {
         t: 1.0,
@@ -44,7 +44,7 @@ fn at(surface: &Surface, numbers: &[(&str, f32)], base: Rgb) -> Bsdf {
 
 const ORANGE: Rgb = Rgb { r: 0.9, g: 0.5, b: 0.1 };
 
-/// What it is, its parameters, and whether light is refracted.
+/// Its name, its parameters, and whether it refracts light.
 type Case = (&'static str, &'static [(&'static str, f32)], bool);
 
 const CASES: &[Case] = &[
@@ -85,7 +85,7 @@ fn what_disperses_keeps_it_at_every_wavelength() {
         let bsdf = principled(&numbers, ORANGE);
         assert!(!bsdf.splits());
         for nm in [400.0, 460.0, 530.0, 600.0, 690.0] {
-            // In air, and in something denser than it is.
+            // In air, and in a medium denser than the material.
             for outside in [1.0, 2.1] {
                 let one = bsdf.refracting(&Wavelength::of(nm), outside);
                 assert!(one.splits());
@@ -96,7 +96,7 @@ fn what_disperses_keeps_it_at_every_wavelength() {
             }
         }
     }
-    // What nothing goes into, or what has no inside, splits nothing.
+    // Without transmission, or without an interior, nothing is split.
     for numbers in [[parted, ("transmission_weight", 0.0)], [parted, ("coat_weight", 1.0)]] {
         assert!(!principled(&numbers, ORANGE).refracting(&Wavelength::of(450.0), 1.0).splits());
     }
@@ -116,7 +116,7 @@ fn turned_normals_keep_it_too() {
     }
 }
 
-/// Rough ground below a coat that is as smooth as the mesh, and both turned against the triangle.
+/// A rough base below a coat that is as smooth as the mesh, both tilted against the triangle.
 #[test]
 fn a_coat_with_a_normal_of_its_own_keeps_it_too() {
     let coats: [&[(&str, f32)]; 4] = [
@@ -140,7 +140,7 @@ fn a_coat_with_a_normal_of_its_own_keeps_it_too() {
     }
 }
 
-/// A polished coat mirrors light about the normal of the mesh, and what is below it about that of the picture.
+/// A polished coat reflects about the normal of the mesh, and the base below it about that of the normal map.
 #[test]
 fn a_coat_mirrors_about_its_own_normal() {
     let n_shade = Vec3::new(0.3, 0.0, 1.0).normalize();
@@ -156,11 +156,11 @@ fn a_coat_mirrors_about_its_own_normal() {
         let which = [Vec3::Z, n_shade].iter().position(|n| sample.wi.distance(mirrored(*n)) < 1e-4);
         seen[which.expect("one of the two")] += f64::from(sample.weight.g) / N as f64;
     }
-    // Fresnel at an index of 1.6 nearly straight on; the metal below is white but for its own half and what the coat took.
+    // Fresnel at an index of 1.6 near normal incidence; the metal below loses only its own half and what the coat took.
     assert!((seen[0] - 0.0533).abs() < 0.003 && (0.42..0.5).contains(&seen[1]), "{seen:?}");
 }
 
-/// A white one in an even light: the least and the greatest of what is seen along directions steep and grazing.
+/// A white furnace: the minimum and the maximum of what is seen along steep and grazing directions.
 fn furnace(bsdf: &Bsdf) -> [f64; 2] {
     let seen = [1.0f32, 0.8, 0.5, 0.25, 0.12].map(|cos| {
         let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
@@ -184,7 +184,7 @@ fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
             }
         }
     }
-    // Nor does a rough base, alone or below what lets light to it.
+    // Nor does a rough base lose anything, alone or below a layer that lets light through to it.
     for roughness in [0.3f32, 1.0] {
         for weight in [0.0, 1.0] {
             let numbers = [("base_diffuse_roughness", roughness), ("specular_weight", weight)];
@@ -192,7 +192,7 @@ fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
             assert!(least > 0.97 && most < 1.012, "{numbers:?}: {least:.4} to {most:.4}");
         }
     }
-    // A sheet loses nothing on its two sides together.
+    // A sheet loses nothing over its two sides together.
     let [least, most] = furnace(&principled(&[("diffuse_transmission_weight", 0.6)], Rgb::WHITE));
     assert!(least > 0.985 && most < 1.012, "a sheet: {least:.4} to {most:.4}");
     for roughness in [0.0f32, 0.3, 0.6, 1.0] {
@@ -211,7 +211,7 @@ fn white_plastic_and_white_metal_lose_nothing_in_a_furnace() {
             assert!(most < 1.012, "film of {thickness}: {most:.4}");
         }
     }
-    // What a film on glass does not reflect, it lets through.
+    // A film on glass transmits what it does not reflect.
     for thickness in [0.1f32, 0.4] {
         let film = [("thin_film_weight", 1.0), ("thin_film_thickness", thickness), ("thin_film_ior", 1.8)];
         let clear = [("transmission_weight", 1.0), ("specular_roughness", 0.0), ("specular_ior", 1.0)];
@@ -296,7 +296,7 @@ fn the_checks_see_bugs_in_it() {
     let bsdf = principled(CASES[2].1, ORANGE);
     let mut one_way = Scatterer::from(bsdf);
     one_way.eval = Box::new(move |wo, wi, mode| bsdf.eval(wo, wi, mode) * (1.0 - 0.1 * wo.z.abs()));
-    // A choice of lobe that forgets from where it was made.
+    // A choice of lobe that mistakes the direction from which it was made.
     let mut other_view = Scatterer::from(bsdf);
     other_view.pdf = Box::new(move |wo, wi, mode| bsdf.pdf_solid_angle(wi, wo, mode));
     let mut bright = Scatterer::from(principled(&[("specular_roughness", 0.6)], Rgb::WHITE));

@@ -1,11 +1,12 @@
-//! Every scene that people gave us in the formats that we read is rendered, or refused in words.
-// Tests say what they skip.
+//! Every scene that people gave us in the formats that we read is rendered, or refused with an explanation.
+// Tests report what they skip.
 #![allow(clippy::print_stdout)]
 
 use bilux::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Files that hold nothing to see, or are broken: these and no others are refused. Clouds of points and lines are drawn.
+/// Files that contain nothing visible, or are broken: these and no others are refused. Clouds of points and lines are
+/// rendered.
 const REFUSED: &[&str] = &[];
 
 fn shared() -> Option<PathBuf> {

@@ -1,4 +1,4 @@
-//! How subpaths are joined: with the camera, with a point on a light, or with each other.
+//! How subpaths are connected: with the camera, with a point on a light, or with each other.
 
 use super::walk::{Vertex, count};
 use super::{Contribution, Lanes, Photons, Step, Tally, Technique, TechniqueCounts, favour};
@@ -6,8 +6,8 @@ use crate::task::Task;
 use bilux_math::{Vec2, Vec3, warp};
 use bilux_scene::{Ray, TransportMode};
 
-/// The vertex of a light path seen from the camera (t = 1): where on the film, and the light there as an integral over the
-/// whole film.
+/// Connects a vertex of a light subpath with the camera (t = 1): the position on the film, and the light there as an
+/// integral over the whole film.
 pub(crate) fn to_camera<const N: usize>(
     task: &mut Task,
     y: &Vertex<N>,
@@ -32,7 +32,7 @@ pub(crate) fn to_camera<const N: usize>(
     ))
 }
 
-/// All vertices of a light path seen from the camera.
+/// Connects every vertex of a light subpath with the camera.
 pub(crate) fn show_to_camera<const N: usize>(
     task: &mut Task,
     light_path: &[Vertex<N>],
@@ -48,7 +48,7 @@ pub(crate) fn show_to_camera<const N: usize>(
     }
 }
 
-/// A point sampled on a light (s = 1), and the light that comes from there along the camera path.
+/// Connects a camera vertex with a point sampled on a light (s = 1), and returns the light that arrives from there.
 pub(crate) fn to_light<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
@@ -71,7 +71,7 @@ pub(crate) fn to_light<const N: usize>(
     let media = z.media_towards(scene, sample.wi);
     let passed = media.visible(task.tracer, &z.surface.spawn_to_light(&sample), distance, sample.n_light)?;
     let cos_light = sample.cos();
-    // Of a light without extent the point is certain: its density over solid angle grows with the distance alone.
+    // A delta light has one certain point: its density over solid angle grows with the distance alone.
     let area_to_angle = if sample.point.is_some() { distance * distance / cos_light } else { 1.0 };
     let pdf_direct = if light.is_delta() { area_to_angle } else { sample.pdf_solid_angle };
     let pdf_emission =
@@ -90,7 +90,7 @@ pub(crate) fn to_light<const N: usize>(
     })
 }
 
-/// A camera vertex and a light vertex (s, t > 1), and the light between them.
+/// Connects a camera vertex and a light vertex (s, t > 1), and returns the light between them.
 pub(crate) fn to_vertex<const N: usize>(
     task: &mut Task,
     z: &Vertex<N>,
@@ -122,7 +122,7 @@ pub(crate) fn to_vertex<const N: usize>(
     Some(Contribution { own: techniques.joins, others, origin: y.origin, ..Contribution::only(light) })
 }
 
-/// A camera vertex and all photons around it, with the light that each brings.
+/// Merges a camera vertex with all photons around it, and visits the light that each of them brings.
 pub(crate) fn merged<const N: usize>(
     task: &Task,
     photons: &Photons<N>,
@@ -131,13 +131,14 @@ pub(crate) fn merged<const N: usize>(
 ) {
     let facing = z.bsdf.facing(z.wo, TransportMode::Radiance);
     photons.around(z.surface.p, |spot, y| {
-        // On the same surface, not on the other side of a sheet or around a corner.
+        // Merge only on the same surface, not with the other side of a sheet or around a corner.
         if z.depth + spot.depth() + 1 > task.max_depth || z.surface.n_geom.dot(y.n_geom) < 0.5 {
             return;
         }
         let Some((scattered, pdf, back)) = facing.both_ways(y.wo) else { return };
-        // Photons come per area of the surface that they fell on, and grazing ones seldom; `eval` has the cosine to the
-        // shading normal in it. By the normal at `z` a grazing photon from around a bend would be of any brightness.
+        // Photons arrive per area of the surface that they fell on, and grazing ones are rare; `eval` contains the
+        // cosine to the shading normal. With the normal at `z`, a grazing photon from around a bend could have any
+        // brightness.
         let cos = y.n_geom.dot(y.wo).abs();
         let others = y.joined + y.d_vc * pdf + z.partial.before(back);
         let light = task.seen(z.beta * scattered * y.beta * (1.0 / cos), z.is_split() || spot.is_split());
@@ -147,7 +148,7 @@ pub(crate) fn merged<const N: usize>(
     });
 }
 
-/// From one surface to another, ending just before the second.
+/// A ray from one surface to another that ends just before the second.
 fn spawn_between<const N: usize>(z: &Vertex<N>, y: &Vertex<N>) -> Ray {
     let ray = z.surface.spawn_to(y.surface.p);
     let direction = Vec3::from(ray.direction);
@@ -155,7 +156,7 @@ fn spawn_between<const N: usize>(z: &Vertex<N>, y: &Vertex<N>) -> Ray {
     let cos = y.surface.n_geom.dot(direction).abs() / length;
     let error = y.surface.n_geom.abs().dot(y.surface.p_error)
         + f32::EPSILON * (length + z.surface.p.abs().max_element() + y.surface.p.abs().max_element());
-    // A ray meets the second surface within the error of the point there, over the cosine.
+    // A ray hits the second surface within the position error there, over the cosine.
     let clearance = (8.0 * error / (cos * length)).min(0.5);
     Ray { t_max: 1.0 - clearance, ..ray }
 }

@@ -1,13 +1,14 @@
-//! Paths from both ends: subpaths that begin at a light or at the camera, what they carry, and how they are joined.
+//! Bidirectional transport: subpaths from a light or from the camera, their throughput, and how they are connected.
 //!
-//! A path with `s` vertices from the light and `t` from the camera can be found in several ways, one for each pair
-//! (s, t). All of them are tried, and each is weighted by the balance heuristic against all others [Veach 1997, 10.2].
-//! The sums over the others are carried along while a subpath grows [Georgiev 2012, eq. 31 to 48], so that a weight
-//! costs no more for long paths than for short ones. In words: [`Partial::d_vcm`] is how likely the vertex is to be
-//! connected to over how likely it is to be walked to; [`Partial::d_vc`] is the same for all vertices before it.
+//! A path with `s` vertices from the light and `t` from the camera can be found by several techniques, one for each
+//! pair (s, t). All of them are tried, and each is weighted by the balance heuristic against all others
+//! [Veach 1997, 10.2]. A subpath carries the sums over the other techniques along as it grows
+//! [Georgiev 2012, eq. 31 to 48], so a weight costs no more for long paths than for short ones. In words:
+//! [`Partial::d_vcm`] is how likely a connection to the vertex is, over how likely the random walk is to reach it;
+//! [`Partial::d_vc`] is the same for all vertices before it.
 //!
-//! Densities count a film of area 1 and one light path for each camera path. Roulette is left out of them: weights need
-//! to be the same for all ways and no more.
+//! Densities assume a film of area 1 and one light subpath per camera subpath. They leave out Russian roulette: all
+//! that weights need is to be the same for all techniques.
 
 mod connect;
 mod photons;
@@ -27,25 +28,25 @@ use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Surface, TransportMode};
 
-/// The recursive part of the weights. [Georgiev 2012]
+/// The recursive part of the MIS weights. [Georgiev 2012]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Partial<const N: usize = 1> {
-    /// dVCM: 1 over the density of the last step, times the density of joining there instead.
+    /// dVCM: 1 over the density of the last step, times the density of connecting there instead.
     pub(crate) d_vcm: f32,
-    /// How much of it counts, since there are so many ways that join there.
+    /// dVCM times the number of techniques that connect there.
     pub(crate) joined: Lanes<N>,
-    /// The same, where joining there is being seen from the camera.
+    /// The same, where the connection is one with the camera.
     pub(crate) shown: Lanes<N>,
-    /// Light paths that merging here counts, over area.
+    /// Light subpaths that merging here counts, times the area of merging.
     pub(crate) merged: Lanes<N>,
-    /// dVC: what joining and merging count together, summed over the steps before.
+    /// dVC: what connections and merging count together, summed over the steps before.
     pub(crate) d_vc: Lanes<N>,
-    /// What of it does not count if a light is met next, since light paths leave direct light to others.
+    /// The part of it that does not count if an emitter is hit next, since light subpaths leave direct light to others.
     pub(crate) beyond: Lanes<N>,
 }
 
 impl<const N: usize> Partial<N> {
-    /// Of a camera path that has met nothing yet.
+    /// The start of a camera subpath, before any surface.
     pub(crate) const START: Partial<N> = Partial {
         d_vcm: 0.0,
         joined: Lanes::ZERO,
@@ -55,19 +56,20 @@ impl<const N: usize> Partial<N> {
         beyond: Lanes::ZERO,
     };
 
-    /// Of a light path that leaves its light with the cosine `cos`. `pdf_direct` does not know yet who would ask.
+    /// A light subpath that leaves its light under the cosine `cos`. `pdf_direct` does not yet know the point that
+    /// would sample the light.
     fn of_light(pdf_direct: f32, pdf_emission: f32, cos: f32, is_delta: bool) -> Partial<N> {
         let d_vc = if is_delta { 0.0 } else { cos / pdf_emission };
         Partial { d_vcm: pdf_direct / pdf_emission, d_vc: Lanes::ONE * d_vc, ..Partial::START }
     }
 
-    /// Of a camera path that has met its first surface, given the density of doing so over area.
+    /// A camera subpath at its first surface, given the density over area of hitting it there.
     pub(crate) fn of_camera(pdf_area: f32, techniques: &TechniqueCounts<N>) -> Partial<N> {
         let d_vcm = 1.0 / pdf_area;
         Partial { d_vcm, shown: techniques.splats * d_vcm, merged: techniques.eta, ..Partial::START }
     }
 
-    /// On arrival at a surface, from as far as the root of `distance2`, under the cosine `cos`, where `joins` ways join
+    /// Arrives at a surface from the distance √`distance2`, under the cosine `cos`, where `joins` techniques connect
     /// the last vertex with this one, and merging counts `merged`.
     fn arrive(&mut self, distance2: f32, cos: f32, joins: Lanes<N>, merged: Lanes<N>) {
         self.d_vcm *= distance2 / cos;
@@ -78,8 +80,8 @@ impl<const N: usize> Partial<N> {
         self.beyond = self.beyond * (1.0 / cos);
     }
 
-    /// On leaving under the cosine `cos`, with densities there and back; `None` where there is only one direction. `counts`
-    /// is false where light paths do not look for what would be direct light here.
+    /// Leaves under the cosine `cos`, with the forward and reverse densities; `None` for a delta event. `counts` is
+    /// false where light subpaths do not look for what would be direct light here.
     fn leave(&mut self, cos: f32, pdfs: Option<(f32, f32)>, counts: bool) {
         match pdfs {
             None => {
@@ -101,13 +103,15 @@ impl<const N: usize> Partial<N> {
         }
     }
 
-    /// How often all ways together find what the vertex before this subpath's end would be found by with `pdf_area`, and
-    /// the one before that with `pdf_back`.
+    /// The sum over all techniques that move this subpath's vertices to the other side, relative to the current one.
+    ///
+    /// The other side would find this subpath's end with density `pdf_area`, and from there the vertex before it with
+    /// `pdf_back`.
     pub(crate) fn others(&self, pdf_area: f32, pdf_back: f32) -> Lanes<N> {
         (self.merged + self.before(pdf_back)) * pdf_area
     }
 
-    /// The same where that vertex is on a light.
+    /// The same where the vertex on the other side is on a light.
     pub(crate) fn others_of_direct(&self, pdf_area: f32, pdf_back: f32, counts: bool) -> Lanes<N> {
         if counts {
             return self.others(pdf_area, pdf_back);
@@ -115,23 +119,23 @@ impl<const N: usize> Partial<N> {
         (self.joined + (self.d_vc + self.beyond) * pdf_back) * pdf_area
     }
 
-    /// The same over the density of coming to this vertex, without merging there.
+    /// The same over the density of finding this vertex, without merging here.
     fn before(&self, pdf_back: f32) -> Lanes<N> {
         self.joined + self.shown + (self.d_vc + self.beyond) * pdf_back
     }
 }
 
-/// Random numbers of light paths begin here, far from those of camera paths.
+/// Random number streams of light subpaths begin here, far from those of camera subpaths.
 const LIGHT_STREAM: u64 = 1 << 32;
 
 impl Task<'_, '_> {
-    /// Random numbers for joining a vertex of the light path.
+    /// Enters the stream of random numbers for connecting a vertex of the light subpath.
     pub(crate) fn enter_light_vertex(&mut self, depth: u32) {
         self.sampler.enter(2 * LIGHT_STREAM + u64::from(depth));
     }
 }
 
-/// A path from a light: every surface that it meets and that scatters into more than single directions, in order.
+/// Traces a light subpath: every surface that it hits, in order, except those that scatter into single directions only.
 pub(crate) fn light_vertices<const N: usize>(
     task: &mut Task,
     time: f32,
@@ -141,7 +145,7 @@ pub(crate) fn light_vertices<const N: usize>(
     let mut vertices = Vec::new();
     let Some(mut walk) = begin_at_light(task, time, techniques) else { return vertices };
     while let Some(vertex) = walk.meet(task) {
-        // The last event of the longest path is at the camera's side.
+        // The last event of the longest path is on the camera's side.
         let ends = vertex.depth + 1 >= task.max_depth;
         let stream = LIGHT_STREAM + 1 + u64::from(vertex.depth);
         task.sampler.enter(stream);
@@ -175,15 +179,15 @@ fn begin_at_light<'w, const N: usize>(
     let pdf_direct = ray.pdf_direct * task.lights.probability(index);
     let beta = ray.le * (cos / pdf_emission);
     let partial = Partial::of_light(pdf_direct, pdf_emission, cos, light.is_delta());
-    // The start of a ray from infinity is known by area already.
+    // The start of a ray from infinity already has a density over area.
     let by_area = light.is_infinite();
     let spawned = ray.spawn(time);
     let walk = Walk::new(TransportMode::Importance, spawned, beta, partial, by_area, techniques);
     Some(walk.leaving(start))
 }
 
-/// Light that a camera path meets by chance (s = 0): its radiance, and the densities with which the same path would have
-/// been found by picking the point on the light, and by a path from it.
+/// Light that a camera subpath hits by chance (s = 0): its radiance, and the densities with which the same path would
+/// have been found by sampling the point on the light, and by a light subpath.
 pub(crate) struct EmitterHit {
     pub(crate) radiance: Rgb,
     /// Over area; from infinity, over solid angle.
@@ -192,12 +196,12 @@ pub(crate) struct EmitterHit {
 }
 
 impl EmitterHit {
-    /// What no other way finds.
+    /// What no other technique finds.
     fn only(radiance: Rgb) -> EmitterHit {
         EmitterHit { radiance, pdf_direct: 0.0, pdf_emission: 0.0 }
     }
 
-    /// The same for a camera path that carries `beta`.
+    /// The contribution along a camera subpath with the throughput `beta`.
     pub(crate) fn by<const N: usize>(&self, beta: Rgb, partial: &Partial<N>) -> Contribution<N> {
         let picked = partial.d_vcm * self.pdf_direct;
         let others = Lanes::ONE * picked + partial.d_vc * self.pdf_emission;
@@ -205,7 +209,7 @@ impl EmitterHit {
     }
 }
 
-/// Light from infinity that a camera path meets where it leaves the scene.
+/// Light from infinity that a camera subpath finds where it leaves the scene.
 pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut visit: impl FnMut(EmitterHit)) {
     let scene = task.scene();
     let (origin, direction) = (Vec3::from(walk.ray.origin), Vec3::from(walk.ray.direction));
@@ -225,7 +229,7 @@ pub(crate) fn from_infinity<const N: usize>(task: &Task, walk: &Walk<N>, mut vis
     }
 }
 
-/// What a surface gives out towards `wo`; `None` where nothing.
+/// The light that a surface emits towards `wo`; `None` where it emits none.
 pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<EmitterHit> {
     let scene = task.scene();
     let radiance = scene.emission(surface, wo);
@@ -236,7 +240,7 @@ pub(crate) fn emitted(task: &Task, surface: &Surface, wo: Vec3) -> Option<Emitte
         return Some(EmitterHit::only(radiance));
     };
     let light = &scene.lights()[index].light;
-    // As the vertex before would have picked it.
+    // As the previous vertex would have sampled it.
     let pdf_area = light.pdf_area(surface.p + wo * surface.t, surface);
     let cos = surface.n_geom.dot(wo).abs();
     let pdf_emission = task.emission.pdf(scene, index, surface.p, pdf_area, wo, cos);

@@ -1,5 +1,5 @@
-//! What the light paths of one iteration leave in the scene, to be found by place: the vertices that camera paths merge
-//! with. [Jensen 1996; Georgiev 2012]
+//! The vertices that the light subpaths of one iteration leave in the scene, indexed by position, for camera subpaths
+//! to merge with. [Jensen 1996; Georgiev 2012]
 
 use super::{Lanes, Tally, TechniqueCounts, Vertex, light_vertices, show_to_camera};
 use crate::camera_rays::CameraRays;
@@ -9,18 +9,18 @@ use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Counters, Scene, Tracer};
 use rayon::prelude::*;
 
-/// How camera paths and light paths are merged.
+/// How camera subpaths and light subpaths are merged.
 #[derive(Clone, Copy, Debug)]
 pub struct Merging {
-    /// The greatest distance at which two vertices count as one in the first iteration, as a part of the scene's radius.
+    /// The maximum distance between merged vertices in the first iteration, as a fraction of the scene's radius.
     pub radius: f32,
     /// How fast that distance shrinks: by the power (alpha - 1) / 2 of the iteration's number, 0..1.
     pub alpha: f32,
-    /// The most light paths of an iteration whose vertices are kept.
+    /// Maximum number of light subpaths per iteration whose vertices are stored.
     pub max_light_paths: u32,
-    /// Of the light paths that there would be, one for each pixel, those that are followed: 0..=1.
+    /// The fraction of the light subpaths, one per pixel, that are traced: 0..=1.
     pub part: f32,
-    /// Which ways of finding a path there are beside merging.
+    /// The techniques that are used as well as merging.
     pub(crate) techniques: TechniqueCounts,
 }
 
@@ -31,31 +31,31 @@ impl Merging {
         std::f32::consts::PI * radius * radius
     }
 
-    /// All ways of an iteration whose photons give this η, and that has so many light paths for each pixel.
+    /// All techniques of an iteration whose photons give this η, with this many light subpaths per pixel.
     pub(crate) fn techniques(&self, eta: f32, light_paths: f32) -> TechniqueCounts {
         let splats =
             if self.shows_photons() { self.techniques.splats * light_paths } else { self.techniques.splats };
         TechniqueCounts { eta: Lanes([eta]), splats, ..self.techniques }
     }
 
-    /// True where light paths are seen from the camera but not joined with its paths: those of the photons then do for
-    /// both.
+    /// True where light subpaths are connected with the camera but not with camera subpaths: the photons' light
+    /// subpaths then serve both purposes.
     pub(crate) fn shows_photons(&self) -> bool {
         self.radius > 0.0 && self.techniques.splats != Lanes::ZERO && self.techniques.joins == Lanes::ZERO
     }
 
-    /// The radius of an iteration, in metres: it depends on nothing but the iteration's number. [Knaus 2011, eq. 20]
+    /// The merging radius of an iteration, in metres: it depends only on the iteration's number. [Knaus 2011, eq. 20]
     fn radius(&self, scene: &Scene, iteration: u32) -> f32 {
         let shrunk = bilux_math::transcendental::powf(iteration as f32 + 1.0, 0.5 * (self.alpha - 1.0));
         scene.bounds().radius() * self.radius * shrunk
     }
 }
 
-/// Where a light path has a vertex: all that is looked at of most photons.
+/// The position of a light subpath's vertex: the only part of most photons that is read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Spot {
     pub(crate) p: Vec3,
-    /// Scattering events before it, doubled, and one more where the path is of one wavelength.
+    /// Twice the number of scattering events before it, plus one where the subpath carries a single wavelength.
     pub(super) steps: u16,
     /// As in [`super::Vertex`].
     pub(crate) origin: u16,
@@ -72,17 +72,17 @@ impl Spot {
         u32::from(self.steps >> 1)
     }
 
-    /// The path up to here is of one wavelength.
+    /// True where the subpath up to here carries a single wavelength.
     #[inline]
     pub(crate) fn is_split(&self) -> bool {
         self.steps & 1 == 1
     }
 }
 
-/// A vertex of a light path.
+/// A vertex of a light subpath.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Photon<const N: usize = 1> {
-    /// Where it came from.
+    /// The direction that it came from.
     pub(crate) wo: Vec3,
     pub(crate) n_geom: Vec3,
     pub(crate) beta: Rgb,
@@ -91,11 +91,12 @@ pub(crate) struct Photon<const N: usize = 1> {
     pub(crate) d_vc: Lanes<N>,
 }
 
-/// All of an iteration, in a grid whose cells are as wide as the discs that merge. Neighbours along the x axis are
-/// neighbours in memory.
+/// All photons of an iteration, in a grid whose cells are as wide as the discs that merge.
+///
+/// Cells that are adjacent along the x axis are adjacent in memory.
 pub struct Photons<const N: usize = 1> {
     radius: f32,
-    /// With the expected light paths on each square metre that they are merged over: η of [Georgiev 2012].
+    /// With the number of light subpaths times the area that they are merged over: η of [Georgiev 2012].
     techniques: TechniqueCounts<N>,
     spots: Vec<Spot>,
     photons: Vec<Photon<N>>,
@@ -103,21 +104,22 @@ pub struct Photons<const N: usize = 1> {
     starts: Vec<u32>,
 }
 
-/// Who takes what the camera sees of light paths while they are followed, tile by tile on all threads.
+/// Receives the light subpaths' connections with the camera while they are traced, tile by tile on all threads.
 pub(crate) trait LightPathVisitor<const N: usize>: Sync {
     type Tally: Tally<N>;
-    /// For one tile.
+    /// Makes the tally for one tile.
     fn tally(&self) -> Self::Tally;
-    /// The next light path is that of this pixel's sample.
+    /// The next light subpath belongs to this pixel's sample.
     fn begin(_tally: &mut Self::Tally, _x: u32, _y: u32, _sample: u32) {}
-    /// What was seen of a tile's light paths.
+    /// Takes what the camera sees of a tile's light subpaths.
     fn take(&self, tile: usize, tally: Self::Tally);
 }
 
 impl<const N: usize> Photons<N> {
-    /// Follows the light paths of an iteration, each that of a pixel; every `n`th if there would be too many. Also how
-    /// many rays that took. `ways` are all ways there are, given η and the number of light paths for each pixel. What the
-    /// camera sees of them goes to the `visitor`.
+    /// Traces the light subpaths of an iteration, one per pixel, or every `n`th if there would be too many.
+    ///
+    /// Also returns the number of rays that this took. `techniques` gives all techniques, given η and the number of
+    /// light subpaths per pixel. Connections with the camera go to the `visitor`.
     pub(crate) fn trace<O: LightPathVisitor<N>>(
         eye: &CameraRays,
         merging: &Merging,
@@ -168,7 +170,7 @@ impl<const N: usize> Photons<N> {
         (Photons::new(parts.concat(), radius, techniques), counted)
     }
 
-    /// In the order of their cells, and within a cell in the order in which they are given.
+    /// Sorts the photons by cell; within a cell they keep the order in which they are given.
     pub(super) fn new(
         given: Vec<(Spot, Photon<N>)>,
         radius: f32,
@@ -177,7 +179,7 @@ impl<const N: usize> Photons<N> {
         let mask = given.len().next_power_of_two().max(MIN_BUCKETS) as u32 - 1;
         let buckets: Vec<u32> =
             given.par_iter().map(|(spot, _)| bucket(cell(spot.p, radius), mask)).collect();
-        // Photons before each bucket; after the next loop but one, those up to its end.
+        // Photons before each bucket; after the loop that fills `order`, photons up to its end.
         let mut starts = vec![0; mask as usize + 2];
         for &bucket in &buckets {
             starts[bucket as usize + 1] += 1;
@@ -197,16 +199,17 @@ impl<const N: usize> Photons<N> {
         Photons { radius, techniques, spots, photons, starts }
     }
 
-    /// All ways of finding a path that there are in this iteration.
+    /// All techniques of this iteration.
     pub(crate) fn techniques(&self) -> &TechniqueCounts<N> {
         &self.techniques
     }
 
-    /// Calls `visit` with every photon that is no further than the radius from a point.
+    /// Calls `visit` with every photon within the radius of a point.
     #[inline]
     pub(crate) fn around(&self, p: Vec3, mut visit: impl FnMut(&Spot, &Photon<N>)) {
         let mask = self.starts.len() as u32 - 2;
-        // Cells are two radii wide: what is near lies in the point's own or in the nearer neighbour on each axis.
+        // Cells are two radii wide: photons in range lie in the point's own cell or in the nearer neighbour on each
+        // axis.
         let scaled = p / (2.0 * self.radius);
         let floor = scaled.floor();
         let (middle, within) = ([floor.x as i64, floor.y as i64, floor.z as i64], scaled - floor);
@@ -214,10 +217,10 @@ impl<const N: usize> Photons<N> {
         let corner = |i: usize| -> [i64; 3] {
             std::array::from_fn(|k| middle[k].saturating_add(if i >> k & 1 == 1 { beside[k] } else { 0 }))
         };
-        // Memory is slow to answer: where photons may lie is asked of all cells at once, before any is looked into.
+        // Memory latency is high: the ranges of all cells are loaded at once, before any photon is read.
         let buckets: [u32; 8] = std::array::from_fn(|i| bucket(corner(i), mask));
         let ranges = buckets.map(|b| self.starts[b as usize] as usize..self.starts[b as usize + 1] as usize);
-        // Of other cells with the same hash some may be near too: each is visited from its own.
+        // Other cells with the same hash may be in range too: each photon is visited from its own cell.
         let is_shared = share_buckets(&buckets, mask);
         let radius2 = self.radius * self.radius;
         for (i, range) in ranges.into_iter().enumerate() {
@@ -232,14 +235,14 @@ impl<const N: usize> Photons<N> {
     }
 }
 
-/// True where two of the eight cells around a point may have one bucket. They come in pairs, neighbours on the x axis.
+/// True where two of the eight cells around a point may share a bucket. They come in pairs, neighbours on the x axis.
 #[inline]
 fn share_buckets(buckets: &[u32; 8], mask: u32) -> bool {
     let share = |a: usize, b: usize| buckets[2 * a].wrapping_sub(buckets[2 * b]).wrapping_add(1) & mask <= 2;
     share(0, 1) | share(0, 2) | share(0, 3) | share(1, 2) | share(1, 3) | share(2, 3)
 }
 
-/// A cell and its neighbours on the x axis have buckets of their own.
+/// Minimum number of buckets: a cell and its neighbours on the x axis have buckets of their own.
 const MIN_BUCKETS: usize = 4;
 
 fn cell(p: Vec3, radius: f32) -> [i64; 3] {
@@ -247,7 +250,7 @@ fn cell(p: Vec3, radius: f32) -> [i64; 3] {
     [floor.x as i64, floor.y as i64, floor.z as i64]
 }
 
-/// A row along x begins anywhere; its cells follow one after the other.
+/// The bucket of a cell: a row along x begins anywhere, and its cells follow one after the other.
 #[inline]
 fn bucket([x, y, z]: [i64; 3], mask: u32) -> u32 {
     let row = mix64((y as u64) << 32 ^ z as u64 & 0xffff_ffff) as u32;
@@ -259,7 +262,7 @@ mod tests {
     use super::*;
     use bilux_math::hash::{hash_words, unit_f32};
 
-    /// Points of a cube, or of a sheet of it.
+    /// Points of a cube, or of a flat sheet in it.
     fn point(i: u64, is_flat: bool) -> Vec3 {
         let [x, y, z] = [0, 1, 2].map(|k| unit_f32(hash_words([i, k]) as u32) * 2.0 - 1.0);
         Vec3::new(x, y, if is_flat { 0.25 } else { z })
@@ -276,7 +279,7 @@ mod tests {
 
     #[test]
     fn each_photon_that_is_near_is_visited_once() {
-        // Few photons have few buckets, which many cells share; a great radius has few cells.
+        // Few photons have few buckets, which many cells share; a large radius has few cells.
         for (count, radius) in
             [(0, 0.1), (1, 0.5), (3, 2.0), (20, 0.3), (500, 0.1), (4000, 0.02), (4000, 0.2)]
         {

@@ -1,89 +1,92 @@
-//! Which ways of finding a path there are, and what one of them has found before it is weighted against the others.
+//! The techniques that find paths, and what one technique contributes before its MIS weight.
 //!
-//! All of it is done for `N` sets of ways at once. The first is the one by which light is weighted. The others are
-//! rivals, whose weights `auto` compares with its own; where there are none, `N` is 1 and they cost nothing.
+//! Everything is computed for `N` sets of techniques at once. The first set weights the light. The others are rivals
+//! whose weights `auto` compares with its own; where there are none, `N` is 1 and they cost nothing.
 
 use bilux_math::{Rgb, Vec2};
 use std::ops::{Add, Mul};
 
-/// A number for each of the sets.
+/// One number per set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
 
-/// How many of each way there are for one camera path. A light that is picked (s = 1) and one that is met by
-/// chance (s = 0) are always one each.
+/// The number of samples of each technique per camera subpath. Light sampling (s = 1) and hitting an emitter by chance
+/// (s = 0) always count one each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TechniqueCounts<const N: usize = 1> {
-    /// Light paths that are seen from the camera (t = 1).
+    /// Light subpaths that are connected with the camera (t = 1).
     pub(crate) splats: Lanes<N>,
-    /// Light paths whose vertices are joined with those of the camera path (s, t > 1).
+    /// Light subpaths whose vertices are connected with those of the camera subpath (s, t > 1).
     pub(crate) joins: Lanes<N>,
-    /// η: light paths that a merged vertex counts, over area.
+    /// η: light subpaths that a merged vertex counts, times the area of merging.
     pub(crate) eta: Lanes<N>,
-    /// Light paths are also seen, and merged with, where they have come straight from a light. Few lights need no such help:
-    /// a point on each is picked, with next to no noise, beside which the balance heuristic gives photons too much weight.
+    /// Light subpaths are connected with the camera, and merged, also where they come straight from a light.
+    ///
+    /// A few lights do not need this: a point on each is sampled with next to no noise, and against that the balance
+    /// heuristic gives photons too much weight.
     pub(crate) direct: bool,
 }
 
-/// What one way has found of one path.
+/// What one technique contributes for one path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contribution<const N: usize = 1> {
-    /// Its light, over the density with which one camera path finds it in this way.
+    /// Its light, over the density with which one camera subpath finds it by this technique.
     pub(crate) light: Rgb,
-    /// How often it is found in this way.
+    /// How often this technique finds it.
     pub(crate) own: Lanes<N>,
-    /// How often in all others.
+    /// How often all other techniques find it.
     pub(crate) others: Lanes<N>,
-    /// What its weight is multiplied by, for the sake of the other way that a camera path has of finding a light: [`favour`].
+    /// A factor on its weight, for the sake of the other technique that a camera subpath has for finding a light:
+    /// [`favour`].
     pub(crate) favour: f32,
-    /// Where the light path began by which it was found: [`crate::emission::Start::cell`]; 0 where there was none.
+    /// The cell in which its light subpath began: [`crate::emission::Start::cell`]; 0 where there was none.
     pub(crate) origin: u16,
 }
 
-/// Which way it was: subpaths of `s` vertices from the light and of `t` from the camera, both ends' own included.
+/// A technique: subpaths of `s` vertices from the light and of `t` from the camera, both end points included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Technique {
-    /// Their last vertices are joined. A light is met by chance with s = 0, a point on a light picked with s = 1, and a
-    /// light path seen from the camera with t = 1.
+    /// Their last vertices are connected. With s = 0 the camera subpath hits an emitter by chance, with s = 1 a point
+    /// on a light is sampled, and with t = 1 a light subpath is connected with the camera.
     Joined { s: u32, t: u32 },
-    /// Their last vertices count as one.
+    /// Their last vertices are merged into one.
     Merged { s: u32, t: u32 },
 }
 
 /// A step that takes time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// A ray of a light path, and what is done where it arrives.
+    /// A ray of a light subpath, and the work where it arrives.
     Light,
-    /// The same of a camera path.
+    /// The same for a camera subpath.
     Camera,
-    /// A light path's vertex is shown to the camera.
+    /// A vertex of a light subpath is connected with the camera.
     Seen,
-    /// A point on a light is picked.
+    /// A point on a light is sampled.
     Picked,
-    /// Two vertices are joined.
+    /// Two vertices are connected.
     Joined,
-    /// Photons are looked for around a vertex.
+    /// Photons around a vertex are looked up.
     Lookup,
 }
 
-/// Takes what is found.
+/// Receives contributions.
 pub(crate) trait Tally<const N: usize> {
-    /// Steps are about to be taken.
+    /// Announces steps that are about to be taken.
     #[inline(always)]
     fn spend(&mut self, _step: Step, _count: usize) {}
 
-    /// In the pixel of the camera path.
+    /// Adds to the pixel of the camera subpath.
     fn here(&mut self, technique: Technique, found: &Contribution<N>);
-    /// At a point of the film (0..=1 on both axes), as an integral over the whole of it.
+    /// Adds at a point of the film (0..=1 on both axes), as an integral over the whole film.
     fn there(&mut self, film: Vec2, technique: Technique, found: &Contribution<N>);
 }
 
 impl TechniqueCounts {
-    /// Paths from the camera alone.
+    /// Camera subpaths alone.
     pub(crate) const CAMERA: TechniqueCounts =
         TechniqueCounts { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]), direct: true };
-    /// With light paths that are seen from the camera or not, and joined or not.
+    /// With or without splats, and with or without connections.
     pub(crate) fn beside_merging(splats: bool, joins: bool) -> TechniqueCounts {
         TechniqueCounts {
             splats: Lanes([f32::from(splats)]),
@@ -92,18 +95,18 @@ impl TechniqueCounts {
         }
     }
 
-    /// True where each camera path has a light path of its own.
+    /// True where each camera subpath has a light subpath of its own.
     pub(crate) fn begins_at_lights(&self) -> bool {
         self.splats != Lanes::ZERO || self.joins != Lanes::ZERO
     }
 
-    /// All that need no merging.
+    /// All techniques except merging.
     pub(crate) const BOTH_ENDS: TechniqueCounts =
         TechniqueCounts { splats: Lanes([1.0]), joins: Lanes([1.0]), ..TechniqueCounts::CAMERA };
 }
 
 impl<const N: usize> TechniqueCounts<N> {
-    /// Single sets as lanes, alike in how they find direct light.
+    /// Packs single sets into lanes; they treat direct light alike.
     pub(crate) fn together(mut sets: impl Iterator<Item = TechniqueCounts>) -> TechniqueCounts<N> {
         let mut all =
             TechniqueCounts { splats: Lanes::ZERO, joins: Lanes::ZERO, eta: Lanes::ZERO, direct: true };
@@ -117,23 +120,25 @@ impl<const N: usize> TechniqueCounts<N> {
 }
 
 impl<const N: usize> Contribution<N> {
-    /// What is found in no other way.
+    /// A contribution that no other technique finds.
     pub(crate) fn only(light: Rgb) -> Contribution<N> {
         Contribution { light, own: Lanes::ONE, others: Lanes::ZERO, favour: 1.0, origin: 0 }
     }
 
-    /// The balance heuristic [Veach 1997, eq. 9.8], but for [`favour`].
+    /// Weighted by the balance heuristic [Veach 1997, eq. 9.8], except for [`favour`].
     pub(crate) fn weighted(&self) -> Rgb {
         self.light * (self.favour / (self.own.0[0] + self.others.0[0]))
     }
 }
 
-/// A camera path finds a light in two ways by itself: it picks a point there, or meets it by chance. Beside all others they
-/// count together as the balance heuristic has it; what falls to both is shared by the power heuristic [Veach 1997, eq. 9.17],
-/// since the one of them is often so good that any part of the other is noise. This is by how much more or less that one
-/// counts of which the other finds `other` times as much.
+/// The factor on the weight of one of the two techniques by which a camera subpath finds a light on its own, where the
+/// other one finds the light `other` times as often.
+///
+/// A camera subpath samples a point on the light, or hits the light by chance. Against all other techniques these two
+/// count together as in the balance heuristic. Their joint share is split by the power heuristic
+/// [Veach 1997, eq. 9.17], since one of the two is often so good that any share of the other is noise.
 pub(crate) fn favour(other: f32) -> f32 {
-    // By the inverse where squares of large numbers would overflow.
+    // The inverse, where squares of large numbers would overflow.
     if other <= 1.0 {
         (1.0 + other) / (1.0 + other * other)
     } else {

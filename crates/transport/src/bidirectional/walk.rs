@@ -1,4 +1,4 @@
-//! A subpath while it grows, from whichever end.
+//! A random walk: a subpath while it grows, from either end.
 
 use super::photons::{Photon, Spot};
 use super::{Lanes, Partial, TechniqueCounts};
@@ -8,85 +8,85 @@ use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{Bsdf, BsdfSample, Ray, Scene, Surface, TransportMode};
 
-/// A surface that a subpath has met.
+/// A surface that a subpath has hit.
 pub(crate) struct Vertex<const N: usize = 1> {
     pub(crate) surface: Surface,
     pub(crate) bsdf: Bsdf,
-    /// Where the subpath came from, a unit vector.
+    /// The direction that the subpath came from, a unit vector.
     pub(crate) wo: Vec3,
-    /// What arrives, over the density of having come here.
+    /// Throughput: what arrives, over the density of having come here.
     pub(crate) beta: Rgb,
     pub(crate) partial: Partial<N>,
     /// Scattering events before this vertex.
     pub(crate) depth: u32,
-    /// Where its light path began: [`crate::emission::Start::cell`].
+    /// The cell in which its light subpath began: [`crate::emission::Start::cell`].
     pub(crate) origin: u16,
-    /// The subpath is of one wavelength, whatever the surface here does.
+    /// The subpath carries a single wavelength, whatever the surface here does.
     pub(super) came_split: bool,
-    /// On the side of `wo`.
+    /// The media on the side of `wo`.
     media: Media,
 }
 
 impl<const N: usize> Vertex<N> {
-    /// Vertices of the subpath up to here, with that on the light or at the camera.
+    /// The number of vertices of the subpath up to here, including the one on the light or at the camera.
     pub(crate) fn count(&self) -> u32 {
         count(self.depth)
     }
 
-    /// True where a path through here is of one wavelength.
+    /// True where a path through here carries a single wavelength.
     pub(super) fn is_split(&self) -> bool {
         self.came_split || self.bsdf.splits()
     }
 
-    /// What is kept of it to merge with.
+    /// The photon that is stored for merging.
     pub(super) fn photon(&self) -> (Spot, Photon<N>) {
         let spot = Spot::new(self.surface.p, self.depth, self.came_split, self.origin);
         let (wo, n_geom, beta) = (self.wo, self.surface.n_geom, self.beta);
         (spot, Photon { wo, n_geom, beta, joined: self.partial.joined, d_vc: self.partial.d_vc })
     }
 
-    /// The media in which light goes on along `direction`.
+    /// The media in which light travels on along `direction`.
     pub(crate) fn media_towards(&self, scene: &Scene, direction: Vec3) -> Media {
         self.media.towards(scene, &self.surface, self.wo, direction)
     }
 }
 
-/// Vertices of a subpath up to the surface that comes after `depth` scattering events: that one, those of the events, and
-/// that on the light or at the camera.
+/// The number of vertices of a subpath up to the surface after `depth` scattering events: this one, one per event, and
+/// the one on the light or at the camera.
 pub(crate) fn count(depth: u32) -> u32 {
     depth + 2
 }
 
 /// A subpath on its way to the next vertex.
 pub(crate) struct Walk<'w, const N: usize = 1> {
-    /// What it carries: radiance from the camera on, importance from a light.
+    /// What it carries: radiance on a camera subpath, importance on a light subpath.
     mode: TransportMode,
     pub(crate) ray: Ray,
     pub(crate) beta: Rgb,
     pub(crate) partial: Partial<N>,
     /// Scattering events so far.
     pub(crate) depth: u32,
-    /// True while all events have been without width: what only the camera sees may still be seen.
+    /// True while all events have been delta events: what only the camera sees may still be visible.
     pub(crate) specular: bool,
-    /// It is of one wavelength.
+    /// It carries a single wavelength.
     pub(crate) is_split: bool,
-    /// The density of arriving is over area as it is: at the first surface that light from infinity meets.
+    /// The density of arriving is over area already: at the first surface that light from infinity hits.
     by_area: bool,
-    /// What refraction has divided radiance by so far (η²), which survival must not depend on.
+    /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
     eta_scale: f32,
-    /// The greatest channel at the beginning, for light paths; survival is measured against it.
+    /// The maximum channel at the start of a light subpath; Russian roulette measures survival against it.
     full: f32,
-    /// The light that it comes from and how it left, until it has met something.
+    /// The light that it comes from and how it left, until it hits a surface.
     start: Option<Start>,
-    /// Where the ray goes; known once it has met something.
+    /// The media that the ray travels in; known once it has hit a surface.
     media: Option<Media>,
     origin: u16,
-    /// How its vertices may be found otherwise.
+    /// The techniques by which its vertices may be found otherwise.
     techniques: &'w TechniqueCounts<N>,
 }
 
 impl<'w, const N: usize> Walk<'w, N> {
-    /// A subpath with nothing but its first ray.
+    /// A subpath with only its first ray.
     pub(crate) fn new(
         mode: TransportMode,
         ray: Ray,
@@ -125,7 +125,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.start.map(|start| start.light)
     }
 
-    /// The next surface; `None` where the ray leaves the scene.
+    /// Traces to the next surface; `None` where the ray leaves the scene.
     pub(crate) fn meet(&mut self, task: &mut Task) -> Option<Vertex<N>> {
         let mut media = self.media.unwrap_or_else(|| Media::at_start(task.tracer, &self.ray));
         let Some((surface, passed)) = media.closest(task.tracer, &self.ray) else {
@@ -140,7 +140,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         let wo = -Vec3::from(self.ray.direction);
         self.beta *= passed;
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };
-        // The first surface of a light path is joined with the light by picking a point there.
+        // Light sampling connects the first surface of a light subpath with the light.
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
         let joins = if is_at_light { Lanes::ONE } else { self.techniques.joins };
         let merged = if is_at_light && !self.techniques.direct { Lanes::ZERO } else { self.techniques.eta };
@@ -152,7 +152,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         Some(Vertex { surface, bsdf, wo, beta, partial, depth, origin, came_split: self.is_split, media })
     }
 
-    /// Goes on from a vertex; false when the subpath ends there.
+    /// Continues from a vertex; false when the subpath ends there.
     pub(crate) fn scatter(&mut self, vertex: &Vertex<N>, roulette_depth: u32, task: &mut Task) -> bool {
         let (u_choice, u) = (task.sampler.next_1d(), task.sampler.next_2d());
         let u_survival = task.sampler.next_1d();
@@ -166,16 +166,16 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.survives(u_survival, roulette_depth)
     }
 
-    /// What the channels see of what it brings, if light is met next.
+    /// Its throughput as the colour channels see it, if it hits an emitter next.
     pub(crate) fn seen(&self, task: &Task) -> Rgb {
         task.seen(self.beta, self.is_split)
     }
 
-    /// How much more often than its start has counted on so far, the first surface of a light path would pick that start.
+    /// The factor by which the first surface of a light subpath would sample its start more often than assumed so far.
     fn picked_more(&mut self, scene: &Scene, from: Vec3) -> f32 {
         self.start.take().map_or(1.0, |Start { light, ray, .. }| {
             let light = &scene.lights()[light].light;
-            // What picking leaves out, no surface would pick.
+            // No surface samples what light sampling leaves out.
             if ray.pdf_direct > 0.0 { light.direct_pdf(&ray, from) / ray.pdf_direct } else { 1.0 }
         })
     }
@@ -194,7 +194,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         self.ray = vertex.surface.spawn(sample.wi);
     }
 
-    /// Russian roulette by what the path could still carry. [Arvo 1990]
+    /// Russian roulette by the subpath's throughput. [Arvo 1990]
     fn survives(&mut self, u: f32, roulette_depth: u32) -> bool {
         if self.beta.is_black() {
             return false;
@@ -208,7 +208,7 @@ impl<'w, const N: usize> Walk<'w, N> {
             self.beta = self.beta / survival;
             return true;
         }
-        // What is not a number must reach the film, which reports it.
+        // NaN must reach the film, which reports it.
         survival.is_nan()
     }
 }

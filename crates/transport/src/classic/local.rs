@@ -6,31 +6,31 @@ use bilux_math::transcendental::powf;
 use bilux_math::{Rgb, Vec2, Vec3, frame::reflect};
 use bilux_scene::{ClassicLight, ClassicMaterial, Surface};
 
-/// How Equation 1 is read.
+/// How Equation 1 is interpreted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalRules {
     pub(crate) specular: Specular,
     pub(crate) shadows: Shadows,
     pub(crate) rule: ShadowRule,
-    /// How much of their size area lights have, 0..=1.
+    /// The fraction of their size that area lights have, 0..=1.
     pub(crate) light_extent: f32,
 }
 
-/// Which direction makes the highlight.
+/// The direction that makes the specular highlight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Specular {
-    /// That halfway between viewer and light, against the normal. [Blinn 1977]
+    /// The halfway vector of viewer and light, against the normal. [Blinn 1977]
     Halfway,
-    /// The mirrored light, against the viewer. [Phong 1975]
+    /// The mirrored light direction, against the viewer. [Phong 1975]
     Reflect,
 }
 
-/// What is off in shadow.
+/// What a shadow removes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ShadowRule {
     /// Each light that is blocked.
     PerLight,
-    /// All of it, ambient light too, where every light is blocked; nothing where one is not.
+    /// Everything, ambient light included, where every light is blocked; nothing where at least one is not.
     Paper,
 }
 
@@ -46,9 +46,10 @@ pub(crate) struct Local {
 }
 
 impl LocalRules {
-    /// What lights do at a point that is seen from `eye` (a unit vector away from the surface). Lights that
-    /// add no more than `least` are left out, and so are their shadow rays: most of those from mirrors and
-    /// glass, where only the highlight counts.
+    /// Local illumination at a point viewed from `eye` (a unit vector away from the surface).
+    ///
+    /// Lights that contribute no more than `least` are skipped with their shadow rays. That saves most of the shadow
+    /// rays from mirrors and glass, where only the highlight counts.
     pub(crate) fn illuminate(
         &self,
         task: &mut Task,
@@ -99,8 +100,8 @@ impl LocalRules {
     }
 }
 
-/// The normal on the side of viewer and light, and its cosine with the light; `None` where these two are on
-/// different sides, and the light does not count.
+/// The normal on the side of viewer and light, and its cosine with the light direction; `None` where the two are on
+/// opposite sides and the light does not contribute.
 fn faced(n: Vec3, wi: Vec3, eye: Vec3) -> Option<(Vec3, f32)> {
     let (n_dot_l, n_dot_e) = (n.dot(wi), n.dot(eye));
     match n_dot_l * n_dot_e > 0.0 {

@@ -52,12 +52,12 @@ pub(crate) const CUTOFF: Parameter = Parameter {
     default: "0.004",
 };
 
-/// The parameter [`SPECULAR`].
+/// Reads the parameter [`SPECULAR`].
 pub(crate) fn specular(reader: &Reader) -> Specular {
     if reader.text("specular") == "reflect" { Specular::Reflect } else { Specular::Halfway }
 }
 
-/// Whitted's tree of rays by the parameters that `whitted` and `cook` share, all extents zero.
+/// Whitted's ray tree with the parameters that `whitted` and `cook` share, all extents zero.
 pub(crate) fn ray_tree(reader: &Reader) -> RayTree {
     let paper = reader.text("shadow_rule") == "paper";
     let tinted = reader.text("shadows") == "tinted";

@@ -1,8 +1,8 @@
-//! Whitted's tree of rays: Equation 2, I = Ia + kd Σ(N·L) + ks S + kt T.
+//! Whitted's ray tree: Equation 2, I = Ia + kd Σ(N·L) + ks S + kt T.
 //!
-//! S is the clamped sum of highlight and reflected light, T the refracted light. In glass, Fresnel's law shares
-//! the light between them. With extents above zero the rays spread, and the tree is that of distributed ray
-//! tracing [Cook 1984]; with all extents zero it draws no random number.
+//! S is the clamped sum of highlight and reflected light, and T is the refracted light. In glass, Fresnel's law splits
+//! the light between them. With extents above zero the rays spread, and the tree is that of distributed ray tracing
+//! [Cook 1984]; with all extents zero it uses no random numbers.
 
 use super::{Local, LocalRules};
 use crate::media::transmittance;
@@ -14,20 +14,20 @@ use bilux_math::{Frame, Rgb, Vec3, frame::reflect};
 use bilux_scene::bsdf::{fresnel_dielectric, refract, schlick};
 use bilux_scene::{ClassicMaterial, Ray, Surface};
 
-/// How Equation 2 is read.
+/// How Equation 2 is interpreted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayTree {
     pub(crate) local: LocalRules,
     pub(crate) fresnel: FresnelLaw,
-    /// Rays of less weight are not followed.
+    /// Rays of less weight are not traced.
     pub(crate) cutoff: f32,
-    /// How much of the material's gloss reflected rays have, 0..=1.
+    /// The fraction of the material's gloss that reflected rays have, 0..=1.
     pub(crate) gloss_extent: f32,
-    /// How much of the material's translucency refracted rays have, 0..=1.
+    /// The fraction of the material's translucency that refracted rays have, 0..=1.
     pub(crate) translucency_extent: f32,
 }
 
-/// Which law shares light between reflection and refraction.
+/// The law that splits light between reflection and refraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum FresnelLaw {
     Schlick,
@@ -37,13 +37,13 @@ pub(crate) enum FresnelLaw {
 /// A ray in the tree.
 #[derive(Clone, Copy)]
 struct RayNode {
-    /// Names its stream of random numbers.
+    /// Selects the ray's stream of random numbers.
     id: u64,
     /// Scattering events before it.
     depth: u32,
-    /// The most that it can count in the picture.
+    /// Upper bound of its contribution to the picture.
     weight: f32,
-    /// Absorption where it goes, as far as is known.
+    /// Absorption of the medium that it travels through, as far as it is known.
     sigma_a: Rgb,
 }
 
@@ -53,21 +53,21 @@ impl RayNode {
     }
 }
 
-/// A point with what both branches need: which side the ray came from.
+/// A shading point with what both branches need: above all the side that the ray came from.
 struct ShadingPoint<'a> {
     surface: &'a Surface,
     material: &'a ClassicMaterial,
-    /// Back along the ray.
+    /// The direction back along the ray.
     eye: Vec3,
-    /// Shading normal on the side of `eye`.
+    /// The shading normal on the side of `eye`.
     n: Vec3,
-    /// Normal of the triangle on the side of `eye`.
+    /// The triangle's normal on the side of `eye`.
     n_flat: Vec3,
     outside: bool,
 }
 
 impl RayTree {
-    /// The intensity that comes along a camera ray.
+    /// The intensity that arrives along a camera ray.
     pub(crate) fn intensity(&self, task: &mut Task, ray: &Ray) -> Rgb {
         self.trace(task, ray, RayNode { id: 1, depth: 0, weight: 1.0, sigma_a: Rgb::BLACK })
     }
@@ -125,7 +125,7 @@ impl RayTree {
         sum
     }
 
-    /// How much of the light is reflected: all of it where Fresnel's law is not asked.
+    /// The fraction of light that is reflected: all of it where the material does not use Fresnel's law.
     fn reflected_share(&self, place: &ShadingPoint) -> f32 {
         let material = place.material;
         if !material.fresnel {
@@ -136,7 +136,7 @@ impl RayTree {
             FresnelLaw::Schlick => schlick(cos, place.eta()),
             FresnelLaw::Exact => fresnel_dielectric(cos, place.eta()),
         };
-        // Light that goes to and fro between the two faces of a pane adds up. [pbrt 2023, eq. 9.12]
+        // Light that bounces between the two faces of a pane adds up. [pbrt 2023, eq. 9.12]
         if material.thin { 2.0 * share / (1.0 + share) } else { share }
     }
 
@@ -154,7 +154,7 @@ impl RayTree {
         self.trace(task, &place.surface.spawn(direction), child) * share
     }
 
-    /// Light from the refracted direction, times `share`; none under total internal reflection.
+    /// Light from the refracted direction, times `share`; black under total internal reflection.
     fn refracted(&self, task: &mut Task, place: &ShadingPoint, share: f32, node: RayNode) -> Rgb {
         let weight = node.weight * share * place.material.kt.max_channel();
         if share <= 0.0 || weight < self.cutoff {
@@ -185,12 +185,12 @@ impl<'a> ShadingPoint<'a> {
         let outside = surface.n_geom.dot(eye) >= 0.0;
         let facing = |n: Vec3| if outside { n } else { -n };
         let (n_flat, n) = (facing(surface.n_geom), facing(surface.n_shade));
-        // Seen edge-on, the interpolated normal may face away; then the triangle's own has to do.
+        // At grazing angles the interpolated normal may face away; the triangle's own normal then replaces it.
         let n = if n.dot(eye) > 0.0 { n } else { n_flat };
         ShadingPoint { surface, material, eye, n, n_flat, outside }
     }
 
-    /// Index of the far side over that of the near side. A pane is met from outside on both sides.
+    /// Index of the far side over that of the near side. A pane is entered from outside on both sides.
     fn eta(&self) -> f32 {
         if self.outside || self.material.thin { self.material.eta } else { 1.0 / self.material.eta }
     }
@@ -210,7 +210,7 @@ impl<'a> ShadingPoint<'a> {
         if below { Some(direction) } else { refract(self.eye, self.n_flat, self.eta()) }
     }
 
-    /// A direction spread evenly over the cone of this half-angle, and kept on its side of the surface.
+    /// A direction sampled uniformly in the cone of this half-angle, and kept on its side of the surface.
     fn spread(&self, axis: Vec3, angle: f32, sampler: &mut PixelSampler) -> Vec3 {
         if angle <= 0.0 {
             return axis;

@@ -1,26 +1,26 @@
-//! Whether light of the classic modes arrives.
+//! Shadows of the classic modes.
 
 use crate::media::transmittance;
 use crate::task::Task;
 use bilux_math::{Rgb, Vec3};
 use bilux_scene::{ClassicLight, Ray, Surface};
 
-/// What is between a light and a surface does this.
+/// What an object between a light and a surface does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shadows {
-    /// Nothing: every light shines on all that faces it.
+    /// Nothing: every light shines on all surfaces that face it.
     Off,
-    /// It blocks the light, glass too, as in Whitted's and the paper's pictures.
+    /// It blocks the light, even if it is glass, as in Whitted's and the paper's pictures.
     Opaque,
-    /// Glass lets the light through, straight on, coloured.
+    /// Glass lets the light straight through, and tints it.
     Tinted,
 }
 
-/// Panes that light goes through at most before it counts as blocked.
+/// Maximum number of panes that light passes through before it counts as blocked.
 const MAX_PANES: usize = 64;
 
 impl Shadows {
-    /// The share of a light that arrives at a point.
+    /// The fraction of a light that arrives at a point.
     pub(crate) fn transmitted(self, task: &mut Task, surface: &Surface, light: &ClassicLight) -> Rgb {
         if self == Shadows::Off {
             return Rgb::WHITE;
@@ -34,7 +34,7 @@ impl Shadows {
     }
 }
 
-/// What is left of light along a ray that glass colours and everything else blocks, lamps apart.
+/// What is left of light along a ray: glass tints it, and everything else blocks it except the surfaces of lights.
 fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
     let scene = task.scene();
     let direction = Vec3::from(ray.direction);
@@ -46,7 +46,7 @@ fn through_glass(task: &mut Task, mut ray: Ray) -> Rgb {
             if surface.n_geom.dot(direction) > 0.0 && !material.thin {
                 left *= transmittance(material.sigma_a, (surface.t - before) * direction.length());
             } else {
-                // Once for each body: where the light comes in.
+                // Each body counts once: where the light enters it.
                 left *= material.kt;
             }
             if material.kt.is_black() || left.is_black() {

@@ -1,6 +1,6 @@
-//! `bdpt`: bidirectional path tracing. Each sample grows a path from the camera and one from a light; every vertex of the
-//! one is joined with every vertex of the other, with the camera and with a light, and each way of finding a path is
-//! weighted against all others. [Veach 1997, 10; Lafortune 1993]
+//! `bdpt`: bidirectional path tracing. Each sample traces a subpath from the camera and one from a light; every vertex
+//! of one is connected with every vertex of the other, with the camera and with a light, and each technique is weighted
+//! against all others. [Veach 1997, 10; Lafortune 1993]
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{
@@ -60,11 +60,11 @@ impl PixelIntegrator for Bdpt {
     }
 }
 
-/// One path from each end, and all that is found with them.
+/// One subpath from each end, and all that they find.
 pub(super) struct BothEnds<'a, const N: usize = 1> {
     techniques: &'a TechniqueCounts<N>,
     photons: Option<&'a Photons<N>>,
-    /// Its own light path is seen from the camera; false where others, those of the photons, are in its place.
+    /// Its own light subpath is connected with the camera; false where those of the photons replace it.
     shows: bool,
     roulette_depth: u32,
 }
@@ -75,12 +75,12 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         BothEnds { techniques, photons: None, shows: techniques.splats != Lanes::ZERO, roulette_depth }
     }
 
-    /// With photons that camera paths are merged with.
+    /// With photons that camera subpaths are merged with.
     pub(super) fn merging(photons: &'a Photons<N>, shows: bool, roulette_depth: u32) -> BothEnds<'a, N> {
         BothEnds { techniques: photons.techniques(), photons: Some(photons), shows, roulette_depth }
     }
 
-    /// Follows both paths; that from the camera where it `is_wanted`.
+    /// Traces both subpaths; the one from the camera only where it `is_wanted`.
     pub(super) fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, tally: &mut impl Tally<N>) {
         let (shows, joins) = (self.shows, self.techniques.joins != Lanes::ZERO);
         let light_path = if !shows && !joins {
@@ -117,7 +117,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
                 z.partial = Partial::of_camera(density * z.surface.n_geom.dot(z.wo).abs(), self.techniques);
                 walk.partial = z.partial;
             }
-            // s = 0: the path has met a light by itself.
+            // s = 0: the subpath has hit a light by itself.
             if let Some(met) = emitted(task, &z.surface, z.wo) {
                 let seen = || Contribution::only(walk.seen(task) * met.radiance);
                 let technique = Technique::Joined { s: 0, t: z.count() };
@@ -160,7 +160,7 @@ impl<'a, const N: usize> BothEnds<'a, N> {
         }
     }
 
-    /// s, t > 1: the path is joined with every vertex of the light path.
+    /// s, t > 1: the vertex is connected with every vertex of the light subpath.
     fn joins(&self, z: &Vertex<N>, light_path: &[Vertex<N>], task: &mut Task, tally: &mut impl Tally<N>) {
         let max_depth = task.max_depth;
         for y in light_path.iter().filter(|y| z.depth + y.depth + 2 <= max_depth) {
@@ -172,14 +172,14 @@ impl<'a, const N: usize> BothEnds<'a, N> {
     }
 }
 
-/// What a camera path finds without a light path, weighted as if there were some.
+/// What a camera subpath finds without a light subpath, weighted as if there were some.
 pub(super) fn of_camera_path(
     ray: &Ray,
     task: &mut Task,
     techniques: &TechniqueCounts,
     roulette_depth: u32,
 ) -> Rgb {
-    /// Adds up what is in the pixel itself.
+    /// Sums the light of the pixel itself.
     struct PixelSum(Rgb);
     impl Tally<1> for PixelSum {
         fn here(&mut self, _way: Technique, found: &Contribution) {
@@ -192,7 +192,7 @@ pub(super) fn of_camera_path(
     sum.0
 }
 
-/// Adds up what is found, by its weight.
+/// Sums weighted contributions.
 pub(super) struct Sum<'a, 's> {
     pub(super) here: Rgb,
     pub(super) splats: &'a mut Splats<'s>,

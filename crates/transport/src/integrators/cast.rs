@@ -1,4 +1,4 @@
-//! `cast`: Equation 1 where a camera ray meets the first surface. No reflection, no refraction.
+//! `cast`: Equation 1 at the first surface that a camera ray hits. No reflection, no refraction.
 
 use super::{CameraSpread, IntegratorEntry, PixelIntegrator};
 use crate::classic::{LocalRules, SPECULAR, ShadowRule, Shadows, specular};

@@ -1,5 +1,5 @@
-//! `cook`: distributed ray tracing. The rays of `whitted`, spread over pixel, gloss, translucency, area lights,
-//! lens and time. With every extent zero it is `whitted`, to the bit.
+//! `cook`: distributed ray tracing. It spreads the rays of `whitted` over pixel, gloss, translucency, area lights, lens
+//! and time. With every extent zero it equals `whitted`, to the bit.
 
 use super::{CameraSpread, IntegratorEntry, PixelIntegrator};
 use crate::classic::{self, CUTOFF, FRESNEL, RayTree, SHADOW_RULE, SHADOWS, SPECULAR};

@@ -1,6 +1,6 @@
-//! `light`: light tracing. Paths begin at the lights, and wherever they meet a surface the camera is asked where it
-//! sees it. [Arvo 1986] What is seen in mirrors or through glass alone is not found, nor is any of that
-//! by other means: it is here to show what light paths are good for, and as one of `bdpt`'s ways.
+//! `light`: light tracing. Paths begin at the lights, and each of their vertices is connected with the camera.
+//! [Arvo 1986] What is visible only in mirrors or through glass is not found, and no other technique adds it: this
+//! integrator exists to show what light subpaths are good for, and as one of `bdpt`'s techniques.
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::bidirectional::{TechniqueCounts, light_vertices, to_camera};
@@ -29,7 +29,7 @@ struct Light {
 }
 
 impl PixelIntegrator for Light {
-    /// Only the lights themselves.
+    /// Only the directly visible lights.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let mut media = Media::at_start(task.tracer, ray);
         match media.closest(task.tracer, ray) {
@@ -47,7 +47,7 @@ impl PixelIntegrator for Light {
         for vertex in light_vertices(task, ray.time, self.roulette_depth, &TechniqueCounts::BOTH_ENDS) {
             task.enter_light_vertex(vertex.depth);
             if let Some((film, found)) = to_camera(task, &vertex, &TechniqueCounts::BOTH_ENDS) {
-                // There is no other way.
+                // There is no other technique.
                 splats.add(film, found.light);
             }
         }

@@ -1,10 +1,10 @@
-//! What those that merge paths can be told.
+//! Parameters of the integrators that merge subpaths.
 
 use crate::bidirectional::{Merging, TechniqueCounts};
 use bilux_math::registry::{Parameter, ParameterKind};
 use bilux_scene::Reader;
 
-/// That of [`radius`] as it comes.
+/// The default of [`radius`].
 pub(super) const RADIUS: f32 = 0.003;
 
 pub(super) const fn radius(min: f64) -> Parameter {
@@ -33,11 +33,11 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
     default: "1048576",
 };
 
-/// Whether subpaths are joined, and whether light paths are seen from the camera.
+/// Whether subpaths are connected with each other, and whether light subpaths are connected with the camera.
 pub(super) const JOINS: Parameter = switch("joins", "join the vertices of both ends");
 pub(super) const SPLATS: Parameter = switch("splats", "show light paths to the camera");
 
-/// Whether light paths look for what has come straight from a light as well.
+/// Whether light subpaths look for direct light as well.
 pub(super) const DIRECT: Parameter =
     switch("direct", "see and merge light paths also where they have come straight from a light");
 

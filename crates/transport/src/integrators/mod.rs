@@ -1,4 +1,4 @@
-//! How the light that comes along a camera ray is found. One integrator a file; the table is [`INTEGRATORS`].
+//! How the light along a camera ray is estimated. One integrator per file; the table is [`INTEGRATORS`].
 
 mod auto;
 mod bdpt;
@@ -24,51 +24,51 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_scene::{Camera, Ray, Reader, Scene, SceneError, Spec};
 use std::sync::Arc;
 
-/// Finds the light along camera rays; pixels, tiles and threads are the business of [`crate::render()`].
+/// Estimates the light along camera rays; [`crate::render()`] handles pixels, tiles and threads.
 pub trait PixelIntegrator: Send + Sync {
-    /// Radiance (in the classic modes: intensity) that comes along a camera ray, as far as the integrator finds it from
-    /// the camera.
+    /// Radiance (in the classic modes: intensity) that arrives along a camera ray, as far as the integrator finds it
+    /// from the camera.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb;
 
-    /// True when it also follows light from its sources, which may land anywhere on the film.
+    /// True when it also traces light subpaths, which may contribute anywhere on the film.
     fn splats(&self) -> bool {
         false
     }
 
-    /// How it merges camera paths with light paths; then each sample of all pixels is an iteration, which begins with the
-    /// light paths of all of them ([`Task::photons`]).
+    /// How it merges camera subpaths with light subpaths. Each sample of all pixels is then an iteration, which begins
+    /// with the light subpaths of all pixels ([`Task::photons`]).
     fn merging(&self) -> Option<&Merging> {
         None
     }
 
-    /// What its light paths are aimed at, where that is known.
+    /// The guide that aims its light subpaths, if there is one.
     fn guide(&self) -> Option<Arc<Guide>> {
         None
     }
 
-    /// When roulette begins on the light paths of an iteration.
+    /// When Russian roulette begins on the light subpaths of an iteration.
     fn roulette_depth(&self) -> u32 {
         0
     }
 
-    /// What renders in its place, if it is one that chooses: by scene, camera and the film's settings, whatever samples
-    /// and pixels of it are wanted.
+    /// The integrator that renders in its place, if this one chooses: by scene, camera and the film's settings,
+    /// whatever samples and pixels are requested.
     fn plan(&self, _scene: &Scene, _camera: &dyn Camera, _film: &RenderSettings) -> Option<Plan> {
         None
     }
 
-    /// A sample of a pixel: [`PixelIntegrator::radiance`], where it `is_wanted` (pixels that were cropped away have only
-    /// their light paths followed), and all that lands elsewhere.
+    /// Takes a sample of a pixel: [`PixelIntegrator::radiance`] where it `is_wanted` (pixels outside the crop trace
+    /// only their light subpaths), and all splats.
     fn sample(&self, ray: &Ray, is_wanted: bool, task: &mut Task, _splats: &mut Splats) -> Rgb {
         if is_wanted { self.radiance(ray, task) } else { Rgb::BLACK }
     }
 
-    /// True when it finds light in ways whose pictures can be told apart ([`crate::strategies()`]).
+    /// True when it has techniques that can be rendered separately ([`crate::strategies()`]).
     fn has_strategies(&self) -> bool {
         false
     }
 
-    /// The same sample as [`PixelIntegrator::sample`], strategy by strategy.
+    /// The same sample as [`PixelIntegrator::sample`], technique by technique.
     fn sample_strategies(&self, _ray: &Ray, _is_wanted: bool, _task: &mut Task, _layers: &mut Layers) {}
 
     /// True when its samples can be taken in independent replicates ([`RenderSettings::interval`]).
@@ -82,8 +82,8 @@ pub trait PixelIntegrator: Send + Sync {
     }
 }
 
-/// How far samples spread, each 0..=1 of what filter, aperture and shutter give. With 0, pixels are sampled
-/// in a regular pattern that begins in the middle, and lens and shutter in their middle.
+/// How far samples spread, each 0..=1 of what filter, aperture and shutter allow. With 0, pixels are sampled in a
+/// regular pattern that begins at the centre, and lens and shutter in their middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSpread {
     /// Over the pixel's filter.
@@ -95,9 +95,9 @@ pub struct CameraSpread {
 }
 
 impl CameraSpread {
-    /// All of it.
+    /// Full spread.
     pub const FULL: CameraSpread = CameraSpread { pixel: 1.0, lens: 1.0, shutter: 1.0 };
-    /// None of it.
+    /// No spread.
     pub const NONE: CameraSpread = CameraSpread { pixel: 0.0, lens: 0.0, shutter: 0.0 };
 }
 
@@ -106,18 +106,18 @@ impl CameraSpread {
 pub struct IntegratorEntry {
     /// Name, summary, source, parameters.
     pub entry: Entry,
-    /// Which paths from light (L) to eye (E) it finds, in the notation of [Heckbert 1990]: D for diffuse, G for
+    /// The paths from light (L) to eye (E) that it finds, in the notation of [Heckbert 1990]: D for diffuse, G for
     /// glossy and S for specular scattering.
     pub covers: &'static str,
     /// True for Equations 1 and 2, whose intensities have no units; false for radiometry.
     pub classic: bool,
-    /// Samples of each pixel where nothing else is said.
+    /// Default number of samples per pixel.
     pub default_spp: u32,
-    /// Makes one from its parameters.
+    /// Builds an integrator from its parameters.
     pub build: fn(&Reader) -> Result<Box<dyn PixelIntegrator>, SceneError>,
 }
 
-/// When roulette begins, for all that play it.
+/// When Russian roulette begins, for all integrators that use it.
 const ROULETTE_DEPTH: Parameter = Parameter {
     name: "roulette_depth",
     summary: "number of scattering events before Russian roulette starts",
@@ -126,7 +126,7 @@ const ROULETTE_DEPTH: Parameter = Parameter {
     default: "4",
 };
 
-/// Every integrator that there is.
+/// All integrators.
 pub const INTEGRATORS: &[IntegratorEntry] = &[
     auto::ENTRY,
     cast::ENTRY,
@@ -140,7 +140,7 @@ pub const INTEGRATORS: &[IntegratorEntry] = &[
     occlusion::ENTRY,
 ];
 
-/// The row of this name.
+/// The row with this name.
 ///
 /// # Errors
 /// When there is none.
@@ -148,7 +148,7 @@ pub fn find(name: &str) -> Result<&'static IntegratorEntry, SceneError> {
     find_at(name, &Default::default())
 }
 
-/// Makes the integrator that a spec describes.
+/// Builds the integrator that a spec describes.
 ///
 /// # Errors
 /// When no row has its kind, or a parameter is wrong.
@@ -157,7 +157,7 @@ pub fn build(spec: &Spec) -> Result<Box<dyn PixelIntegrator>, SceneError> {
     (row.build)(&Reader::new(spec, &row.entry)?)
 }
 
-/// Names of those whose strategies can be told apart.
+/// Names of the integrators whose techniques can be rendered separately.
 pub fn with_strategies() -> impl Iterator<Item = &'static str> {
     let has_them = |name: &&str| build(&Spec::new("", name)).is_ok_and(|one| one.has_strategies());
     INTEGRATORS.iter().map(|row| row.entry.name).filter(has_them)

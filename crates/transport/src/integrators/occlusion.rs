@@ -1,5 +1,5 @@
-//! `occlusion`: how open each point is to the sky, whatever its material and the scene's lights: the quickest way
-//! to see the shape of a bare model. [Zhukov 1998]
+//! `occlusion`: the unoccluded fraction of the hemisphere at each point, whatever its material and the scene's lights:
+//! the quickest way to see the shape of a bare model. [Zhukov 1998]
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::task::Task;
@@ -34,7 +34,7 @@ struct Occlusion {
 }
 
 impl PixelIntegrator for Occlusion {
-    /// 1 where a direction that the cosine law picks is open, 0 where it is closed; 1 beyond the scene.
+    /// 1 where a cosine-distributed direction is unoccluded, 0 where it is occluded; 1 where the ray leaves the scene.
     fn radiance(&self, ray: &Ray, task: &mut Task) -> Rgb {
         let Some(surface) = task.tracer.closest(ray) else {
             task.note(0, || "leaves the scene".to_owned());

@@ -1,5 +1,5 @@
-//! `path`: path tracing from the camera. At each vertex a light is sampled and the surface's scattering is
-//! sampled, and the two are joined by the power heuristic. [Kajiya 1986; Veach 1997, 9.2]
+//! `path`: path tracing from the camera. Each vertex samples a light and samples its BSDF, and the power heuristic
+//! combines the two. [Kajiya 1986; Veach 1997, 9.2]
 
 use super::{IntegratorEntry, PixelIntegrator};
 use crate::media::Media;
@@ -43,17 +43,17 @@ pub(super) struct Path {
     roulette_depth: u32,
 }
 
-/// Where lights are sampled from.
+/// A vertex that samples lights.
 #[derive(Clone, Copy)]
 struct Vertex<'a> {
     surface: &'a Surface,
     bsdf: &'a Bsdf,
     wo: Vec3,
-    /// On the side of `wo`.
+    /// The media on the side of `wo`.
     media: &'a Media,
 }
 
-/// How light is found where both ways could find it.
+/// How light is sampled where both techniques could find it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sampling {
     Mis,
@@ -61,23 +61,23 @@ enum Sampling {
     Scattering,
 }
 
-/// A path while it grows from the camera.
+/// A path as it grows from the camera.
 struct Walk {
     ray: Ray,
     /// Scattering events so far.
     depth: u32,
-    /// Weight of all of them, over their density.
+    /// Throughput: the weight of all events, over their density.
     beta: Rgb,
-    /// What refraction has divided radiance by so far (η²), which survival must not depend on.
+    /// The factor (η²) by which refraction has divided radiance so far; Russian roulette must not depend on it.
     eta_scale: f32,
-    /// Where the last event was, and the density of its direction; `None` after the camera and after events
-    /// without width, where no light can be sampled.
+    /// The position of the last event and the density of its direction; `None` after the camera and after delta events,
+    /// where no light can be sampled.
     last: Option<(Vec3, f32)>,
-    /// True while all events have been without width: what only the camera sees may still be seen.
+    /// True while all events have been delta events: what only the camera sees may still be visible.
     specular: bool,
-    /// It is of one wavelength.
+    /// The path carries a single wavelength.
     is_split: bool,
-    /// Where the ray goes.
+    /// The media that the ray travels in.
     media: Media,
 }
 
@@ -128,12 +128,12 @@ impl PixelIntegrator for Path {
 }
 
 impl Path {
-    /// With both ways of finding lights.
+    /// With multiple importance sampling.
     pub(super) fn new(roulette_depth: u32) -> Path {
         Path { sampling: Sampling::Mis, roulette_depth }
     }
 
-    /// Light from infinity that the ray meets, weighted against having sampled it.
+    /// Light from infinity that the ray reaches, weighted against light sampling.
     fn background(&self, task: &mut Task, walk: &Walk) -> Rgb {
         let direction = Vec3::from(walk.ray.direction);
         task.note(walk.depth, || format!("leaves the scene towards {direction}"));
@@ -155,7 +155,7 @@ impl Path {
         sum
     }
 
-    /// Light that the surface itself gives out, weighted against having sampled it.
+    /// Light that the surface itself emits, weighted against light sampling.
     fn emitted(&self, task: &mut Task, walk: &Walk, surface: &Surface) -> Rgb {
         let radiance = task.scene().emission(surface, -Vec3::from(walk.ray.direction));
         if radiance.is_black() {
@@ -173,7 +173,7 @@ impl Path {
         }
     }
 
-    /// Lights sampled from a surface: what they send along `wo`.
+    /// Next-event estimation: samples lights from a vertex, and returns what they send along `wo`.
     fn direct(&self, task: &mut Task, from: &Vertex) -> Rgb {
         let lights = task.lights;
         let chosen = if lights.takes_all() {
@@ -189,7 +189,7 @@ impl Path {
         chosen.fold(Rgb::BLACK, |sum, light| sum + self.light(task, light, from))
     }
 
-    /// One of them.
+    /// Samples one light.
     fn light(&self, task: &mut Task, index: usize, from: &Vertex) -> Rgb {
         let Vertex { surface, bsdf, wo, media } = *from;
         let probability = task.lights.probability(index);
@@ -220,7 +220,7 @@ impl Path {
         }
     }
 
-    /// Weight of light that scattering has found and light sampling could have found.
+    /// MIS weight of light that BSDF sampling has found and light sampling could have found.
     fn scattering_weight(&self, pdf: f32, light_pdf: f32) -> f32 {
         match self.sampling {
             Sampling::Mis => power_heuristic(pdf, light_pdf),
@@ -229,7 +229,7 @@ impl Path {
         }
     }
 
-    /// Russian roulette by what the path could still carry. [Arvo 1990]
+    /// Russian roulette by the path's throughput. [Arvo 1990]
     fn survives(&self, walk: &mut Walk, task: &mut Task) -> bool {
         if walk.beta.is_black() {
             return false;
@@ -243,13 +243,13 @@ impl Path {
             walk.beta = walk.beta / survival;
             return true;
         }
-        // What is not a number must reach the film, which reports it.
+        // NaN must reach the film, which reports it.
         survival.is_nan()
     }
 }
 
 impl Walk {
-    /// The next ray.
+    /// Sets up the next ray.
     fn scatter(&mut self, scene: &Scene, surface: &Surface, sample: &BsdfSample) {
         let wo = -Vec3::from(self.ray.direction);
         self.beta *= sample.weight;
@@ -262,8 +262,8 @@ impl Walk {
     }
 }
 
-/// Weight of a sample of density `a` against another way of density `b`. [Veach 1997, eq. 9.17]
+/// MIS weight of a sample of density `a` against another technique of density `b`. [Veach 1997, eq. 9.17]
 fn power_heuristic(a: f32, b: f32) -> f32 {
-    // By the ratio, so that squares of large densities do not overflow.
+    // The ratio is used so that squares of large densities do not overflow.
     if a > 0.0 { 1.0 / (1.0 + (b / a) * (b / a)) } else { 0.0 }
 }

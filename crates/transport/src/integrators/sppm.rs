@@ -1,6 +1,6 @@
-//! `sppm`: progressive photon mapping. Light paths leave photons; the camera's paths go on through mirrors and glass to the
-//! first surface with any width, and count the photons around it. From iteration to iteration less is counted as around.
-//! [Hachisuka 2009; Knaus 2011]
+//! `sppm`: stochastic progressive photon mapping. Light subpaths store photons; camera subpaths continue through
+//! mirrors and glass to the first surface that is not specular, and gather the photons around it. The radius shrinks
+//! from iteration to iteration. [Hachisuka 2009; Knaus 2011]
 
 use super::{IntegratorEntry, PixelIntegrator, merging};
 use crate::bidirectional::{
@@ -47,7 +47,7 @@ impl PixelIntegrator for Sppm {
         let mut sum = Rgb::BLACK;
         loop {
             let Some(z) = walk.meet(task) else {
-                // Lights that are seen, in mirrors too; what they give to other surfaces, photons bring.
+                // Lights that are visible, in mirrors too; photons bring the light that they give to other surfaces.
                 from_infinity(task, &walk, |met| sum += walk.seen(task) * met.radiance);
                 return sum;
             };
@@ -60,13 +60,13 @@ impl PixelIntegrator for Sppm {
             if let Some(photons) = task.photons
                 && !z.bsdf.is_delta()
             {
-                // There is no other way.
+                // There is no other technique.
                 merged(task, photons, &z, |_, found| {
                     sum += Contribution { others: Lanes::ZERO, ..*found }.weighted()
                 });
             }
             task.sampler.enter(u64::from(z.depth) + 1);
-            // What goes on into more than single directions has been counted.
+            // Beyond an event that is not a delta event, photons have counted everything.
             if !walk.scatter(&z, self.roulette_depth, task) || !walk.specular {
                 return sum;
             }

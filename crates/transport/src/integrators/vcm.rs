@@ -1,6 +1,6 @@
-//! `vcm`: vertex connection and merging. All ways of `bdpt`, and one more: a vertex of a camera path and one of a light
-//! path that lie next to each other count as one, at the price of a little blur that goes away with the iterations. So
-//! light is found that passes mirrors or glass at both ends. [Georgiev 2012; Hachisuka 2012]
+//! `vcm`: vertex connection and merging. It has all techniques of `bdpt`, and one more: a vertex of a camera subpath
+//! and a nearby vertex of a light subpath are merged into one, at the cost of a little blur that vanishes with the
+//! iterations. This finds light that passes through mirrors or glass at both ends. [Georgiev 2012; Hachisuka 2012]
 
 use super::bdpt::{BothEnds, Sum, of_camera_path};
 use super::{IntegratorEntry, PixelIntegrator};
@@ -45,11 +45,11 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     },
 };
 
-/// Which ways there are, [`Merging::ways`] tells.
+/// Vertex connection and merging, with the techniques of `merging`.
 pub(super) struct Vcm {
     pub(super) roulette_depth: u32,
     pub(super) merging: Merging,
-    /// What light paths are aimed at.
+    /// The guide that aims light subpaths.
     pub(super) guide: Option<Arc<Guide>>,
 }
 
@@ -59,7 +59,7 @@ impl PixelIntegrator for Vcm {
     }
 
     fn splats(&self) -> bool {
-        // Where photons are shown to the camera, that is done before its paths are followed.
+        // Where photons are connected with the camera, that happens before the camera subpaths are traced.
         self.merging.techniques.begins_at_lights() && !self.merging.shows_photons()
     }
 

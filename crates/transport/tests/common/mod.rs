@@ -10,7 +10,7 @@ use bilux_scene::{AccelChoice, Mesh, Object, Scene, SceneBuilder, Spec};
 use bilux_transport::{PixelIntegrator, RenderSettings, Rendered, Silent, integrators, render};
 use std::sync::Arc;
 
-/// A ball of `2 * rings * rings` quads or so; smooth or with its triangles' own normals.
+/// A ball of about `2 * rings * rings` quads, smooth or with its triangles' own normals.
 pub fn ball(centre: Vec3, radius: f32, rings: u32, smooth: bool) -> Arc<Mesh> {
     let (columns, mut mesh) = (2 * rings, Mesh::default());
     for row in 0..=rings {
@@ -55,7 +55,7 @@ pub fn quad(corner: Vec3, u: Vec3, v: Vec3) -> Arc<Mesh> {
     })
 }
 
-/// A floor at this height, seen from above.
+/// A floor at this height that faces up.
 pub fn floor(y: f32, half: f32) -> Arc<Mesh> {
     quad(Vec3::new(-half, y, -half), Vec3::Z * 2.0 * half, Vec3::X * 2.0 * half)
 }
@@ -73,7 +73,7 @@ pub fn assert_same_whatever_finds(builder: &SceneBuilder) {
     }
 }
 
-/// Adds an object of a material of its own.
+/// Adds an object with a material of its own.
 pub fn put(builder: &mut SceneBuilder, name: &str, mesh: Arc<Mesh>, material: Spec) {
     let material = builder.add_material(material);
     builder.objects.push(Object::new(name, mesh, material));
@@ -89,7 +89,7 @@ pub fn diffuse(reflectance: impl Into<bilux_scene::Value>) -> Spec {
     Spec::new("", "diffuse").with("reflectance", reflectance)
 }
 
-/// A scene for a square film, the shutter closed.
+/// A scene for a square film, with a closed shutter.
 pub fn built(builder: &SceneBuilder) -> Scene {
     builder.build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap()
 }
@@ -98,12 +98,12 @@ pub fn integrator(name: &str) -> Box<dyn PixelIntegrator> {
     integrators::build(&Spec::new("", name)).unwrap()
 }
 
-/// Renders through the first camera, with nobody watching.
+/// Renders through the first camera, without progress reports.
 pub fn shoot(scene: &Scene, integrator: &dyn PixelIntegrator, settings: &RenderSettings) -> Rendered {
     render(scene, &*scene.cameras()[0].1, integrator, settings, &Silent).unwrap()
 }
 
-/// A table with a matt, a mirror and a glass ball under a panel and a sky: something of everything.
+/// A table with a plastic, a mirror and a glass ball under a panel, a spot and a sky: something of everything.
 pub fn still_life() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 6.0), diffuse(Rgb::new(0.25, 0.55, 0.25)));
@@ -133,12 +133,12 @@ pub fn still_life() -> SceneBuilder {
     builder
 }
 
-/// An even sky.
+/// A uniform sky.
 pub fn sky(builder: &mut SceneBuilder, radiance: f32) {
     builder.lights.push(Spec::new("", "environment").with("radiance", radiance));
 }
 
-/// Matt, glossy and mirror surfaces under two panels, a lamp and a sky: each way of finding light is best
+/// Diffuse, glossy and mirror surfaces under two panels, a point light and a sky: each sampling technique is best
 /// somewhere.
 pub fn mixed() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
@@ -163,7 +163,7 @@ pub fn mixed() -> SceneBuilder {
     builder
 }
 
-/// Matt and glossy bodies, smooth and not, so that light paths find all that there is.
+/// Diffuse and glossy bodies, smooth and faceted, so that light subpaths find all of the light.
 pub fn without_mirrors(light: Spec) -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(Rgb::new(0.7, 0.5, 0.3)));

@@ -1,4 +1,4 @@
-//! Whether two ways of making a picture have the same mean.
+//! Whether two methods of rendering have the same mean.
 
 use super::{integrator, shoot};
 use bilux_math::Rgb;
@@ -18,7 +18,7 @@ pub fn channel(values: &[Rgb], channel: usize) -> Vec<f64> {
     values.iter().map(|v| f64::from(v[channel])).collect()
 }
 
-/// Probability that two sets of values with one mean differ by as much as these. [Welch 1947]
+/// Probability that two sets of values with the same mean differ by as much as these. [Welch 1947]
 pub fn welch(a: &[f64], b: &[f64]) -> f64 {
     let ((mean_a, error_a), (mean_b, error_b)) = (estimate(a), estimate(b));
     let (va, vb) = (error_a * error_a, error_b * error_b);
@@ -47,16 +47,16 @@ pub fn blocks(scene: &Scene, integrator: &dyn PixelIntegrator, first_seed: u64) 
     blocks
 }
 
-/// The least p-value over all blocks, corrected for their number. [Šidák 1967]
+/// The minimum p-value over all blocks, corrected for their number. [Šidák 1967]
 pub fn agreement(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
     let least = a.iter().zip(b).map(|(a, b)| welch(a, b)).fold(1.0, f64::min);
     1.0 - bilux_math::transcendental::powf_f64(1.0 - least, a.len() as f64)
 }
 
-/// Less likely than this by chance: a bug.
+/// A p-value below this means a bug, not chance.
 pub const UNLIKELY: f64 = 1e-4;
 
-/// How likely it is, by each integrator, that what it finds in a scene has the mean of what `path` finds in another.
+/// For each integrator, the p-value that what it finds in a scene has the mean of what `path` finds in another.
 fn against_path(path: &Scene, scene: &Scene, others: &[&str]) -> Vec<f64> {
     let path = blocks(path, &*integrator("path"), 0);
     let p = |(i, other): (usize, &&str)| {
@@ -65,14 +65,14 @@ fn against_path(path: &Scene, scene: &Scene, others: &[&str]) -> Vec<f64> {
     others.iter().enumerate().map(p).collect()
 }
 
-/// Fails where others find something else in a scene than `path` does.
+/// Fails where other integrators find a different mean in a scene than `path` does.
 pub fn assert_like_path(name: &str, scene: &Scene, others: &[&str]) {
     for (other, p) in others.iter().zip(against_path(scene, scene, others)) {
         assert!(p > UNLIKELY, "{name}: path and {other}: p = {p}");
     }
 }
 
-/// Fails where others find the same in a scene with a bug planted as `path` does in the right one.
+/// Fails where others find the same mean in a scene with a planted bug as `path` finds in the right one.
 pub fn assert_unlike_path(right: &Scene, wrong: &Scene, others: &[&str]) {
     for (other, p) in others.iter().zip(against_path(right, wrong, others)) {
         assert!(p < UNLIKELY, "{other} passes: p = {p}");

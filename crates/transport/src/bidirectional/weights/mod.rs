@@ -1,12 +1,12 @@
-//! The recursive weights against those of the definition: the density of every strategy, multiplied out from the densities
-//! of lights, camera and BSDFs over area, in double precision. [Veach 1997, eq. 10.3 to 10.9]
+//! Tests of the recursive MIS weights against their definition: the density of every technique, multiplied out from the
+//! densities of lights, camera and BSDFs over area, in double precision. [Veach 1997, eq. 10.3 to 10.9]
 //!
-//! An event without width counts 1 over solid angle in both directions. Its true density has the same infinite factor in
-//! all strategies that can find the path, and a ratio of cosines and squared indices where it refracts, which the weights
-//! leave out on both sides alike.
+//! A delta event counts 1 over solid angle in both directions. Its true density has the same infinite factor in all
+//! techniques that can find the path and, where it refracts, a ratio of cosines and squared indices; the weights leave
+//! these factors out on both sides alike.
 //!
-//! If the weight of every strategy is its share of the sum over all strategies, wherever it finds a path, then those of one
-//! path add up to 1.
+//! If the weight of every technique is its share of the sum over all techniques, wherever it finds a path, then the
+//! weights of one path add up to 1.
 
 mod path;
 mod samples;
@@ -23,19 +23,20 @@ use bilux_scene::{Scene, SceneBuilder, Spec, Texture, Tracer, Value};
 use std::f32::consts::FRAC_PI_4;
 use std::sync::Arc;
 
-/// Of the panel of these tests.
+/// The area of the panel light in these tests.
 const PANEL_AREA: f32 = 1.5;
 
 const PANEL_NORMAL: Vec3 = Vec3::Y;
 
-/// Compares, and counts.
+/// Compares weights, and counts the results.
 struct Verdict {
     techniques: TechniqueCounts,
     flaw: Flaw,
     compared: usize,
     wrong: usize,
     worst: f64,
-    /// How many were neither almost certain nor almost impossible, by kind: met, picked, seen, joined, merged.
+    /// How many weights were neither almost 0 nor almost 1, by kind: emitter hit, light sample, splat, connection,
+    /// merge.
     telling: [usize; 5],
 }
 
@@ -48,7 +49,7 @@ impl Verdict {
         let weight = f64::from(found.own.0[0]) / (f64::from(found.own.0[0]) + f64::from(found.others.0[0]));
         let error = (weight - wanted).abs();
         self.compared += 1;
-        // What is not a number is wrong.
+        // NaN counts as wrong.
         self.wrong += usize::from(error.is_nan() || error > path.tolerance());
         self.worst = self.worst.max(error);
         let kind = match key {
@@ -61,10 +62,10 @@ impl Verdict {
     }
 }
 
-/// Of each pixel.
+/// Samples per pixel.
 const SAMPLES: u32 = 16;
 
-/// Every path of some samples, by every strategy.
+/// Checks every path of some samples, by every technique.
 fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw) -> Verdict {
     let integrator = integrators::build(&Spec::new("", "bdpt")).unwrap();
     let settings = RenderSettings::new(24, 24, SAMPLES);
@@ -79,8 +80,8 @@ fn verdict(scene: &Scene, techniques: &TechniqueCounts, flaw: Flaw) -> Verdict {
     verdict
 }
 
-/// Matt, rough, polished and transparent bodies, with normals of a picture or interpolated, under a light of each kind that
-/// `lights` names.
+/// Diffuse, rough, polished and transparent bodies, with normals from a normal map or interpolated, under a light of
+/// each kind that `lights` names.
 fn scene(lights: &[&str], camera: Spec) -> Scene {
     let mut builder = SceneBuilder::default();
     let waves = (0..64).map(|i| {
@@ -131,7 +132,7 @@ fn cameras() -> [Spec; 3] {
     [pinhole, lens, Spec::new("", "orthographic").with("height", 3.0f32)]
 }
 
-/// Without merging, with it, and with it but without joins or without light paths seen from the camera.
+/// Without merging, with it, and with it but without connections or without splats.
 fn sets() -> [TechniqueCounts; 4] {
     let eta = Lanes([300.0]);
     [
@@ -165,7 +166,7 @@ fn every_weight_is_the_share_of_its_strategy() {
     }
 }
 
-/// More than are all sampled, so that each is chosen now and then.
+/// More lights than are all sampled, so that each is chosen now and then.
 const MANY: [&[&str]; 2] = [
     &["rect", "rect", "rect", "rect", "rect"],
     &["point", "rect", "environment", "rect", "directional", "rect"],

@@ -1,42 +1,42 @@
-//! A whole path, and how often each strategy finds it by the definition.
+//! A whole path, and how often each technique finds it by the definition.
 
 use super::PANEL_AREA;
 use crate::bidirectional::{Task, TechniqueCounts, TransportMode};
 use bilux_math::Vec3;
 use bilux_scene::Bsdf;
 
-/// A vertex between the light and the camera, each way as the code has seen it.
+/// A vertex between the light and the camera, in both directions as the code has evaluated it.
 #[derive(Clone)]
 pub(super) struct PathVertex {
-    /// Where it is and its normal, as the path from the light has come there and as that from the camera has: not quite
-    /// the same where they merge.
+    /// Position and normal, as the light subpath reached them and as the camera subpath did: not quite the same where
+    /// the two merge.
     pub(super) from_light: (Vec3, Vec3),
     pub(super) from_camera: (Vec3, Vec3),
     pub(super) bsdf: Bsdf,
     pub(super) to_light: Vec3,
     pub(super) to_camera: Vec3,
-    /// Its event was without width.
+    /// Its event was a delta event.
     pub(super) is_delta: bool,
 }
 
-/// The end at the light.
+/// The path's end at the light.
 #[derive(Clone, Copy)]
 pub(super) struct Start {
     pub(super) index: usize,
-    /// `None` where it is infinitely far.
+    /// `None` where the light is infinitely far away.
     pub(super) p: Option<Vec3>,
     pub(super) cos: f32,
 }
 
-/// From the light to the camera.
+/// A path from the light to the camera.
 pub(super) struct Path {
     pub(super) start: Start,
     pub(super) nodes: Vec<PathVertex>,
-    /// Of camera rays at the last node, across them.
+    /// The density of camera rays at the last vertex, over the area perpendicular to them.
     pub(super) camera_density: f32,
 }
 
-/// What is left out of, or done wrong in, the densities.
+/// A factor that is left out of the densities, or a mistake in them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Flaw {
     None,
@@ -51,7 +51,7 @@ pub(super) enum Flaw {
 }
 
 impl Path {
-    /// How often each strategy finds this path; by (merges, s).
+    /// How often each technique finds this path, by (merges, s).
     pub(super) fn densities(
         &self,
         task: &Task,
@@ -62,15 +62,15 @@ impl Path {
         let (light, camera) = (self.light_subpaths(task, flaw), self.camera_subpaths(task, flaw));
         let [splats, joins, eta] =
             [techniques.splats, techniques.joins, techniques.eta].map(|lanes| f64::from(lanes.0[0]));
-        // What comes straight from a light, light paths may leave to the camera's.
+        // Light subpaths may leave direct light to camera subpaths.
         let leaves_direct = !techniques.direct && flaw != Flaw::Direct;
-        // Nodes have numbers from 1; the light is 0 and the camera count + 1.
+        // Vertices are numbered from 1; the light is 0 and the camera is count + 1.
         let is_open = |i: usize| i == 0 || i > count || !self.nodes[i - 1].is_delta;
         let mut all = Vec::new();
         for (s, t) in (0..=count + 1).map(|s| (s, count + 2 - s)) {
             let copies = match (s, t) {
                 (0, _) => 1.0,
-                // Nothing joins a light with the camera.
+                // No technique connects a light with the camera.
                 (1, 1) | (_, 0) => continue,
                 (1, _) if flaw == Flaw::PickedTwice => 2.0,
                 (1, _) => 1.0,
@@ -93,9 +93,11 @@ impl Path {
         all
     }
 
-    /// What rounding may do to a weight. Each density that goes into it is a product whose factors for a vertex have some
-    /// roundings of 2⁻²⁴ each, and two that are amplified: a cosine has that error whatever its size, and a distance that
-    /// of positions in a scene a few metres wide. A weight is off by no more than the products are. [Higham 2002, 3.1]
+    /// The rounding error that a weight may have.
+    ///
+    /// Each density in a weight is a product whose factors for a vertex have some roundings of 2⁻²⁴ each, and two that
+    /// are amplified: a cosine has that error whatever its size, and a distance has the error of positions in a scene a
+    /// few metres wide. A weight is off by no more than the products are. [Higham 2002, 3.1]
     pub(super) fn tolerance(&self) -> f64 {
         let inverse_cosine = |node: &PathVertex, to: Vec3| 1.0 / cosine(node.from_light.1, to, Flaw::None);
         let cosines = self
@@ -107,7 +109,7 @@ impl Path {
         roundings / f64::from(1 << 24)
     }
 
-    /// Of subpaths of 0, 1, 2 … vertices from the light.
+    /// Densities of light subpaths of 0, 1, 2 … vertices.
     fn light_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
         let (scene, first) = (task.scene(), &self.nodes[0]);
         let light = &scene.lights()[self.start.index].light;
@@ -137,7 +139,7 @@ impl Path {
         all
     }
 
-    /// Of subpaths of 0, 1, 2 … vertices from the camera.
+    /// Densities of camera subpaths of 0, 1, 2 … vertices.
     fn camera_subpaths(&self, task: &Task, flaw: Flaw) -> Vec<f64> {
         let last = self.nodes.last().unwrap();
         let mut product =
@@ -179,7 +181,7 @@ fn cosine(n: Vec3, direction: Vec3, flaw: Flaw) -> f64 {
     if flaw == Flaw::Cosine { 1.0 } else { n.as_dvec3().dot(direction.as_dvec3()).abs() }
 }
 
-/// From a node to the next one towards the camera, squared.
+/// The squared distance from a vertex to the next one towards the camera.
 fn edge(a: &PathVertex, b: &PathVertex, flaw: Flaw) -> f64 {
     distance2(a.from_camera.0, b.from_light.0, flaw)
 }

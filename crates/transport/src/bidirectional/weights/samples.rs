@@ -1,4 +1,4 @@
-//! All that is found with a path from each end, with the whole path by which it was.
+//! Everything that one subpath from each end finds, together with the whole path that found it.
 
 use super::path::{Path, PathVertex, Start};
 use super::{PANEL_NORMAL, Verdict};
@@ -87,7 +87,7 @@ fn picked(task: &mut Task, verdict: &mut Verdict, z: &Subpath) {
     }
 }
 
-/// Ends that are joined; and, as if each light vertex lay where each camera vertex does, ends that are merged.
+/// Connects all ends; and, as if each light vertex lay at each camera vertex, merges them.
 fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpath, &Subpath)) {
     let techniques = &{ verdict.techniques };
     let open = |subpath: &Subpath| {
@@ -114,7 +114,7 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
         let spot = Spot { p: camera_end.surface.p, ..spot };
         let photon = Photon { n_geom: camera_end.surface.n_geom, ..photon };
         let photons = Photons::new(vec![(spot, photon)], 1.0, *techniques);
-        // One vertex in the place of both: it scatters as at the camera's end.
+        // One vertex replaces both: it scatters as it does at the camera's end.
         let mut nodes = y.nodes(b, true, camera_end.wo, false);
         let shared = nodes.pop().unwrap();
         let behind = nodes.len();
@@ -127,18 +127,18 @@ fn joined(task: &mut Task, verdict: &mut Verdict, start: Start, (y, z): (&Subpat
     }
 }
 
-/// A subpath with all that it meets.
+/// A subpath with all surfaces that it hits.
 struct Subpath<'w> {
     vertices: Vec<Vertex>,
-    /// Which events were without width.
+    /// Which events were delta events.
     is_delta: Vec<bool>,
-    /// Where it left the scene.
+    /// The walk with which it left the scene.
     left: Option<Walk<'w>>,
     camera_density: f32,
 }
 
 impl Subpath<'_> {
-    /// The vertices before the last one `upto`, and that one.
+    /// The vertices up to and including index `upto`.
     fn nodes(&self, upto: usize, from_light: bool, onwards: Vec3, is_delta: bool) -> Vec<PathVertex> {
         let node = |i: usize| {
             let vertex = &self.vertices[i];

@@ -1,11 +1,12 @@
-//! What light paths should be aimed at, as a look at the scene tells that is taken before all others.
+//! Learns where to aim light subpaths, from a pilot round before all others.
 //!
-//! What counts is noise: a light path that begins in a cell of the guide is worth the root of the mean square of what it
-//! leaves in the picture, relative to what is there besides. So cells from which the camera sees nothing get few paths, and
-//! so do those whose light other ways find as well. [Pantaleoni 2017]
+//! What counts is noise: a light subpath that begins in a cell of the guide is worth the root mean square of what it
+//! contributes to the picture, relative to the light there. So cells from which the camera sees nothing get few
+//! subpaths, and so do those whose light other techniques find as well. [Pantaleoni 2017]
 //!
-//! Few light paths tell little, and a guide by what only happened to be seen makes noise instead of less of it. So what each
-//! half of them has learned is tried on the other, and where that gains little nothing is aimed.
+//! A few light subpaths teach little, and a guide that follows what was seen by mere chance adds noise instead of
+//! reducing it. So what each half of them teaches is tested on the other half, and where that gains little nothing is
+//! aimed.
 
 use super::pilot::{Grid, PilotRound, SAMPLES, sample_all};
 use crate::bidirectional::{
@@ -17,22 +18,22 @@ use bilux_math::Vec2;
 use bilux_scene::Counters;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Least light paths of an iteration.
+/// Minimum number of light subpaths of an iteration.
 pub(super) const MIN_LIGHT_PATHS: u64 = 2048;
 
-/// So many light paths are begun, and not followed, to see how often each cell is one's.
+/// Number of light subpaths that are started, but not traced, to measure how often each cell is chosen.
 const STARTS: u32 = 1 << 16;
 
-/// A guide has to make the square of what light paths leave so many times smaller: those that are aimed go further, and
-/// what other ways leave stays.
+/// A guide must reduce the squares of light subpaths' contributions by this factor: subpaths that are aimed go further,
+/// and what other techniques contribute stays.
 const WORTH_AIMING: f64 = 2.0;
 
-/// One lane for the ways of the look itself, one for those that light paths are to be aimed for, and one for these without
-/// merging.
+/// One lane for the techniques of the round itself, one for those that light subpaths are aimed for, and one for the
+/// latter without merging.
 const LANES: usize = 3;
 
-/// All lanes, given η of the look's photons and of the film's, and the light paths that the camera is shown for each sample
-/// of the look.
+/// All lanes, given η of the round's photons and of the film's, and the number of light subpaths that are connected
+/// with the camera for each sample of the round.
 fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<LANES> {
     TechniqueCounts {
         splats: Lanes([shown, 1.0, 1.0]),
@@ -42,7 +43,8 @@ fn techniques(own: f32, film: f32, shown: f32, direct: bool) -> TechniqueCounts<
     }
 }
 
-/// Learns from a turn whose light paths are aimed at nothing. `eta` is that of the film's photons, of which `near` are merged with a vertex that the camera sees.
+/// Learns from a round whose light subpaths are not aimed. `eta` is that of the film's photons, of which `near` are
+/// merged with a vertex that the camera sees.
 pub(super) fn learn(
     turn: PilotRound,
     merging: &Merging,
@@ -94,12 +96,12 @@ pub(super) fn learn(
     (untaught.taught(&worth(&starts, &all)), counters)
 }
 
-/// As often as a path begins there, times the root of the mean square of what it leaves.
+/// How often a subpath begins in each cell, times the root mean square of what it contributes.
 fn worth(starts: &[f64], squares: &[f64]) -> Vec<f64> {
     starts.iter().zip(squares).map(|(starts, sum)| (starts * sum).sqrt()).collect()
 }
 
-/// How often each cell is that of a light path that is aimed at nothing.
+/// How often an unaimed light subpath begins in each cell.
 fn starts(turn: &PilotRound, cells: usize) -> Vec<f64> {
     let (scene, seed) = (turn.eye.scene, turn.eye.settings.seed);
     let mut counts = vec![0.0; cells];
@@ -114,7 +116,7 @@ fn starts(turn: &PilotRound, cells: usize) -> Vec<f64> {
 }
 
 impl Guide {
-    /// How many times smaller the squares of what light paths leave would be by what was learned from others.
+    /// The factor by which a guide learned from others would reduce the squares of light subpaths' contributions.
     fn gain(&self, starts: &[f64], learned: &[f64], squares: &[f64]) -> f64 {
         let Some(taught) = self.clone().taught(&worth(starts, learned)) else { return 0.0 };
         let often = |cell: usize| starts[cell].max(1.0 / f64::from(STARTS));
@@ -124,16 +126,16 @@ impl Guide {
     }
 }
 
-/// What the look has seen.
+/// The measurements of the round.
 struct AimStatistics {
-    /// Of each of its tiles.
+    /// The mean of each of its tiles.
     means: Vec<f64>,
-    /// By light paths: tile, cell, and square of the light.
+    /// Contributions of light subpaths: tile, cell, and square of the light.
     finds: Vec<(u32, u16, f64)>,
 }
 
 impl AimStatistics {
-    /// Sums of the squares for each cell, relative to what there is in the tiles.
+    /// Sums of the squares for each cell, relative to the light in the tiles.
     fn squares(&self, part: std::ops::Range<usize>, cells: usize) -> Vec<f64> {
         let dark = super::DARK * self.means.iter().sum::<f64>() / self.means.len() as f64;
         let mut sums = vec![0.0; cells];
@@ -145,17 +147,17 @@ impl AimStatistics {
     }
 }
 
-/// What a sample has found.
+/// Contributions of one sample.
 #[derive(Default)]
 struct Contributions {
-    /// Not counting what the camera is shown of light paths.
+    /// Without splats.
     light: f64,
-    /// By photons: the cell of each, and the square of its light.
+    /// Of photons: the cell of each, and the square of its light.
     here: Vec<(u16, f64)>,
     there: Vec<VisibleContribution>,
 }
 
-/// What the camera sees of a light path.
+/// A splat of a light subpath.
 struct VisibleContribution {
     film: Vec2,
     cell: u16,
@@ -163,8 +165,8 @@ struct VisibleContribution {
     light: f64,
 }
 
-/// Light as weighted by the look's ways, and the square of what the ways of another lane would find, times how often they
-/// would.
+/// The light as weighted by the round's techniques, and the square of what the techniques of another lane would find,
+/// times how often they would.
 fn square(found: &Contribution<LANES>, lane: usize) -> Option<(f64, f64)> {
     let all = found.own + found.others;
     let light = |lane: usize| f64::from(found.light.luminance() * found.favour) / f64::from(all.0[lane]);
@@ -189,7 +191,7 @@ impl Tally<LANES> for Contributions {
     }
 }
 
-/// Keeps what the camera sees of light paths.
+/// Collects the splats of light subpaths.
 #[derive(Default)]
 struct Wall(Mutex<Vec<(usize, Contributions)>>);
 
@@ -206,7 +208,7 @@ impl LightPathVisitor<LANES> for Wall {
 }
 
 impl Wall {
-    /// As it would be on one thread.
+    /// In the order of one thread.
     fn in_order(self) -> Vec<Contributions> {
         let mut all = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
         all.sort_by_key(|(tile, _)| *tile);

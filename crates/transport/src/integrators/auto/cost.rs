@@ -1,10 +1,10 @@
-//! What a sample costs: steps that were counted, times what a step takes. Times are never measured, since pictures must
-//! not depend on the machine.
+//! The cost of a sample: the number of its steps, times the duration of a step. Durations are never measured, since
+//! pictures must not depend on the machine.
 
 use super::Set;
 use crate::bidirectional::Step;
 
-/// Steps of a sample.
+/// Step counts of a sample.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Steps {
     counts: [f64; STEPS],
@@ -14,8 +14,8 @@ pub(super) struct Steps {
 
 const STEPS: usize = 6;
 
-/// Nanoseconds of each step, as they were on one machine in a few scenes of some ten thousand triangles: only what they are
-/// to each other matters.
+/// Nanoseconds of each step, as measured on one machine in a few scenes of some ten thousand triangles: only their
+/// ratios matter.
 const LIGHT: f64 = 500.0;
 const CAMERA: f64 = 330.0;
 const SEEN: f64 = 290.0;
@@ -23,7 +23,8 @@ const PICKED: f64 = 210.0;
 const JOINED: f64 = 140.0;
 const LOOKUP: f64 = 250.0;
 const MERGED: f64 = 80.0;
-/// A step of a photon's path, which is followed among many others, and what it takes to be kept and found a cell.
+/// A step of a photon's subpath, which is traced among many others, with the cost of storing it and sorting it into a
+/// cell.
 const PHOTON: f64 = 450.0;
 
 impl Steps {
@@ -31,7 +32,7 @@ impl Steps {
         self.counts[step as usize] += count as f64;
     }
 
-    /// With others, times `share`.
+    /// Adds other steps, times `share`.
     pub(super) fn plus(mut self, others: &Steps, share: f64) -> Steps {
         for (count, more) in self.counts.iter_mut().zip(others.counts) {
             *count += share * more;
@@ -40,13 +41,14 @@ impl Steps {
         self
     }
 
-    /// Nanoseconds of a sample with the ways of a set, which merges with η.
+    /// Nanoseconds of a sample with the techniques of a set, which merges with η.
     pub(super) fn nanoseconds(&self, set: &Set, eta: f32) -> f64 {
         let of = |step: Step, each: f64| self.counts[step as usize] * each;
         let Set { sees, joins, photons, .. } = *set;
         let (merges, photons) = (set.merges(), f64::from(photons));
         let mut sum = of(Step::Camera, CAMERA) + of(Step::Picked, PICKED);
-        // Photons are seen from the camera as they are; joined they cannot be, and light paths are followed again.
+        // Photons serve as splats without further work; connections cannot use them, so light subpaths are traced
+        // again.
         if joins || (sees && !merges) {
             sum += of(Step::Light, LIGHT);
         }

@@ -1,8 +1,8 @@
-//! `auto`: decides from a first look which ways of finding light are worth their time in this scene, and then uses these.
+//! `auto`: runs a pilot to decide which techniques are worth their time in this scene, and then uses these.
 //! [Grittmann 2022]
 //!
-//! The look depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop, range of samples,
-//! or time. None of its samples is in the picture.
+//! The pilot depends on scene, film, seed and depth alone, and so does the choice: not on threads, crop, range of
+//! samples, or time. None of the pilot's samples is in the picture.
 
 mod aim;
 mod cost;
@@ -87,24 +87,24 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
 struct Auto {
     aims: bool,
     may_merge: bool,
-    /// The set that is to be taken, if that is said.
+    /// The prescribed set, if there is one.
     given: Option<usize>,
     roulette_depth: u32,
     merging: Merging,
 }
 
-/// A set of ways, beside those that a camera path has by itself.
+/// A set of techniques, as well as those that a camera subpath has on its own.
 struct Set {
     name: &'static str,
-    /// What it is called where it is asked for.
+    /// Its name as a parameter value.
     techniques: &'static str,
     sees: bool,
     joins: bool,
-    /// Light paths whose photons are merged with, for each pixel; 0 where nothing is merged.
+    /// Light subpaths per pixel whose photons are merged with; 0 without merging.
     photons: f32,
 }
 
-/// What there is to choose from, the simplest first.
+/// The sets to choose from, the simplest first.
 const SETS: [Set; 8] = [
     Set { name: "path", techniques: "path", sees: false, joins: false, photons: 0.0 },
     Set { name: "path and light", techniques: "path-light", sees: true, joins: false, photons: 0.0 },
@@ -128,7 +128,7 @@ const SETS: [Set; 8] = [
     Set { name: "vcm", techniques: "vcm", sees: true, joins: true, photons: 1.0 },
 ];
 
-/// Enough where they go where they are of use.
+/// Light subpaths per pixel of the sets with few photons: enough where they go where they are useful.
 const FEW: f32 = 0.25;
 
 impl Set {
@@ -136,7 +136,7 @@ impl Set {
         self.photons > 0.0
     }
 
-    /// As one that merges with all light paths, but as this set does.
+    /// Restricts settings that merge with all light subpaths to the techniques of this set.
     fn merging(&self, merging: Merging) -> Merging {
         Merging {
             radius: if self.merges() { merging.radius } else { 0.0 },
@@ -150,7 +150,7 @@ impl Set {
     }
 }
 
-/// What can be asked for.
+/// All values of the parameter `ways`.
 const WAYS: [&str; 1 + SETS.len()] = {
     let mut techniques = ["auto"; 1 + SETS.len()];
     let mut i = 0;
@@ -161,19 +161,19 @@ const WAYS: [&str; 1 + SETS.len()] = {
     techniques
 };
 
-/// A set has to be so much better than one that stands before it, or that does not blur.
+/// A set must be better by this factor than one that comes before it, or that does not blur.
 const WORTH_MORE: f64 = 1.1;
 
-/// Photons are merged over so many pixels to begin with, where nothing else is said.
+/// Default merging radius of the first iteration, in pixels.
 const PIXELS: f32 = 3.0;
 
-/// And at most over such a part of the scene's radius, however near the camera's far pixels come.
+/// Maximum of that radius, as a fraction of the scene's radius, however large the pixels' footprints are.
 const WIDEST: f32 = 0.1;
 
-/// About so many photons of directly lit surfaces are merged then, if each pixel has its light path.
+/// Approximate number of photons on directly lit surfaces that are merged then, if each pixel has its light subpath.
 const NEAR: f64 = std::f64::consts::PI * (PIXELS * PIXELS) as f64;
 
-/// The iteration whose radius stands for all.
+/// The iteration whose radius represents all.
 const TYPICAL_ITERATION: u32 = 16;
 
 impl PixelIntegrator for Auto {
@@ -193,7 +193,7 @@ impl PixelIntegrator for Auto {
         let eye = |settings| CameraRays::new(scene, camera, self, settings).merging();
         let turn = |i: usize| PilotRound { eye: eye(&settings[i]), light: eye(&sources[i]) };
         let mut merging = self.merging;
-        // A point on each of few lights is always picked; of many, photons find the nearest by themselves.
+        // A point on each of few lights is always sampled; of many, photons find the nearest by themselves.
         merging.techniques.direct = !LightChoice::new(scene).takes_all();
         if merging.radius == 0.0 {
             let pixel = pilot::pixel_radius(&turn(0).eye, film) / scene.bounds().radius();
@@ -256,12 +256,12 @@ impl Auto {
     }
 }
 
-/// The part of the light that the ways of a lane cannot find.
+/// The fraction of the light that the techniques of a lane cannot find.
 fn lost(blocks: &[Block], lane: usize) -> f64 {
     let sum = |of: fn(&Block, usize) -> f64| blocks.iter().map(|block| of(block, lane)).sum::<f64>();
     let light = sum(|block, _| block.mean);
     if light > 0.0 { sum(|block, lane| block.lost[lane]) / light } else { 0.0 }
 }
 
-/// So dark, as a part of the mean, that nobody sees the noise of what is darker.
+/// The fraction of the mean below which noise is not visible.
 const DARK: f64 = 0.3;

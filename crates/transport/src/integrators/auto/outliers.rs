@@ -1,35 +1,36 @@
-//! The error that a picture is expected to have without its outliers: a few pixels that one sample in a million makes
-//! thousands of times too bright. The mean square over all pictures is ruled by them, though most pictures show none.
+//! The expected error of a picture without its outliers: a few pixels that one sample in a million makes thousands of
+//! times too bright. They dominate the mean square over all pictures, though most pictures show none.
 //!
-//! What is foreseen is therefore the trimmed error of a typical picture: the brightest dots are left out until they
-//! cover [`TRIMMED`] of the pixels. Their light is then missing from the picture, and its square counts as error.
+//! The estimate is therefore the trimmed error of a typical picture: the brightest fireflies are left out until they
+//! cover
+//! [`TRIMMED`] of the pixels. Their light is then missing from the picture, and its square counts as error.
 
 use super::pilot::Block;
 
-/// The part of a film's pixels that is left out, the worst first. A tenth of what trimmed errors of pictures leave out: the
-/// look sees only some of the dots.
+/// The fraction of a film's pixels that is left out, the worst first. It is a tenth of what trimmed errors of pictures
+/// leave out: the pilot sees only some of the fireflies.
 const TRIMMED: f64 = 1e-4;
 
 /// Samples per pixel of a typical picture.
 const SAMPLES: f64 = 64.0;
 
-/// Two octaves each, around 1.
+/// Number of bins, of two octaves each, around 1.
 const BINS: usize = 32;
 
-/// What a lane would find in a block, sorted by how bright a single find is.
+/// The contributions that a lane would find in a block, binned by the brightness of a single one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contributions([Bin; BINS]);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Bin {
-    /// The sum of what is found on average.
+    /// The sum of the mean contributions.
     light: f64,
-    /// The sum of its products with what a single find brings: their second moment.
+    /// The sum of the mean contributions times what a single one brings: their second moment.
     square: f64,
 }
 
 impl Contributions {
-    /// `light` on average, in finds that bring `found` each.
+    /// Adds `light` on average, in contributions of `found` each.
     pub(super) fn add(&mut self, light: f64, found: f64) {
         let octave = (found.to_bits() >> 52 & 0x7ff) as i32 - 1023;
         let bin = (octave.div_euclid(2) + BINS as i32 / 2).clamp(0, BINS as i32 - 1) as usize;
@@ -37,7 +38,7 @@ impl Contributions {
         self.0[bin].square += light * found;
     }
 
-    /// With others, times `share`.
+    /// Adds other contributions, times `share`.
     pub(super) fn plus(&mut self, others: &Contributions, share: f64) {
         for (bin, other) in self.0.iter_mut().zip(&others.0) {
             bin.light += share * other.light;
@@ -45,23 +46,23 @@ impl Contributions {
         }
     }
 
-    /// The second moment of all.
+    /// The second moment of all contributions.
     pub(super) fn square(&self) -> f64 {
         self.0.iter().map(|bin| bin.square).sum()
     }
 }
 
-/// Dots of about one brightness in one block.
+/// Fireflies of about one brightness in one block.
 struct Dots {
     block: usize,
     bin: Bin,
-    /// The square of one sample relative to what is around it.
+    /// The square of one sample, relative to the light around it.
     error: f64,
-    /// The part of the film's pixels that has one.
+    /// The fraction of the film's pixels that have one.
     pixels: f64,
 }
 
-/// Relative variance of one sample with the ways of a lane, as a mean over blocks, without outliers.
+/// Relative variance of one sample with the techniques of a lane, as a mean over blocks, without outliers.
 pub(super) fn error(blocks: &[Block], lane: usize) -> f64 {
     let count = blocks.len().max(1) as f64;
     let dark = super::DARK * blocks.iter().map(|block| block.mean).sum::<f64>() / count;
@@ -98,7 +99,7 @@ mod tests {
     use super::super::pilot::LANES;
     use super::*;
 
-    /// 100 blocks of light 1 with variance 0.5, of which one has a part of its light in rare finds.
+    /// 100 blocks of light 1 with variance 0.5, one of which has a part of its light in rare contributions.
     fn film(part: f64, found: f64) -> Vec<Block> {
         let mut blocks = vec![Block { mean: 1.0, variance: [0.5; LANES], ..Block::default() }; 100];
         blocks[7].finds[2].add(part, found);
@@ -118,7 +119,7 @@ mod tests {
 
     #[test]
     fn dots_on_many_pixels_count_in_full() {
-        // One sample in a thousand: of 64, a sixteenth of all pixels has one.
+        // One sample in a thousand: with 64 samples, a sixteenth of all pixels has one.
         let block = film(0.1, 100.0).swap_remove(7);
         let found = error(&vec![block; 100], 2);
         let all = (0.5 + 0.1 * 100.0) / 1.09;

@@ -1,9 +1,9 @@
-//! A first look at the scene: few samples, taken in all ways there are. For each set of ways it tells how noisy a picture
-//! would be that was made with no others, and which steps a sample would take.
+//! The pilot: a few samples of the scene with all techniques. For each set of techniques it estimates how noisy a
+//! picture with no others would be, and which steps a sample would take.
 //!
-//! A path is found in many ways, and whichever found it here, all sets know how likely each of theirs was to find it.
-//! What is a rare and bright dot to one set is thus foreseen by means of another that finds it all the time, which no
-//! number of first samples of the one would have told. [Grittmann 2022, eq. 10 to 13]
+//! Many techniques can find a path, and whichever found it here, the pilot knows how likely each set was to find it.
+//! What is a rare firefly to one set is thus predicted by another that finds it all the time, which no number of the
+//! one set's own pilot samples would have shown. [Grittmann 2022, eq. 10 to 13]
 
 use super::cost::Steps;
 use super::outliers::Contributions;
@@ -22,67 +22,67 @@ use bilux_scene::{Counters, Tracer};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// One lane for the ways of the pilot itself, and one for each set that is compared.
+/// One lane for the techniques of the pilot itself, and one for each set that is compared.
 pub(super) const LANES: usize = 1 + super::SETS.len();
 
-/// The pilot is taken twice, so that what changes from one to the other can be told from what does not; and once before, to
-/// learn what light paths should be aimed at.
+/// The pilot takes two rounds, to separate what changes between them from what does not; and one before these, to learn
+/// where light subpaths should be aimed.
 pub(super) const TURNS: u64 = 2;
 
-/// Samples of each pixel in a turn: so many that it shows what is gained by their being spread evenly, which is much for
-/// some ways and little for others.
+/// Samples per pixel in a round: enough to show the gain of their even distribution, which is large for some techniques
+/// and small for others.
 pub(super) const SAMPLES: u32 = 8;
 
-/// Side of a block of pixels that is looked at as a whole.
+/// Side of a block of pixels that is evaluated as a whole.
 const BLOCK: u32 = 4;
 
-/// Most pixels of a pilot; and least, unless the film has fewer.
+/// Maximum number of pixels of a pilot; and minimum, unless the film has fewer.
 const MAX_PIXELS: u64 = 1024;
 const MIN_PIXELS: u64 = 128;
-/// One pixel for so many of the film's, between the two.
+/// Between the two, the pilot has one pixel for this many of the film's.
 const PART: u64 = 48;
 
-/// Most photon paths of one of its iterations, and least.
+/// Maximum number of photon paths in one of its iterations, and minimum.
 const MAX_LIGHT_PATHS: u64 = 8192;
 pub(super) const MIN_LIGHT_PATHS: u64 = 1024;
-/// One for so many of the film's, between the two.
+/// Between the two, one photon path for this many of the film's.
 const LIGHT_PART: u64 = 8;
 
-/// What the pilot has seen of a block of pixels, as means over its pixels. Luminances only.
+/// The pilot's measurements of a block of pixels, as means over its pixels. Luminances only.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
     pub(super) mean: f64,
-    /// Expected variance of a pixel, times its samples, for each lane: but for the second moment of `finds`.
+    /// Expected variance of a pixel, times its samples, for each lane: without the second moment of `finds`.
     pub(super) variance: [f64; LANES],
-    /// What single ways of each lane are expected to find.
+    /// What single techniques of each lane are expected to find.
     pub(super) finds: [Contributions; LANES],
-    /// What the ways of a lane cannot find at all.
+    /// What the techniques of a lane cannot find at all.
     pub(super) lost: [f64; LANES],
 }
 
-/// What a pilot has found out.
+/// The results of a pilot.
 pub(super) struct Pilot {
     pub(super) blocks: Vec<Block>,
-    /// Steps of one sample with all ways.
+    /// Steps of one sample with all techniques.
     pub(super) steps: Steps,
     pub(super) counters: Counters,
 }
 
-/// How the turns of a film's pilot are taken. They depend neither on the number of samples nor on what is cropped, so that
-/// all parts of a picture are made in the same way.
+/// The settings of a film's pilot rounds. They depend neither on the number of samples nor on the crop, so that all
+/// parts of a picture are rendered in the same way.
 pub(super) fn settings(film: &RenderSettings) -> [RenderSettings; 1 + TURNS as usize] {
     [0, 1, 2].map(|turn| RenderSettings {
         spp: SAMPLES,
         samples: 0..SAMPLES,
         crop: None,
-        // No sample of the picture may be one by which it was decided how to make it.
+        // No sample of the picture may be one that decided how to render it.
         seed: hash_words([film.seed, 0x7069_6c6f_7421 + turn]),
         ..film.clone()
     })
 }
 
-/// The pixels of the film that a pilot looks at: a regular grid of them, each as small as it is. What differs from one
-/// to the next is no noise, as it would be within larger ones.
+/// The pixels of the film that a pilot samples: a regular grid of them, each at its true size. Differences between them
+/// are not noise, as they would be within larger pixels.
 pub(super) struct Grid {
     film: [u32; 2],
     /// Columns and rows.
@@ -103,7 +103,7 @@ impl Grid {
         Window::whole(self.size[0], self.size[1]).tiles(BLOCK)
     }
 
-    /// The film's pixel at a place of the grid.
+    /// The film's pixel at a position in the grid.
     fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
         let along = |at: u32, axis: usize| {
             let middle = (2 * u64::from(at) + 1) * u64::from(self.film[axis]);
@@ -121,15 +121,15 @@ impl Grid {
     }
 }
 
-/// Where the pilot's photons come from: the light paths of a film of its own, `least` or more.
+/// The settings of the pilot's photons: the light subpaths of a film of its own, `least` or more.
 pub(super) fn photon_settings(film: &RenderSettings, turn: &RenderSettings, least: u64) -> RenderSettings {
     let pixels = u64::from(film.width) * u64::from(film.height);
     let wanted = (pixels / LIGHT_PART).clamp(least, MAX_LIGHT_PATHS.max(least));
     RenderSettings { width: wanted as u32, height: 1, ..turn.clone() }
 }
 
-/// The radius of a disc as large as what a pixel of the film shows of the first surface there, in metres: the median over
-/// the pilot's pixels.
+/// The radius of a disc as large as a pixel's footprint on the first surface there, in metres: the median over the
+/// pilot's pixels.
 pub(super) fn pixel_radius(eye: &CameraRays, film: &RenderSettings) -> f32 {
     let mut tracer = Tracer::new(eye.scene, false);
     let pixels = film.width as f32 * film.height as f32;
@@ -149,20 +149,20 @@ pub(super) fn pixel_radius(eye: &CameraRays, film: &RenderSettings) -> f32 {
     areas.get(areas.len() / 2).map_or(0.0, |area| (area / std::f32::consts::PI).sqrt())
 }
 
-/// One turn's camera paths, and whose light paths give it photons.
+/// The camera subpaths of one round, and the light subpaths that provide its photons.
 pub(super) struct PilotRound<'a> {
     pub(super) eye: CameraRays<'a>,
     pub(super) light: CameraRays<'a>,
 }
 
 impl PilotRound<'_> {
-    /// With light paths that are aimed as a guide says.
+    /// The same with light subpaths that are aimed by a guide.
     pub(super) fn guided(self, guide: &Option<Arc<Guide>>) -> Self {
         PilotRound { eye: self.eye.guided(guide.clone()), light: self.light.guided(guide.clone()) }
     }
 }
 
-/// Takes the samples. `ways` tells all lanes, given the η of the pilot's own photons.
+/// Runs the pilot. `techniques` gives all lanes, given the η of the pilot's own photons.
 pub(super) fn look(
     turns: &[PilotRound],
     merging: &Merging,
@@ -191,7 +191,7 @@ pub(super) fn look(
     pilot
 }
 
-/// One sample of each pixel.
+/// Takes one sample of each pixel.
 fn one_sample(
     turn: &PilotRound,
     merging: &Merging,
@@ -224,8 +224,10 @@ fn one_sample(
     }
 }
 
-/// What camera paths find, a sample of each of the grid's pixels, tile by tile; each with a light path of its own that is seen
-/// from the camera, or without where an `visitor` sees the photons.
+/// Takes a sample of each of the grid's pixels, tile by tile.
+///
+/// Each has a light subpath of its own that is connected with the camera, or none where a `visitor` receives the
+/// photons' connections instead.
 pub(super) fn sample_all<const N: usize, T, O>(
     PilotRound { eye, light }: &PilotRound,
     merging: &Merging,
@@ -258,10 +260,10 @@ where
     (found, counted)
 }
 
-/// Of a pixel, over both turns.
+/// Samples per pixel in both rounds.
 const SAMPLES_IN_ALL: f64 = (TURNS * SAMPLES as u64) as f64;
 
-/// What one sample counts in the mean of a block.
+/// The weight of one sample in the mean of a block.
 fn share(tile: &Window) -> f64 {
     1.0 / (tile.pixels() as f64 * SAMPLES_IN_ALL)
 }
@@ -270,27 +272,26 @@ fn share(tile: &Window) -> f64 {
 #[derive(Clone, Debug, Default)]
 struct PilotSample {
     sample: Sample,
-    /// What its light path has left on the film.
+    /// The splats of its light subpath.
     seen: Vec<(Vec2, Contribution<LANES>)>,
     steps: Steps,
 }
 
-/// Light that was found.
+/// Light that a sample has found.
 #[derive(Clone, Debug, Default)]
 struct Sample {
-    /// As weighted by the pilot's ways.
+    /// As weighted by the pilot's techniques.
     light: f64,
-    /// Sum of what the single ways of each lane find, and sum of its squares.
+    /// Sum of what the single techniques of each lane find, and sum of its squares.
     sums: [f64; LANES],
     squares: [f64; LANES],
-    /// That sum of squares as foreseen by all ways.
+    /// That sum of squares as predicted by all techniques.
     finds: [Contributions; LANES],
     lost: [f64; LANES],
 }
 
 impl Sample {
-    /// Of a light path that the camera is shown. They come one by one: there is nothing else of the pixel that this one
-    /// would go with.
+    /// The sample of a splat. Splats come one by one: nothing else in the pixel belongs with this one.
     fn seen(found: &Contribution<LANES>) -> Sample {
         let mut sample = Sample::default();
         sample.take(found);
@@ -307,7 +308,7 @@ impl Sample {
         }
         self.light += weighted * favour;
         for k in 0..LANES {
-            // How often this path is found in the lane, for once here.
+            // How often the lane finds this path, for each time that the pilot does.
             let ratio = f64::from(all.0[k]) / f64::from(all.0[0]);
             if ratio <= 0.0 {
                 self.lost[k] += weighted * favour;
@@ -317,7 +318,7 @@ impl Sample {
             self.finds[k].add(weighted, found);
             let found = found * f64::from(own.0[k]) / f64::from(own.0[0]);
             self.sums[k] += found * favour;
-            // What is foreseen takes the place of these; neither knows of favour.
+            // The prediction replaces these; neither includes `favour`.
             self.squares[k] += found * found;
         }
     }
@@ -333,7 +334,7 @@ impl Tally<LANES> for PilotSample {
             self.steps.merged += 1.0 / f64::from(found.own.0[0]);
         }
         match technique {
-            // Lights and sky as the camera sees them: smoothed edges, which all sets have alike, and soon.
+            // Directly visible lights and background: antialiased edges, which all sets resolve alike, and soon.
             Technique::Joined { s: 0, t: 2 } => self.sample.light += f64::from(found.weighted().luminance()),
             _ => self.sample.take(found),
         }
@@ -345,7 +346,7 @@ impl Tally<LANES> for PilotSample {
 }
 
 impl Block {
-    /// What is told by a sample alone. The squares of what was found here make place for those that were foreseen.
+    /// Adds what a sample shows by itself. The squares of what was found here make room for the predicted ones.
     fn add(&mut self, sample: &Sample, share: f64) {
         self.mean += share * sample.light;
         for k in 0..LANES {
@@ -355,7 +356,7 @@ impl Block {
         }
     }
 
-    /// What is told by the means of each pixel in both turns: half the square of their difference is, on average, the
+    /// Adds what the means of each pixel in both rounds show: half the square of their difference is, on average, the
     /// variance of one.
     fn compare(&mut self, a: &[[f64; LANES]], b: &[[f64; LANES]]) {
         for (one, other) in a.iter().zip(b) {
