@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn development_and_build_dependencies_are_no_parts() {
+    fn development_and_build_dependencies_are_not_parts() {
         let dependency = |name: &str, kind: Value| json!({ "pkg": name, "dep_kinds": [{ "kind": kind }] });
         let list = ["tool", "part", "part-of-part", "tester", "builder"].map(package);
         let metadata = json!({

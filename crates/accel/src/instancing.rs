@@ -167,7 +167,7 @@ impl TwoLevel {
 }
 
 /// True for rays that can hit nothing, see [`Ray`].
-fn is_senseless(ray: &Ray) -> bool {
+fn is_invalid_ray(ray: &Ray) -> bool {
     let finite = ray.origin.iter().chain(&ray.direction).all(|c| c.is_finite());
     !finite || ray.direction == [0.0; 3] || ray.t_min.is_nan() || ray.t_max.is_nan()
 }
@@ -175,7 +175,7 @@ fn is_senseless(ray: &Ray) -> bool {
 impl Traverse for TwoLevel {
     fn closest<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> Option<Hit> {
         count.ray();
-        if is_senseless(ray) {
+        if is_invalid_ray(ray) {
             return None;
         }
         let mut nearest: Option<Hit> = None;
@@ -209,7 +209,7 @@ impl Traverse for TwoLevel {
 
     fn any<C: Count>(&self, ray: &Ray, query: &Query, count: &mut C) -> bool {
         count.ray();
-        if is_senseless(ray) {
+        if is_invalid_ray(ray) {
             return false;
         }
         let mut found = false;

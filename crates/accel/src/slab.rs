@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn rays_along_a_face_meet_the_box() {
+    fn rays_along_a_face_hit_the_box() {
         for (direction, zero) in
             [([1.0, 0.0, 0.0], 0.0f32), ([1.0, -0.0, 0.0], -0.0), ([1e-42, 0.0, -0.0], 0.0)]
         {
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pad_beyond_all_numbers_meets_everything() {
+    fn an_overflowing_pad_hits_every_box() {
         for pad in [f32::INFINITY, f32::NAN, f32::MAX] {
             assert!(meets(&SlabRay::new([3e38, -3e38, 5.0], [1.0, 1.0, 0.0], -f32::INFINITY, pad)));
         }

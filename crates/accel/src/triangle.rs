@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn senseless_rays_hit_nothing() {
+    fn invalid_rays_hit_nothing() {
         assert!(cross([f32::NAN, 0.0, 1.0], [0.0, 0.0, -1.0]).is_none());
         assert!(cross([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]).is_none());
         assert!(cross([0.0, 0.0, 1.0], [0.0, f32::INFINITY, -1.0]).is_none());

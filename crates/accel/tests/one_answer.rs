@@ -26,7 +26,7 @@ fn every_structure_gives_the_hits_of_brute() {
 }
 
 #[test]
-fn senseless_rays_hit_nothing_anywhere() {
+fn invalid_rays_hit_nothing_in_any_structure() {
     for (_, mesh) in meshes::all() {
         let mesh = Arc::new(mesh);
         for row in ACCELERATORS {
@@ -82,7 +82,7 @@ fn a_refitted_wide_tree_gives_the_hits_of_the_moved_mesh() {
 }
 
 #[test]
-fn a_wide_tree_is_fitted_to_no_other_mesh() {
+fn a_wide_tree_is_not_refitted_to_another_mesh() {
     let one = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let mesh = |triangles: Vec<[[f32; 3]; 3]>| TriangleMesh::from_corners(triangles).expect("few triangles");
     let mut tree = Bvh8::new(&mesh(vec![one; 9]), &BuildOptions::default()).expect("few");

@@ -82,7 +82,7 @@ fn a_point_of_a_triangle_is_its_own_nearest_point_on_every_nasty_mesh() {
 }
 
 #[test]
-fn boxes_are_touched_by_the_triangles_that_they_hold_and_cut() {
+fn overlapping_finds_the_triangles_inside_and_across_a_box() {
     for (name, mesh) in meshes::all() {
         let tree = tree(&mesh);
         let mut numbers = Numbers::new(3);

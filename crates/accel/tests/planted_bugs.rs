@@ -73,19 +73,19 @@ fn differences(make: impl Fn(Arc<TriangleMesh>) -> Boxes) -> usize {
 }
 
 #[test]
-fn boxes_without_a_pad_are_found() {
+fn boxes_without_a_pad_are_detected() {
     let with = |pad| differences(|mesh| Boxes { mesh, pad, shrink: 0.0, prunes_ties: false });
     assert_eq!(with(1.0), 0);
     assert!(with(0.0) > 0, "boxes without a pad went unnoticed");
 }
 
 #[test]
-fn boxes_that_are_a_little_too_small_are_found() {
+fn slightly_too_small_boxes_are_detected() {
     assert!(differences(|mesh| Boxes { mesh, pad: 1.0, shrink: 1e-3, prunes_ties: false }) > 0);
 }
 
 #[test]
-fn pruning_what_is_as_near_is_found() {
+fn pruning_ties_is_detected() {
     assert!(differences(|mesh| Boxes { mesh, pad: 1.0, shrink: 0.0, prunes_ties: true }) > 0);
 }
 
@@ -117,7 +117,7 @@ impl<F: Fn(&mut Nearest, &PreparedRay, &Query, &[[f32; 3]; 3], u32) + Send + Syn
 }
 
 #[test]
-fn ties_to_the_highest_index_are_found() {
+fn ties_to_the_highest_index_are_detected() {
     let highest = |nearest: &mut Nearest, ray: &PreparedRay, query: &Query, triangle: &_, index: u32| {
         let mut alone = *nearest;
         if let Some(hit) = alone.hit() {

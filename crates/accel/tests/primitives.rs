@@ -105,7 +105,7 @@ fn a_tree_finds_what_a_loop_finds() {
 }
 
 #[test]
-fn no_ray_leaves_a_sphere_unseen_and_none_meets_it_twice_at_its_start() {
+fn no_ray_escapes_a_sphere_and_none_hits_it_again_at_its_origin() {
     for (seed, scale) in [1e-6f32, 1e-3, 1.0, 1e3, 1e6].into_iter().enumerate() {
         for shift in [0.0, 1.0, 1000.0] {
             let mut numbers = Numbers::new(seed as u64);
@@ -185,7 +185,7 @@ fn coverage(shapes: Vec<Shape>) -> f64 {
 }
 
 #[test]
-fn areas_are_those_of_the_shadows() {
+fn coverage_matches_projected_areas() {
     let close = |measured: f64, expected: f64| {
         assert!((measured / expected - 1.0).abs() < 0.01, "{measured} {expected}")
     };
@@ -231,7 +231,7 @@ fn a_quadric_can_be_a_sphere() {
 }
 
 #[test]
-fn what_is_no_shape_is_never_met() {
+fn invalid_shapes_are_never_hit() {
     let odd = [f32::NAN, f32::INFINITY, 0.0, -1.0, f32::MAX, f32::MIN_POSITIVE];
     for x in odd {
         let points = [[x, 0.0, 0.0], [0.0, x, 0.0], [1.0, 1.0, x], [x; 3]];
@@ -263,7 +263,7 @@ fn what_is_no_shape_is_never_met() {
 }
 
 #[test]
-fn a_capsule_is_met_where_its_surface_is_and_not_again_at_the_start() {
+fn a_capsule_is_hit_on_its_surface_and_not_again_at_the_origin() {
     let mut numbers = Numbers::new(7);
     let (mut hits, mut across) = (0, 0);
     for _ in 0..20_000 {

@@ -71,7 +71,7 @@ fn stack(top: TopLevel) -> TwoLevel {
 }
 
 #[test]
-fn a_ray_meets_the_instances_that_share_a_bit_with_it() {
+fn a_ray_hits_the_instances_that_share_a_mask_bit() {
     for top in [TopLevel::List, TopLevel::Bvh] {
         let stack = stack(top);
         for mask in 0..8u32 {

@@ -275,13 +275,13 @@ fn the_camera_plane_and_the_eye_inside() {
 }
 
 #[test]
-fn what_is_nearer_than_the_least_distance_is_not_seen() {
+fn triangles_nearer_than_the_minimum_distance_are_invisible() {
     let view = view_from([0.0, 0.5, 3.0], 64).with_t_min(2.9).unwrap();
     assert!(check("near", &view, soup(100, 0.6, 9)) > 100);
 }
 
 #[test]
-fn senseless_triangles() {
+fn degenerate_and_non_finite_triangles() {
     let mut triangles = soup(30, 0.5, 3);
     for k in 0..10 {
         let t = triangles[k];
@@ -323,7 +323,7 @@ fn directions_of_any_kind() {
 }
 
 #[test]
-fn order_spares_depth_comparisons() {
+fn ordering_saves_depth_comparisons() {
     let mut triangles = torus(0.8, 48, 24, [0.0; 3]);
     triangles.extend(torus(0.8, 48, 24, [0.9, 0.2, 0.3]));
     let (mesh, view) = (mesh(triangles), view_from([0.5, 1.5, 2.5], 128));

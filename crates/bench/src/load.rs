@@ -84,7 +84,7 @@ pub fn report(rows: Vec<Value>) -> Report {
 
 fn one(file: &Path, options: &Options) -> Result<Value, Error> {
     let size = fs::metadata(file).map_or(0, |metadata| metadata.len()) as f64 / 1e6;
-    forget_peak();
+    reset_peak();
     let before = memory("VmRSS:");
     let (mut seconds, mut processor) = (Vec::new(), Vec::new());
     let mut peak = None;
@@ -157,7 +157,7 @@ fn memory(key: &str) -> Option<u64> {
 }
 
 /// Resets the system's record of the peak memory.
-fn forget_peak() {
+fn reset_peak() {
     // If the system cannot reset it, the peak is that of the whole process.
     let _ = fs::write("/proc/self/clear_refs", "5");
 }
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_column_of_a_file_is_told() {
+    fn every_column_of_a_file_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let files = make(folder.path(), 100_000, 1000).unwrap();
         let options = Options { files: files.clone(), repeats: 1, read: ReadOptions::default() };

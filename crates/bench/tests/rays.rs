@@ -10,7 +10,7 @@ fn quick() -> Options {
 }
 
 #[test]
-fn every_structure_of_ours_answers_every_class_alike() {
+fn our_structures_agree_on_every_class() {
     let accels: Vec<String> = ACCELERATORS.iter().map(|row| row.entry.name.to_owned()).collect();
     let report = run(&Options { accels: accels.clone(), ..quick() }, &|_| {}).unwrap();
     for accel in &accels {
@@ -79,7 +79,7 @@ fn dumped_scenes_are_traced_again_and_their_hits_written() {
 }
 
 #[test]
-fn files_that_lie_are_refused_before_memory_is_taken() {
+fn files_with_false_counts_are_refused_before_allocation() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("bad");
     let refused = |bytes: &[u8], read: fn(&Path) -> String| {
@@ -99,7 +99,7 @@ fn files_that_lie_are_refused_before_memory_is_taken() {
 }
 
 #[test]
-fn what_is_not_there_is_told() {
+fn unknown_names_are_reported() {
     let error = |options: Options| run(&options, &|_| {}).err().unwrap().to_string();
     let accels = vec!["bhv".to_owned()];
     assert!(error(Options { accels, ..quick() }).contains("bvh"));

@@ -39,7 +39,7 @@ fn rows_have_what_programs_ask_for_and_the_page_shows_it() {
 }
 
 #[test]
-fn a_file_is_measured_too_and_what_auto_foresaw_stands_beside_it() {
+fn files_are_measured_with_the_predictions_of_auto() {
     let folder = TempDir::new().unwrap();
     let file = folder.path().join("own.toml");
     let scene = "[[model]]\ngenerate = \"cornell\"\nwith = [\"lights\", \"cameras\"]\n";
@@ -64,7 +64,7 @@ fn a_file_is_measured_too_and_what_auto_foresaw_stands_beside_it() {
 }
 
 #[test]
-fn what_is_not_there_is_told() {
+fn unknown_names_are_reported() {
     let error = |options: Options| run(&options, &|_| {}).err().unwrap().to_string();
     let named = |name: &str| vec![name.to_owned()];
     assert!(error(Options { scenes: named("poll"), ..quick() }).contains("did you mean 'pool'?"));
@@ -103,7 +103,7 @@ fn seen(pixels: &[Rgb]) -> f64 {
 }
 
 #[test]
-fn every_scene_looks_alike_from_both_ends_and_like_its_reference() {
+fn path_and_bdpt_match_the_reference_of_every_scene() {
     for (name, bytes) in SCENES {
         let reference = Reference::read(bytes).unwrap();
         assert_eq!(reference.pixels.len(), (SIZE.0 * SIZE.1) as usize);

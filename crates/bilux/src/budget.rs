@@ -57,7 +57,7 @@ pub fn with_fast_budget(scene: &Parameters, user: &mut Parameters) {
 
 /// Returns the part of a time limit that is left for rendering when other work takes `others`. Rendering always takes
 /// at least one sample of each pixel.
-pub(crate) fn left_for_light(limit: Duration, others: Duration) -> Duration {
+pub(crate) fn time_for_rendering(limit: Duration, others: Duration) -> Duration {
     limit.saturating_sub(others)
 }
 
@@ -66,14 +66,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_else_takes_time_is_not_left_for_light() {
+    fn other_work_reduces_the_time_for_rendering() {
         let [limit, short, long] = [5.0, 0.5, 9.0].map(Duration::from_secs_f32);
-        assert_eq!(left_for_light(limit, short), Duration::from_secs_f32(4.5));
-        assert_eq!(left_for_light(limit, long), Duration::ZERO);
+        assert_eq!(time_for_rendering(limit, short), Duration::from_secs_f32(4.5));
+        assert_eq!(time_for_rendering(limit, long), Duration::ZERO);
     }
 
     #[test]
-    fn a_fast_picture_keeps_what_the_user_says_and_integrators_without_chance() {
+    fn a_fast_picture_keeps_user_settings_and_classic_integrators() {
         let mut user = Parameters::default();
         user.set("max_depth", Value::Integer(3));
         with_fast_budget(&Parameters::default(), &mut user);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn who_says_nothing_gets_a_budget_and_who_says_anything_does_not() {
+    fn a_budget_is_added_only_when_no_limit_is_set() {
         let budget = |scene: &[(&str, Value)], user: &[(&str, Value)]| {
             let of = |pairs: &[(&str, Value)]| {
                 let mut parameters = Parameters::default();

@@ -1,7 +1,7 @@
 //! One render: a scene, a camera, an integrator and settings, combined and checked.
 
 use crate::Error;
-use crate::budget::left_for_light;
+use crate::budget::time_for_rendering;
 use crate::camera_choice::choose_camera;
 use crate::fingerprint::fingerprint;
 use crate::memory::Memory;
@@ -99,7 +99,7 @@ impl Job {
             return Err(Error::TooLarge { needed, most });
         }
         let mut job = Job::with_settings(scene, settings)?;
-        job.warnings.extend(job.settings.without_use(user));
+        job.warnings.extend(job.settings.unused_settings(user));
         Ok(job)
     }
 
@@ -240,7 +240,7 @@ impl Job {
         let mut render = self.render.clone();
         let end = render.stop.time_limit.map(|limit| {
             let aside = now.duration_since(self.begun.unwrap_or(now)) + self.denoising;
-            now + left_for_light(limit, aside)
+            now + time_for_rendering(limit, aside)
         });
         let mut features = None;
         if self.features {
@@ -343,7 +343,7 @@ impl Outcome {
         if let Some(coverage) = &self.coverage {
             picture.push_channel("A", coverage.clone())?;
         }
-        self.note_how_far(&mut picture);
+        self.record_stop(&mut picture);
         Ok(picture)
     }
 
@@ -357,7 +357,7 @@ impl Outcome {
     }
 
     /// Records in the picture's metadata how the stopping rule affected it.
-    fn note_how_far(&self, picture: &mut Picture) {
+    fn record_stop(&self, picture: &mut Picture) {
         let Some(Reached { spp, noise: Some(noise), bias: Some(bias) }) = self.reached else { return };
         let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
         note("", noise.to_string());

@@ -11,20 +11,20 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
     let mut warnings = Vec::new();
     let mut warn =
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
-    if is_in_glass(scene, camera) {
+    if camera_is_inside_solid(scene, camera) {
         warn(
             "the camera is inside of something transparent, and sees all through it: move the camera out, \
              unless this is meant",
         );
-    } else if sees_backs_alone(given.objects.len() as u32, scene, camera) {
+    } else if sees_only_back_faces(given.objects.len() as u32, scene, camera) {
         warn(
             "the camera sees nothing but backs of surfaces that show their front alone (doubleSided is false, in glTF), \
              and so nothing: look from the other side, as by --orbit 180",
         );
-    } else if given.surroundings_unsaid && !given.cameras.is_empty() {
+    } else if given.environment_unspecified && !given.cameras.is_empty() {
         // Authors of such files have rarely looked through the file's camera; scenes in other formats are made for
         // theirs.
-        let share = share_seen(given.objects.len() as u32, scene, camera);
+        let share = visible_fraction(given.objects.len() as u32, scene, camera);
         if share < SPECK {
             warn(&format!(
                 "the model fills {:.2}% of what the file's own camera sees: --orbit 26.5,17.8 takes the studio's camera, \
@@ -66,7 +66,7 @@ pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
             "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers"
         }
         // An environment alone makes a picture, if the format has a way to say so.
-        (false, true) if !scene.surroundings_unsaid => return Ok(()),
+        (false, true) if !scene.environment_unspecified => return Ok(()),
         (false, _) => {
             "the scene is empty: it has no triangles, points or lines to render; `bilux info` shows what the file holds"
         }
@@ -78,7 +78,7 @@ pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
 const SPECK: f32 = 0.003;
 
 /// The fraction of a camera's picture that a scene's first objects fill.
-fn share_seen(objects: u32, scene: &Scene, camera: &dyn Camera) -> f32 {
+fn visible_fraction(objects: u32, scene: &Scene, camera: &dyn Camera) -> f32 {
     const GRID: usize = 96;
     let mut tracer = Tracer::new(scene, false);
     let mut is_met = |i: &usize| {
@@ -97,7 +97,7 @@ fn shows_something(mesh: &Mesh) -> bool {
 }
 
 /// True if the camera would see some of a scene's first objects if it did not see through their backs.
-fn sees_backs_alone(objects: u32, scene: &Scene, camera: &dyn Camera) -> bool {
+fn sees_only_back_faces(objects: u32, scene: &Scene, camera: &dyn Camera) -> bool {
     const GRID: usize = 32;
     let mut tracer = Tracer::new(scene, false);
     let mut hides = false;
@@ -125,7 +125,7 @@ const AROUND: [Vec3; 6] = [
 ];
 
 /// True if the rays in all these directions leave some transparent solid once more than they enter it.
-fn is_in_glass(scene: &Scene, camera: &dyn Camera) -> bool {
+fn camera_is_inside_solid(scene: &Scene, camera: &dyn Camera) -> bool {
     let sample = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: scene.shutter()[0] };
     let eye = camera.ray(&sample);
     let inside_of = |direction: &Vec3| solids_around(scene, Ray { direction: direction.to_array(), ..eye });
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn who_sees_nothing_but_backs_is_told() {
+    fn a_camera_that_sees_only_back_faces_gets_a_warning() {
         let shell = || Spec::new("shell", "diffuse").with("visible_sides", "front");
         assert!(told(shell(), [0.1, 0.2, 0.0])[0].contains("--orbit 180"));
         assert!(told(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn a_speck_in_the_camera_of_a_gltf_is_reported_with_the_way_to_the_studio() {
         let warnings = |distance: f32, unsaid: bool| {
-            let mut scene = SceneBuilder { surroundings_unsaid: unsaid, ..SceneBuilder::default() };
+            let mut scene = SceneBuilder { environment_unspecified: unsaid, ..SceneBuilder::default() };
             let clay = scene.add_material(Spec::new("", "diffuse"));
             scene.objects.push(Object::new("ball", Arc::new(shapes::icosphere(Vec3::ZERO, 1.0, 3)), clay));
             let camera = Spec::new("", "perspective").with("position", Value::triple([0.0, 0.0, distance]));
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_inside_glass_is_told_and_no_other() {
+    fn only_a_camera_inside_glass_gets_the_warning() {
         let glass = || Spec::new("glass", "dielectric");
         assert!(told(glass(), [0.1, 0.2, 0.0])[0].contains("inside of something transparent"));
         assert!(told(glass(), [0.0, 0.0, -3.0]).is_empty(), "outside");

@@ -111,7 +111,7 @@ const CHANGES: &[Change] = &[
 ];
 
 #[test]
-fn whatever_of_a_scene_changes_another_picture_it_is() {
+fn every_change_of_a_scene_changes_the_fingerprint() {
     let settings = Settings::resolve(&Parameters::default()).unwrap();
     let mut seen = HashMap::from([(fingerprint(&scene(), &settings), "nothing")]);
     for (what, change) in CHANGES {
@@ -230,7 +230,7 @@ fn other(parameter: &Parameter) -> Value {
 }
 
 #[test]
-fn integrators_and_their_parameters_make_another_picture() {
+fn integrators_and_their_parameters_change_the_fingerprint() {
     let scene = scene();
     let mut seen = HashMap::new();
     for row in INTEGRATORS {

@@ -28,7 +28,7 @@ fn alpha(picture: &Picture) -> Vec<f32> {
 }
 
 #[test]
-fn a_ground_that_is_not_seen_has_its_shadow_as_alpha() {
+fn an_invisible_ground_writes_its_shadow_to_alpha() {
     for lamp in [None, Some(Spec::new("", "directional").with("direction", Vec3::new(0.8, -1.0, 0.1)))] {
         let has_lamp = lamp.is_some();
         let cut = picture(&slab(lamp), &[("background", "transparent")]);

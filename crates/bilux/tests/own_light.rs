@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A scene in a format that cannot describe its surroundings, such as glTF.
 fn file() -> SceneBuilder {
-    SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() }
+    SceneBuilder { environment_unspecified: true, ..SceneBuilder::default() }
 }
 
 fn put(scene: &mut SceneBuilder, mesh: Mesh, material: Spec) {
@@ -76,7 +76,7 @@ fn car(emission: f32) -> SceneBuilder {
 }
 
 #[test]
-fn headlights_do_not_keep_the_studio_away() {
+fn headlights_do_not_turn_the_studio_off() {
     assert_decided("a dim sign", &car(0.5), true);
     for emission in [1.0, 20.0] {
         assert_decided("a car", &car(emission), true);
@@ -84,7 +84,7 @@ fn headlights_do_not_keep_the_studio_away() {
 }
 
 #[test]
-fn what_glows_alone_is_seen_in_the_studio() {
+fn scenes_of_emitters_only_get_the_studio() {
     let mut scene = file();
     for (i, strength) in [1.0, 2.0, 4.0, 8.0, 16.0].into_iter().enumerate() {
         let low = Vec3::new(i as f32 * 1.5, 0.0, 0.0);
@@ -132,7 +132,7 @@ fn a_bulb_lights_its_lamp_where_it_is_bright() {
 }
 
 #[test]
-fn a_lamp_that_lights_nothing_leaves_it_to_the_studio() {
+fn a_light_that_reaches_nothing_leaves_the_studio_on() {
     let mut scene = car(0.0);
     let lamp = Spec::new("mine", "directional").with("direction", Vec3::Y);
     scene.lights.push(lamp.with("irradiance", 3.0f32));
@@ -141,7 +141,7 @@ fn a_lamp_that_lights_nothing_leaves_it_to_the_studio() {
 }
 
 #[test]
-fn what_is_decided_depends_on_the_scene_alone() {
+fn the_decision_depends_only_on_the_scene() {
     let scene = lamp(12.0);
     let notes = [1, 2, 5].map(|threads| {
         let mut settings = Parameters::default();
@@ -151,6 +151,6 @@ fn what_is_decided_depends_on_the_scene_alone() {
     });
     assert!(notes[0].len() == 1 && notes.iter().all(|n| *n == notes[0]), "{notes:?}");
     // Formats that can describe a scene's surroundings have described them.
-    let said = SceneBuilder { surroundings_unsaid: false, ..car(20.0) };
+    let said = SceneBuilder { environment_unspecified: false, ..car(20.0) };
     assert!(job(&said).notes().is_empty());
 }

@@ -136,25 +136,25 @@ pub struct Render {
     pub scenes: Vec<PathBuf>,
     /// The picture to write; its extension sets the format, `{stem}` stands for the scene's name, `{frame}` for the
     /// frame's number, and `-` writes a PNG to standard output
-    #[arg(short, long, value_name = "OUT", help_heading = help::MAX_USED)]
+    #[arg(short, long, value_name = "OUT", help_heading = help::COMMON_OPTIONS)]
     pub output: PathBuf,
     /// The width and height of the picture in pixels [default: 512x512]
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub size: Option<String>,
     /// Take N samples per pixel; the picture is then the same on every machine
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = parse_spp, help_heading = help::COMMON_OPTIONS)]
     pub spp: Option<u32>,
     /// Stop when the noise is, on average, at most this fraction of the light; 2% looks smooth
-    #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "REL", allow_hyphen_values = true, value_parser = parse_noise, help_heading = help::COMMON_OPTIONS)]
     pub noise: Option<f32>,
     /// Finish within this time, including reading and denoising; if that is impossible, Bilux says why
-    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = parse_seconds, help_heading = help::COMMON_OPTIONS)]
     pub time_limit: Option<f32>,
     /// The integrator, the algorithm that computes the light (`bilux list integrators`) [default: auto]
-    #[arg(short, long, value_name = "NAME", help_heading = help::MAX_USED)]
+    #[arg(short, long, value_name = "NAME", help_heading = help::COMMON_OPTIONS)]
     pub integrator: Option<String>,
     /// The camera of the scene, by name or by number from 0
-    #[arg(long, value_name = "NAME|INDEX", help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "NAME|INDEX", help_heading = help::COMMON_OPTIONS)]
     pub camera: Option<String>,
     #[command(flatten)]
     pub studio: StudioArguments,

@@ -4,7 +4,7 @@
 pub const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\n{all-args}\n";
 
 /// The heading of the ten most used options.
-pub const MAX_USED: &str = "Most used";
+pub const COMMON_OPTIONS: &str = "Most used";
 /// The heading of options for which part of a scene is shown.
 pub const WHAT: &str = "What";
 /// The heading of options for how the picture looks.

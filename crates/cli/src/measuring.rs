@@ -1,7 +1,7 @@
 //! The options of `bilux bench`.
 
 use crate::help;
-use crate::values::parse_rival;
+use crate::values::parse_engine;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -62,7 +62,7 @@ pub struct Bench {
     #[arg(long, value_name = "N")]
     pub rounds: Option<u32>,
     /// `rays`: compare with another engine from a shared library, such as embree=libembree4.so.4
-    #[arg(long, value_name = "NAME=PATH", value_parser = parse_rival)]
+    #[arg(long, value_name = "NAME=PATH", value_parser = parse_engine)]
     pub against: Vec<(String, PathBuf)>,
     /// `rays`: write the meshes and rays to this folder
     #[arg(long, value_name = "DIR")]

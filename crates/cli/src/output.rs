@@ -68,7 +68,7 @@ pub fn message(error: &anyhow::Error) -> String {
             _ => text += &format!(": {cause}"),
         }
     }
-    text + &error.chain().find_map(flag_that_helps).unwrap_or_default()
+    text + &error.chain().find_map(suggested_flag).unwrap_or_default()
 }
 
 /// Removes the error number that the standard library appends to the system's messages: `(os error 2)`.
@@ -82,7 +82,7 @@ fn without_error_numbers(text: &str) -> String {
 }
 
 /// The flag that allows what the library refused.
-fn flag_that_helps(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
+fn suggested_flag(cause: &(dyn std::error::Error + 'static)) -> Option<String> {
     Some(match cause.downcast_ref::<bilux::Error>()? {
         bilux::Error::TooLarge { needed, .. } => {
             format!(" (--max-memory {}G)", needed.total().div_ceil(1 << 30))

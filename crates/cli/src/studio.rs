@@ -15,14 +15,14 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 pub struct StudioArguments {
     /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8]
-    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub orbit: Option<String>,
     /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none keeps
     /// the studio's lights out of a glTF file that brings its own
-    #[arg(long, value_name = "FILE|none", help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
     pub env: Option<PathBuf>,
     /// The background: transparent, a colour (white, '#rrggbb' or R,G,B) or a picture; it lights nothing
-    #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::MAX_USED)]
+    #[arg(long, value_name = "transparent|COLOR|FILE", help_heading = help::COMMON_OPTIONS)]
     pub background: Option<String>,
     /// The model's up axis: x, y, z, -x, -y or -z [default: auto, from its format and its shape]
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, help_heading = help::STUDIO)]
@@ -56,7 +56,7 @@ impl StudioArguments {
             bilux::presets::apply(preset, scene).map_err(usage::wrong)?;
         }
         if self.env.as_deref() == Some(Path::new("none")) {
-            scene.surroundings_unsaid = false;
+            scene.environment_unspecified = false;
         } else if let Some(picture) = &self.env {
             bilux::presets::surround(scene, picture, options).context("--env")?;
         }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-pub fn parse_rival(text: &str) -> Result<(String, PathBuf), String> {
+pub fn parse_engine(text: &str) -> Result<(String, PathBuf), String> {
     let (name, path) =
         text.split_once('=').ok_or("write a name and a path, such as embree=/usr/lib/libembree4.so.4")?;
     Ok((name.to_owned(), PathBuf::from(path)))

@@ -23,7 +23,7 @@ fn render(folder: &Path, scene: &str, more: &[&str]) -> (i32, String) {
 }
 
 #[track_caller]
-fn assert_told((code, said): (i32, String), expected: i32, parts: &[&str]) {
+fn assert_reports((code, said): (i32, String), expected: i32, parts: &[&str]) {
     assert_eq!(code, expected, "{said}");
     for part in parts {
         assert_eq!(said.matches(part).count(), 1, "once '{part}' in: {said}");
@@ -31,7 +31,7 @@ fn assert_told((code, said): (i32, String), expected: i32, parts: &[&str]) {
 }
 
 #[test]
-fn files_that_are_no_scenes_are_refused_in_one_sentence() {
+fn files_that_are_not_scenes_are_refused_in_one_sentence() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     let write = |name: &str, bytes: &[u8]| std::fs::write(path.join(name), bytes).unwrap();
@@ -43,7 +43,7 @@ fn files_that_are_no_scenes_are_refused_in_one_sentence() {
     write("program.obj", &[0x7f, b'E', b'L', b'F', 2, 1, 1, 0, 0]);
     write("index.obj", PLAIN.replace("1 2 3", "1 2 9").as_bytes());
     write("picture.gif", b"GIF89a");
-    let refused = |name: &str, parts: &[&str]| assert_told(render(path, name, &[]), 1, parts);
+    let refused = |name: &str, parts: &[&str]| assert_reports(render(path, name, &[]), 1, parts);
     refused("none.obj", &["none.obj: cannot open it: No such file or directory"]);
     refused("folder.obj", &["folder.obj: this is a folder: name a scene file in it"]);
     refused("empty.obj", &["empty.obj: the file is empty"]);
@@ -60,14 +60,14 @@ fn files_that_are_no_scenes_are_refused_in_one_sentence() {
 }
 
 #[test]
-fn scene_files_that_say_something_wrong_are_told_where() {
+fn errors_in_scene_files_report_their_location() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     std::fs::write(path.join("pot.obj"), PLAIN).unwrap();
     std::fs::write(path.join("b.toml"), "include = ['a.toml']\n").unwrap();
     let refused = |text: &str, parts: &[&str]| {
         std::fs::write(path.join("a.toml"), text).unwrap();
-        assert_told(render(path, "a.toml", &[]), 1, parts);
+        assert_reports(render(path, "a.toml", &[]), 1, parts);
     };
     refused("[camera]\npositon = [0, 0, 5]\n", &["a.toml:2:1: there is no key 'positon' of", "'position'?"]);
     refused("[render]\nintegrator = 'whited'\n", &["a.toml:2:1:", "did you mean 'whitted'?"]);
@@ -80,17 +80,17 @@ fn scene_files_that_say_something_wrong_are_told_where() {
         std::fs::write(path.join("a.toml"), "[[model]]\nfile = 'pot.obj'\n").unwrap();
         render(path, "a.toml", &["--camera", "5"])
     };
-    assert_told((code, said), 2, &["--camera: there is no camera '5': this scene has only camera 0"]);
+    assert_reports((code, said), 2, &["--camera: there is no camera '5': this scene has only camera 0"]);
 }
 
 #[test]
-fn what_can_be_drawn_is_drawn_with_a_warning() {
+fn what_can_be_rendered_is_rendered_with_a_warning() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     let drawn = |name: &str, text: &str, parts: &[&str]| {
         std::fs::write(path.join(name), text).unwrap();
-        assert_told(render(path, name, &[]), 0, parts);
-        assert_told(render(path, name, &["--strict"]), 1, parts);
+        assert_reports(render(path, name, &[]), 0, parts);
+        assert_reports(render(path, name, &["--strict"]), 1, parts);
     };
     std::fs::write(path.join("cut.png"), b"\x89PNG\r\n\x1a\n\0\0\0").unwrap();
     let textured = |file: &str| format!("mtllib a.mtl\n{}", PLAIN.replace("f ", "usemtl a\nf ") + file);
@@ -100,7 +100,7 @@ fn what_can_be_drawn_is_drawn_with_a_warning() {
     }
     let no_numbers = PLAIN.replace(['0', '1'], "nan").replace("f nan", "f 1");
     std::fs::write(path.join("nan.obj"), &no_numbers).unwrap();
-    assert_told(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing can be seen"]);
+    assert_reports(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing can be seen"]);
     let inside = "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\n[[material]]\nname = 'glass'\n\
                   kind = 'dielectric'\n[[model]]\nshape = 'sphere'\nmaterial = 'glass'\n";
     drawn("inside.toml", inside, &["the camera is inside of something transparent"]);
@@ -120,17 +120,17 @@ fn an_empty_scene_is_an_error() {
         for flags in [&[][..], &["--ground", "mirror"], &["--background", "transparent"]] {
             let (code, said) = render(path, name, flags);
             assert!(!said.contains("NaN") && !said.contains("inf "), "{name}: {said}");
-            assert_told((code, said), 1, &["the scene is empty"]);
+            assert_reports((code, said), 1, &["the scene is empty"]);
         }
     }
 }
 
 #[test]
-fn command_lines_that_ask_for_what_there_is_not() {
+fn command_lines_that_name_missing_things_are_refused() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     std::fs::write(path.join("pot.obj"), PLAIN).unwrap();
-    let refused = |more: &[&str], parts: &[&str]| assert_told(render(path, "pot.obj", more), 2, parts);
+    let refused = |more: &[&str], parts: &[&str]| assert_reports(render(path, "pot.obj", more), 2, parts);
     refused(&["--size", "0x0"], &["--size: '0x0' is not a size: each side has 1 to 65536 pixels"]);
     refused(&["--size", "99999x9"], &["--size: '99999x9' is not a size", "1 to 65536"]);
     refused(&["-o", "out.pgn"], &["out.pgn: 'pgn' is not a picture format", "did you mean 'png'?"]);
@@ -142,17 +142,21 @@ fn command_lines_that_ask_for_what_there_is_not() {
         let output = command.current_dir(path).args(arguments).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     };
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.xyy"]), 2, &["pot.xyy: this is not a scene format"]);
-    assert_told(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render` for that"]);
+    assert_reports(
+        bilux(&["convert", "pot.obj", "-o", "pot.xyy"]),
+        2,
+        &["pot.xyy: this is not a scene format"],
+    );
+    assert_reports(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render` for that"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
-    assert_told(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
-    assert_told(
+    assert_reports(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
+    assert_reports(
         bilux(&["convert", "t.png", "-o", "t.tif"]),
         2,
         &["'tif' is not a picture format that can be written"],
     );
-    assert_told(bilux(&["generate", "teapts", "-o", "a.obj"]), 2, &["did you mean 'teapots'?"]);
-    assert_told(
+    assert_reports(bilux(&["generate", "teapts", "-o", "a.obj"]), 2, &["did you mean 'teapots'?"]);
+    assert_reports(
         bilux(&["generate", "teapots", "-o", "a.png"]),
         2,
         &["not a scene format that can be written"],
@@ -160,15 +164,15 @@ fn command_lines_that_ask_for_what_there_is_not() {
 }
 
 #[test]
-fn little_memory_is_enough_or_is_told() {
+fn low_memory_suffices_or_is_reported() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     std::fs::write(path.join("large.obj"), PLAIN.repeat(40_000)).unwrap();
     let (code, said) = render(path, "large.obj", &["--max-memory", "1M"]);
-    assert_told((code, said), 1, &["large.obj: reading this takes more than", "--max-memory"]);
+    assert_reports((code, said), 1, &["large.obj: reading this takes more than", "--max-memory"]);
     std::fs::write(path.join("small.obj"), PLAIN).unwrap();
     let (code, said) = render(path, "small.obj", &["--size", "40000x40000"]);
-    assert_told(
+    assert_reports(
         (code, said),
         1,
         &["would take about 320001 MB", "320000 MB for the picture", "(--max-memory 299G)"],
@@ -176,7 +180,7 @@ fn little_memory_is_enough_or_is_told() {
 }
 
 #[test]
-fn misspelt_words_are_answered_with_what_they_most_likely_mean() {
+fn misspelt_names_get_suggestions() {
     let folder = TempDir::new().unwrap();
     let answered = |arguments: &[&str], hint: &str| {
         let mut command = Command::cargo_bin("bilux").expect("the binary is built with its tests");

@@ -51,7 +51,7 @@ fn one_picture_for_any_threads_and_any_accelerator() {
 }
 
 #[test]
-fn pieces_in_any_order_are_the_whole() {
+fn partial_renders_merge_in_any_order() {
     let folder = folder();
     let path = folder.path();
     let settings = ["-i", "path", "--spp", "6"];
@@ -74,7 +74,7 @@ fn pieces_in_any_order_are_the_whole() {
 }
 
 #[test]
-fn layers_of_pieces_are_those_of_the_whole() {
+fn merged_layers_equal_those_of_the_whole() {
     let folder = folder();
     let path = folder.path();
     let settings = ["-i", "path", "--spp", "8", "--aov", "albedo,normal,depth,ids,variance"];
@@ -135,7 +135,7 @@ fn each_strategy_has_its_pictures_and_its_place_on_a_sheet() {
 }
 
 #[test]
-fn an_interval_lies_beside_the_picture() {
+fn an_interval_is_written_next_to_the_picture() {
     let folder = folder();
     let path = folder.path();
     render(path, "pots.exr", &["--noise", "0.5", "--aov", "interval", "--stats", "took.json"]);
@@ -190,7 +190,7 @@ fn work_that_fails_exits_with_1_and_leaves_no_file() {
 }
 
 #[test]
-fn compare_tells_by_its_exit_status() {
+fn compare_reports_by_its_exit_status() {
     let folder = folder();
     let path = folder.path();
     render(path, "a.png", &["-i", "whitted"]);
@@ -272,7 +272,7 @@ fn copies_stand_at_their_offsets_and_conversion_loses_nothing() {
 }
 
 #[test]
-fn pictures_that_are_only_read_become_others() {
+fn read_only_picture_formats_convert_to_png() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
@@ -288,7 +288,7 @@ fn pictures_that_are_only_read_become_others() {
 
 /// Under uniform light, a board reflects exactly what its texture says at that point.
 #[test]
-fn textures_by_formula_are_rendered() {
+fn procedural_textures_are_rendered() {
     let folder = TempDir::new().unwrap();
     let path = folder.path();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/patterns.toml");
@@ -362,7 +362,7 @@ fn frames_are_numbered_and_differ_where_things_move() {
 }
 
 #[test]
-fn of_many_scenes_one_that_is_broken_does_not_stop_the_others() {
+fn one_broken_scene_does_not_stop_the_others() {
     let folder = folder();
     std::fs::write(folder.path().join("broken.obj"), "v 1 2\nf 1 2 3\n").unwrap();
     let both = ["render", "broken.obj", "pots.asc", "-o", "{stem}.png", "--size", "16x16", "--spp", "1"];

@@ -25,7 +25,7 @@ fn render(folder: &Path, output: &str, more: &[&str]) -> String {
 }
 
 #[test]
-fn what_noise_or_time_ends_is_denoised_for_a_display_and_counted_samples_are_not() {
+fn display_pictures_ended_by_noise_or_time_are_denoised() {
     let folder = folder();
     let path = folder.path();
     let said = render(path, "a.png", &["--noise", "0.3"]);
@@ -46,7 +46,7 @@ fn what_noise_or_time_ends_is_denoised_for_a_display_and_counted_samples_are_not
 }
 
 #[test]
-fn with_nothing_said_there_is_a_budget() {
+fn default_settings_have_a_budget() {
     let folder = folder();
     let said = render(folder.path(), "a.png", &["-v"]);
     assert!(said.contains("until 2% noise or 5 s") && said.contains("denoised by"), "{said}");
@@ -59,7 +59,7 @@ fn with_nothing_said_there_is_a_budget() {
 }
 
 #[test]
-fn layers_lie_in_the_exr_and_are_denoised_from_there() {
+fn layers_in_the_exr_guide_denoising() {
     let folder = folder();
     let path = folder.path();
     let aovs = ["--spp", "4", "--aov", "albedo,normal,depth,ids,variance"];
@@ -116,7 +116,7 @@ fn said_with_python(folder: &Path, printed: &str) -> String {
 /// pyenv's `python3` is a script: only it knows where packages are.
 #[cfg(unix)]
 #[test]
-fn python3_is_asked_where_pyoidn_is_and_nobody_is_told_to_install_what_is_installed() {
+fn python3_locates_pyoidn_and_installed_packages_are_not_advertised() {
     let folder = folder();
     let package = folder.path().join("versions/3.12/pyoidn");
     let said = said_with_python(folder.path(), "");
@@ -175,7 +175,7 @@ fn fast_pictures_are_denoised_path_traced_and_there_within_their_time() {
 }
 
 #[test]
-fn what_is_behind_a_model_is_what_was_asked_for() {
+fn the_background_is_what_was_asked_for() {
     let folder = folder();
     let path = folder.path();
     let seen = |background: &str, more: &[&str]| {

@@ -15,7 +15,7 @@ fn agrees(options: &[&str]) -> bool {
 }
 
 #[test]
-fn mitsuba_draws_the_same_cornell_boxes() {
+fn mitsuba_renders_the_same_cornell_boxes() {
     let found = python().args(["-c", "import mitsuba, numpy"]).output();
     if !found.is_ok_and(|output| output.status.success()) {
         eprintln!(

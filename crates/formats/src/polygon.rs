@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn hollow_polygons_are_covered_once_in_every_plane() {
+    fn concave_polygons_are_covered_once_in_every_plane() {
         // An L shape, which a fan around its first corner would leave.
         let ell = [[1.0, 1.0], [1.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0], [2.0, 1.0]];
         let planes: [fn([f32; 2]) -> Vec3; 6] = [
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hollow_quadrilateral_is_cut_at_its_dent() {
+    fn a_concave_quadrilateral_is_split_at_its_reflex_corner() {
         let dart = [[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
         for turn in 0..4 {
             let mut points = dart;

@@ -64,7 +64,7 @@ pub(crate) struct Reading<'o> {
 }
 
 /// Longer chains of nested scenes are refused, since each level uses some of the stack.
-const LONGEST_CHAIN: usize = 16;
+const MAX_CHAIN: usize = 16;
 
 impl<'o> Reading<'o> {
     pub(crate) fn new(options: &'o ReadOptions, folder: Option<&Path>) -> Reading<'o> {
@@ -132,8 +132,8 @@ impl<'o> Reading<'o> {
 
     /// Enters a nested scene.
     pub(crate) fn enter(&mut self, path: &Path, at: &Span) -> Result<(), FormatError> {
-        if self.open.len() >= LONGEST_CHAIN {
-            let message = format!("scenes are put into each other more than {LONGEST_CHAIN} deep");
+        if self.open.len() >= MAX_CHAIN {
+            let message = format!("scenes are put into each other more than {MAX_CHAIN} deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         self.open.push(path.to_owned());
@@ -152,11 +152,11 @@ impl<'o> Reading<'o> {
         name: &str,
         at: &Span,
     ) -> Result<PathBuf, FormatError> {
-        self.locate_besides(folder, name, &[], at)
+        self.locate_except(folder, name, &[], at)
     }
 
     /// The same, but finds the files in `open`, which are being read, only under their full names.
-    pub(crate) fn locate_besides(
+    pub(crate) fn locate_except(
         &self,
         folder: Option<&Path>,
         name: &str,

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// The number of sides of a tube.
 const SIDES: u32 = 8;
 /// Up to this many spheres have twenty triangles each; more have eight.
-const FEW_BALLS: usize = 20_000;
+const FEW_SPHERES: usize = 20_000;
 
 /// Replaces points and lines by triangles if the format does not support them.
 pub(crate) fn as_triangles<'a>(
@@ -71,7 +71,7 @@ fn append(mesh: &mut Mesh, mut more: Mesh) {
 /// Spheres at the given vertices and tubes between the given pairs, with the vertex attributes of `bare`.
 fn solid(bare: &Mesh, balls: &[u32], tubes: &[[u32; 2]], radius: f32) -> Mesh {
     let mut made = Made { bare, mesh: Mesh { name: bare.name.clone(), ..Mesh::default() }, radius };
-    let ball = if balls.len() > FEW_BALLS { octahedron() } else { shapes::icosphere(Vec3::ZERO, 1.0, 0) };
+    let ball = if balls.len() > FEW_SPHERES { octahedron() } else { shapes::icosphere(Vec3::ZERO, 1.0, 0) };
     for &vertex in balls {
         made.ball(vertex, &ball);
     }
@@ -156,7 +156,7 @@ mod tests {
         for mesh in [
             solid(&bare, &[0], &[], 0.5),
             solid(&bare, &[], &[[0, 1]], 0.5),
-            solid(&bare, &vec![1; FEW_BALLS + 1], &[], 0.5),
+            solid(&bare, &vec![1; FEW_SPHERES + 1], &[], 0.5),
         ] {
             assert_eq!(mesh.positions.len(), mesh.normals.len());
             for t in &mesh.triangles[..8] {

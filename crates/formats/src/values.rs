@@ -2,7 +2,7 @@
 
 use crate::writing::Writing;
 use bilux_math::{Rgb, Vec3};
-use bilux_scene::materials::straight_on;
+use bilux_scene::materials::normal_incidence_reflectance;
 use bilux_scene::{MATERIALS, Spec, Value};
 
 /// The number under a key, if there is one.
@@ -67,7 +67,7 @@ impl MaterialSupport<'_> {
 
 /// Sets `out` to a metal with the colour of a named metal or of its index of refraction.
 pub(crate) fn coloured_metal(out: Spec, metal: &Spec) -> Spec {
-    let shade = Value::from(straight_on(metal).unwrap_or(Rgb::grey(0.9)));
+    let shade = Value::from(normal_incidence_reflectance(metal).unwrap_or(Rgb::grey(0.9)));
     let taken = |key: &str, default| metal.parameters.find(key).map_or(default, |(value, _)| value.clone());
     out.with("base_color", taken("reflectance", shade))
         .with("base_metalness", 1.0)

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_a_direction_is_the_same() {
+    fn directions_round_trip_through_the_frame() {
         let v = Vec3::new(0.3, -0.7, 0.4);
         for n in normals() {
             let frame = Frame::from_normal(n);
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mirror_keeps_what_is_along_the_normal_and_turns_the_rest() {
+    fn reflection_keeps_the_normal_component_and_flips_the_tangential_one() {
         assert_eq!(reflect(Vec3::new(0.6, 0.0, 0.8), Vec3::Z), Vec3::new(-0.6, 0.0, 0.8));
         assert_eq!(reflect(Vec3::new(0.0, -0.8, 0.6), Vec3::NEG_Y), Vec3::new(0.0, -0.8, -0.6));
     }

@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn followed_by_a_similarity_it_moves_alike() {
+    fn a_motion_followed_by_a_similarity_is_the_composed_motion() {
         let turn = Quat::from_xyzw(0.0, 0.6, 0.0, 0.8);
         let next = DMat4::from_scale_rotation_translation(
             DVec3::splat(2.0),
@@ -426,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_has_no_transform_on_the_way() {
+    fn rejects_keys_without_an_invertible_transform_between_them() {
         let sound = key(0.0, Vec3::ZERO, Quat::IDENTITY, Vec3::ONE);
         let refused = |keys: &[MotionKey]| assert_eq!(Motion::from_keys(keys.to_vec()), None);
         refused(&[]);

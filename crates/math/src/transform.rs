@@ -110,7 +110,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn written_and_read_again_it_is_the_same_map() {
+    fn a_matrix_round_trips_to_the_same_map() {
         let matrix = DMat4::from_translation(DVec3::new(-1.2, 0.0, -0.42))
             * DMat4::from_rotation_y(204f64.to_radians());
         let made = Transform::from_matrix(matrix).unwrap();
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_made_by_name_and_joined_in_order() {
+    fn named_constructors_compose_in_order() {
         let moved = Transform::translate(Vec3::X).unwrap();
         let turned = Transform::rotate(Vec3::Z * 3.0, std::f32::consts::FRAC_PI_2).unwrap();
         let grown = Transform::scale(Vec3::new(1.0, 2.0, -1.0)).unwrap();
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_map_can_undo_is_refused() {
+    fn singular_matrices_are_rejected() {
         assert_eq!(Transform::from_matrix(DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0))), None);
         assert_eq!(Transform::from_matrix(DMat4::from_scale(DVec3::splat(1e300))), None);
         assert_eq!(Transform::from_matrix(DMat4::from_translation(DVec3::splat(f64::NAN))), None);

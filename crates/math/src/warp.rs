@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn the_square_covers_the_sphere_evenly_and_back() {
+    fn square_to_sphere_is_uniform_and_invertible() {
         const SIDE: u32 = 64;
         let mut octants = [0u32; 8];
         let mut sum = Vec3::ZERO;
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn cones_are_filled_evenly_to_their_rim_however_narrow() {
+    fn cones_are_sampled_uniformly_to_the_rim_however_narrow() {
         for cos_max in [-1.0f32, -0.3, 0.5, 0.999, 1.0 - f32::EPSILON] {
             let width = 1.0 - cos_max;
             for i in 0..=16 {

@@ -28,7 +28,7 @@ fn every_seed_is_read_or_refused() {
 }
 
 #[test]
-fn every_seed_is_told_by_its_first_bytes() {
+fn every_seed_is_recognised_by_its_first_bytes() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
     for row in PICTURE_FORMATS {
         for seed in std::fs::read_dir(corpus.join(format!("picture_{}", row.entry.name))).unwrap() {

@@ -105,7 +105,7 @@ fn albedo_is_what_keeps_textures() {
 }
 
 #[test]
-fn light_from_the_sources_is_smoothed_apart() {
+fn the_light_layer_is_denoised_separately() {
     // Light paths contribute half of the light, with noise; the other half has no noise at all.
     let splats = plane(|i| albedo(i) * light(i) * 0.5 * (1.0 + NOISE * number(i, 3)));
     let sum = plane(|i| albedo(i) * light(i) * 0.5 + splats[i]);
@@ -157,13 +157,13 @@ fn small_bare_and_broken_pictures_are_denoised_as_well() {
 }
 
 #[test]
-fn misspelt_names_are_answered_with_the_nearest() {
+fn misspelt_names_suggest_the_closest() {
     let error = denoiser("biultin", &task(0)).err().unwrap().to_string();
     assert!(error.contains("did you mean 'builtin'"), "{error}");
 }
 
 #[test]
-fn what_has_no_time_is_passed_over_unless_it_is_asked_for() {
+fn a_too_slow_denoiser_is_skipped_unless_requested_by_name() {
     let hurried = Task { time: Some(std::time::Duration::from_millis(1)), ..task(1) };
     assert_eq!(denoiser("auto", &hurried).unwrap().denoiser.describe(), "the built-in filter");
     // When requested by name, it is used, or the error says why not.
@@ -174,7 +174,7 @@ fn what_has_no_time_is_passed_over_unless_it_is_asked_for() {
 
 /// Rare paths: one pixel in a few hundred is hundreds of times as bright.
 #[test]
-fn fireflies_make_no_blots() {
+fn fireflies_leave_no_blotches() {
     let mut picture = noisy();
     for i in (77..SIZE * SIZE).step_by(391) {
         for (plane, value) in [("R", 60.0), ("G", 50.0), ("B", 40.0)] {
@@ -234,7 +234,7 @@ fn error_of_edge(features: impl Fn(usize) -> f32) -> [f64; 2] {
 }
 
 #[test]
-fn edges_are_rebuilt_by_what_is_known_of_the_surfaces() {
+fn edges_are_reconstructed_from_surface_features() {
     let [before, after] = error_of_edge(|i| covered(i, 0));
     assert!(after < 0.2 * before, "{before} to {after}");
     // The twin: where albedo is as uncertain as light, edges cannot be reconstructed from it.

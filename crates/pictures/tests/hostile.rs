@@ -39,7 +39,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_after_a_good_beginning(
+    fn arbitrary_bytes_after_a_valid_beginning(
         which in any::<prop::sample::Index>(), kept in 0.0f64..1.0,
         tail in prop::collection::vec(any::<u8>(), 0..400),
     ) {
@@ -99,7 +99,7 @@ fn pictures_beyond_the_limit_are_refused() {
 }
 
 #[test]
-fn what_nobody_knows_is_refused_with_a_list() {
+fn unknown_formats_are_rejected_with_a_list() {
     let error = read_bytes(b"GIF89a", None, &LIMITS).unwrap_err().to_string();
     assert!(error.contains("png") && error.contains("exr"), "{error}");
     let error = read_bytes(b"GIF89a", Some("gif"), &LIMITS).unwrap_err().to_string();

@@ -109,7 +109,7 @@ fn relmse_is_relative_to_the_second() {
 }
 
 #[test]
-fn what_is_not_a_number_is_not_hidden() {
+fn nan_is_not_hidden() {
     let reference = picture(gradient).into_linear();
     let mut broken = reference.clone();
     broken.channel_mut("G").unwrap()[WIDTH * 3 + 5] = f32::NAN;

@@ -195,7 +195,7 @@ fn textures_in_bytes_are_the_same_picture() {
 
 /// A kilobyte that claims to be a picture of gigabytes.
 #[test]
-fn what_a_file_is_too_short_for_takes_no_memory() {
+fn pixels_beyond_the_end_of_a_file_take_no_memory() {
     for (format, name) in [
         ("tiff", "broken_absurd_size.tif"),
         ("tiff", "broken_text_of_a_gigabyte.tif"),

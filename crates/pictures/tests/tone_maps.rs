@@ -45,7 +45,7 @@ fn encoded_pictures_stay_as_they_are() {
 }
 
 #[test]
-fn misspelt_names_are_answered_with_the_nearest() {
+fn misspelt_names_suggest_the_closest() {
     assert_eq!(tone_map("reinhard").unwrap().entry.name, "reinhard");
     let error = tone_map("reinhart").unwrap_err().to_string();
     assert!(error.contains("did you mean 'reinhard'") && error.contains("aces"), "{error}");

@@ -62,7 +62,7 @@ pub struct SceneBuilder {
     /// The cameras; the first is the default.
     pub cameras: Vec<CameraSpec>,
     /// The file's format has light sources, but cannot describe the environment around a scene.
-    pub surroundings_unsaid: bool,
+    pub environment_unspecified: bool,
     /// The up axis, as far as the file or its format states it.
     pub up: UpHint,
     /// Metres per unit of length of the file; 0 means one metre, as in scenes that state no unit.

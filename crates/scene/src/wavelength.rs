@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_drawn_is_white_on_average() {
+    fn sampled_wavelengths_average_to_white() {
         for channel in 0..3 {
             let mean = drawn().map(|one| f64::from(one.weight[channel])).sum::<f64>() / f64::from(N);
             assert!((mean - 1.0).abs() < 1e-5, "{channel}: {mean}");

@@ -44,7 +44,7 @@ fn towards(x: f64, y: f64) -> Vec3 {
 }
 
 #[test]
-fn a_texel_of_the_sky_is_seen_at_its_centre_and_blended_half_way_to_the_next() {
+fn environment_texels_are_centred_and_interpolated_bilinearly() {
     let sky = numbered_sky(0.0);
     for (x, y) in (0..4).flat_map(|y| (0..8).map(move |x| (x, y))) {
         let found = sky.le(towards(f64::from(x) + 0.5, f64::from(y) + 0.5));
@@ -63,7 +63,7 @@ fn a_texel_of_the_sky_is_seen_at_its_centre_and_blended_half_way_to_the_next() {
 }
 
 #[test]
-fn a_sky_is_turned_to_the_right() {
+fn environment_rotation_turns_to_the_right() {
     // The texel that was straight ahead now appears 45 degrees further to the right: towards +x.
     let (plain, turned) = (numbered_sky(0.0), numbered_sky(45.0));
     let ahead = plain.le(towards(3.5, 1.5));
@@ -72,7 +72,7 @@ fn a_sky_is_turned_to_the_right() {
 }
 
 #[test]
-fn the_sun_of_a_sky_stands_where_it_is_told_to() {
+fn the_sky_puts_its_sun_at_the_given_elevation_and_azimuth() {
     // 30 degrees above the horizon, 90 degrees to the right of -z: towards +x.
     let spec = Spec::new("", "sky").with("elevation", 30.0f32).with("azimuth", 90.0f32);
     let scene = built(&SceneBuilder { lights: vec![spec], ..SceneBuilder::default() });
@@ -167,7 +167,7 @@ fn a_spot_falls_off_smoothly_between_the_cosines_of_its_angles() {
 
 /// From afar every light of intensity I looks like a point: E = I / d² on a surface that faces it, whatever its size.
 #[test]
-fn an_intensity_is_what_arrives_from_afar_times_the_square_of_the_distance() {
+fn far_irradiance_is_intensity_over_distance_squared() {
     let lamp = |kind: &str| Spec::new("", kind).with("position", Vec3::ZERO).with("intensity", 8.0f32);
     let panel = lamp("rect").with("edge_u", Vec3::X * 0.5).with("edge_v", Vec3::Z * 0.3);
     for spec in
@@ -198,7 +198,7 @@ fn camera_rays(spec: Spec, aspect: f32) -> impl Fn(f32, f32) -> (Vec3, Vec3) {
 }
 
 #[test]
-fn cameras_measure_upwards_and_the_first_row_is_on_top() {
+fn the_field_of_view_is_vertical_and_row_zero_is_at_the_top() {
     // Twice as wide as high: 60 degrees from the lower to the upper edge.
     let ray = camera_rays(Spec::new("", "perspective").with("fov", 60.0f32), 2.0);
     let half = 1.0 / 3f32.sqrt();
@@ -221,7 +221,7 @@ fn cameras_measure_upwards_and_the_first_row_is_on_top() {
 }
 
 #[test]
-fn what_is_clear_has_its_colour_at_its_depth() {
+fn transmission_color_is_reached_at_transmission_depth() {
     // After two metres a half, a quarter and all of the light remain, by Beer's law.
     let spec =
         Spec::new("", "principled").with("transmission_weight", 1.0f32).with("transmission_depth", 2.0f32);
@@ -272,7 +272,7 @@ fn worst_normals(scene: &Scene, scale: DVec3, turn: DQuat, middle: DVec3) -> [f6
 }
 
 #[test]
-fn normals_of_a_sphere_scaled_unevenly_are_those_of_the_ellipsoid() {
+fn normals_are_correct_under_non_uniform_scale() {
     let middle = DVec3::new(0.3, -0.2, 0.1);
     let mirrored = DVec3::new(-1.0, 1.0, 1.0);
     for (name, scale) in [("scaled", scale()), ("mirrored", scale() * mirrored)] {
@@ -343,7 +343,7 @@ fn direction_of_highlight(scene: &Scene, surface: &Surface) -> f64 {
 const UPRIGHT: [Vec2; 4] = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
 
 #[test]
-fn a_brushed_highlight_reaches_across_its_brushing() {
+fn a_brushed_highlight_extends_across_the_brushing() {
     let kinds = [
         ("conductor", "rotation", 360.0f32, &["roughness", "anisotropy"]),
         ("principled", "anisotropy_rotation", 1.0, &["specular_roughness", "specular_roughness_anisotropy"]),

@@ -50,7 +50,7 @@ fn least_agreement(mesh: &Mesh) -> f32 {
 }
 
 #[test]
-fn the_teapot_has_two_triangles_a_square_less_those_at_its_poles() {
+fn teapot_triangle_count_accounts_for_the_poles() {
     for n in [1u32, 2, 4, 8, 16] {
         let teapot = Teapot { tessellation: n, ..Teapot::default() };
         let whole = teapot.mesh().triangles.len() as u32;
@@ -62,7 +62,7 @@ fn the_teapot_has_two_triangles_a_square_less_those_at_its_poles() {
 }
 
 #[test]
-fn neighbouring_patches_share_their_edges_to_the_bit() {
+fn neighbouring_patches_share_edges_bit_for_bit() {
     // At 1 the two halves of handle and spout are flat and coincide.
     for n in [2, 3, 8, 13] {
         let mesh = Teapot { tessellation: n, ..Teapot::default() }.mesh();
@@ -175,7 +175,7 @@ fn every_generator_makes_a_scene_that_builds() {
 }
 
 #[test]
-fn generators_refuse_what_they_do_not_know() {
+fn generators_reject_unknown_keys() {
     let error = |spec: &Spec| generate(spec).err().unwrap().to_string();
     assert!(error(&Spec::new("", "teapts")).contains("did you mean 'teapots'?"));
     let misspelt = Spec::new("", "teapots").with("cuont", Value::Integer(2));
@@ -196,7 +196,7 @@ fn five_teapots_are_about_twenty_thousand_triangles() {
 }
 
 #[test]
-fn teapots_at_equal_coverage_cover_as_much_whatever_their_number() {
+fn equal_coverage_is_independent_of_the_number_of_teapots() {
     use bilux_scene::{CameraSample, Tracer};
     let covered = |count: i64| {
         let spec = Spec::new("", "teapots")
@@ -265,7 +265,7 @@ fn the_vessel_is_closed_and_faces_outwards() {
 }
 
 #[test]
-fn what_a_vessel_holds_is_closed_and_inside() {
+fn the_filling_of_a_vessel_is_closed_and_inside() {
     let vessel = Vessel { tessellation: 16, height: 1.0, wall: Some(0.022) };
     let tea = vessel.filling(0.5);
     assert_eq!(open_edges(&tea), 0);
@@ -276,7 +276,7 @@ fn what_a_vessel_holds_is_closed_and_inside() {
 }
 
 #[test]
-fn the_scan_is_closed_faces_outwards_and_is_uneven() {
+fn the_scan_is_closed_faces_outwards_and_is_irregular() {
     let mut volumes = Vec::new();
     for detail in [8, 32, 64] {
         let scene = generate(&Spec::new("", "scan").with("detail", Value::Integer(detail))).unwrap();

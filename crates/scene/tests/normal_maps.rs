@@ -59,7 +59,7 @@ fn red_leans_along_u_and_green_along_v() {
 }
 
 #[test]
-fn no_normal_is_on_the_inside() {
+fn mapped_normals_never_point_inside() {
     let inwards = n_shade(&square(Rgb::new(0.9, 0.5, 0.2), UPRIGHT, Transform::IDENTITY, 1.0));
     assert!(inwards.z > 0.0 && (inwards.length() - 1.0).abs() < 1e-5, "{inwards}");
 }

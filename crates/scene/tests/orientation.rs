@@ -62,7 +62,7 @@ fn up_and_front_are_turned_to_y_and_z() {
 }
 
 #[test]
-fn a_shape_that_stands_well_overrules_what_is_usual_and_a_ball_does_not() {
+fn a_stable_shape_overrides_the_usual_axis_and_a_ball_does_not() {
     for up in [Axis::X, Axis::Y, Axis::Z] {
         let front = if up == Axis::Z { Axis::NegY } else { Axis::Z };
         for usual in [Axis::Y, Axis::Z] {
@@ -85,7 +85,7 @@ fn a_shape_that_stands_well_overrules_what_is_usual_and_a_ball_does_not() {
 }
 
 #[test]
-fn who_looks_back_is_turned_round() {
+fn a_model_that_faces_backwards_is_turned_round() {
     // Four legs, a long body, and a head that is high and far from the middle.
     let animal = |head: f32| {
         let mut parts = vec![[[-0.4, 1.0, -2.0], [0.4, 1.7, 2.0]]];
@@ -105,7 +105,7 @@ fn who_looks_back_is_turned_round() {
 }
 
 #[test]
-fn what_is_asked_for_is_done_and_a_scene_with_its_own_camera_stays() {
+fn requested_axes_are_applied_and_scenes_with_cameras_stay() {
     let height = |scene: &SceneBuilder| scene.bounds(0.0).extent();
     let asked = |up, front| Studio { up, front, ..Studio::default() };
     let long = || scene(joined(&[[[0.0, 0.0, 0.0], [1.0, 2.0, 5.0]]]), UpHint::default());
@@ -157,7 +157,7 @@ fn a_model_far_from_the_origin_is_framed_as_tightly_as_one_at_it() {
 }
 
 #[test]
-fn a_unit_is_made_metres_and_an_object_keeps_its_own_place() {
+fn units_become_metres_and_objects_keep_their_positions() {
     let mut millimetres = scene(bust(), UpHint::Is(Axis::Y));
     let place = Transform::from_matrix(DMat4::from_scale(DVec3::splat(2.0))).unwrap();
     millimetres.objects[0] = millimetres.objects[0].clone().placed(place);

@@ -87,7 +87,7 @@ fn a_bare_model_is_framed_whole_and_fills_the_picture() {
 }
 
 #[test]
-fn framing_stands_whatever_a_file_holds() {
+fn framing_handles_degenerate_files() {
     let cases: [&[[f32; 3]]; 10] = [
         &[],
         &[[0.0; 3]],
@@ -117,7 +117,7 @@ fn framing_stands_whatever_a_file_holds() {
 }
 
 #[test]
-fn a_bare_model_of_no_material_is_of_clay_on_a_floor() {
+fn a_bare_model_gets_clay_and_a_floor() {
     let mut scene = points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     scene.materials[0] = Spec::new("default", "phong");
     complete(&mut scene, &Studio::default());
@@ -137,7 +137,7 @@ fn a_bare_model_of_no_material_is_of_clay_on_a_floor() {
 }
 
 #[test]
-fn only_what_is_missing_is_added() {
+fn only_missing_parts_are_added() {
     let mut lit = teapot();
     lit.lights.push(Spec::new("mine", "point"));
     complete(&mut lit, &Studio::default());
@@ -209,7 +209,7 @@ fn the_paper_looks_from_minus_one_through_a_screen_of_two_by_two() {
 }
 
 #[test]
-fn a_studio_is_as_it_is_asked_for() {
+fn studio_options_are_applied() {
     // From the right, at mid-height, through a long lens: framed whole, as large as with any other.
     let asked = Studio {
         ground: Some(Ground::Mirror),
@@ -240,7 +240,7 @@ fn a_studio_is_as_it_is_asked_for() {
 }
 
 #[test]
-fn what_is_cut_out_gets_no_cove_and_a_backdrop_is_no_lamp() {
+fn cut_outs_get_no_cove_and_backdrops_are_not_lights() {
     let mut scene = teapot();
     complete(&mut scene, &Studio { cut_out: true, ..Studio::default() });
     assert_eq!((scene.objects.len(), scene.lights.len()), (1, 3));
@@ -255,7 +255,7 @@ fn what_is_cut_out_gets_no_cove_and_a_backdrop_is_no_lamp() {
 }
 
 #[test]
-fn lamps_of_a_format_without_surroundings_stand_in_a_studio() {
+fn lights_of_formats_without_environments_get_the_studio_environment() {
     let names = |scene: &SceneBuilder| -> Vec<String> {
         let mut scene = scene.clone();
         complete(&mut scene, &Studio::default());
@@ -264,7 +264,7 @@ fn lamps_of_a_format_without_surroundings_stand_in_a_studio() {
     let mut scene = teapot();
     scene.lights.push(Spec::new("mine", "directional"));
     assert_eq!(names(&scene), ["mine"], "other formats could have said it");
-    scene.surroundings_unsaid = true;
+    scene.environment_unspecified = true;
     assert_eq!(names(&scene), ["mine", "room"]);
     scene.lights.push(Spec::new("sky", "environment"));
     assert_eq!(names(&scene), ["mine", "sky"]);
@@ -274,7 +274,7 @@ fn lamps_of_a_format_without_surroundings_stand_in_a_studio() {
 }
 
 #[test]
-fn signs_are_no_lamps() {
+fn dim_emitters_are_not_lights() {
     for (emission, lights) in [(0.6f32, 3), (1.0, 0), (20.0, 0)] {
         let mut scene = teapot();
         scene.materials[0].parameters.set("emission", Value::triple([0.0, emission, 0.0]));
@@ -284,7 +284,7 @@ fn signs_are_no_lamps() {
 }
 
 #[test]
-fn a_camera_that_is_there_has_the_studios_lamp_behind_it() {
+fn the_key_light_is_on_the_side_of_an_existing_camera() {
     let mut seen = teapot();
     let spec = Spec::new("mine", "perspective")
         .with("position", Vec3::new(-6.0, 2.0, -5.0))

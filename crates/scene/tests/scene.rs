@@ -29,7 +29,7 @@ fn builder() -> SceneBuilder {
 }
 
 #[test]
-fn the_middle_of_the_picture_sees_what_the_camera_looks_at() {
+fn the_image_centre_shows_the_look_at_point() {
     let scene = builder().build(&AccelChoice::default(), [0.0, 0.0], 1.0).unwrap();
     let sample = CameraSample { film: Vec2::splat(0.5), lens: Vec2::ZERO, time: 0.0 };
     let ray = scene.cameras()[0].1.ray(&sample);
@@ -51,7 +51,7 @@ fn a_panel_is_a_light_and_does_not_block_its_own_light() {
 }
 
 #[test]
-fn misspelt_names_are_told_with_the_nearest() {
+fn misspelt_names_suggest_the_nearest() {
     let mut wrong = builder();
     wrong.materials[0] = Spec::new("", "difuse");
     let error = wrong.build(&AccelChoice::default(), [0.0, 0.0], 1.0).err().unwrap();
@@ -75,7 +75,7 @@ fn lone_sphere(position: Vec3, radius: f32) -> bilux_scene::Scene {
 }
 
 #[test]
-fn a_sphere_is_met_where_it_is_however_far_away_the_ray_begins() {
+fn spheres_are_hit_precisely_from_any_distance() {
     for (centre, radius) in
         [(Vec3::ZERO, 1.0), (Vec3::new(700.0, -300.0, 800.0), 0.01), (Vec3::splat(5.0), 1e-3)]
     {
@@ -122,7 +122,7 @@ fn a_sphere_light_needs_a_size_and_a_strength() {
 }
 
 #[test]
-fn spheres_beside_one_tree_answer_as_the_level_above_does() {
+fn the_single_tree_shortcut_matches_the_top_level() {
     let mut builder = builder();
     for (position, radius) in [(Vec3::new(0.3, 0.2, 0.0), 0.4), (Vec3::new(-0.5, 0.6, 0.4), 0.3)] {
         let lamp = Spec::new("", "sphere").with("position", position).with("radius", radius);
@@ -153,7 +153,7 @@ fn spheres_beside_one_tree_answer_as_the_level_above_does() {
 }
 
 #[test]
-fn what_is_typed_is_what_is_written_by_hand() {
+fn typed_specs_equal_handwritten_specs() {
     use bilux_scene::typed::lights::Point;
     use bilux_scene::typed::materials::Dielectric;
     let typed: Spec = Dielectric::new("pane").eta(1.5).thin(true).priority(2).glass("none").into();

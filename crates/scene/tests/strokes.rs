@@ -53,7 +53,7 @@ fn points_are_balls_and_lines_are_tubes_with_colours_between_their_ends() {
 }
 
 #[test]
-fn widths_are_those_of_the_world_wherever_the_object_is() {
+fn stroke_widths_are_in_world_space() {
     let matrix = DMat4::from_scale_rotation_translation(
         DVec3::splat(2.0),
         bilux_math::glam::DQuat::from_rotation_y(0.5),
@@ -86,7 +86,7 @@ fn widths_are_those_of_the_world_wherever_the_object_is() {
 }
 
 #[test]
-fn what_names_no_vertex_is_refused() {
+fn invalid_vertex_indices_are_rejected() {
     let mut builder = SceneBuilder { materials: vec![Spec::new("", "diffuse")], ..SceneBuilder::default() };
     let bad = Mesh { points: vec![7], ..mesh() };
     builder.objects.push(Object::new("dots", Arc::new(bad), 0));
@@ -95,7 +95,7 @@ fn what_names_no_vertex_is_refused() {
 }
 
 #[test]
-fn a_picture_of_twice_the_size_has_half_the_width() {
+fn doubling_the_resolution_halves_stroke_widths() {
     let mut builder = SceneBuilder::default();
     let positions: Vec<Vec3> =
         (0..100_000).map(|i| Vec3::new((i % 317) as f32, (i / 317) as f32, 0.0)).collect();

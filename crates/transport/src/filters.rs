@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_drawn_in_proportion_to_the_filter() {
+    fn points_are_sampled_in_proportion_to_the_filter() {
         for row in FILTERS {
             let off = distance(&Filter::new(row), row);
             assert!(off < 1e-3, "{}: off by {off}", row.entry.name);
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn misspelt_names_are_told_with_the_nearest() {
+    fn misspelt_names_suggest_the_nearest() {
         let error = Filter::named("gausian").unwrap_err();
         assert!(error.to_string().contains("did you mean 'gaussian'?"), "{error}");
     }

@@ -145,14 +145,14 @@ mod tests {
     }
 
     #[test]
-    fn of_few_lights_each_is_sampled_that_shines() {
+    fn few_emitting_lights_are_all_sampled() {
         let choice = LightChoice::weighted([1.0, 0.0, 1e9].into_iter());
         assert_eq!(choice.sample(0.5), 0..3);
         assert_eq!([0, 1, 2].map(|light| choice.probability(light)), [1.0, 0.0, 1.0]);
     }
 
     #[test]
-    fn where_nothing_shines_nothing_is_picked() {
+    fn without_emission_no_light_is_sampled() {
         let dark = LightChoice::weighted([0.0].into_iter());
         assert_eq!(dark.probability(0), 0.0);
         assert!(LightChoice::weighted([].into_iter()).sample(0.5).is_empty());

@@ -119,7 +119,7 @@ impl RenderSettings {
     fn batches(&self) -> Vec<Range<u32>> {
         let Range { start, end } = self.samples;
         if !self.batch_means {
-            return vec![start..end];
+            return std::iter::once(start..end).collect();
         }
         let ends = (start + 1..end).filter(|&sample| BatchMeans::ends_at(sample - start)).chain([end]);
         ends.scan(start, |first, end| Some(std::mem::replace(first, end)..end)).collect()

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_passed_over_changes_nothing() {
+    fn skipped_dimensions_change_nothing() {
         let mut drawn = PixelSampler::new(5, 3, 9, 77);
         let mut skipped = drawn.clone();
         drawn.next_1d();

@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_went_before_the_first_sample_is_in_the_time() {
+    fn time_before_the_first_sample_counts() {
         let stop = Stop { noise: None, time_limit: Some(Duration::from_secs(1000)) };
         let settings = RenderSettings { stop, ..RenderSettings::new(1, 1, 40) };
         for (spent, more) in [(0, true), (1000, false)] {

@@ -43,7 +43,7 @@ fn mean(scene: &Scene, name: &str, settings: &RenderSettings) -> Rgb {
 /// Radiance of a small piece of diffuse floor below a point light, averaged over the film: albedo / π · I cosθ / d²,
 /// times e to the minus σ times the distance from the light to the floor and on to the camera.
 #[test]
-fn a_lamp_a_floor_and_a_camera_in_one_block_follow_beer() {
+fn a_light_a_floor_and_a_camera_in_one_block_follow_beers_law() {
     let mut builder = SceneBuilder::default();
     put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
     let lamp = Vec3::new(0.4, 1.1, -0.3);
@@ -102,7 +102,7 @@ fn indirect(sigma: Rgb) -> Scene {
 
 /// BSDF sampling alone makes no connections: the light that it finds is attenuated along each ray that it traces.
 #[test]
-fn joins_are_dimmed_as_the_ways_that_are_followed() {
+fn connections_are_attenuated_like_traced_rays() {
     let (scene, clear) = (indirect(SIGMA), indirect(Rgb::BLACK));
     let followed = blocks(&scene, &*integrator("path scattering"), 0);
     for (i, name) in ["path", "path lights", "light", "bdpt", "vcm"].into_iter().enumerate() {

@@ -65,7 +65,7 @@ fn measured(scene: &Scene, integrator: &dyn PixelIntegrator, pictures: u64) -> f
 }
 
 #[test]
-fn the_noise_of_every_set_is_foreseen() {
+fn the_noise_of_every_set_is_predicted() {
     let scene = built(&corner());
     let spec = auto().with("radius", RADIUS).with("alpha", 1.0f32).with("aim", false);
     let mut foreseen = vec![0.0; SETS.len()];
@@ -177,7 +177,7 @@ fn light_that_path_cannot_find_is_not_lost() {
 }
 
 #[test]
-fn what_may_not_merge_is_not_told_to() {
+fn merging_sets_are_refused_when_merging_is_off() {
     let spec = auto().with("merge", "never");
     let error = integrators::build(&spec.clone().with("ways", "path-few")).err().unwrap().to_string();
     assert!(error.contains("'path-few' merges"), "{error}");

@@ -30,7 +30,7 @@ fn every_kind_of_light_gives_the_same_from_both_ends() {
 }
 
 #[test]
-fn lamps_of_one_side_light_what_is_in_front_of_them() {
+fn one_sided_lights_illuminate_only_their_front() {
     let panel = |edge_u: Vec3, sides: &str| {
         let spec = Spec::new("", "rect").with("position", Vec3::new(0.5, 3.2, 0.5)).with("radiance", 8.0f32);
         built(&without_mirrors(spec.with("edge_u", edge_u).with("sides", sides)))
@@ -398,7 +398,7 @@ impl PixelIntegrator for Wrong {
 }
 
 #[test]
-fn a_way_that_is_weighted_wrongly_is_found_out() {
+fn a_technique_with_a_wrong_weight_is_detected() {
     let scene = built(&without_small_lights(mixed()));
     let path = blocks(&scene, &*integrator("path"), 0);
     let p = agreement(&path, &blocks(&scene, &Wrong(integrator("bdpt")), 100));

@@ -119,7 +119,7 @@ fn a_prism_turns_each_wavelength_by_its_angle() {
 }
 
 #[test]
-fn glass_that_parts_colours_loses_none_of_them() {
+fn dispersive_glass_conserves_every_colour() {
     let mut builder = SceneBuilder::default();
     let glass = Spec::new("", "dielectric").with("eta", 1.7f32).with("dispersion", 0.7f32);
     put(&mut builder, "clear", Arc::new(shapes::prism(Vec3::X * -0.8, 0.7, 1.0, 3)), glass.clone());
@@ -177,7 +177,7 @@ fn merging(name: &str) -> Box<dyn PixelIntegrator> {
 const STRONG: f32 = 6.0;
 
 #[test]
-fn parted_light_is_the_same_from_both_ends() {
+fn dispersed_light_is_the_same_from_both_ends() {
     let clear = || Spec::new("", "dielectric");
     let frosted = || clear().with("roughness", 0.4f32);
     let ends: [(&str, Spec, Spec, &[&str]); 2] = [
@@ -202,7 +202,7 @@ fn parted_light_is_the_same_from_both_ends() {
 
 /// Rough flint in water that disperses too: what counts is the ratio of their indices, at each wavelength.
 #[test]
-fn parted_light_in_water_is_the_same_from_both_ends() {
+fn dispersed_light_in_water_is_the_same_from_both_ends() {
     let under_water = |eta: f32, dispersion: f32| {
         let glass = Spec::new("", "dielectric").with("roughness", 0.3f32).with("eta", eta);
         let mut builder = SceneBuilder::default();
@@ -258,7 +258,7 @@ impl PixelIntegrator for Wrong {
 }
 
 #[test]
-fn mistakes_with_wavelengths_are_found_out() {
+fn wavelength_bugs_are_detected() {
     let scene = on_a_wall(spot(), Spec::new("", "dielectric"), STRONG);
     let light = blocks(&scene, &*integrator("light"), 0);
     let others = [("bdpt", integrator("bdpt")), ("vcm", merging("vcm")), ("sppm", merging("sppm"))];
@@ -284,7 +284,7 @@ fn mistakes_with_wavelengths_are_found_out() {
 }
 
 /// The still life with dispersive glass.
-fn parted_still_life() -> SceneBuilder {
+fn dispersive_still_life() -> SceneBuilder {
     let mut builder = still_life();
     builder.materials.iter_mut().filter(|spec| spec.kind == "dielectric").for_each(|spec| {
         spec.parameters.set("dispersion", 0.7f32);
@@ -293,8 +293,8 @@ fn parted_still_life() -> SceneBuilder {
 }
 
 #[test]
-fn a_picture_of_parted_light_is_one_picture() {
-    let scene = built(&parted_still_life());
+fn a_picture_with_dispersion_is_deterministic() {
+    let scene = built(&dispersive_still_life());
     let whole = RenderSettings { threads: 2, ..RenderSettings::new(20, 18, 6) };
     let window = Window { x: 5, y: 7, width: 9, height: 4 };
     for name in ["path", "light", "bdpt", "vcm", "sppm", "auto"] {
@@ -317,7 +317,7 @@ fn a_picture_of_parted_light_is_one_picture() {
 
 /// Paths that hit no dispersive glass are the same as without it, to the bit.
 #[test]
-fn other_paths_know_nothing_of_wavelengths() {
+fn paths_without_dispersion_are_unchanged() {
     let mut builder = still_life();
     let plain = built(&builder);
     builder.add_material(Spec::new("", "dielectric").with("dispersion", 1.0f32));

@@ -28,7 +28,7 @@ fn near(a: Rgb, b: Rgb) -> bool {
 }
 
 #[test]
-fn a_floor_is_told_as_it_is() {
+fn features_of_a_floor_are_exact() {
     let found = seen(&from_above(), &RenderSettings::new(33, 33, 8));
     let middle = 33 * 16 + 16;
     assert!(found.albedo.iter().all(|&albedo| near(albedo, RED)));
@@ -80,7 +80,7 @@ fn few_samples_have_the_features_of_many() {
 }
 
 #[test]
-fn they_do_not_depend_on_threads_crop_or_range() {
+fn features_do_not_depend_on_threads_crop_or_range() {
     let builder = still_life();
     let base = RenderSettings::new(40, 30, 8);
     let all = seen(&builder, &RenderSettings { threads: 1, ..base.clone() });

@@ -91,7 +91,7 @@ fn grain(seed: u64, number: impl Fn(f32) -> f32, is_data: bool) -> Arc<Texture> 
 
 /// A floor and a ball with textures far finer than a pixel: the base is light where the coat is dark, and dark where it
 /// is clear, so that the width of the filter shows in the mean; their roughness varies as finely.
-fn fine_grain() -> SceneBuilder {
+fn fine_noise() -> SceneBuilder {
     let mut builder = SceneBuilder::default();
     builder.textures.push(grain(1, |x| x, false));
     builder.textures.push(grain(1, |x| 1.0 - x, false));
@@ -113,15 +113,15 @@ fn fine_grain() -> SceneBuilder {
 }
 
 #[test]
-fn what_is_coarser_looks_the_same_from_both_ends() {
-    let [_, filtered] = both(&fine_grain(), 16);
+fn filtered_textures_look_the_same_from_both_ends() {
+    let [_, filtered] = both(&fine_noise(), 16);
     assert_like_path("fine grain", &filtered, &["light", "bdpt", "vcm", "auto"]);
 }
 
 /// A planted bug: a footprint as seen from the light, where a light subpath comes from.
 #[test]
-fn a_footprint_that_hangs_on_the_path_is_found_out() {
-    let builder = fine_grain();
+fn a_footprint_that_depends_on_the_path_is_detected() {
+    let builder = fine_noise();
     let [_, right] = both(&builder, 16);
     let mut from_lamp = builder.clone();
     from_lamp.cameras.clear();

@@ -6,7 +6,9 @@ use bilux_math::{Rgb, Vec2, Vec3};
 use bilux_scene::{Mesh, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::RenderSettings;
 use common::statistics::{assert_like_path, assert_unlike_path};
-use common::{assert_same_whatever_finds, built, diffuse, floor, integrator, look, put, quad, shoot, sky};
+use common::{
+    assert_same_with_every_accelerator, built, diffuse, floor, integrator, look, put, quad, shoot, sky,
+};
 use std::sync::Arc;
 
 /// A square above the floor, with texture coordinates.
@@ -32,7 +34,7 @@ fn sheet_over_a_floor(material: Spec, lamp: f32) -> SceneBuilder {
 }
 
 #[test]
-fn what_has_holes_looks_the_same_from_both_ends() {
+fn opacity_looks_the_same_from_both_ends() {
     let lace = diffuse(0.6f32).with("opacity", Value::Texture(0));
     let screen = Spec::new("", "principled").with("opacity", 0.4f32).with("base_color", 0.7f32);
     let sign = diffuse(0.3f32).with("emission", Rgb::new(3.0, 2.0, 1.0)).with("opacity", Value::Texture(0));
@@ -47,7 +49,7 @@ fn what_has_holes_looks_the_same_from_both_ends() {
 
 /// A planted bug: a surface that stops a quarter more light than it states.
 #[test]
-fn what_stops_too_much_is_found_out() {
+fn a_wrong_opacity_is_detected() {
     let gauze = |opacity: f32| {
         let material = Spec::new("", "principled").with("opacity", opacity).with("base_color", 0.7f32);
         built(&sheet_over_a_floor(material, 12.0))
@@ -57,7 +59,7 @@ fn what_stops_too_much_is_found_out() {
 
 /// A sheet in front of a sky lets the rest of the sky's light through, and emits its share.
 #[test]
-fn a_share_of_the_surface_gives_that_share_of_the_light() {
+fn opacity_scales_transmission_and_emission() {
     let seen = |material: Spec| {
         let mut builder = SceneBuilder::default();
         let (corner, u, v) = (Vec3::new(-9.0, -9.0, 0.0), Vec3::X * 18.0, Vec3::Y * 18.0);
@@ -79,8 +81,8 @@ fn a_share_of_the_surface_gives_that_share_of_the_light() {
 }
 
 #[test]
-fn holes_are_the_same_whatever_finds_them() {
+fn opacity_is_the_same_with_every_accelerator() {
     let lace = diffuse(0.6f32).with("opacity", Value::Texture(0));
     let builder = sheet_over_a_floor(lace, 12.0);
-    assert_same_whatever_finds(&builder);
+    assert_same_with_every_accelerator(&builder);
 }

@@ -122,7 +122,7 @@ fn as_if_independent(scene: &Scene, integrator: &dyn PixelIntegrator, seed: u64)
 }
 
 #[test]
-fn runs_of_one_sequence_are_not_independent_and_tell_too_much() {
+fn runs_of_one_sequence_are_not_independent() {
     let ((scene, truth), path) = (&*KNOWN, integrator("path"));
     let (mut held, mut all) = (0, 0);
     for seed in 0..SEEDS {
@@ -166,7 +166,7 @@ fn intervals_are_the_same_whatever_threads_tiles_and_parts() {
 }
 
 #[test]
-fn what_leaves_nothing_to_chance_has_no_interval() {
+fn deterministic_integrators_have_no_interval() {
     let scene = two_balls();
     let camera = &scene.cameras()[0].1;
     for name in ["cast", "whitted"] {

@@ -71,7 +71,7 @@ fn photons_from_around_a_bend_give_no_spike() {
 
 /// Mitsuba 0.6 #132: a bright dot where a point light is in view. It has no extent, so it must be invisible.
 #[test]
-fn lamps_without_extent_leave_no_dot_where_they_stand() {
+fn delta_lights_leave_no_firefly_at_their_position() {
     let mut builder = SceneBuilder::default();
     // Something for the lights to illuminate, out of view; the surface behind them is black.
     put(&mut builder, "floor", floor(-3.0, 1.0), diffuse(0.5f32));
@@ -114,7 +114,7 @@ fn under_a_mesh(stretch: f64, instanced: bool) -> SceneBuilder {
 
 /// Mitsuba 3 #42: light subpaths from emissive meshes are not as bright as camera subpaths that find them.
 #[test]
-fn meshes_that_give_light_look_the_same_from_both_ends() {
+fn emissive_meshes_look_the_same_from_both_ends() {
     for instanced in [false, true] {
         let scene = built(&under_a_mesh(1.0, instanced));
         let path = blocks(&scene, &*integrator("path"), 0);

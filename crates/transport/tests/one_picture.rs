@@ -80,7 +80,7 @@ fn another_seed_gives_other_noise() {
 }
 
 /// A scene in which every extent of `cook` has something to spread over.
-fn everything_spreads() -> Scene {
+fn every_extent_matters_scene() -> Scene {
     let mut builder = still_life();
     builder.materials[3].parameters.set("translucency", 6.0f32);
     let keys = [(0.0, Vec3::ZERO), (1.0, Vec3::new(0.5, 0.3, 0.0))].map(|(time_seconds, translation)| {
@@ -102,7 +102,7 @@ fn everything_spreads() -> Scene {
 
 #[test]
 fn cook_without_extents_is_whitted_to_the_bit() {
-    let scene = everything_spreads();
+    let scene = every_extent_matters_scene();
     let settings = RenderSettings::new(64, 64, 3);
     let whitted = shoot(&scene, &*integrator("whitted"), &settings).film;
     let cook = |key: &str, value: f32| {
@@ -132,7 +132,7 @@ impl Progress for StopAfter {
 }
 
 #[test]
-fn what_is_done_when_stopped_is_whole_and_known() {
+fn cancelled_renders_are_complete_up_to_their_coverage() {
     let scene = built(&still_life());
     let (path, camera) = (integrator("path"), scene.cameras()[0].1.clone());
     let settings = RenderSettings { threads: 3, ..RenderSettings::new(40, 40, 9) };
@@ -174,7 +174,7 @@ fn bad_samples_are_located_whatever_the_threads() {
 }
 
 #[test]
-fn a_replay_is_the_sample_and_tells_its_story() {
+fn a_replay_reproduces_the_sample_and_records_its_events() {
     let scene = built(&still_life());
     let camera = &*scene.cameras()[0].1;
     for row in INTEGRATORS {

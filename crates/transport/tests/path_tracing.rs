@@ -38,7 +38,7 @@ fn assert_mean(found: &[Rgb], wanted: f64) {
 }
 
 #[test]
-fn a_convex_matt_body_under_an_even_sky_shows_its_albedo() {
+fn a_convex_diffuse_body_under_a_uniform_sky_shows_its_albedo() {
     for sampling in ["mis", "lights", "scattering"] {
         let mut builder = SceneBuilder::default();
         put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 16, false), diffuse(0.6f32));
@@ -67,7 +67,7 @@ fn inside_a_glowing_shell_light_adds_up_to_the_geometric_series() {
 }
 
 #[test]
-fn clear_glass_in_a_white_furnace_cannot_be_seen() {
+fn smooth_dielectric_is_invisible_in_a_white_furnace() {
     for (camera, thin) in [(10.0, false), (0.2, false), (10.0, true)] {
         let mut builder = SceneBuilder::default();
         let glass = Spec::new("", "dielectric").with("thin", thin);
@@ -111,7 +111,7 @@ impl PixelIntegrator for Wrong {
 }
 
 #[test]
-fn all_ways_of_finding_light_agree() {
+fn all_sampling_techniques_agree() {
     let scene = built(&mixed());
     let mis = blocks(&scene, &*path("mis"), 0);
     for (sampling, seed) in [("lights", 100), ("scattering", 200)] {

@@ -46,7 +46,7 @@ fn assert_mean(name: &str, found: [(f64, f64); 3], wanted: [f64; 3]) {
 }
 
 #[test]
-fn survival_does_not_depend_on_which_lobe_was_drawn() {
+fn roulette_does_not_depend_on_the_sampled_lobe() {
     let mut builder = SceneBuilder::default();
     let material = two_coloured(&mut builder);
     put(&mut builder, "ball", ball(Vec3::ZERO, 1.0, 12, false), material);
@@ -60,7 +60,7 @@ fn survival_does_not_depend_on_which_lobe_was_drawn() {
 }
 
 #[test]
-fn nor_does_it_where_light_goes_to_and_fro() {
+fn roulette_does_not_depend_on_the_lobe_with_interreflection() {
     let mut builder = SceneBuilder::default();
     let material = two_coloured(&mut builder);
     put(&mut builder, "floor", floor(0.0, 2.0), diffuse(0.8f32));

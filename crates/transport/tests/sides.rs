@@ -8,7 +8,7 @@ use bilux_scene::{Mesh, Scene, SceneBuilder, Spec, Texture, Value};
 use bilux_transport::{RenderSettings, integrators};
 use common::statistics::{UNLIKELY, agreement, assert_like_path, assert_unlike_path, blocks};
 use common::{
-    assert_same_whatever_finds, ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky,
+    assert_same_with_every_accelerator, ball, built, diffuse, floor, integrator, look, put, quad, shoot, sky,
 };
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ fn one_sided(material: Spec) -> Spec {
 }
 
 #[test]
-fn what_is_seen_from_its_front_looks_the_same_from_both_ends() {
+fn one_sided_visibility_looks_the_same_from_both_ends() {
     let plain = one_sided(diffuse(Rgb::new(0.3, 0.5, 0.8)));
     let shiny = one_sided(Spec::new("", "principled").with("specular_roughness", 0.3f32));
     let lace = one_sided(diffuse(0.6f32)).with("opacity", Value::Texture(0));
@@ -59,7 +59,7 @@ fn what_is_seen_from_its_front_looks_the_same_from_both_ends() {
 
 /// Planted bugs: light subpaths that do not reach the camera through a back, and those that show it the back.
 #[test]
-fn backs_that_light_paths_do_not_know_are_found_out() {
+fn light_subpaths_that_ignore_backs_are_detected() {
     let grey = || diffuse(0.5f32);
     let (right, wrong) = (built(&behind(wall(), one_sided(grey()))), built(&behind(wall(), grey())));
     assert_unlike_path(&right, &wrong, &["light", "bdpt"]);
@@ -67,7 +67,7 @@ fn backs_that_light_paths_do_not_know_are_found_out() {
 
 /// What lies behind the back is visible as if nothing were in front of it, in the shadow that it casts.
 #[test]
-fn a_back_is_looked_through_and_gives_shade() {
+fn a_back_is_invisible_and_casts_a_shadow() {
     let seen = |lid: Arc<Mesh>| {
         let mut builder = SceneBuilder::default();
         put(&mut builder, "floor", floor(0.0, 3.0), diffuse(0.5f32));
@@ -88,9 +88,9 @@ fn a_back_is_looked_through_and_gives_shade() {
 }
 
 #[test]
-fn backs_are_the_same_whatever_finds_them() {
+fn backs_are_the_same_with_every_accelerator() {
     let builder = behind(wall(), one_sided(diffuse(0.6f32)));
-    assert_same_whatever_finds(&builder);
+    assert_same_with_every_accelerator(&builder);
 }
 
 /// An upright sheet of two one-sided shells; the one that faces the camera is `gap` behind the one that faces away.
@@ -149,7 +149,7 @@ fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
 
 /// Planted bug: shells that the camera looks through but that shade each other, as a canopy shades what is below it.
 #[test]
-fn shells_that_shade_each_other_are_found_out() {
+fn shells_that_shade_each_other_are_detected() {
     let (_, paper) = &of_sheets()[0];
     let right = stage(|builder| sheet(builder, 1e-4, paper));
     let wrong = stage(|builder| sheet(builder, 2e-2, paper));
@@ -186,9 +186,9 @@ fn a_ball_of_two_shells_looks_like_a_ball() {
 }
 
 #[test]
-fn sheets_are_the_same_whatever_finds_them() {
+fn sheets_are_the_same_with_every_accelerator() {
     let mut builder = behind(wall(), one_sided(diffuse(0.6f32)));
     sheet(&mut builder, 1e-4, &diffuse(0.6f32));
     sheet(&mut builder, 0.0, &diffuse(0.6f32));
-    assert_same_whatever_finds(&builder);
+    assert_same_with_every_accelerator(&builder);
 }

@@ -12,7 +12,7 @@ fn until(noise: f32) -> RenderSettings {
 }
 
 #[test]
-fn the_noise_that_is_told_is_the_noise_that_there_is() {
+fn the_stated_noise_is_the_measured_noise() {
     let scene = built(&mixed());
     let truth = shoot(
         &scene,
@@ -45,7 +45,7 @@ fn the_noise_that_is_told_is_the_noise_that_there_is() {
 }
 
 #[test]
-fn what_is_there_at_the_end_are_the_first_samples() {
+fn an_early_stop_keeps_the_first_samples() {
     let scene = built(&mixed());
     for name in ["path", "vcm"] {
         let ended = shoot(&scene, &*integrator(name), &until(0.2));

@@ -68,7 +68,7 @@ pub fn samples_are_sound(case: &LightCase) -> Result<(), String> {
         let normal = sample.n_light == Vec3::ZERO
             || (unit(sample.n_light) && sample.n_light.dot(sample.direction) > 0.0);
         let positive = |pdf: f32| pdf.is_finite() && pdf > 0.0;
-        let is_left_out = sample.pdf_direct == 0.0 && !case.light.finds_all();
+        let is_left_out = sample.pdf_direct == 0.0 && !case.light.samples_all_light();
         let densities = positive(sample.pdf_emission) && (is_left_out || positive(sample.pdf_direct));
         let numbers = densities && sample.le.is_finite();
         let from_centre = sample.p - bounds.centre();

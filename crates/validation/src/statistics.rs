@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_says_nothing_is_no_agreement() {
+    fn no_evidence_is_not_agreement() {
         assert_eq!(welch(&[0.0; 4], &[0.0; 4]), None);
         assert_eq!(welch(&[0.0; 4], &[1.0; 4]), Some(0.0));
     }

@@ -83,7 +83,7 @@ impl PixelIntegrator for Buggy {
 }
 
 #[test]
-fn a_biased_integrator_is_told_apart() {
+fn a_biased_integrator_is_detected() {
     let ways = ways();
     let cornell = bilux::generate(&Spec::new("", "cornell")).unwrap();
     let stage = &stages("cornell", &cornell, [32, 24]).unwrap()[0];

@@ -142,7 +142,7 @@ fn bare_meshes_look_the_same_in_every_format() {
             *material = Spec::new(&material.name, "diffuse").with("reflectance", 0.6f32);
         }
         // These lights are all there is: no studio is added.
-        scene.surroundings_unsaid = false;
+        scene.environment_unspecified = false;
         scene.warnings.clear();
         scene
     };

@@ -226,8 +226,8 @@ impl Light for Spoilt {
         self.light.unaimed_pdf(bounds, pdf_direct, direction, cos)
     }
 
-    fn finds_all(&self) -> bool {
-        self.light.finds_all()
+    fn samples_all_light(&self) -> bool {
+        self.light.samples_all_light()
     }
 
     fn shines(&self, hit: &Surface, wo: Vec3) -> bool {
@@ -421,7 +421,7 @@ fn every_check_catches_its_planted_bugs() {
 }
 
 #[test]
-fn what_has_no_size_cannot_be_aimed_at_from_afar() {
+fn infinite_lights_cannot_aim_at_empty_bounds() {
     let point = Aabb::of_points([Vec3::ONE]);
     for kind in ["directional", "environment"] {
         let case = with_light(kind, Spec::new("", kind));
@@ -437,7 +437,7 @@ fn what_has_no_size_cannot_be_aimed_at_from_afar() {
 }
 
 #[test]
-fn rays_of_a_lamp_far_from_the_origin_do_not_meet_it() {
+fn rays_of_a_light_far_from_the_origin_do_not_hit_it() {
     let at = Vec3::new(900.0, -700.0, 800.0);
     let panel = Spec::new("", "rect")
         .with("edge_u", Vec3::new(1.0, 0.3, 0.1))

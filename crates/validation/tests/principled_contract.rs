@@ -316,7 +316,7 @@ fn the_checks_see_bugs_in_it() {
 }
 
 #[test]
-fn parameters_out_of_range_are_told() {
+fn parameters_out_of_range_are_reported() {
     for (key, number, range) in [
         ("specular_roughness", -0.1, "0 to 1"),
         ("specular_ior", 0.0, "1 to 10"),

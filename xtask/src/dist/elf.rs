@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_program_is_an_error() {
+    fn files_that_are_not_programs_are_errors() {
         for length in 0..program(1).len() {
             assert!(require_static(&program(1)[..length]).is_err(), "{length}");
         }

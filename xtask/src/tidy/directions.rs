@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_may_use_what_stands_above() {
+    fn no_crate_may_use_a_higher_one() {
         for (at, (name, allowed)) in MAY_USE.iter().enumerate() {
             let below: Vec<_> = MAY_USE[..at].iter().map(|(name, _)| name).collect();
             assert!(allowed.iter().all(|other| below.contains(&other)), "{name}");

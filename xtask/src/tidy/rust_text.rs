@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_never_ends_ends_with_the_file() {
+    fn unterminated_literals_end_with_the_file() {
         for text in ["\"abc", "/* abc", "r#\"abc\"", "'\\", "// abc", "'"] {
             let rust = RustText::new(text);
             assert_eq!(rust.code.len(), text.len());

@@ -22,7 +22,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     for (file, rust) in repository.rust() {
         let allowed = ALLOWED.iter().any(|(path, _)| file.path.starts_with(path));
         let comments: Vec<_> = rust.comments.lines().collect();
-        for (number, line) in rust.code.lines().enumerate().filter(|(_, line)| says_unsafe(line)) {
+        for (number, line) in rust.code.lines().enumerate().filter(|(_, line)| contains_unsafe(line)) {
             let above = &comments[number.saturating_sub(REACH)..=number];
             if !allowed {
                 let message = "`unsafe` outside the modules that may have it: find a safe way";
@@ -37,7 +37,7 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 }
 
 /// Whether a line of code contains the word; `unsafe_code`, the lint, is another word.
-fn says_unsafe(line: &str) -> bool {
+fn contains_unsafe(line: &str) -> bool {
     line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == "unsafe")
 }
 

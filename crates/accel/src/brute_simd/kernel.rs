@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn every_level_gives_the_mask_of_its_plain_twin_and_keeps_what_the_test_accepts() {
+    fn every_level_gives_the_scalar_mask_and_keeps_what_the_test_accepts() {
         let mut kept = 0;
         for seed in 0..20_000 {
             let vector = |i: u64| std::array::from_fn(|k| number(seed, i * 3 + k as u64));

@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn areas_foretell_what_a_split_gives() {
+    fn areas_predict_the_result_of_a_split() {
         let mut cell = unit_box();
         for (point, normal) in [
             ([0.5, 0.5, 0.5], [0.3, -0.9, 0.2]),
@@ -274,13 +274,13 @@ mod tests {
     }
 
     #[test]
-    fn parts_reach_over_the_plane_by_the_tolerance() {
+    fn parts_extend_over_the_plane_by_the_tolerance() {
         let [left, right] = unit_box().split(&Plane::perpendicular(0, 0.5), 0.25);
         assert_eq!((left.area(), right.area()), (5.0, 5.0));
     }
 
     #[test]
-    fn a_plane_beside_a_cell_leaves_it_whole() {
+    fn a_plane_that_misses_a_cell_leaves_it_whole() {
         let plane = Plane::perpendicular(1, 2.0);
         assert_eq!(unit_box().areas(&plane), [6.0, 0.0]);
         let [left, right] = unit_box().split(&plane, 0.1);

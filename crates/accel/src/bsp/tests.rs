@@ -252,7 +252,7 @@ fn every_point_of_a_triangle_is_in_a_leaf_that_holds_it() {
 
 /// The planted bug that the two tests above must detect: one side of a plane lacks a triangle that belongs there.
 #[test]
-fn a_lost_reference_is_seen() {
+fn a_lost_reference_is_detected() {
     let mesh = TriangleMesh::from_corners(floor(4)).unwrap();
     let space = Space::new(&mesh.bounds());
     let tree = |plane: Plane| {
@@ -321,7 +321,7 @@ fn most_triangles_are_never_tested() {
 }
 
 #[test]
-fn references_and_depth_keep_their_caps() {
+fn references_and_depth_stay_within_their_limits() {
     for (name, mesh) in meshes() {
         for (rule, tree) in trees(&mesh) {
             let cap = if rule.contains("Sah") { super::sah::GROWTH } else { super::paper::GROWTH };
@@ -391,7 +391,7 @@ fn trees_do_not_depend_on_threads() {
 }
 
 #[test]
-fn planes_along_an_axis_are_known_as_such() {
+fn axis_aligned_planes_are_recognised() {
     let plane = Plane::through(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)).unwrap();
     assert_eq!(plane.axis(), None);
     assert_eq!(Plane::through(DVec3::ONE, DVec3::new(0.0, -2.0, 0.0)).unwrap().axis(), Some(1));
@@ -399,7 +399,7 @@ fn planes_along_an_axis_are_known_as_such() {
 }
 
 #[test]
-fn every_listed_choice_has_a_meaning_and_the_default_is_the_default() {
+fn every_listed_choice_parses_and_the_listed_default_is_the_default() {
     for parameter in super::paper::ENTRY.entry.parameters {
         let ParameterKind::Choice(choices) = parameter.kind else { panic!("{}", parameter.name) };
         let known = |choice: &str| match parameter.name {

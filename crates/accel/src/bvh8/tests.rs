@@ -83,7 +83,7 @@ fn validate(tree: &Bvh8, triangles: &[Triangle]) -> (usize, bool) {
 }
 
 #[test]
-fn trees_are_sound_and_shallow_over_what_makes_builders_slow() {
+fn trees_are_valid_and_shallow_on_worst_cases_for_builders() {
     const N: usize = 50_000;
     let equal_centres = |i: usize| {
         let r = 1.0 + number(1, i);
@@ -163,7 +163,7 @@ fn saved(tree: &Bvh8) -> Vec<u8> {
 }
 
 #[test]
-fn forged_trees_are_refused_or_harmless() {
+fn forged_trees_are_rejected_or_harmless() {
     let tree = build(&(0..200).map(small).collect::<Vec<_>>(), Quality::Balanced);
     let bytes = saved(&tree);
     let (mut refused, mut harmless) = (0, 0);

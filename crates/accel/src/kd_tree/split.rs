@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_keep_order_and_come_back() {
+    fn keys_keep_order_and_round_trip() {
         let numbers = [f32::MIN, -1.5, -1e-45, 0.0, 1e-45, 2.0, f32::MAX];
         assert!(numbers.windows(2).all(|pair| key(pair[0]) < key(pair[1])));
         assert!(numbers.iter().all(|&x| place(key(x)) == x));
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn empty_space_is_cut_off_at_the_edge_of_what_is_there() {
+    fn empty_space_is_cut_off_at_the_bounds_of_the_triangles() {
         let cell = [[0.0; 3], [10.0, 1.0, 1.0]];
         for count in [10, 1000] {
             let references: Vec<_> = (0..count).map(|_| reference(9.0, 9.5)).collect();
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_parted_stays_a_leaf() {
+    fn inseparable_triangles_stay_a_leaf() {
         let cell = [[0.0; 3], [1.0; 3]];
         for count in [10, 1000] {
             let references: Vec<_> = (0..count).map(|_| reference(0.0, 1.0)).collect();

@@ -1,6 +1,6 @@
 //! The same tree front to back: the first hit in a pixel stays, and what is covered is skipped.
 
-use super::canvas::{Canvas, NOBODY};
+use super::canvas::{Canvas, NO_OWNER};
 use super::coverage::Coverage;
 use super::partition::{Child, Piece, Start, Stop, Tree, draw_piece};
 use super::polygon::corners;
@@ -77,12 +77,12 @@ impl Drawing<'_> {
 
     fn draw(&mut self, node: u32, canvas: &mut Canvas) {
         for piece in self.tree.pieces_on(node) {
-            if self.is_surely_back(piece, node) {
+            if self.is_certainly_back_facing(piece, node) {
                 canvas.counts.culled_back_faces += 1;
                 continue;
             }
             let coverage = &mut self.coverage;
-            let open = |canvas: &Canvas, pixel| [NOBODY, node].contains(&canvas.owner(pixel));
+            let open = |canvas: &Canvas, pixel| [NO_OWNER, node].contains(&canvas.owner(pixel));
             draw_piece(self.tree, piece, self.screen, canvas, open, |canvas, hit| {
                 coverage.cover(hit.pixel);
                 canvas.put_first_or_nearer(hit, node);
@@ -91,7 +91,7 @@ impl Drawing<'_> {
     }
 
     /// True when the eye's side of the partition plane proves that the ray test would find a back face.
-    fn is_surely_back(&self, piece: &Piece, node: u32) -> bool {
+    fn is_certainly_back_facing(&self, piece: &Piece, node: u32) -> bool {
         if self.options.culling != Culling::Back || !self.options.cull_by_partition {
             return false;
         }

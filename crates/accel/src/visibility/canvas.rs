@@ -10,7 +10,7 @@ use crate::triangle::PreparedRay;
 use bilux_math::DVec3;
 
 /// Marks a pixel that has no owner yet.
-pub(super) const NOBODY: u32 = u32::MAX;
+pub(super) const NO_OWNER: u32 = u32::MAX;
 
 /// The contents of each pixel, and the work so far.
 #[derive(Debug)]
@@ -45,7 +45,7 @@ impl<'a> Canvas<'a> {
             rays,
             ids: vec![BACKGROUND; pixels],
             t: vec![f32::INFINITY; pixels],
-            owner: vec![NOBODY; pixels],
+            owner: vec![NO_OWNER; pixels],
         }
     }
 
@@ -70,7 +70,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// The owner that wrote the pixel last, or [`NOBODY`].
+    /// The owner that wrote the pixel last, or [`NO_OWNER`].
     #[inline]
     pub(super) fn owner(&self, pixel: usize) -> u32 {
         self.owner[pixel]
@@ -80,7 +80,7 @@ impl<'a> Canvas<'a> {
     #[inline]
     pub(super) fn put(&mut self, hit: PixelHit, owner: u32) {
         let PixelHit { pixel, triangle, t } = hit;
-        self.counts.overdraw += u64::from(self.owner[pixel] != NOBODY);
+        self.counts.overdraw += u64::from(self.owner[pixel] != NO_OWNER);
         self.ids[pixel] = triangle;
         self.t[pixel] = t;
         self.owner[pixel] = owner;
@@ -91,7 +91,7 @@ impl<'a> Canvas<'a> {
     pub(super) fn put_if_nearer(&mut self, hit: PixelHit, owner: u32) {
         self.counts.depth_comparisons += 1;
         let (t, id) = (self.t[hit.pixel], self.ids[hit.pixel]);
-        if self.owner[hit.pixel] == NOBODY || hit.t < t || (hit.t == t && hit.triangle < id) {
+        if self.owner[hit.pixel] == NO_OWNER || hit.t < t || (hit.t == t && hit.triangle < id) {
             self.put(hit, owner);
         }
     }

@@ -1,7 +1,7 @@
 //! Painter's algorithm of Newell, Newell and Sancha: before a polygon is painted, every polygon that it might hide is
 //! shown to be behind it; polygons that overlap in a cycle are cut [Newell 1972].
 
-use super::canvas::{Canvas, NOBODY};
+use super::canvas::{Canvas, NO_OWNER};
 use super::polygon::{Plane, clip, corners};
 use super::screen::{Footprint, Screen};
 use super::{View, VisibilityEntry, VisibilityOptions, VisibilityResult};
@@ -327,7 +327,7 @@ fn paint(index: u32, pieces: &[Piece], eye: DVec3, canvas: &mut Canvas) {
             return;
         }
         let below = canvas.owner(pixel);
-        if below != NOBODY && pieces[below as usize].touches(piece.triangle) {
+        if below != NO_OWNER && pieces[below as usize].touches(piece.triangle) {
             canvas.put_if_nearer(hit, index);
         } else {
             canvas.put(hit, index);

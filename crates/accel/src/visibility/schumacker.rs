@@ -5,7 +5,7 @@
 //! with too many faces, or one whose faces can hide each other in a cycle: in that case by the plane of a face in the
 //! cycle, which also cuts what crosses it.
 
-use super::canvas::{Canvas, NOBODY};
+use super::canvas::{Canvas, NO_OWNER};
 use super::partition::{Child, Piece, Start, Stop, SubtreeSlot, Tree, draw_piece, whole_pieces};
 use super::polygon::{Plane, corners};
 use super::result::VisibilityCounts;
@@ -130,7 +130,7 @@ impl Clusters {
     /// Draws what lies within the thickness of a plane between clusters, where depth decides.
     fn draw_on(&self, node: u32, screen: &Screen, canvas: &mut Canvas) {
         for piece in self.tree.pieces_on(node) {
-            let open = |canvas: &Canvas, pixel| [NOBODY, node].contains(&canvas.owner(pixel));
+            let open = |canvas: &Canvas, pixel| [NO_OWNER, node].contains(&canvas.owner(pixel));
             draw_piece(&self.tree, piece, screen, canvas, open, |canvas, hit| {
                 canvas.put_first_or_nearer(hit, node);
             });
@@ -150,16 +150,16 @@ impl Clusters {
             let piece = &cluster.pieces[face.piece];
             let open = |canvas: &Canvas, pixel| {
                 let owner = canvas.owner(pixel);
-                owner == NOBODY || own.contains(&owner)
+                owner == NO_OWNER || own.contains(&owner)
             };
             draw_piece(&self.tree, piece, screen, canvas, open, |canvas, hit| {
                 let owner = canvas.owner(hit.pixel);
-                if owner == NOBODY {
+                if owner == NO_OWNER {
                     canvas.put(hit, first + face.piece as u32);
                     return;
                 }
                 canvas.counts.sort_comparisons += 1;
-                if !cluster.is_surely_behind(face.piece, (owner - first) as usize, screen.eye) {
+                if !cluster.is_certainly_behind(face.piece, (owner - first) as usize, screen.eye) {
                     canvas.put_if_nearer(hit, first + face.piece as u32);
                 }
             });
@@ -187,7 +187,7 @@ impl Cluster {
     }
 
     /// True when no hit of `late` can be as near as one of `early`, seen from the eye.
-    fn is_surely_behind(&self, late: usize, early: usize, eye: DVec3) -> bool {
+    fn is_certainly_behind(&self, late: usize, early: usize, eye: DVec3) -> bool {
         let beyond = |face: &FacePlane, piece: &Piece, away: f64| {
             let side = face.plane.side(eye);
             let (low, high) = face.plane.range(&piece.polygon);

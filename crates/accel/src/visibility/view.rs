@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_hold_what_they_are_asked_for() {
+    fn lanes_between_two_positions_are_found() {
         let view = square(90.0, 4);
         assert_eq!(view.columns.between(-0.3, 0.3), (1, 3));
         assert_eq!(view.columns.between(-0.2, 0.2), (2, 2));
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn senseless_views_are_refused() {
+    fn invalid_views_are_rejected() {
         let forward = vec![[0.0, 0.0, 1.0]];
         assert_eq!(View::new([0.0; 3], 0, 4, vec![], 0.0).unwrap_err(), ViewError::Size(0, 4));
         assert!(View::new([0.0; 3], usize::MAX, 2, vec![], 0.0).is_err());

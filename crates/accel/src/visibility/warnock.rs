@@ -30,7 +30,7 @@ fn run(view: &View, mesh: &TriangleMesh, options: &VisibilityOptions) -> Visibil
         .iter()
         .enumerate()
         .filter_map(|(index, triangle)| Candidate::new(index as u32, &corners(triangle)?, &screen))
-        .filter(|candidate| !(options.culling == Culling::Back && candidate.is_surely_back()))
+        .filter(|candidate| !(options.culling == Culling::Back && candidate.is_certainly_back_facing()))
         .collect();
     canvas.counts.pieces = candidates.len() as u64;
     let all: Rc<[(u32, Cover)]> = (0..candidates.len() as u32).map(|index| (index, Cover::Partly)).collect();
@@ -112,7 +112,7 @@ impl Candidate {
         })
     }
 
-    fn is_surely_back(&self) -> bool {
+    fn is_certainly_back_facing(&self) -> bool {
         self.edges.is_some() && !self.front
     }
 }

@@ -111,7 +111,7 @@ pub fn queries() -> [Query<'static>; 6] {
 }
 
 /// Rays that start or end exactly at a hit or next to it, or that exclude its primitive.
-fn sharpened(ray: &Ray, hit: &Hit) -> [Ray; 5] {
+fn rays_ending_at_hit(ray: &Ray, hit: &Hit) -> [Ray; 5] {
     [
         Ray { t_max: hit.t, ..*ray },
         Ray { t_max: hit.t.next_down(), ..*ray },
@@ -135,7 +135,7 @@ impl Truth {
             for (number, query) in queries().iter().enumerate() {
                 cases.push((*ray, number, truth.closest_hit(ray, query)));
             }
-            for sharp in first.iter().flat_map(|hit| sharpened(ray, hit)) {
+            for sharp in first.iter().flat_map(|hit| rays_ending_at_hit(ray, hit)) {
                 cases.push((sharp, 0, truth.closest_hit(&sharp, &queries()[0])));
             }
         }

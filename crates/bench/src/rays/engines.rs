@@ -162,7 +162,7 @@ impl<A: Accelerator + ?Sized> Engine for Ours<A> {
     }
 
     fn trace(&self, batch: &Batch, answers: Option<&mut Answers>) -> f64 {
-        let (query, found) = (Query::default(), |&hit: &bool| hit.then_some(NOWHERE));
+        let (query, found) = (Query::default(), |&hit: &bool| hit.then_some(HIT_WITHOUT_LOCATION));
         match (self.mode, batch.any) {
             (Mode::Single, true) => loop_over(batch, answers, |ray| self.tree.any_hit(ray, &query), found),
             (Mode::Single, false) => {
@@ -181,7 +181,7 @@ impl<A: Accelerator + ?Sized> Engine for Ours<A> {
 }
 
 /// The hit that stands for any hit, which has no location.
-pub(super) const NOWHERE: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
+pub(super) const HIT_WITHOUT_LOCATION: Hit = Hit { t: 0.0, u: 0.0, v: 0.0, primitive: 0, instance: 0 };
 
 /// Times `ask` over all rays, one by one.
 pub(super) fn loop_over<T: Clone + Default>(

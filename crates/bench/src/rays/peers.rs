@@ -1,6 +1,6 @@
 //! Competitors that are crates, each called as in its own examples. Behind the feature `peers`.
 
-use super::engines::{Answers, Engine, NOWHERE, Named, loop_over};
+use super::engines::{Answers, Engine, HIT_WITHOUT_LOCATION, Named, loop_over};
 use super::{Batch, Mode};
 use bilux::accel::{Hit, Ray, TriangleMesh};
 use obvhs::BvhBuildParams;
@@ -112,7 +112,7 @@ impl<T: ObvhsTree> Engine for Obvhs<T> {
             |ray: &Ray| obvhs::ray::Ray::new(ray.origin.into(), ray.direction.into(), ray.t_min, ray.t_max);
         if batch.any {
             let ask = |ray: &Ray| self.tree.any(own(ray), &self.triangles);
-            return loop_over(batch, answers, ask, |hit: &bool| hit.then_some(NOWHERE));
+            return loop_over(batch, answers, ask, |hit: &bool| hit.then_some(HIT_WITHOUT_LOCATION));
         }
         let closest = |ray: &Ray| {
             let hit = self.tree.closest(own(ray), &self.triangles);
@@ -120,7 +120,7 @@ impl<T: ObvhsTree> Engine for Obvhs<T> {
         };
         loop_over(batch, answers, closest, |&(t, id)| {
             let primitive = *self.tree.primitives().get(id as usize)?;
-            t.is_finite().then_some(Hit { t, primitive, ..NOWHERE })
+            t.is_finite().then_some(Hit { t, primitive, ..HIT_WITHOUT_LOCATION })
         })
     }
 }
@@ -166,7 +166,7 @@ impl Engine for Parry {
             batch,
             answers,
             |ray| self.closest(ray),
-            |hit| hit.map(|(primitive, t)| Hit { t, primitive, ..NOWHERE }),
+            |hit| hit.map(|(primitive, t)| Hit { t, primitive, ..HIT_WITHOUT_LOCATION }),
         )
     }
 }

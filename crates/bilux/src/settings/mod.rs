@@ -15,7 +15,7 @@ use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Warning};
 use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
-pub use size::{no_size, parse_size};
+pub use size::{parse_size, size_error};
 use std::time::Duration;
 pub use studio::parse_orbit;
 use studio::{as_orbit, studio};
@@ -241,7 +241,7 @@ impl Settings {
         let integrator = find_integrator(&reader)?;
         let integrator_parameters = integrator_parameters(integrator, rest)?;
         let (width, height) = parse_size(&reader.text("size"))
-            .ok_or_else(|| SceneError::invalid(no_size(&reader.text("size")), reader.span("size")))?;
+            .ok_or_else(|| SceneError::invalid(size_error(&reader.text("size")), reader.span("size")))?;
         let (stop, background) = (stop(&reader), background(&reader)?);
         let spp = match reader.integer("spp") {
             0 if stop.is_any() => MAX_SPP,
@@ -285,7 +285,7 @@ impl Settings {
 impl Settings {
     /// Warns about settings by the user that belong to other integrators than the one that renders. Scene files may
     /// contain settings for several integrators.
-    pub(crate) fn without_use(&self, user: &Parameters) -> Vec<Warning> {
+    pub(crate) fn unused_settings(&self, user: &Parameters) -> Vec<Warning> {
         let has = |entry: &Entry, key: &str| entry.parameters.iter().any(|p| p.name == key);
         let chosen = &self.integrator.entry;
         let is_idle = |key: &str| !has(&RENDER, key) && !has(chosen, key);
@@ -342,7 +342,7 @@ fn integrator_parameters(
 
 /// The number of samples per triangle from which the best tree is built. In interiors it pays off from about four, so
 /// at this number several times over; where it saves nothing, it costs a fiftieth of the time of the rays here.
-const WORTH_THE_BEST: u64 = 64;
+const MIN_SAMPLES_FOR_BEST_TREE: u64 = 64;
 
 /// Roughly the number of samples that there is time for, if time ends the picture.
 const SAMPLES_A_SECOND: u64 = 1_000_000;
@@ -355,7 +355,7 @@ impl Settings {
             self.stop.time_limit.map_or(u64::MAX, |limit| limit.as_secs_f64() as u64 * SAMPLES_A_SECOND);
         let samples = (u64::from(self.width) * u64::from(self.height) * u64::from(self.spp)).min(in_time);
         let is_wide = matches!(accel.name.as_str(), "auto" | "bvh8");
-        if self.build_by_size && is_wide && samples / WORTH_THE_BEST >= triangles as u64 {
+        if self.build_by_size && is_wide && samples / MIN_SAMPLES_FOR_BEST_TREE >= triangles as u64 {
             accel.options.quality = Quality::Best;
         }
         accel
@@ -409,13 +409,13 @@ mod tests {
     }
 
     #[test]
-    fn settings_of_other_integrators_are_told() {
+    fn settings_of_other_integrators_are_reported() {
         let mut user = Parameters::default();
         user.set("integrator", Value::Text("path".to_owned()));
         user.set("roulette_depth", Value::Integer(3));
-        assert!(Settings::resolve(&user).unwrap().without_use(&user).is_empty());
+        assert!(Settings::resolve(&user).unwrap().unused_settings(&user).is_empty());
         user.set("ways", Value::Text("vcm".to_owned()));
-        let told = Settings::resolve(&user).unwrap().without_use(&user);
+        let told = Settings::resolve(&user).unwrap().unused_settings(&user);
         assert_eq!(told.len(), 1);
         assert!(told[0].message.contains("'ways'") && told[0].message.contains("'auto'"), "{}", told[0]);
     }

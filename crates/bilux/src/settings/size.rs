@@ -3,7 +3,7 @@
 use bilux_transport::film::MAX_SIDE;
 
 /// Explains why [`parse_size`] rejects a text, and what to write instead.
-pub fn no_size(text: &str) -> String {
+pub fn size_error(text: &str) -> String {
     let sides = text.split(|c: char| !c.is_ascii_digit()).filter(|side| !side.is_empty());
     let sides: Vec<u64> = sides.map(|side| side.parse().unwrap_or(u64::MAX)).collect();
     let fit = sides.iter().all(|side| (1..=u64::from(MAX_SIDE)).contains(side));

@@ -4,7 +4,7 @@ use super::{DONE, check_folder, read_options};
 use crate::arguments::{Bench, BenchKind, Common};
 use crate::{output, usage};
 use anyhow::{Context, anyhow};
-use bilux::settings::{no_size, parse_size};
+use bilux::settings::{parse_size, size_error};
 use bilux_bench::Options;
 
 pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
@@ -14,7 +14,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
             "--sandbox: benchmarks load other engines and write files: leave it out"
         )));
     }
-    let size = |text: &String| parse_size(text).with_context(|| format!("--size: {}", no_size(text)));
+    let size = |text: &String| parse_size(text).with_context(|| format!("--size: {}", size_error(text)));
     let size = arguments.size.as_ref().map(size).transpose().map_err(usage::wrong)?;
     let options = Options {
         counts: arguments.counts.clone(),

@@ -3,7 +3,7 @@
 use super::{DONE, check_folder};
 use crate::arguments::{Common, Compare};
 use crate::output;
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use bilux::pictures::metrics::{HeatMap, METRICS, Pair, Report, heat_map};
 use bilux::pictures::{Picture, TONEMAPS};
 use std::path::Path;
@@ -26,7 +26,7 @@ pub fn run(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
 }
 
 fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
-    let mut confines = Confines::default().reading(&arguments.picture).reading(&arguments.reference);
+    let mut confines = SandboxPaths::default().reading(&arguments.picture).reading(&arguments.reference);
     if let Some(path) = &arguments.heat_map {
         check_folder(path)?;
         confines = confines.writing(path);

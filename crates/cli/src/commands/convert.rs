@@ -1,10 +1,10 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
 use super::{
-    DONE, check_choices, check_folder, check_quality, read_options_with, report_warnings, tell_lost_alpha,
+    DONE, check_choices, check_folder, check_quality, read_options_with, report_warnings, warn_lost_alpha,
 };
 use crate::arguments::{Common, Convert};
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use crate::usage;
 use anyhow::anyhow;
 use bilux::formats::WriteOptions;
@@ -15,7 +15,7 @@ use std::path::Path;
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
     check_folder(output).map_err(usage::wrong)?;
-    let confines = Confines::default().reading_scene(input).writing(output);
+    let confines = SandboxPaths::default().reading_scene(input).writing(output);
     confines.check_written(output, common).map_err(usage::wrong)?;
     match (is_picture(input), is_picture(output)) {
         (true, true) => {
@@ -23,7 +23,7 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
             check_quality(arguments.quality, output).map_err(usage::wrong)?;
             confines.enter(common)?;
             let picture = bilux::pictures::read_with(input, &Limits::new(common.max_memory))?;
-            tell_lost_alpha(&picture, output, None, common)?;
+            warn_lost_alpha(&picture, output, None, common)?;
             let mut options = bilux::pictures::WriteOptions::default();
             options.quality = arguments.quality.unwrap_or(options.quality);
             bilux::pictures::write(output, &picture, &options)?;

@@ -1,8 +1,8 @@
 //! `bilux denoise`: removes the noise from a picture.
 
-use super::{DONE, check_folder, check_quality, tell_lost_alpha};
+use super::{DONE, check_folder, check_quality, warn_lost_alpha};
 use crate::arguments::{Common, Denoise};
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use crate::values::Exposure;
 use crate::{output, usage};
 use bilux::pictures::denoise::{Chosen, Task, denoise, denoiser};
@@ -15,7 +15,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     check_folder(output).map_err(usage::wrong)?;
     format_of_path(output).map_err(usage::wrong)?;
     check_quality(arguments.quality, output).map_err(usage::wrong)?;
-    let confines = Confines::default().reading(input).writing(output);
+    let confines = SandboxPaths::default().reading(input).writing(output);
     confines.check_written(output, common).map_err(usage::wrong)?;
     let tone_map = tone_map(&arguments.tonemap).map_err(usage::wrong)?;
     if arguments.by != "builtin" {
@@ -34,7 +34,7 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     };
     let mut options = WriteOptions { exposure, tone_map, ..WriteOptions::default() };
     options.quality = arguments.quality.unwrap_or(options.quality);
-    tell_lost_alpha(&smooth, output, None, common)?;
+    warn_lost_alpha(&smooth, output, None, common)?;
     bilux::pictures::write(output, &smooth, &options)?;
     if !common.quiet {
         output::say(format_args!("{}: {}", output.display(), told(&chosen, seconds)));

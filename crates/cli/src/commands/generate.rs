@@ -2,7 +2,7 @@
 
 use super::{DONE, check_folder, read_options, report_warnings};
 use crate::arguments::{Common, Generate};
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use crate::settings_from::{assignment_of, from_flag};
 use crate::usage;
 use bilux::formats::WriteOptions;
@@ -12,7 +12,7 @@ use bilux::scene::{Spec, Value};
 pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
     bilux::formats::format_of_path(&arguments.output).map_err(usage::wrong)?;
-    let mut confines = Confines::default().writing(&arguments.output);
+    let mut confines = SandboxPaths::default().writing(&arguments.output);
     confines.check_written(&arguments.output, common).map_err(usage::wrong)?;
     if let Some(file) = &arguments.from {
         confines = confines.reading_scene(file);

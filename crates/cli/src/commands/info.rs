@@ -2,7 +2,7 @@
 
 use super::{DONE, check_choices, read_options_with, report_warnings};
 use crate::arguments::{Common, Info};
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
 use bilux::formats::ReadOptions;
 use bilux::memory::Memory;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
     let options = ReadOptions { validate: true, ..options };
-    Confines::default().reading_scene(&arguments.scene).enter(common)?;
+    SandboxPaths::default().reading_scene(&arguments.scene).enter(common)?;
     let scene = bilux::load(&arguments.scene, &options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {

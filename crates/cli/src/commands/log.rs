@@ -43,7 +43,7 @@ impl Rendered<'_> {
     pub fn tell(&self, verbose: u8) {
         let (s, output) = (self.job.settings(), self.output.display());
         if verbose > 0 {
-            self.tell_more();
+            self.report_details();
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
         let denoised = self.denoiser.map(|chosen| format!(", denoised by {}", chosen.denoiser.describe()));
@@ -52,7 +52,7 @@ impl Rendered<'_> {
             true => "; interrupted: this is the picture so far",
             false => "",
         };
-        self.tell_orientation();
+        self.report_orientation();
         if let Some(overrun) = &self.overrun {
             output::say(format_args!("{output}: {overrun}"));
         }
@@ -70,7 +70,7 @@ impl Rendered<'_> {
     }
 
     /// Reports the orientation if it was decided here; once, however many pictures there are.
-    fn tell_orientation(&self) {
+    fn report_orientation(&self) {
         static SAID: std::sync::Once = std::sync::Once::new();
         if let Some(orientation) = self.job.orientation() {
             let (up, front) = (orientation.up.name(), orientation.front.name());
@@ -82,7 +82,7 @@ impl Rendered<'_> {
         }
     }
 
-    fn tell_more(&self) {
+    fn report_details(&self) {
         let (s, outcome, output) = (self.job.settings(), self.outcome, self.output.display());
         if let Some(choice) = &outcome.choice {
             output::say(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
@@ -123,7 +123,7 @@ pub fn print_failure(scene: &Path, picture: &Path, error: &anyhow::Error) -> any
 }
 
 /// Reports the default limits of a render for which nobody set any.
-pub fn tell_budget(output: &Path) {
+pub fn report_default_budget(output: &Path) {
     let (noise, seconds) = DEFAULT_BUDGET;
     output::say(format_args!(
         "{}: until {}% noise or {seconds} s; --noise and --time-limit change that, and --spp gives the same picture on every \

@@ -2,7 +2,7 @@
 
 use super::{DONE, check_folder};
 use crate::arguments::{Common, Merge};
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
 use anyhow::Context;
 use bilux::pictures::Limits;
@@ -12,7 +12,7 @@ use bilux::transport::{Film, JoinedLayers};
 pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
     let format = format_of_path(&arguments.output).map_err(usage::wrong)?;
-    let mut confines = Confines::default().writing(&arguments.output);
+    let mut confines = SandboxPaths::default().writing(&arguments.output);
     confines.check_written(&arguments.output, common).map_err(usage::wrong)?;
     for part in &arguments.parts {
         confines = confines.reading(part);

@@ -102,7 +102,7 @@ fn check_quality(quality: Option<u8>, output: &Path) -> anyhow::Result<()> {
 }
 
 /// Warns if a picture is transparent and its format cannot be.
-fn tell_lost_alpha(
+fn warn_lost_alpha(
     picture: &Picture,
     output: &Path,
     behind: Option<Rgb>,

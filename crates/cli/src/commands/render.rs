@@ -6,7 +6,7 @@ use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
 use crate::progress::Report;
-use crate::sandbox::Confines;
+use crate::sandbox::SandboxPaths;
 use crate::{output, settings_from, usage};
 use anyhow::{Context, anyhow, bail};
 use bilux::budget::{with_default_budget, with_fast_budget};
@@ -63,7 +63,7 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
 /// picture's folder.
 fn confine(targets: &[Target], arguments: &Render, common: &Common) -> anyhow::Result<()> {
     let studio = &arguments.studio;
-    let mut confines = Confines::default();
+    let mut confines = SandboxPaths::default();
     for scene in targets.iter().map(|target| &target.scene) {
         // A scene on standard input may name files in the working directory.
         confines = confines.reading_scene(if is_stdout(scene) { Path::new("./stdin") } else { scene });
@@ -240,7 +240,7 @@ fn render_scene(
         return Ok(DONE);
     }
     if by_default && common.verbose > 0 {
-        log::tell_budget(&target.output);
+        log::report_default_budget(&target.output);
     }
     let Some((first, last)) = arguments.frames else {
         return finish(input, &mut job, target, build_seconds);
@@ -363,7 +363,7 @@ fn write(
     if is_stdout(output) {
         output::print_bytes(&bilux::pictures::formats::write_bytes("png", &picture, &options)?)?;
     } else {
-        super::tell_lost_alpha(&picture, output, options.behind, input.common)?;
+        super::warn_lost_alpha(&picture, output, options.behind, input.common)?;
         bilux::pictures::write(output, &picture, &options)?;
     }
     Ok(denoiser.is_some())

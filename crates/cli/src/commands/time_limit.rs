@@ -36,7 +36,7 @@ mod tests {
     use bilux::transport::Silent;
 
     #[test]
-    fn one_line_says_where_the_time_went_and_nothing_is_said_within_the_tolerance() {
+    fn an_overrun_beyond_the_tolerance_is_explained_in_one_line() {
         let scene = bilux::generate(&Spec::new("", "teapot")).unwrap();
         let mut user = Parameters::default();
         for (key, value) in

@@ -42,29 +42,29 @@ pub fn describe() -> &'static str {
 
 /// The files that a command needs while it runs.
 #[derive(Debug, Default)]
-pub struct Confines {
+pub struct SandboxPaths {
     /// Files that may be read, and folders with everything in them.
     read: Vec<PathBuf>,
     /// The folder that may be written to.
     write: Option<PathBuf>,
 }
 
-impl Confines {
+impl SandboxPaths {
     /// Allows reading a scene file and everything in its folder.
-    pub fn reading_scene(mut self, scene: &Path) -> Confines {
+    pub fn reading_scene(mut self, scene: &Path) -> SandboxPaths {
         self.read.push(folder_of(scene).to_owned());
         self.reading(scene)
     }
 
     /// Allows reading this file.
-    pub fn reading(mut self, file: &Path) -> Confines {
+    pub fn reading(mut self, file: &Path) -> SandboxPaths {
         // If it is a link, its target is what will be opened.
         self.read.extend(std::fs::canonicalize(file));
         self
     }
 
     /// Allows writing files into this file's folder.
-    pub fn writing(mut self, file: &Path) -> Confines {
+    pub fn writing(mut self, file: &Path) -> SandboxPaths {
         self.write = Some(folder_of(file).to_owned());
         self
     }

@@ -15,7 +15,7 @@ pub(super) struct Document<'a> {
     /// The bytes of compressed views after decompression, by index.
     unpacked: HashMap<usize, Vec<u8>>,
     /// The data of accessors whose primitives are compressed as a whole (Draco), by index.
-    drawn: HashMap<usize, Drawn>,
+    drawn: HashMap<usize, DecodedAccessor>,
     /// The size in bytes of all buffers and of the file itself.
     size: usize,
     /// True if the file contains a buffer of its own.
@@ -23,7 +23,7 @@ pub(super) struct Document<'a> {
 }
 
 /// The data of an accessor that lies in no buffer, as consecutive elements.
-pub(super) struct Drawn {
+pub(super) struct DecodedAccessor {
     pub(super) bytes: Vec<u8>,
     /// The number of elements.
     pub(super) count: usize,
@@ -95,7 +95,7 @@ impl<'a> Document<'a> {
     }
 
     /// The data of an accessor that was compressed with its whole primitive.
-    pub(super) fn drawn(&self, accessor: usize) -> Option<&Drawn> {
+    pub(super) fn drawn(&self, accessor: usize) -> Option<&DecodedAccessor> {
         self.drawn.get(&accessor)
     }
 

@@ -1,7 +1,7 @@
 //! `KHR_draco_mesh_compression`: primitives whose attributes and indices are compressed together. The decoded data
 //! replaces that of their accessors.
 
-use super::document::{Document, Drawn};
+use super::document::{DecodedAccessor, Document};
 use super::json::JsonNode;
 use super::topology::Mode;
 use crate::FormatError;
@@ -19,7 +19,10 @@ const BYTES_PER_FACE: u64 = 256;
 const BYTES_PER_POINT: u64 = 64;
 
 /// The data of all accessors of compressed primitives, by accessor index.
-pub(super) fn unpack(document: &Document, budget: &mut Budget) -> Result<HashMap<usize, Drawn>, FormatError> {
+pub(super) fn unpack(
+    document: &Document,
+    budget: &mut Budget,
+) -> Result<HashMap<usize, DecodedAccessor>, FormatError> {
     let mut drawn = HashMap::new();
     for mesh in document.root.list("meshes")? {
         for primitive in mesh.list("primitives")? {
@@ -110,7 +113,7 @@ fn of_accessor(
     attribute: Option<JsonNode>,
     mesh: &Mesh,
     extension: JsonNode,
-) -> Result<Drawn, FormatError> {
+) -> Result<DecodedAccessor, FormatError> {
     let accessor = document.root.item("accessors", number);
     let accessor = accessor.ok_or_else(|| extension.error(format!("there is no accessor {number}")))?;
     let component = accessor.need("componentType")?;
@@ -124,7 +127,7 @@ fn of_accessor(
             5125 => corners.flat_map(u32::to_le_bytes).collect(),
             _ => return Err(component.error("the packed indices do not fit this componentType")),
         };
-        return Ok(Drawn { bytes, count: mesh.num_faces() * 3 });
+        return Ok(DecodedAccessor { bytes, count: mesh.num_faces() * 3 });
     };
     let number = attribute.as_count()?;
     let packed = u32::try_from(number).ok().and_then(|id| mesh.attribute_by_unique_id(id));
@@ -139,7 +142,7 @@ fn of_accessor(
     } else {
         return Err(component.error("the packed attribute has another componentType"));
     };
-    Ok(Drawn { bytes, count })
+    Ok(DecodedAccessor { bytes, count })
 }
 
 /// The raw values of all points, in order.

@@ -36,13 +36,13 @@ const KNOWN: &[&str] = &[
 ];
 
 /// Extensions that do not affect the rendered image.
-const NOTHING_TO_SEE: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
+const WITHOUT_VISIBLE_EFFECT: &[&str] = &["KHR_xmp", "KHR_xmp_json_ld"];
 
 /// Refuses a file that requires an unsupported extension, and warns about all others that are not supported.
 pub(super) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), FormatError> {
     for name in root.list("extensionsRequired")? {
         let text = name.as_text()?;
-        if !KNOWN.contains(&text) && !NOTHING_TO_SEE.contains(&text) {
+        if !KNOWN.contains(&text) && !WITHOUT_VISIBLE_EFFECT.contains(&text) {
             let known: Vec<String> = KNOWN.iter().map(|&name| name.to_owned()).collect();
             let meant = nearest_name(text, &known).filter(|n| n.len().abs_diff(text.len()) < 3);
             let meant = meant.map_or_else(String::new, |name| format!(" (did it mean {name}?)"));
@@ -65,7 +65,7 @@ fn note_unknown(node: JsonNode, oddities: &mut Oddities) {
         }
         if key == "extensions" {
             for (name, used) in value.entries() {
-                if !KNOWN.contains(&name) && !NOTHING_TO_SEE.contains(&name) {
+                if !KNOWN.contains(&name) && !WITHOUT_VISIBLE_EFFECT.contains(&name) {
                     let what = format!("the extension {name} is not supported and is ignored");
                     oddities.note(&what, || used.at());
                 }

@@ -22,7 +22,7 @@ impl Gltf<'_, '_, '_> {
         let mut fitted = Spec { span: draft.span.clone(), ..Spec::new(&draft.name, KIND) };
         for (key, value, at) in draft.parameters.0 {
             let Some(parameter) = known.iter().find(|parameter| parameter.name == key) else {
-                if !says_nothing(&key, &value) {
+                if !needs_no_warning(&key, &value) {
                     let what = format!("{} of a material is not shown", key.replace('_', " "));
                     self.oddities.note(&what, || at.clone());
                 }
@@ -76,7 +76,7 @@ fn clamped(value: &Value, min: f64, max: f64) -> Value {
 }
 
 /// True for values that can be dropped without a warning.
-fn says_nothing(key: &str, value: &Value) -> bool {
+fn needs_no_warning(key: &str, value: &Value) -> bool {
     match key {
         "opacity" => *value == Value::from(1.0f32),
         "thin_walled" => *value == Value::Bool(false),

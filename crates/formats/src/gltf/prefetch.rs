@@ -38,7 +38,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let decode = |bytes: &[u8]| read_rgba8(bytes, None, &share).ok().flatten();
         let decoded: Vec<_> = encoded.par_iter().map(|(_, (_, bytes))| decode(bytes)).collect();
         for ((number, (name, bytes)), picture) in encoded.into_iter().zip(decoded) {
-            self.let_go(bytes);
+            self.release_encoded(bytes);
             let Some(picture) = picture else { continue };
             let (width, height) = (picture.width, picture.height);
             let image = Image { width, height, texels: Texels::Bytes(picture.texels) };

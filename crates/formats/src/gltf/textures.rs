@@ -149,7 +149,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let hint = kind.strip_prefix("image/").or(extension);
         let means = if is_data { Means::Numbers } else { Means::SrgbColours };
         let decoded = self.reading.decode(&bytes, hint, means, (&name, &at))?;
-        self.let_go(bytes);
+        self.release_encoded(bytes);
         Ok((name, Arc::new(decoded)))
     }
 
@@ -172,7 +172,7 @@ impl<'d> Gltf<'d, '_, '_> {
     }
 
     /// Releases bytes from [`Gltf::encoded`].
-    pub(super) fn let_go(&mut self, bytes: Cow<'d, [u8]>) {
+    pub(super) fn release_encoded(&mut self, bytes: Cow<'d, [u8]>) {
         if let Cow::Owned(bytes) = bytes {
             self.reading.release(bytes);
         }

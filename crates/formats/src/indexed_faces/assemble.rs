@@ -218,7 +218,7 @@ struct Slot {
 }
 
 /// Longer chains are not searched: a hostile file costs vertices, not time.
-const LONGEST_CHAIN: usize = 32;
+const MAX_CHAIN: usize = 32;
 
 impl Welder {
     fn new(positions: usize) -> Welder {
@@ -285,7 +285,7 @@ impl<'s> Piece<'s> {
         let slot = &mut welder.slots[position as usize];
         let mut next = if slot.run == welder.run { slot.first } else { NONE };
         let chain = next;
-        for _ in 0..LONGEST_CHAIN {
+        for _ in 0..MAX_CHAIN {
             let Some(&[old_uv, old_normal, after]) = self.made.get(next as usize) else { break };
             if (old_uv, old_normal) == (uv, normal) {
                 return next;

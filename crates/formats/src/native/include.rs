@@ -31,7 +31,7 @@ struct Gathering<'o, 'r> {
 }
 
 /// Longer chains of includes are refused, since each level uses some of the stack.
-const LONGEST_CHAIN: usize = 32;
+const MAX_CHAIN: usize = 32;
 
 impl Gathering<'_, '_> {
     fn add(&mut self, bytes: &[u8], name: &Arc<str>, folder: Option<&Path>) -> Result<(), FormatError> {
@@ -62,8 +62,8 @@ impl Gathering<'_, '_> {
             let message = format!("'{file}' includes itself, directly or through others: take it out here");
             return Err(FormatError::malformed(message, at.clone()));
         }
-        if self.open.len() >= LONGEST_CHAIN {
-            let message = format!("files include each other more than {LONGEST_CHAIN} deep");
+        if self.open.len() >= MAX_CHAIN {
+            let message = format!("files include each other more than {MAX_CHAIN} deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         if !self.seen.insert(path.clone()) {

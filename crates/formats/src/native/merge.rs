@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 impl Native<'_, '_> {
     /// Adds the textures and materials of a scene; returns the new index of its first material.
-    pub(super) fn bring_materials(&mut self, model: &SceneBuilder) -> usize {
+    pub(super) fn add_materials_of(&mut self, model: &SceneBuilder) -> usize {
         let first = self.scene.materials.len();
         for spec in &model.materials {
             let spec = self.moved(spec, first);

@@ -35,7 +35,7 @@ impl Native<'_, '_> {
             _ => return Err(missing("one of file, shape and generate (what the model is made of)", table)),
         };
         self.place(table, &model, origin)?;
-        self.bring_with(table, &model)
+        self.add_requested_parts(table, &model)
     }
 
     /// Adds the objects of a model; one without materials gets the plain one.
@@ -63,7 +63,7 @@ impl Native<'_, '_> {
             placed.material = match (renamed.get(object.material).copied().flatten(), given) {
                 (Some(index), _) | (None, Some(index)) => index,
                 (None, None) if model.materials.is_empty() => self.default_material(),
-                (None, None) => *first.get_or_insert_with(|| self.bring_materials(model)) + object.material,
+                (None, None) => *first.get_or_insert_with(|| self.add_materials_of(model)) + object.material,
             };
             if let Some(name) = name {
                 let part = &placed.name;
@@ -202,7 +202,7 @@ impl Native<'_, '_> {
     }
 
     /// `with = ["lights", "cameras"]`: the other parts of a model's scene to add.
-    fn bring_with(&mut self, table: &Table, model: &SceneBuilder) -> Result<(), FormatError> {
+    fn add_requested_parts(&mut self, table: &Table, model: &SceneBuilder) -> Result<(), FormatError> {
         let Some(item) = table.find("with") else { return Ok(()) };
         if place::KEYS.iter().any(|key| table.find(key).is_some()) {
             let message =

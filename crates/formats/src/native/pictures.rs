@@ -68,7 +68,7 @@ pub(super) fn placed(texture: &Texture, table: &Table) -> Result<Texture, Format
 }
 
 /// The keys that make [`placed`] turn the plain file into this texture, with their values as TOML.
-pub(super) fn said_of(texture: &Texture) -> Vec<(&'static str, String)> {
+pub(super) fn placement_keys(texture: &Texture) -> Vec<(&'static str, String)> {
     let mut said = Vec::new();
     if let Some(transform) = &texture.transform {
         let placement = Placement::of(transform);

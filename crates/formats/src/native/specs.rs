@@ -24,7 +24,7 @@ impl Native<'_, '_> {
     }
 
     /// True if this key of a material refers to another material.
-    fn names_material(row: &Entry, key: &str) -> bool {
+    fn is_material_reference(row: &Entry, key: &str) -> bool {
         row.parameters.iter().any(|p| p.name == key && p.kind == ParameterKind::Material)
     }
 
@@ -80,7 +80,7 @@ impl Native<'_, '_> {
         let name = table.text("name")?.unwrap_or_default();
         let mut spec = Spec { span: table.at.clone(), ..Spec::new(name, kind) };
         for (key, at, item) in table.entries.iter().filter(|(key, ..)| !structural().any(|k| k == key)) {
-            let value = if Self::names_material(row, key) {
+            let value = if Self::is_material_reference(row, key) {
                 Some(Value::Material(self.material_named(item)?))
             } else {
                 let kind = row.parameters.iter().find(|p| p.name == key).map(|p| p.kind);

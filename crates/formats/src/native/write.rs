@@ -1,6 +1,6 @@
 //! Writes the native scene file, with its meshes as PLY files and its textures as PNG or EXR files.
 
-use super::pictures::said_of;
+use super::pictures::placement_keys;
 use crate::FormatError;
 use crate::bake::name_of;
 use crate::ply::encode;
@@ -184,7 +184,9 @@ fn texture_text(
         }
         let texels = Texture { threshold: None, ..Texture::clone(texture) };
         let mut out = format!("{{ texture = {}", quoted(&writing.texture_file(&texels)?));
-        said_of(texture).into_iter().for_each(|(key, value)| out.push_str(&format!(", {key} = {value}")));
+        placement_keys(texture)
+            .into_iter()
+            .for_each(|(key, value)| out.push_str(&format!(", {key} = {value}")));
         return Ok(out + " }");
     };
     let mut out = format!("{{ kind = {}", quoted(&formula.spec().kind));

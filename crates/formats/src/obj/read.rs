@@ -39,7 +39,7 @@ fn read_in_blocks(
         source,
         lines: 0,
         soup: IndexedFaces { first_vertex: 1, leaves_out: true, ..IndexedFaces::default() },
-        scene: SceneBuilder { surroundings_unsaid: true, ..SceneBuilder::default() },
+        scene: SceneBuilder { environment_unspecified: true, ..SceneBuilder::default() },
         materials: HashMap::new(),
         oddities: Oddities::default(),
         name: String::new(),
@@ -105,7 +105,7 @@ impl Obj<'_, '_, '_> {
     /// Appends the contents of a block to those of the earlier blocks.
     fn join(&mut self, block: &mut Block, text: &[u8]) -> Result<(), FormatError> {
         self.reading.budget.take_bytes(block.spent, self.source.name)?;
-        self.turn_round(block, text);
+        self.resolve_backward_indices(block, text);
         self.oddities.append(std::mem::take(&mut block.oddities), self.lines);
         self.add_colours(block)?;
         let before = self.soup.positions.len();
@@ -145,7 +145,7 @@ impl Obj<'_, '_, '_> {
     }
 
     /// Resolves the corners with indices that count backwards.
-    fn turn_round(&mut self, block: &mut Block, text: &[u8]) {
+    fn resolve_backward_indices(&mut self, block: &mut Block, text: &[u8]) {
         let before = [self.soup.positions.len(), self.soup.uvs.len(), self.soup.normals.len()];
         let mut is_first = true;
         for backward in &block.backward {

@@ -61,7 +61,7 @@ const DIRECTIVES: &[&str] = &[
 ];
 
 /// Deeper nesting is refused, since each level keeps a copy of the state.
-const DEEPEST: usize = 10_000;
+const MAX_DEPTH: usize = 10_000;
 
 /// The maximum number of attributes of a kind: more than any shape or light has parameters, and each is searched
 /// linearly.
@@ -152,8 +152,8 @@ impl Directive<'_, '_, '_, '_> {
     }
 
     fn push(&mut self, opened: Opened) -> Result<(), FormatError> {
-        if self.pbrt.pushed.len() >= DEEPEST {
-            return self.error(format!("attributes are nested more than {DEEPEST} deep"));
+        if self.pbrt.pushed.len() >= MAX_DEPTH {
+            return self.error(format!("attributes are nested more than {MAX_DEPTH} deep"));
         }
         self.pbrt.pushed.push((opened, self.at.clone(), self.pbrt.state.clone()));
         Ok(())

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_an_edge_of_the_square_lies_what_is_beside_it_on_the_sphere() {
+    fn texels_beyond_an_edge_of_the_square_are_neighbours_on_the_sphere() {
         // The two halves of an edge coincide, mirrored about its middle.
         let (beside, across) = (on_the_sphere(1.0 - 1e-9, 2.5 / 8.0), on_the_sphere(1.0 - 1e-9, 5.5 / 8.0));
         assert!((beside - across).length() < 1e-3, "{beside} {across}");

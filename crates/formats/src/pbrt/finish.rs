@@ -28,9 +28,9 @@ impl Pbrt<'_, '_> {
         self.settings()?;
         self.place_camera()?;
         self.place_lights()?;
-        let mut dressed = ResolvedAttributes::default();
+        let mut resolved_attributes = ResolvedAttributes::default();
         for piece in std::mem::take(&mut self.pieces) {
-            self.place(&piece, None, &mut dressed)?;
+            self.place(&piece, None, &mut resolved_attributes)?;
         }
         for used in std::mem::take(&mut self.uses) {
             let Some(pieces) = self.definitions.get(&used.object).cloned() else {
@@ -38,11 +38,11 @@ impl Pbrt<'_, '_> {
                 return Err(unknown("object", &used.object, names, &used.at));
             };
             for piece in &*pieces {
-                self.place(piece, Some(&used), &mut dressed)?;
+                self.place(piece, Some(&used), &mut resolved_attributes)?;
             }
         }
         share_trees(&mut self.scene);
-        self.open_the_shutter();
+        self.set_shutter();
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() && self.in_world {
             self.oddities.note("there is nothing to see in this file", Span::default);
         }
@@ -53,7 +53,7 @@ impl Pbrt<'_, '_> {
         &mut self,
         piece: &Piece,
         used: Option<&Use>,
-        dressed: &mut ResolvedAttributes,
+        resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<(), FormatError> {
         let matrices = match used {
             Some(used) => [0, 1].map(|i| used.matrices[i] * piece.matrices[i]),
@@ -63,8 +63,8 @@ impl Pbrt<'_, '_> {
             Some(used) => (&used.at, used.object.as_str()),
             None => (&piece.at, ""),
         };
-        let glow = self.glow_of(piece, used, dressed)?;
-        if self.place_lamp(piece, glow.as_ref(), &matrices)? {
+        let glow = self.area_emission_of(piece, used, resolved_attributes)?;
+        if self.place_sphere_light(piece, glow.as_ref(), &matrices)? {
             return Ok(());
         }
         let (mesh, matrices) = match &piece.form {
@@ -76,12 +76,13 @@ impl Pbrt<'_, '_> {
         };
         let radiance =
             glow.as_ref().map(|glow| glow.radiance_of(area(&mesh, &matrices[0]) / f64::from(piece.shapes)));
-        let Some(material) = self.modified_material(piece, glow.as_ref(), radiance, dressed)? else {
+        let Some(material) = self.modified_material(piece, glow.as_ref(), radiance, resolved_attributes)?
+        else {
             return Ok(());
         };
         let Some(motion) = self.motion(&matrices, at) else { return Ok(()) };
         let mesh = if glow.is_some() {
-            let both = dressed.fronted.entry(Arc::as_ptr(&mesh));
+            let both = resolved_attributes.fronted.entry(Arc::as_ptr(&mesh));
             both.or_insert_with(|| [mesh.clone(), fronted(&mesh)])[1].clone()
         } else {
             mesh
@@ -93,28 +94,28 @@ impl Pbrt<'_, '_> {
     }
 
     /// The emission of a piece; pieces of object instances have none.
-    fn glow_of(
+    fn area_emission_of(
         &mut self,
         piece: &Piece,
         used: Option<&Use>,
-        dressed: &mut ResolvedAttributes,
+        resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<Option<AreaEmission>, FormatError> {
         let Some(index) = piece.dress.area_light else { return Ok(None) };
         if used.is_some() {
             self.oddities.note("surfaces of objects give no light, as in pbrt", || piece.at.clone());
             return Ok(None);
         }
-        if let Some(glow) = dressed.glows.get(&index) {
+        if let Some(glow) = resolved_attributes.glows.get(&index) {
             return Ok(Some(glow.clone()));
         }
         let entity = self.area_lights[index].clone();
         let glow = self.glow(&entity)?;
-        dressed.glows.insert(index, glow.clone());
+        resolved_attributes.glows.insert(index, glow.clone());
         Ok(Some(glow))
     }
 
     /// Adds a sphere that emits outwards and reflects nothing as a sphere light, which is round at any size.
-    fn place_lamp(
+    fn place_sphere_light(
         &mut self,
         piece: &Piece,
         glow: Option<&AreaEmission>,
@@ -123,7 +124,7 @@ impl Pbrt<'_, '_> {
         let (ShapeGeometry::Sphere { radius, reversed: false }, Some(glow)) = (&piece.form, glow) else {
             return Ok(false);
         };
-        let Some(scale) = even_scale(&matrices[0]).filter(|_| matrices[0] == matrices[1]) else {
+        let Some(scale) = uniform_scale(&matrices[0]).filter(|_| matrices[0] == matrices[1]) else {
             return Ok(false);
         };
         let radius = f64::from(*radius) * scale;
@@ -163,7 +164,7 @@ impl Pbrt<'_, '_> {
         piece: &Piece,
         glow: Option<&AreaEmission>,
         radiance: Option<TextureOrValue>,
-        dressed: &mut ResolvedAttributes,
+        resolved_attributes: &mut ResolvedAttributes,
     ) -> Result<Option<usize>, FormatError> {
         let dress = &piece.dress;
         let bits = match &radiance {
@@ -173,12 +174,12 @@ impl Pbrt<'_, '_> {
         };
         // In an object instance nothing emits, so its material differs.
         let key = (SurfaceAttributes { area_light: glow.and(dress.area_light), ..dress.clone() }, bits);
-        if let Some(known) = dressed.materials.get(&key) {
+        if let Some(known) = resolved_attributes.materials.get(&key) {
             return Ok(*known);
         }
         let made = self.dress(piece, glow, radiance)?;
         let index = made.map(|spec| self.scene.add_material(spec));
-        dressed.materials.insert(key, index);
+        resolved_attributes.materials.insert(key, index);
         Ok(index)
     }
 
@@ -216,7 +217,7 @@ impl Pbrt<'_, '_> {
         {
             spec = self.glowing(spec, glow, radiance, piece);
         }
-        self.cut_out(spec, piece)
+        self.with_opacity_mask(spec, piece)
     }
 
     /// Adds emission to a material.
@@ -247,7 +248,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// Adds an opacity mask to a material if the shape has an alpha.
-    fn cut_out(&mut self, mut spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
+    fn with_opacity_mask(&mut self, mut spec: Spec, piece: &Piece) -> Result<Option<Spec>, FormatError> {
         let share = match &piece.dress.alpha {
             Alpha::Whole => return Ok(Some(spec)),
             Alpha::Even(bits) => {
@@ -301,7 +302,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// Sets the shutter of the camera if anything moves.
-    fn open_the_shutter(&mut self) {
+    fn set_shutter(&mut self) {
         let moves = self.scene.objects.iter().any(|object| !object.motion.is_still())
             || self.scene.cameras.iter().any(|camera| !camera.keyframes.is_empty());
         if moves {
@@ -313,7 +314,7 @@ impl Pbrt<'_, '_> {
 }
 
 /// The scale of a matrix, if it is uniform.
-fn even_scale(matrix: &DMat4) -> Option<f64> {
+fn uniform_scale(matrix: &DMat4) -> Option<f64> {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate());
     let scale = x.length();
     let off = [

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn open_quotes_are_told_with_their_place() {
+    fn unterminated_quotes_are_reported_with_their_location() {
         assert!(tokens("a\n  \"bc\n\"").unwrap_err().starts_with("f:2:3: this quote"));
         assert!(tokens("\"bc").unwrap_err().starts_with("f:1:1"));
         assert!(tokens("\"bc\\").unwrap_err().starts_with("f:1:1"));

@@ -33,7 +33,7 @@ const LIGHTS: &[(&str, Make)] = &[
 const OLD: &[(&str, Make)] = &[("exinfinite", environment::infinite)];
 
 /// The maximum value of a light.
-const BRIGHTEST: f32 = 1e11;
+const MAX_LIGHT: f32 = 1e11;
 
 /// The emission of a surface.
 #[derive(Clone, Debug)]
@@ -64,10 +64,10 @@ impl Pbrt<'_, '_> {
     pub(super) fn shine(&mut self, list: &ParameterList, name: &'static str) -> Result<Rgb, FormatError> {
         let colour = self.spectrum(list, name, Meaning::Light)?.unwrap_or(Rgb::WHITE);
         let shone = colour * self.light_scale(list)?;
-        if shone.max_channel() > BRIGHTEST {
+        if shone.max_channel() > MAX_LIGHT {
             self.oddities.note("a light is brighter than numbers can tell", || list.at.clone());
         }
-        Ok(shone.clamp(0.0, BRIGHTEST))
+        Ok(shone.clamp(0.0, MAX_LIGHT))
     }
 
     /// The scales of a light and of the film.

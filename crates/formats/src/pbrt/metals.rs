@@ -76,13 +76,13 @@ const VISIBLE: std::ops::RangeInclusive<u16> = 420..=700;
 const TOLERANCE: f64 = 0.005;
 
 /// The maximum index that a material may have.
-const GREATEST_INDEX: f64 = 100.0;
+const MAX_INDEX: f64 = 100.0;
 
 /// Of all indices with the given reflectance at normal incidence, the one that is closest at 82 degrees.
 fn fitted(straight: f64, grazing: f64) -> [f32; 2] {
     let root = straight.sqrt();
     let least = (1.0 - straight) / (1.0 + straight);
-    let most = ((1.0 + root) / (1.0 - root)).min(GREATEST_INDEX);
+    let most = ((1.0 + root) / (1.0 - root)).min(MAX_INDEX);
     let extinction = |eta: f64| {
         let k2 = (straight * (eta + 1.0) * (eta + 1.0) - (eta - 1.0) * (eta - 1.0)) / (1.0 - straight);
         k2.max(0.0).sqrt()
@@ -133,7 +133,7 @@ mod tests {
 
     /// In sRGB it is (1.037, 0.728, 0.365) of white, and no index reflects more than all of the light.
     #[test]
-    fn gold_is_redder_than_colours_can_be_and_has_indices_all_the_same() {
+    fn gold_is_outside_srgb_but_has_indices() {
         let part = |i: usize| Spectrum(GOLD.iter().map(|row| [row[0], row[i]]).collect());
         let Reduced { indices: [eta, k], is_cut } = from_spectra(&part(1), &part(2));
         assert!(is_cut);

@@ -168,7 +168,7 @@ pub(super) struct Pbrt<'o, 'r> {
 const MIN_FILE: u64 = 1 << 14;
 
 /// Longer chains of includes are refused, since each level uses some of the stack.
-const LONGEST_CHAIN: usize = 32;
+const MAX_CHAIN: usize = 32;
 
 impl Pbrt<'_, '_> {
     fn whole(&mut self, source: &Source) -> Result<(), FormatError> {
@@ -196,13 +196,13 @@ impl Pbrt<'_, '_> {
 
     /// Reads another file at this point.
     pub(super) fn include(&mut self, name: &str, at: &Span) -> Result<(), FormatError> {
-        let path = self.reading.locate_besides(self.folder.as_deref(), name, &self.open, at)?;
+        let path = self.reading.locate_except(self.folder.as_deref(), name, &self.open, at)?;
         if self.open.contains(&path) {
             let message = format!("'{name}' includes itself, directly or through others: take it out here");
             return Err(FormatError::malformed(message, at.clone()));
         }
-        if self.open.len() >= LONGEST_CHAIN {
-            let message = format!("files include each other more than {LONGEST_CHAIN} deep");
+        if self.open.len() >= MAX_CHAIN {
+            let message = format!("files include each other more than {MAX_CHAIN} deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         let raw = self.reading.load(&path)?;

@@ -37,7 +37,7 @@ impl NamedTextures {
 }
 
 /// Deeper nesting of textures is refused, since each level uses some of the stack.
-const DEEPEST: usize = 32;
+const MAX_DEPTH: usize = 32;
 
 /// Builds a texture.
 type Make = fn(&mut Pbrt, &ParameterList, Meaning) -> Result<TextureOrValue, FormatError>;
@@ -117,8 +117,8 @@ impl Pbrt<'_, '_> {
         self.textures.named[slot].insert(name.to_owned(), Slot::Open);
         let meaning = if slot == 1 { Meaning::Number } else { Meaning::Surface };
         self.textures.depth += 1;
-        if self.textures.depth > DEEPEST {
-            let message = format!("textures are made of each other more than {DEEPEST} deep");
+        if self.textures.depth > MAX_DEPTH {
+            let message = format!("textures are made of each other more than {MAX_DEPTH} deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         let ink = self.made(&entity, meaning)?;

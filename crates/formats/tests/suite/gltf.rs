@@ -301,7 +301,7 @@ fn dispersion_is_of_what_is_solid() {
 }
 
 #[test]
-fn what_is_seen_from_one_side_glows_from_that_side_and_glass_is_seen_from_both() {
+fn single_sided_materials_emit_from_that_side_and_glass_is_double_sided() {
     let sides = |material: &str| {
         let scene = read(&with_material(material, ""));
         let said = |key| match scene.materials[scene.objects[0].material].parameters.find(key) {
@@ -336,9 +336,9 @@ fn colours_of_highlights_above_one_are_a_greater_index() {
         let root = (ior - 1.0) / (ior + 1.0);
         (root * root, spec.parameters.find("specular_color").unwrap().0.clone())
     };
-    for (factor, straight_on) in [(1.0, 0.04), (4.0, 0.16), (25.0, 0.669)] {
+    for (factor, normal_incidence_reflectance) in [(1.0, 0.04), (4.0, 0.16), (25.0, 0.669)] {
         let (found, colour) = of(factor);
-        assert!((found - straight_on).abs() < 1e-3, "{factor}: {found}");
+        assert!((found - normal_incidence_reflectance).abs() < 1e-3, "{factor}: {found}");
         assert_eq!(colour, Rgb::new(1.0, 0.5, 0.0).into(), "{factor}");
     }
 }

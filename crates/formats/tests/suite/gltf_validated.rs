@@ -123,7 +123,7 @@ fn of_a_sound_file_nothing_is_reported() {
 }
 
 #[test]
-fn a_render_does_not_ask_for_it() {
+fn a_render_does_not_validate() {
     let text = sound().replace("\"metallicFactor\"", "\"metalicFactor\"");
     let scene = read_bytes(text.as_bytes(), "gltf", None, "a.gltf", &ReadOptions::default()).unwrap();
     assert_eq!(warnings(&scene), "");

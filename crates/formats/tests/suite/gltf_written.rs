@@ -43,7 +43,7 @@ fn values(scene: &SceneBuilder, value: &Value) -> Vec<f32> {
 }
 
 /// Parameters that are written in another but equivalent form.
-const OTHERWISE: &[&str] =
+const EQUIVALENT: &[&str] =
     &["specular_roughness_anisotropy", "anisotropy_rotation", "transmission_color", "base_color"];
 
 #[track_caller]
@@ -51,13 +51,13 @@ fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
     for (x, y) in a.objects.iter().zip(&b.objects) {
         let (x, y) = (&a.materials[x.material], &b.materials[y.material]);
         for (key, value, _) in &x.parameters.0 {
-            if OTHERWISE.contains(&key.as_str()) && x.parameters.find("transmission_weight").is_some() {
+            if EQUIVALENT.contains(&key.as_str()) && x.parameters.find("transmission_weight").is_some() {
                 continue;
             }
             let Some((found, _)) = y.parameters.find(key) else {
                 let defaults = ["specular_weight", "specular_color", "normal_scale", "specular_ior"];
                 assert!(
-                    defaults.contains(&key.as_str()) || OTHERWISE.contains(&key.as_str()),
+                    defaults.contains(&key.as_str()) || EQUIVALENT.contains(&key.as_str()),
                     "{what}: {key} is lost"
                 );
                 continue;
@@ -75,16 +75,16 @@ fn assert_same_materials(a: &SceneBuilder, b: &SceneBuilder, what: &str) {
 
 /// Otherwise a dark scene would read back as one that does not state its surroundings.
 #[test]
-fn lamps_in_the_dark_come_back_in_the_dark() {
+fn lights_without_surroundings_round_trip() {
     let folder = tempfile::tempdir().unwrap();
     let mut scene = read_text("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    scene.surroundings_unsaid = false;
+    scene.environment_unspecified = false;
     scene.lights.push(Spec::new("lamp", "point").with("intensity", 5.0f32));
     let (mut back, _) = there(&scene, &folder.path().join("a.glb"));
-    assert!(!back.surroundings_unsaid);
-    back.surroundings_unsaid = true;
+    assert!(!back.environment_unspecified);
+    back.environment_unspecified = true;
     let (again, _) = there(&back, &folder.path().join("b.glb"));
-    assert!(again.surroundings_unsaid, "a file of others stays as it is");
+    assert!(again.environment_unspecified, "a file of others stays as it is");
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn test_models_come_back() {
 
 /// Cameras, lights, materials of every kind, a cut-out texture, and an animated object.
 #[test]
-fn our_own_scenes_come_back() {
+fn written_scenes_round_trip() {
     let mut scene = read_text(
         "toml",
         r#"

@@ -133,13 +133,13 @@ fn assert_told<'e>(rows: impl Iterator<Item = &'e Entry> + Clone, put: Put, form
 }
 
 #[test]
-fn what_a_written_material_does_not_show_is_told() {
+fn unsupported_material_parameters_give_warnings() {
     let rows = MATERIALS.iter().map(|row| &row.entry).filter(|entry| entry.name != "mix");
     assert_told(rows, SceneBuilder::add_material, &["toml", "glb", "pbrt", "obj"]);
 }
 
 #[test]
-fn what_a_written_light_does_not_show_is_told() {
+fn unsupported_light_parameters_give_warnings() {
     let put: Put = |scene, light| {
         scene.lights.push(light);
         scene.add_material(Spec::new("m", "diffuse"))

@@ -513,7 +513,7 @@ fn whole_scenes_come_back() {
 }
 
 #[test]
-fn a_file_that_is_no_file_is_told() {
+fn missing_files_and_folders_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let missing = read(&folder.path().join("none.obj"), &ReadOptions::default()).unwrap_err().to_string();
     assert!(missing.contains("none.obj: cannot open it"), "{missing}");

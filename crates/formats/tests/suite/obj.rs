@@ -64,7 +64,7 @@ fn corners_alike_share_a_vertex_and_others_do_not() {
 }
 
 #[test]
-fn hollow_polygons_are_cut() {
+fn concave_polygons_are_triangulated() {
     let text = "v 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4 5 6\n";
     let mesh = read_text("obj", text).unwrap().objects[0].mesh.clone();
     let area = |t: &[u32; 3]| {
@@ -288,7 +288,7 @@ fn pictures_of_numbers_holes_light_and_bumps_are_read() {
 }
 
 #[test]
-fn bumps_that_are_normals_are_taken_as_such_and_alpha_as_holes() {
+fn bump_maps_of_normals_become_normal_maps_and_alpha_becomes_opacity() {
     use bilux_pictures::{Picture, write as write_picture};
     let scene = of_material("newmtl m\nKd 1 1 1\nmap_Bump -bm 2 n.png\nmap_d leaf.png\n", |folder| {
         let blue = Picture::from_rgb(1, 1, vec![Rgb::new(0.25, 0.2, 1.0)]).unwrap();

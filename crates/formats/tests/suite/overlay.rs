@@ -64,7 +64,7 @@ fn a_pattern_means_the_materials_of_models_and_not_ones_own() {
 }
 
 #[test]
-fn a_replacement_of_nothing_is_told_with_the_nearest_name() {
+fn a_replacement_without_a_match_suggests_the_nearest_name() {
     let refusal = |text: &str| made_of(text).expect_err("this should be refused").to_string();
     let cases = [
         (
@@ -90,7 +90,7 @@ fn a_replacement_of_nothing_is_told_with_the_nearest_name() {
 }
 
 #[test]
-fn what_is_laid_over_comes_first_and_on_top() {
+fn the_overlay_comes_first_and_takes_precedence() {
     let glb = "{\"asset\":{\"version\":\"2.0\"},\"scenes\":[{\"nodes\":[0,1]}],\
         \"extensionsUsed\":[\"KHR_lights_punctual\"],\
         \"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"point\",\"name\":\"theirs\"}]}},\

@@ -38,7 +38,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn formulas_are_read_within_each_other_and_come_back() {
+fn nested_procedural_textures_round_trip() {
     let folder = folder();
     let path = folder.path().join("s.toml");
     std::fs::write(&path, material(ALL)).unwrap();
@@ -119,7 +119,7 @@ fn written(scene: &SceneBuilder, folder: &Path, extension: &str) -> (String, Sce
 }
 
 #[test]
-fn formats_without_formulas_have_pictures_of_them() {
+fn formats_without_procedural_textures_get_images() {
     let folder = tempfile::tempdir().unwrap();
     let board =
         "reflectance = { kind = \"checker\", a = [1, 0, 0], b = [0, 0, 1], u_scale = 3, v_offset = 0.5 }";
@@ -154,7 +154,7 @@ fn formats_without_formulas_have_pictures_of_them() {
 }
 
 #[test]
-fn formulas_of_pbrt_are_the_same_ones() {
+fn pbrt_textures_become_procedural_textures() {
     let of = |lines: &str| {
         let text = format!(
             "WorldBegin\n{lines}\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"disk\"\n"

@@ -117,7 +117,7 @@ fn transforms_and_attributes_nest() {
 }
 
 #[test]
-fn what_moves_has_two_places() {
+fn moving_objects_have_two_keyframes() {
     let scene = scene(&format!(
         r#"Camera "perspective" "float shutterclose" [0.5]
         TransformTimes 0 2
@@ -425,7 +425,7 @@ fn what_is_wrong_is_told_with_its_place() {
 }
 
 #[test]
-fn glass_parts_colours_as_its_name_or_its_spectrum_says() {
+fn glass_disperses_by_its_name_or_its_spectrum() {
     for (eta, wanted) in [
         ("\"spectrum eta\" \"glass-BK7\"", Some((1.5168, 20.0 / 64.17))),
         ("\"spectrum eta\" [ 400 1.54 486.13 1.51 587.6 1.5 656.27 1.49 700 1.48 ]", Some((1.5, 0.8))),
@@ -719,7 +719,7 @@ fn texts_that_would_take_for_ever_are_refused_soon() {
 }
 
 #[test]
-fn the_first_bytes_tell_it() {
+fn the_first_bytes_identify_the_format() {
     let text = format!("# a scene\nWorldBegin\n{TRIANGLE}");
     assert_eq!(read_text("", text).unwrap().objects.len(), 1);
     assert!(bilux_formats::format_named("pbrt").unwrap().extensions.contains(&"pbrt"));

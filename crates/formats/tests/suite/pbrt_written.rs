@@ -197,7 +197,7 @@ fn textures_come_back_as_they_were() {
 }
 
 #[test]
-fn the_sky_comes_back_the_way_it_stood() {
+fn the_environment_map_round_trips_with_its_orientation() {
     let (_, back) = there(
         "[[light]]\nkind = \"environment\"\nzenith = [0, 0, 4]\nhorizon = [2, 0, 0]\nground = [0, 1, 0]\n[[model]]\nshape = \"floor\"",
     );

@@ -46,7 +46,7 @@ fn each_solid_is_an_object_and_empty_ones_are_none() {
 }
 
 #[test]
-fn lying_counts_are_told() {
+fn false_counts_are_reported() {
     let message = refusal("stl", binary("x", 4_000_000_000, 2));
     assert!(message.contains("says 4000000000 triangles, but there are bytes for 2"), "{message}");
     let scene = read_text("stl", binary("x", 1, 2)).unwrap();

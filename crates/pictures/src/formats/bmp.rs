@@ -227,7 +227,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
         }
     };
     let mut whole = Interleaved { width, height, samples };
-    whole.show_what_is_all_transparent();
+    whole.make_opaque_if_all_transparent();
     Ok(whole)
 }
 

@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn what_others_packed_looks_as_it_did() {
+    fn files_packed_by_other_programs_decode_to_the_original() {
         for (name, most) in [
             ("uastc.ktx2", 0.02),
             ("uastc_zstd.ktx2", 0.02),

@@ -70,7 +70,7 @@ impl Interleaved {
 
     /// Makes a picture opaque if its alpha is zero everywhere: writers that do not know alpha leave zeros in its
     /// place.
-    pub(super) fn show_what_is_all_transparent(&mut self) {
+    pub(super) fn make_opaque_if_all_transparent(&mut self) {
         let channels = self.channels();
         let first = channels.saturating_sub(1);
         if !matches!(channels, 2 | 4) {

@@ -155,7 +155,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
     }
     let mut whole = Interleaved { width, height, samples: samples.out };
     if channels == 4 || channels == 2 {
-        whole.show_what_is_all_transparent();
+        whole.make_opaque_if_all_transparent();
     }
     Ok(whole)
 }
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn alpha_counts_unless_all_of_it_is_nought() {
+    fn alpha_is_used_unless_it_is_zero_everywhere() {
         let pixels =
             |alpha: u8| [[1, 2, 3, alpha], [1, 2, 3, 0], [1, 2, 3, 0], [1, 2, 3, 0]].as_flattened().to_vec();
         let alphas = |alpha: u8| {

@@ -33,7 +33,7 @@ pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
 const FORMAT: &str = "TIFF";
 
 /// Upper bound on the compression ratio: no memory is taken for pixels that a file is too short to hold.
-const MAX_OF_A_BYTE: u64 = 4096;
+const MAX_COMPRESSION_RATIO: u64 = 4096;
 
 /// More channels than any picture has, including those that are ignored.
 const MAX_CHANNELS: u16 = 64;
@@ -93,7 +93,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
         return Err(PictureError::truncated(FORMAT, "a text"));
     }
     // The maximum size of the unpacked bytes also bounds what a stated length may request.
-    let most = u64::try_from(bytes.len()).unwrap_or(u64::MAX).saturating_mul(MAX_OF_A_BYTE);
+    let most = u64::try_from(bytes.len()).unwrap_or(u64::MAX).saturating_mul(MAX_COMPRESSION_RATIO);
     let memory = usize::try_from(limits.max_bytes.min(most)).unwrap_or(usize::MAX);
     let mut own = tiff::decoder::Limits::default();
     own.decoding_buffer_size = memory;

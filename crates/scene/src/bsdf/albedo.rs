@@ -259,7 +259,7 @@ mod tests {
 
     /// Compares with a quadrature over many microfacets, between the table's entries.
     #[test]
-    fn rough_boundaries_reflect_what_their_facets_do() {
+    fn the_albedo_table_matches_quadrature() {
         for (alpha, eta) in [(0.03f32, 1.5f32), (0.1, 1.4), (0.3, 1.6), (0.6, 2.0), (0.9, 1.3)] {
             let ggx = Ggx::new(alpha);
             for cos in [0.05f32, 0.11, 0.3, 0.55, 0.9] {

@@ -139,7 +139,7 @@ impl CoatedDiffuse {
         if wo.z * wi.z <= 0.0 {
             return through * cosine;
         }
-        let even = self.grain.map_or(0.0, |grain| grain.share_even(wo));
+        let even = self.grain.map_or(0.0, |grain| grain.uniform_probability(wo));
         (1.0 - through) * (cosine + (0.5 * FRAC_1_PI - cosine) * even)
     }
 
@@ -152,7 +152,7 @@ impl CoatedDiffuse {
     pub(super) fn sample(&self, wo: Vec3, u_choice: f32, u: Vec2, mode: TransportMode) -> Option<BsdfSample> {
         let through = self.share_through();
         let transmits = u_choice < through;
-        let even = self.grain.map_or(0.0, |grain| grain.share_even(wo)) * (1.0 - through);
+        let even = self.grain.map_or(0.0, |grain| grain.uniform_probability(wo)) * (1.0 - through);
         let is_even = !transmits && u_choice - through < even;
         let mut wi = if is_even { warp::sample_cone(u, 0.0) } else { warp::sample_cosine_hemisphere(u) };
         wi.z *= 1f32.copysign(if transmits { -wo.z } else { wo.z });

@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_on_the_closed_form_holds() {
+    fn normal_incidence_matches_the_closed_form() {
         for (eta, k) in [(0.2f32, 3.4f32), (1.0, 7.0), (3.0, 3.0)] {
             let wanted = ((eta - 1.0) * (eta - 1.0) + k * k) / ((eta + 1.0) * (eta + 1.0) + k * k);
             assert!((fresnel_conductor(1.0, eta, k) - wanted).abs() < 1e-6);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tint_is_met_straight_on_and_at_82_degrees() {
+    fn a_tint_is_matched_at_normal_incidence_and_at_82_degrees() {
         let (straight, edge) = (Rgb::new(1.0, 0.7, 0.3), Rgb::new(1.0, 0.9, 0.5));
         let fresnel = Fresnel::tinted(straight, edge);
         assert_eq!(fresnel.at(1.0), straight);

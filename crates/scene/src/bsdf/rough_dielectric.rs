@@ -198,7 +198,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_reflected_passes() {
+    fn reflectance_and_transmittance_sum_to_one() {
         for eta in [1.5f32, 1.0 / 1.5, 2.4] {
             for i in 1..=40 {
                 let cos = i as f32 / 40.0;

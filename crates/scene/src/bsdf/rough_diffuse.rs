@@ -58,7 +58,7 @@ impl RoughDiffuse {
     /// The probability of uniform sampling, as cosine sampling draws too few directions near the horizon of a grazing
     /// `wo`.
     #[inline]
-    pub(super) fn share_even(&self, wo: Vec3) -> f32 {
+    pub(super) fn uniform_probability(&self, wo: Vec3) -> f32 {
         let grazing = 1.0 - wo.z.abs().min(1.0);
         0.4 * self.roughness * grazing * grazing
     }
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_the_model_as_told() {
+    fn it_matches_the_published_model() {
         for (roughness, colour) in [(0.3f32, 0.9f32), (1.0, 0.5)] {
             let grain = RoughDiffuse::new(roughness, Rgb::grey(colour), |_| 1.0);
             for (o, i, turn) in [(0.2f32, 0.9f32, 0.0f32), (0.7, 0.6, 2.8), (0.3, 0.2, 0.4), (1.0, 0.5, 0.0)]

@@ -240,7 +240,7 @@ impl Light for EnvironmentMap {
         self.pdf(&self.sent, -direction) * disc_pdf_area(bounds)
     }
 
-    fn finds_all(&self) -> bool {
+    fn samples_all_light(&self) -> bool {
         false
     }
 

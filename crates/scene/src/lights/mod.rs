@@ -146,7 +146,7 @@ pub trait Light: Send + Sync {
     /// False when [`Light::sample_li`] leaves light to BSDF sampling, in directions where its density is zero.
     ///
     /// [`Light::sample_le`] emits that light nevertheless. [Karlík 2019]
-    fn finds_all(&self) -> bool {
+    fn samples_all_light(&self) -> bool {
         true
     }
 

@@ -66,7 +66,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 };
 
 /// A metal's reflectance at normal incidence; `None` if the spec is not a valid conductor.
-pub fn straight_on(spec: &Spec) -> Option<Rgb> {
+pub fn normal_incidence_reflectance(spec: &Spec) -> Option<Rgb> {
     let reader = Reader::new(spec, &ENTRY.entry).ok().filter(|_| spec.kind == ENTRY.entry.name)?;
     if reader.is_given("reflectance") {
         return Some(reader.colour("reflectance"));

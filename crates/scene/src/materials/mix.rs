@@ -34,7 +34,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     build: |reader, ingredients| {
         let (a, b) = (read_part(reader, ingredients, "a")?, read_part(reader, ingredients, "b")?);
-        let lobes = a.most_lobes() + b.most_lobes();
+        let lobes = a.max_lobes() + b.max_lobes();
         if lobes > MAX_LOBES {
             let message = format!(
                 "these materials scatter light in {lobes} ways together, and a mix has at most {MAX_LOBES}: \
@@ -120,8 +120,8 @@ impl Material for Mix {
         self.a.needs_tangents() || self.b.needs_tangents()
     }
 
-    fn most_lobes(&self) -> usize {
-        self.a.most_lobes() + self.b.most_lobes()
+    fn max_lobes(&self) -> usize {
+        self.a.max_lobes() + self.b.max_lobes()
     }
 
     fn disperses(&self) -> bool {

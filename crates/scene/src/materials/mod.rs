@@ -42,7 +42,7 @@ use crate::texture::{ColourMap, NumberMap, Texture};
 use crate::wavelength::Wavelength;
 use bilux_math::registry::{Entry, Parameter, ParameterKind};
 use bilux_math::{Rgb, Vec3};
-pub use conductor::straight_on;
+pub use conductor::normal_incidence_reflectance;
 pub use dielectric::with_indices;
 use emission::{EMISSION, EMISSION_SCALE, EMISSION_SIDES};
 pub use glasses::glass_indices;
@@ -68,7 +68,7 @@ pub trait Material: Send + Sync {
         false
     }
     /// The maximum number of lobes of its [`Bsdf`].
-    fn most_lobes(&self) -> usize {
+    fn max_lobes(&self) -> usize {
         1
     }
     /// Emitted radiance, black for no emission; the maximum, if a texture varies it.

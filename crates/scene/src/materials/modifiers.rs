@@ -60,8 +60,8 @@ impl Material for ModifiedMaterial {
         self.normals.is_some() || self.material.needs_tangents()
     }
 
-    fn most_lobes(&self) -> usize {
-        self.material.most_lobes()
+    fn max_lobes(&self) -> usize {
+        self.material.max_lobes()
     }
 
     fn emission(&self) -> Rgb {

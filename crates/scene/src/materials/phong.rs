@@ -125,7 +125,7 @@ impl Material for Phong {
         }
     }
 
-    fn most_lobes(&self) -> usize {
+    fn max_lobes(&self) -> usize {
         3
     }
 

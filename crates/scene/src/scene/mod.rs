@@ -305,7 +305,7 @@ impl Scene {
     }
 
     /// True when some surface is emissive.
-    pub fn has_luminous_surfaces(&self) -> bool {
+    pub fn has_emissive_surfaces(&self) -> bool {
         self.parts.object_lights.iter().any(Option::is_some)
     }
 }

@@ -44,7 +44,7 @@ impl Scene {
 impl SceneParts {
     /// True when some surfaces may let this ray pass.
     #[inline]
-    fn is_patchy_for(&self, ray: &Ray) -> bool {
+    fn may_pass(&self, ray: &Ray) -> bool {
         self.has_holes || ray.mask != u32::MAX
     }
 
@@ -117,10 +117,10 @@ impl<'s> Tracer<'s> {
     #[inline(always)]
     fn ask<T>(&mut self, ray: &Ray, question: impl FnOnce(&mut Self, &Ray, &Query) -> T) -> T {
         let scene = self.scene;
-        if !scene.parts.is_patchy_for(ray) && scene.sheets.is_none() {
+        if !scene.parts.may_pass(ray) && scene.sheets.is_none() {
             return question(self, ray, &scene.query);
         }
-        let (number, shells) = (number_of(ray), (scene.sheets.as_ref(), self.end));
+        let (number, shells) = (ray_hash(ray), (scene.sheets.as_ref(), self.end));
         let stops = |hit: &Hit| scene.parts.stops(ray, number, hit, shells);
         question(self, ray, &Query { filter: Some(&stops), ..scene.query })
     }
@@ -180,7 +180,7 @@ impl<'s> Tracer<'s> {
         if !self.occluded(ray) {
             return false;
         }
-        if !self.scene.has_luminous_surfaces() {
+        if !self.scene.has_emissive_surfaces() {
             return true;
         }
         let mut rest = *ray;
@@ -196,7 +196,7 @@ impl<'s> Tracer<'s> {
 }
 
 /// A number that identifies a ray.
-fn number_of(ray: &Ray) -> u64 {
+fn ray_hash(ray: &Ray) -> u64 {
     let [x, y, z] = ray.origin.map(|c| u64::from(c.to_bits()));
     let [dx, dy, dz] = ray.direction.map(|c| u64::from(c.to_bits()));
     hash_words([x << 32 | dx, y << 32 | dy, z << 32 | dz])

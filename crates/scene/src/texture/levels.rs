@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn every_level_has_the_mean_of_the_picture_whatever_its_sides() {
+    fn every_level_keeps_the_mean_of_the_image() {
         for (width, height) in [(64, 64), (61, 64), (37, 29), (2, 2), (3, 3), (2, 50), (127, 255)] {
             let floats = Image {
                 width,
@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_even_stays_so_and_light_is_what_is_averaged() {
+    fn uniform_levels_stay_uniform_and_light_is_averaged() {
         let texel = [3, 130, 254, 77];
         let even = Image { width: 11, height: 6, texels: Texels::Bytes(vec![texel; 66]) };
         for is_data in [false, true] {

@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn transforms_are_of_coordinates_that_grow_downwards() {
+    fn uv_transforms_use_downward_v() {
         // The second texel of the row fills the square; then half a turn about the upper left corner.
         let part = UvTransform::new([0.25, 0.0], 0.0, [0.25, 1.0]);
         let texture = Texture { transform: Some(part), ..row(Wrap::Repeat, Filter::Nearest) };

@@ -87,7 +87,7 @@ impl TechniqueCounts {
     pub(crate) const CAMERA: TechniqueCounts =
         TechniqueCounts { splats: Lanes([0.0]), joins: Lanes([0.0]), eta: Lanes([0.0]), direct: true };
     /// With or without splats, and with or without connections.
-    pub(crate) fn beside_merging(splats: bool, joins: bool) -> TechniqueCounts {
+    pub(crate) fn with_splats_and_joins(splats: bool, joins: bool) -> TechniqueCounts {
         TechniqueCounts {
             splats: Lanes([f32::from(splats)]),
             joins: Lanes([f32::from(joins)]),

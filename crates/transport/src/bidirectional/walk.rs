@@ -144,7 +144,7 @@ impl<'w, const N: usize> Walk<'w, N> {
         let is_at_light = self.depth == 0 && self.mode == TransportMode::Importance;
         let joins = if is_at_light { Lanes::ONE } else { self.techniques.joins };
         let merged = if is_at_light && !self.techniques.direct { Lanes::ZERO } else { self.techniques.eta };
-        let distance2 = distance2 * self.picked_more(task.scene(), surface.p);
+        let distance2 = distance2 * self.light_sampling_ratio(task.scene(), surface.p);
         self.partial.arrive(distance2, surface.n_geom.dot(wo).abs(), joins, merged);
         self.by_area = false;
         let bsdf = media.bsdf(task.scene(), &surface, &task.wavelength);
@@ -172,7 +172,7 @@ impl<'w, const N: usize> Walk<'w, N> {
     }
 
     /// The factor by which the first surface of a light subpath would sample its start more often than assumed so far.
-    fn picked_more(&mut self, scene: &Scene, from: Vec3) -> f32 {
+    fn light_sampling_ratio(&mut self, scene: &Scene, from: Vec3) -> f32 {
         self.start.take().map_or(1.0, |Start { light, ray, .. }| {
             let light = &scene.lights()[light].light;
             // No surface samples what light sampling leaves out.

@@ -35,7 +35,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     build: |reader| {
         let techniques = TechniqueCounts {
             direct: reader.bool("direct"),
-            ..TechniqueCounts::beside_merging(reader.bool("splats"), reader.bool("joins"))
+            ..TechniqueCounts::with_splats_and_joins(reader.bool("splats"), reader.bool("joins"))
         };
         Ok(Box::new(Vcm {
             roulette_depth: reader.integer("roulette_depth") as u32,

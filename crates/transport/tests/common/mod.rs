@@ -61,7 +61,7 @@ pub fn floor(y: f32, half: f32) -> Arc<Mesh> {
 }
 
 /// Fails where a picture is not the same, to the bit, with every accelerator.
-pub fn assert_same_whatever_finds(builder: &SceneBuilder) {
+pub fn assert_same_with_every_accelerator(builder: &SceneBuilder) {
     let picture = |accel: &str| {
         let choice = AccelChoice { name: accel.to_owned(), ..AccelChoice::default() };
         let scene = builder.build(&choice, [0.0, 0.0], 1.0).unwrap();

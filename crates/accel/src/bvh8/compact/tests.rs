@@ -77,7 +77,7 @@ fn compare(tree: &Bvh8, compact: &CompactBvh8) -> f32 {
 }
 
 #[test]
-fn boxes_hold_theirs_and_triangles_are_the_same() {
+fn compact_boxes_contain_the_originals_and_triangles_are_the_same() {
     for (size, at) in [(1.0, 0.0), (1e30, 0.0), (1e-30, 0.0), (1.0, -3e4), (1e-3, 1e3)] {
         let (tree, compact) = both(&scattered(3000, size, at));
         // A step, which is a power of two, is less than two 255ths; far from the origin, floats are coarser.
@@ -89,7 +89,7 @@ fn boxes_hold_theirs_and_triangles_are_the_same() {
 }
 
 #[test]
-fn boxes_hold_theirs_where_floats_end() {
+fn compact_boxes_contain_the_originals_near_the_float_limits() {
     for (size, at) in
         [(3e38, 0.0), (f32::MAX, -f32::MAX), (1e-43, 0.0), (2e-38, -1e-38), (0.0, 7.0), (0.0, -0.0)]
     {
@@ -99,7 +99,7 @@ fn boxes_hold_theirs_where_floats_end() {
 }
 
 #[test]
-fn children_that_are_not_there_are_none() {
+fn absent_children_are_none() {
     let node = |count: usize| {
         let mut units = [Unit::default(); NODE_UNITS];
         let child = |k: usize| ([[k as f32; 3], [k as f32 + 0.5; 3]], Ref::node(k));
@@ -116,7 +116,7 @@ fn children_that_are_not_there_are_none() {
 }
 
 #[test]
-fn shared_corners_make_it_less_than_half() {
+fn shared_corners_take_less_than_half_the_memory() {
     let mesh = net(100);
     let (tree, compact) = both(&mesh);
     let bytes = |tree: &dyn Accelerator| tree.memory_bytes() as f64 / mesh.len() as f64;

@@ -188,13 +188,13 @@ pub(super) fn closest<F: NodeFormat, C: Count>(
         CpuLevel::Avx512 => ask!(avx512, closest, closest_by, view, ray, query, count),
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Avx2 => ask!(avx2, closest, closest_by, view, ray, query, count),
-        _ => lesser_closest::<F, C>(level, view, ray, query, count),
+        _ => closest_at_lower_levels::<F, C>(level, view, ray, query, count),
     }
 }
 
 /// [`closest`] for the lower levels. Separate, so that the choice between the others stays two comparisons.
 #[inline(never)]
-fn lesser_closest<F: NodeFormat, C: Count>(
+fn closest_at_lower_levels<F: NodeFormat, C: Count>(
     level: CpuLevel,
     view: TreeView<'_>,
     ray: &Ray,
@@ -222,13 +222,13 @@ pub(super) fn any<F: NodeFormat, C: Count>(
         CpuLevel::Avx512 => ask!(avx512, any, any_by, view, ray, query, count),
         #[cfg(target_arch = "x86_64")]
         CpuLevel::Avx2 => ask!(avx2, any, any_by, view, ray, query, count),
-        _ => lesser_any::<F, C>(level, view, ray, query, count),
+        _ => any_at_lower_levels::<F, C>(level, view, ray, query, count),
     }
 }
 
 /// [`any`] for the lower levels. Separate, so that the choice between the others stays two comparisons.
 #[inline(never)]
-fn lesser_any<F: NodeFormat, C: Count>(
+fn any_at_lower_levels<F: NodeFormat, C: Count>(
     level: CpuLevel,
     view: TreeView<'_>,
     ray: &Ray,

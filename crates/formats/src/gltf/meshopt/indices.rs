@@ -58,14 +58,14 @@ pub(super) fn unpack_triangles(packed: &[u8], stride: usize, elements: &mut [u8]
     let mut state = Triangles { data, edges, vertices, next: 0, last: 0 };
     for (code, corners) in codes.iter().zip(elements.chunks_exact_mut(3 * stride)) {
         let triangle = match code {
-            0..0xf0 => state.beside_an_edge(usize::from(code >> 4), usize::from(code & 15))?,
-            0xf0..0xfe => state.of_places([0, table[usize::from(code & 15)]])?,
+            0..0xf0 => state.across_recent_edge(usize::from(code >> 4), usize::from(code & 15))?,
+            0xf0..0xfe => state.resolve_corners([0, table[usize::from(code & 15)]])?,
             _ => {
                 let places = state.data.byte()?;
                 if places == 0 {
                     state.next = 0;
                 }
-                state.of_places([if *code == 0xfe { 0 } else { 15 }, places])?
+                state.resolve_corners([if *code == 0xfe { 0 } else { 15 }, places])?
             }
         };
         for (index, bytes) in triangle.iter().zip(corners.chunks_exact_mut(stride)) {
@@ -77,7 +77,7 @@ pub(super) fn unpack_triangles(packed: &[u8], stride: usize, elements: &mut [u8]
 
 impl Triangles<'_> {
     /// A triangle that shares one of the recent edges.
-    fn beside_an_edge(&mut self, edge: usize, place: usize) -> Result<[u32; 3], Broken> {
+    fn across_recent_edge(&mut self, edge: usize, place: usize) -> Result<[u32; 3], Broken> {
         let [a, b] = self.edges.at(edge);
         let c = match place {
             0 => self.unnamed(),
@@ -98,7 +98,7 @@ impl Triangles<'_> {
     }
 
     /// A triangle whose corners are each new (0), explicit (15), or a recent vertex (from 1).
-    fn of_places(&mut self, [first, others]: [u8; 2]) -> Result<[u32; 3], Broken> {
+    fn resolve_corners(&mut self, [first, others]: [u8; 2]) -> Result<[u32; 3], Broken> {
         let places = [first, others >> 4, others & 15];
         let mut corners = [0; 3];
         // New vertices are numbered before explicit ones are decoded.

@@ -68,7 +68,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 Err(error) => self.oddities.note(&error.without_place(), || image.at()),
                 Ok((_, bytes)) => {
                     self.validate_kind(image, number, &bytes);
-                    self.let_go(bytes);
+                    self.release_encoded(bytes);
                     let is_read = [true, false].iter().any(|&is_data| self.has_read(number, is_data));
                     if !is_read && let Err(error) = self.decode(image, false) {
                         if let FormatError::TooLarge { .. } = error {

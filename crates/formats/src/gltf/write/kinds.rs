@@ -70,7 +70,7 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
                 .with("specular_roughness", taken("roughness", 0.0.into()))
                 .with("thin_walled", taken("thin", false.into()));
             let out = match number(spec, "dispersion") {
-                Some(dispersion) => parting(out, dispersion),
+                Some(dispersion) => with_dispersion(out, dispersion),
                 None => out,
             };
             if absorbed.is_black() {
@@ -104,7 +104,7 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
 }
 
 /// Converts glTF's dispersion to OpenPBR's: a scale on the dispersion of an Abbe number, 20 by default.
-fn parting(spec: Spec, dispersion: f32) -> Spec {
+fn with_dispersion(spec: Spec, dispersion: f32) -> Spec {
     spec.with("transmission_dispersion_scale", dispersion.min(1.0))
         .with("transmission_dispersion_abbe_number", 20.0 / dispersion.max(1.0))
 }

@@ -174,7 +174,7 @@ impl Document<'_> {
         root.insert("asset".into(), json!({ "version": "2.0", "generator": "Bilux" }));
         root.insert("scene".into(), json!(0));
         let mut scene = if self.roots.is_empty() { json!({}) } else { json!({ "nodes": self.roots }) };
-        if !self.scene.surroundings_unsaid && !self.scene.lights.is_empty() {
+        if !self.scene.environment_unspecified && !self.scene.lights.is_empty() {
             scene["extras"] = json!({ SURROUNDINGS: "none" });
         }
         root.insert("scenes".into(), json!([scene]));

@@ -34,7 +34,7 @@ impl Document<'_> {
     }
 
     /// The aspect ratio of the scene's image, if the scene states its size.
-    fn picture_shape(&self) -> Option<f32> {
+    fn picture_aspect_ratio(&self) -> Option<f32> {
         let Some((Value::Text(size), _)) = self.scene.settings.find("size") else { return None };
         let (width, height) = size.split_once('x')?;
         let [width, height]: [f32; 2] = [width.trim().parse().ok()?, height.trim().parse().ok()?];
@@ -59,7 +59,9 @@ impl Document<'_> {
             let fov = number(spec, "fov").unwrap_or(40.0).to_radians();
             let mut lens = json!({ "yfov": fov, "znear": 0.001 });
             // With an aspect ratio, images of another shape show no less.
-            if let Some(shape) = number(spec, "frame").filter(|&shape| shape > 0.0).or(self.picture_shape()) {
+            if let Some(shape) =
+                number(spec, "frame").filter(|&shape| shape > 0.0).or(self.picture_aspect_ratio())
+            {
                 lens["aspectRatio"] = json!(shape);
             }
             json!({ "type": "perspective", "perspective": lens })

@@ -17,12 +17,12 @@ pub(super) fn diffuse(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
     let reflectance =
         pbrt.ink(list, "reflectance", Meaning::Surface)?.unwrap_or(TextureOrValue::Colour(Rgb::grey(0.5)));
     let index = pbrt.index(list, "eta")?.unwrap_or(1.5);
-    pbrt.mind_layers(list)?;
-    Ok(Some(pbrt.below_glass(list, reflectance, index, 0.0, false)?))
+    pbrt.read_layer_medium(list)?;
+    Ok(Some(pbrt.below_dielectric(list, reflectance, index, 0.0, false)?))
 }
 
 impl Pbrt<'_, '_> {
-    pub(super) fn below_glass(
+    pub(super) fn below_dielectric(
         &mut self,
         list: &ParameterList,
         reflectance: TextureOrValue,
@@ -31,9 +31,10 @@ impl Pbrt<'_, '_> {
         is_old: bool,
     ) -> Result<Spec, FormatError> {
         let index = self.held_index(index, list).max(1.0);
-        let turned_back = reflected_inside(index);
-        let base =
-            self.mapped(reflectance, |c| c.map(|c| c * (1.0 - turned_back) / (1.0 - c * turned_back)))?;
+        let internal_reflectance = reflected_inside(index);
+        let base = self.mapped(reflectance, |c| {
+            c.map(|c| c * (1.0 - internal_reflectance) / (1.0 - c * internal_reflectance))
+        })?;
         let mut spec = Spec::new("", "principled").with("specular_ior", index);
         self.set(&mut spec, "base_color", base, list.place("reflectance"));
         self.set_roughness(&mut spec, list, OWN, roughness, is_old, PRINCIPLED)?;
@@ -41,7 +42,7 @@ impl Pbrt<'_, '_> {
     }
 
     /// Reads the parameters of the medium between the layers.
-    fn mind_layers(&mut self, list: &ParameterList) -> Result<(), FormatError> {
+    fn read_layer_medium(&mut self, list: &ParameterList) -> Result<(), FormatError> {
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
             list.has(name);
         }
@@ -80,7 +81,7 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
     const COAT: Keys = (["coat_roughness", "", ""], 0.0);
     let index = pbrt.index(list, "interface.eta")?.unwrap_or(1.5);
     let index = pbrt.held_index(index, list).max(1.0);
-    pbrt.mind_layers(list)?;
+    pbrt.read_layer_medium(list)?;
     let mut spec = Spec::new("", "principled").with("base_metalness", 1.0f32).with("coat_weight", 1.0f32);
     spec.parameters.set("coat_ior", index);
     let metal = match pbrt.metal(list, ["conductor.eta", "conductor.k"])? {
@@ -117,18 +118,20 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
     let named = list.text("name")?.and_then(measured);
     let scattering = pbrt.ink(list, "sigma_s", Meaning::Number)?.map(|ink| ink.mean());
     let absorption = pbrt.ink(list, "sigma_a", Meaning::Number)?.map(|ink| ink.mean());
-    let from_afar = |[scattering, absorption]: [Rgb; 2], g: f32| {
+    let multiple_scattering_colour = |[scattering, absorption]: [Rgb; 2], g: f32| {
         let channel = |c: usize| {
             let reduced = scattering[c] * (1.0 - g);
-            seen_from_afar(reduced / (reduced + absorption[c]).max(f32::MIN_POSITIVE))
+            multiple_scattering_albedo(reduced / (reduced + absorption[c]).max(f32::MIN_POSITIVE))
         };
         TextureOrValue::Colour(Rgb::new(channel(0), channel(1), channel(2)))
     };
     let colour = match (named, scattering.zip(absorption), pbrt.ink(list, "reflectance", Meaning::Surface)?) {
-        (Some(known), ..) => from_afar(known, 0.0),
-        (None, Some((scattering, absorption)), _) => from_afar([scattering, absorption], asymmetry),
+        (Some(known), ..) => multiple_scattering_colour(known, 0.0),
+        (None, Some((scattering, absorption)), _) => {
+            multiple_scattering_colour([scattering, absorption], asymmetry)
+        }
         (None, None, Some(reflectance)) => reflectance,
-        _ => from_afar([Rgb::new(2.55, 3.21, 3.77), Rgb::new(0.0011, 0.0024, 0.014)], 0.0),
+        _ => multiple_scattering_colour([Rgb::new(2.55, 3.21, 3.77), Rgb::new(0.0011, 0.0024, 0.014)], 0.0),
     };
     let index = pbrt.index(list, "eta")?.unwrap_or(1.33);
     let mut spec = Spec::new("", "principled").with("specular_ior", pbrt.held_index(index, list).max(1.0));
@@ -138,7 +141,7 @@ pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option
 }
 
 /// The reflectance of a semi-infinite medium with this single-scattering albedo. [Hulst 1980; Kulla 2017]
-fn seen_from_afar(albedo: f32) -> f32 {
+fn multiple_scattering_albedo(albedo: f32) -> f32 {
     let s = (1.0 - albedo.clamp(0.0, 1.0)).sqrt();
     ((1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)).clamp(0.0, 1.0)
 }
@@ -148,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn light_is_turned_back_below_glass_as_tables_say() {
+    fn internal_reflectance_matches_tables() {
         // [Egan 1973]: 0.596 for an index of 1.5.
         assert!((reflected_inside(1.5) - 0.596).abs() < 2e-3, "{}", reflected_inside(1.5));
         assert!(reflected_inside(1.0).abs() < 1e-4);
@@ -156,6 +159,6 @@ mod tests {
 
     #[test]
     fn from_afar_white_is_white_and_black_black() {
-        assert_eq!((seen_from_afar(1.0), seen_from_afar(0.0)), (1.0, 0.0));
+        assert_eq!((multiple_scattering_albedo(1.0), multiple_scattering_albedo(0.0)), (1.0, 0.0));
     }
 }

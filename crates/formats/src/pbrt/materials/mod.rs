@@ -180,7 +180,7 @@ pub(super) fn take(spec: &mut Spec, key: &str) -> Option<Value> {
 }
 
 /// Deeper nesting of mixes is refused.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let amount = pbrt
@@ -198,8 +198,8 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatErro
         return Err(FormatError::malformed(message, list.at.clone()));
     };
     pbrt.mix_depth += 1;
-    if pbrt.mix_depth > DEEPEST {
-        let message = format!("materials are mixed more than {DEEPEST} deep, or one with itself");
+    if pbrt.mix_depth > MAX_DEPTH {
+        let message = format!("materials are mixed more than {MAX_DEPTH} deep, or one with itself");
         return Err(FormatError::malformed(message, list.at.clone()));
     }
     let mut part = |name: &str| pbrt.material(&MaterialKey::Named(name.into()), &list.place("materials"));

@@ -34,7 +34,7 @@ pub(super) fn diffuse_transmission(
     };
     let reflectance = ink(pbrt.ink(list, "reflectance", Meaning::Surface)?);
     let transmittance = ink(pbrt.ink(list, "transmittance", Meaning::Surface)?);
-    let share = share_behind(&reflectance, &transmittance);
+    let share = transmitted_fraction(&reflectance, &transmittance);
     let mut spec = Spec::new("", "principled").with("specular_weight", 0.0f32);
     spec.parameters.set("diffuse_transmission_weight", share);
     let part =
@@ -53,7 +53,7 @@ pub(super) fn diffuse_transmission(
 }
 
 /// The fraction of light that is transmitted, chosen so that neither colour exceeds 1 unless their sum does.
-fn share_behind(reflectance: &TextureOrValue, transmittance: &TextureOrValue) -> f32 {
+fn transmitted_fraction(reflectance: &TextureOrValue, transmittance: &TextureOrValue) -> f32 {
     match (reflectance, transmittance) {
         (TextureOrValue::Colour(r), TextureOrValue::Colour(t)) => {
             let (r, t) = (r.max_channel(), t.max_channel());

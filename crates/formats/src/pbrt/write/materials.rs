@@ -183,7 +183,7 @@ impl Document<'_> {
         let mut whole = None;
         if !all("base_metalness") {
             if !all("transmission_weight") {
-                whole = Some(self.below_glass(spec, writing)?);
+                whole = Some(self.below_dielectric(spec, writing)?);
             }
             if given("transmission_weight") {
                 absorbed = absorption(spec);
@@ -232,7 +232,7 @@ impl Document<'_> {
     }
 
     /// The diffuse base with the boundary above it.
-    fn below_glass(&mut self, spec: &Spec, writing: &mut Writing) -> Result<String, FormatError> {
+    fn below_dielectric(&mut self, spec: &Spec, writing: &mut Writing) -> Result<String, FormatError> {
         let weight = number(spec, "specular_weight").unwrap_or(1.0);
         let behind = number(spec, "diffuse_transmission_weight").unwrap_or(0.0);
         if behind > 0.0 {
@@ -259,8 +259,8 @@ impl Document<'_> {
         let index = number(spec, "specular_ior").unwrap_or(1.5);
         let root = ((index - 1.0) / (index + 1.0)) * weight.min(1.0).sqrt();
         let index = (1.0 + root) / (1.0 - root);
-        let turned_back = reflected_inside(index);
-        let seen = |c: Rgb| c.map(|c| c / (1.0 - turned_back + c * turned_back));
+        let internal_reflectance = reflected_inside(index);
+        let seen = |c: Rgb| c.map(|c| c / (1.0 - internal_reflectance + c * internal_reflectance));
         let change = Change { name: "below glass", of: &seen };
         let reflectance = self.colour_of(spec, "base_color", 0.8, change, writing)?;
         let keys = ["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"];

@@ -27,7 +27,7 @@ const RIDGE: f32 = 3e-3;
 
 /// Fraction of a fit's squared residual that counts as error of the fit itself; the rest is noise of the light around
 /// it.
-const OF_MISSED: f32 = 0.2;
+const RESIDUAL_FRACTION: f32 = 0.2;
 
 /// Columns of a fit: albedo, normal, inverse depth, and 1.
 const COLUMNS: usize = 8;
@@ -185,7 +185,7 @@ impl Fit {
         }
         // The light of a mixture lies between the light of its parts.
         let light = each(each(light, low, f32::max), high, f32::min);
-        let trust = variance / (variance + OF_MISSED * missed + f32::MIN_POSITIVE);
+        let trust = variance / (variance + RESIDUAL_FRACTION * missed + f32::MIN_POSITIVE);
         own + (light - own) * trust
     }
 }

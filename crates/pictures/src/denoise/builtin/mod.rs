@@ -142,7 +142,7 @@ mod tests {
 
     /// Strips leave no visible seam: each includes all rows that its passes reach.
     #[test]
-    fn strips_are_the_whole_to_the_bit() {
+    fn strips_match_the_whole_picture_to_the_bit() {
         let picture = noise(37, MAX_ROWS + 83);
         let whole = smoothed(picture.rows(0..picture.height()).unwrap()).unwrap();
         let strips = Builtin::new(2).unwrap().denoise(&picture).unwrap();

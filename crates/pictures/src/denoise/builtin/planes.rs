@@ -126,7 +126,7 @@ pub(super) fn mean(c: Rgb) -> f32 {
 }
 
 /// Factor on a guessed variance: strongly non-uniform noise looks weaker than it is wherever no rare sample fell.
-const UNSURE: f32 = 3.0;
+const GUESS_FACTOR: f32 = 3.0;
 
 /// Guesses a missing variance: from how much pixels differ from the mean of their neighbours, which counts edges as
 /// noise.
@@ -137,7 +137,7 @@ fn guess((width, height): (usize, usize), colour: &impl Fn(usize) -> Rgb) -> Vec
         let around = at(x.saturating_sub(1), y) + at(x + 1, y) + at(x, y.saturating_sub(1)) + at(x, y + 1);
         let apart = colour(i) - around * 0.25;
         // A fifth of the squared difference is the noise of the neighbours.
-        mean(apart * apart) * (0.8 * UNSURE)
+        mean(apart * apart) * (0.8 * GUESS_FACTOR)
     };
     (0..width * height).map(one).collect()
 }

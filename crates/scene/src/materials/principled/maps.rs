@@ -81,7 +81,7 @@ impl Maps {
     }
 
     /// True if no texture varies over the surface.
-    pub(super) fn are_even(&self) -> bool {
+    pub(super) fn are_constant(&self) -> bool {
         let colours = [
             &self.base_color,
             &self.specular_color,

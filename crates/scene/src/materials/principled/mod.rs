@@ -137,7 +137,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     },
     build: |reader, ingredients| {
         let maps = Maps::read(reader, ingredients)?;
-        let even = maps.are_even().then(|| Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()));
+        let even = maps.are_constant().then(|| Bsdf::new(Vec3::Z, Vec3::Z, maps.at(Vec2::ZERO).lobes()));
         let depth = reader.number("transmission_depth");
         let is_deep = !maps.tints_surface;
         if is_deep && maps.transmission_color.texture.is_some() {
@@ -254,7 +254,7 @@ impl Material for Principled {
         is_there(&self.maps.anisotropy) || self.maps.coat_normals.is_some()
     }
 
-    fn most_lobes(&self) -> usize {
+    fn max_lobes(&self) -> usize {
         2 + usize::from(is_there(&self.maps.transmission_weight))
             + usize::from(is_there(&self.maps.coat_weight))
             + usize::from(is_there(&self.maps.fuzz_weight))

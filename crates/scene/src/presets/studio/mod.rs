@@ -122,7 +122,7 @@ pub fn add_missing(scene: &mut SceneBuilder, studio: &Studio) {
     let glows = scene.objects.iter().any(|o| gives_light(scene, o));
     let has_light = studio.lit.unwrap_or_else(|| seems_lit(scene));
     let has_lamps_alone =
-        has_light && scene.surroundings_unsaid && has_lights && !glows && !has_surroundings(scene);
+        has_light && scene.environment_unspecified && has_lights && !glows && !has_surroundings(scene);
     let lit = has_light && !has_lamps_alone;
     let seen = !scene.cameras.is_empty();
     let behind = studio.cut_out || scene.lights.iter().any(Spec::is_backdrop);
@@ -157,7 +157,7 @@ pub fn may_be_lit(scene: &SceneBuilder) -> bool {
     let has_lights = scene.lights.iter().any(|light| !light.is_backdrop());
     let emission = |o: &Object| scene.materials.get(o.material).and_then(|m| m.parameters.find("emission"));
     let glows = || scene.objects.iter().any(|o| emission(o).is_some());
-    scene.surroundings_unsaid && !has_surroundings(scene) && (has_lights || glows())
+    scene.environment_unspecified && !has_surroundings(scene) && (has_lights || glows())
 }
 
 /// True when a scene has light sources, or surfaces that are at least as bright as the white of a screen.

@@ -36,7 +36,7 @@ fn near(got: Rgb, wanted: [f32; 3]) {
 }
 
 #[test]
-fn boards_have_their_squares_where_they_should_and_so_do_their_pictures() {
+fn checkers_and_their_images_have_squares_in_place() {
     let [su, sv, du, dv] = [3.0f32, 2.0, 0.0, 0.25];
     let lies = [
         ("u_scale", number(su)),
@@ -91,7 +91,7 @@ fn ramps_go_from_stop_to_stop() {
 }
 
 #[test]
-fn noise_is_even_smooth_and_of_its_seed() {
+fn noise_is_balanced_smooth_and_seeded() {
     let noise = |octaves: i64, seed: i64| {
         let given = [
             ("octaves", Value::Integer(octaves)),
@@ -130,7 +130,7 @@ fn noise_is_even_smooth_and_of_its_seed() {
 }
 
 #[test]
-fn two_are_mixed_and_multiplied() {
+fn mix_and_scale_combine_two_textures() {
     let board = || texture("checker", &[("u_scale", number(2.0)), ("v_scale", number(2.0))], &[]);
     let (white, black) = (Vec2::new(0.25, 0.25), Vec2::new(0.75, 0.25));
     let mix = [
@@ -149,7 +149,7 @@ fn two_are_mixed_and_multiplied() {
 }
 
 #[test]
-fn what_is_done_to_pictures_is_done_to_formulas() {
+fn texture_options_apply_to_procedural_textures() {
     let ramp = texture("ramp", &[("stops", red_green())], &[]);
     let part = Texture { channel: Some(Channel::G), factor: Rgb::grey(0.5), ..ramp.clone() };
     assert_eq!(part.number(Vec2::new(0.5, 0.5)), 0.25);
@@ -174,7 +174,7 @@ fn what_is_done_to_pictures_is_done_to_formulas() {
 }
 
 #[test]
-fn what_is_wrong_is_told() {
+fn errors_are_reported() {
     assert!(refusal("cheker", &[]).contains("there is no texture 'cheker'; did you mean 'checker'?"));
     assert!(refusal("noise", &[("octave", number(3.0))]).contains("did you mean 'octaves'?"));
     assert!(refusal("noise", &[("octaves", Value::Integer(17))]).contains("a whole number from 1 to 16"));

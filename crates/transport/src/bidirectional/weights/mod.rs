@@ -138,13 +138,13 @@ fn sets() -> [TechniqueCounts; 4] {
     [
         TechniqueCounts::BOTH_ENDS,
         TechniqueCounts { eta, ..TechniqueCounts::BOTH_ENDS },
-        TechniqueCounts { eta, ..TechniqueCounts::beside_merging(true, false) },
-        TechniqueCounts { eta, ..TechniqueCounts::beside_merging(false, true) },
+        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_joins(true, false) },
+        TechniqueCounts { eta, ..TechniqueCounts::with_splats_and_joins(false, true) },
     ]
 }
 
 #[test]
-fn every_weight_is_the_share_of_its_strategy() {
+fn every_mis_weight_matches_its_definition() {
     for (i, lights) in
         [&["rect"][..], &["point", "rect"], &["environment", "rect"], &["directional", "point"]]
             .into_iter()
@@ -173,7 +173,7 @@ const MANY: [&[&str]; 2] = [
 ];
 
 #[test]
-fn every_weight_is_the_share_of_its_strategy_among_many_lights() {
+fn every_mis_weight_matches_its_definition_among_many_lights() {
     for (i, lights) in MANY.into_iter().enumerate() {
         let scene = scene(lights, cameras()[i].clone());
         assert!(!crate::LightChoice::new(&scene).takes_all());

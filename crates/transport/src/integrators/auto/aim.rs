@@ -58,7 +58,7 @@ pub(super) fn learn(
     let pixels = tiles.iter().map(|tile| tile.pixels()).sum::<usize>() as f32;
     let shown = turn.light.settings.width as f32 / pixels;
     let lanes = |own| techniques(own, eta, shown, merging.techniques.direct);
-    let mut lessons = AimStatistics { means: vec![0.0; tiles.len()], finds: Vec::new() };
+    let mut lessons = GuideStatistics { means: vec![0.0; tiles.len()], finds: Vec::new() };
     let mut halves = Vec::new();
     for iteration in 0..SAMPLES {
         let wall = Wall::default();
@@ -127,14 +127,14 @@ impl Guide {
 }
 
 /// The measurements of the round.
-struct AimStatistics {
+struct GuideStatistics {
     /// The mean of each of its tiles.
     means: Vec<f64>,
     /// Contributions of light subpaths: tile, cell, and square of the light.
     finds: Vec<(u32, u16, f64)>,
 }
 
-impl AimStatistics {
+impl GuideStatistics {
     /// Sums of the squares for each cell, relative to the light in the tiles.
     fn squares(&self, part: std::ops::Range<usize>, cells: usize) -> Vec<f64> {
         let dark = super::DARK * self.means.iter().sum::<f64>() / self.means.len() as f64;

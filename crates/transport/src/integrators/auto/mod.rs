@@ -143,7 +143,7 @@ impl Set {
             part: merging.part * self.photons,
             techniques: TechniqueCounts {
                 direct: merging.techniques.direct,
-                ..TechniqueCounts::beside_merging(self.sees, self.joins)
+                ..TechniqueCounts::with_splats_and_joins(self.sees, self.joins)
             },
             ..merging
         }
@@ -240,8 +240,8 @@ impl Auto {
             let (candidate, held) = (&candidates[i], &candidates[best]);
             let is_better = candidate.time_to_error() * WORTH_MORE < held.time_to_error();
             let finds_more = held.misses_more_than(candidate);
-            let finds_all = !candidate.misses_more_than(held);
-            if (self.may_merge || !set.merges()) && (finds_more || (is_better && finds_all)) {
+            let samples_all_light = !candidate.misses_more_than(held);
+            if (self.may_merge || !set.merges()) && (finds_more || (is_better && samples_all_light)) {
                 best = i;
             }
         }

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn rare_dots_count_as_the_light_that_is_missing_without_them() {
+    fn rare_fireflies_count_as_missing_light() {
         let usual = 0.5 / 1.09;
         // One sample in a hundred million: a hundred times the rest of the error, and in no picture.
         let blocks = film(0.1, 1e6);

@@ -117,7 +117,7 @@ impl Walk<'_> {
                         if self.leaf::<L::Wide, ANY>(base, node, child, reference) {
                             limit_bits = self.limit::<L::Wide>().to_bits();
                         }
-                    } else if self.meets_any::<L::Wide>(node, child) {
+                    } else if self.group_hits_any::<L::Wide>(node, child) {
                         current = reference;
                         break;
                     }
@@ -151,7 +151,7 @@ impl Walk<'_> {
     /// # Safety
     /// As for [`each`].
     #[inline(always)]
-    unsafe fn meets_any<W: Wide>(&self, node: *const u8, child: usize) -> bool {
+    unsafe fn group_hits_any<W: Wide>(&self, node: *const u8, child: usize) -> bool {
         let mut from = 0;
         while from < self.lanes {
             // SAFETY: as the caller promises.
