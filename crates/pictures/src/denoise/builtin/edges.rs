@@ -27,10 +27,13 @@ const RIDGE: f32 = 3e-3;
 
 /// Fraction of a fit's squared residual that counts as error of the fit itself; the rest is noise of the light around
 /// it.
-const RESIDUAL_FRACTION: f32 = 0.2;
+const RESIDUAL_FRACTION: f32 = 0.3;
 
-/// Columns of a fit: albedo, normal, inverse depth, and 1.
-const COLUMNS: usize = 8;
+/// Weight of a pixel's distance in the image, relative to differences of features: light also has gradients that no feature shows.
+const OF_POSITIONS: f32 = 0.3;
+
+/// Columns of a fit: albedo, normal, inverse depth, position, and 1.
+const COLUMNS: usize = 10;
 
 /// The picture with its edge pixels reconstructed. `colours` has three planes, and the variance of each pixel in a
 /// fourth.
@@ -115,13 +118,15 @@ impl Fit {
             .flat_map(|row| planes[INVERSE][row..row + SIDE].iter())
             .fold(0.0, |a: f32, &z| a.max(z));
         let by_depth = if farthest > 0.0 { 1.0 / farthest } else { 0.0 };
-        for (row, down) in rows.zip(NEAR) {
+        let position = |i: usize| OF_POSITIONS * (i as f32 - RADIUS as f32);
+        for (j, (row, down)) in rows.zip(NEAR).enumerate() {
             for (column, across) in NEAR.into_iter().enumerate() {
                 let q = row + column;
                 let feature = |plane: usize| planes[plane][q] - planes[plane][middle];
                 let [r, g, b] = [0, 1, 2].map(|c| feature(ALBEDO + c));
                 let [x, y, z] = [0, 1, 2].map(|c| feature(NORMAL + c));
-                let features = [r, g, b, x, y, z, feature(INVERSE) * by_depth, 1.0];
+                let features =
+                    [r, g, b, x, y, z, feature(INVERSE) * by_depth, position(column), position(j), 1.0];
                 let light = [0, 1, 2].map(|c| colours.planes[c][q]);
                 let weight = down * across * planes[WITHIN][q];
                 fit.add(&features, light, weight);

@@ -5,6 +5,7 @@
 
 mod edges;
 mod guides;
+mod linear;
 mod outliers;
 mod pass;
 mod planes;
@@ -46,7 +47,7 @@ const MAX_ROWS: usize = 512;
 
 /// The distance over which one row can affect another: the reach of all passes, of the means of variances, outliers
 /// and guesses before them, and of the edges after them.
-const REACH: usize = 34 + 2 + 2 + 1 + edges::RADIUS;
+const REACH: usize = 34 + 1 + 2 + 1 + edges::RADIUS;
 
 pub(super) struct Builtin {
     pool: ThreadPool,

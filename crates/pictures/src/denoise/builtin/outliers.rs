@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Number of pixels around a firefly that may be as bright by chance.
 const BRIGHT: usize = 3;
 /// Ratio to the brightest other pixels from which on a pixel is too bright.
-const TOO_BRIGHT: f32 = 2.0;
+const TOO_BRIGHT: f32 = 1.3;
 /// The noise must account for at least this fraction of the difference.
 const NOISE: f32 = 0.4;
 

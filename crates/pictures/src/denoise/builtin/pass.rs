@@ -2,6 +2,7 @@
 
 use super::MARGIN;
 use super::guides::{ALBEDO, DEPTH, Guides, NORMAL, SLOPE, TIGHTNESS, WITHIN};
+use super::linear::Moments;
 use super::planes::{Light, Planes};
 use crate::PictureError;
 use rayon::prelude::*;
@@ -11,17 +12,22 @@ const BAND: usize = 16;
 
 /// Weights of neighbours by their distance in steps, along each axis.
 const NEAR: [f32; 5] = [0.7, 0.9, 1.0, 0.9, 0.7];
-/// Tolerance for differences in light, in standard deviations of the noise.
-const LIGHT: f32 = 1.0;
+/// Tolerance for differences in light, in standard deviations of the noise, and the factor by which it grows from one pass to the
+/// next: later passes see errors that their neighbours share, and so underestimate them.
+const LIGHT: f32 = 1.15;
+const LIGHT_GROWTH: f32 = 1.1;
 /// Tolerances for differences in albedo and in normals.
 const ALBEDO_APART: f32 = 0.05;
 const NORMAL_APART: f32 = 0.2;
 /// Squared relative difference below which light counts as the same where there is no noise at all.
 const SAME: f32 = 1e-5;
 
-/// A pixel that differs by more than this many variances does not belong to the patch around it; this preserves
-/// shadow edges.
-const BEYOND: f32 = 3.0;
+/// A neighbour that differs by more than this many of the pixel's own variances does not belong to the patch around it. This
+/// keeps bright light out of sharp shadows, whose pixels have little noise, and does not keep a firefly from being smoothed.
+const BEYOND: f32 = 2.0;
+
+/// Up to this step, passes fit a slope to the light too. Neighbours farther away differ by more than the noise where there is a slope.
+const LAST_LINEAR: usize = 2;
 
 /// Applies one pass to the light.
 ///
@@ -60,6 +66,7 @@ struct Band<'a> {
     rows: std::ops::Range<usize>,
     /// Sums of weight · light, for R, G and B, of weight² · variance, and of weights.
     sums: [Vec<f32>; 5],
+    moments: Option<Moments>,
     /// How much pixels differ in their light, with one more row and column on each side.
     apart: Vec<f32>,
     weights: Vec<f32>,
@@ -73,6 +80,7 @@ impl<'a> Band<'a> {
             guides: &guides.planes,
             step,
             sums: std::array::from_fn(|_| vec![0.0; width * count]),
+            moments: (step <= LAST_LINEAR).then(|| Moments::new(width * count)),
             apart: vec![0.0; (width + 2) * (count + 2)],
             weights: vec![0.0; width],
             rows,
@@ -111,7 +119,8 @@ impl<'a> Band<'a> {
     fn compare(&mut self, dx: isize, dy: isize) {
         let (width, stride) = (self.light.width + 2, self.light.stride());
         let offset = dy * stride as isize + dx;
-        let tolerance = 3.0 * LIGHT * LIGHT;
+        let growth = (0..self.step.trailing_zeros()).fold(LIGHT, |growth, _| growth * LIGHT_GROWTH);
+        let tolerance = 3.0 * growth * growth;
         for row in 0..self.rows.len() + 2 {
             let p = (self.rows.start + row + MARGIN - 1) * stride + MARGIN - 1;
             let q = (p as isize + offset) as usize;
@@ -150,6 +159,8 @@ impl<'a> Band<'a> {
             let (z, tight, within) = (pair(DEPTH), pair(TIGHTNESS).0, pair(WITHIN).1);
             let slope = [pair(SLOPE).0, pair(SLOPE + 1).0];
             let (fx, fy) = (dx as f32, dy as f32);
+            let v = &self.light.planes[3];
+            let v = (&v[p..p + width], &v[q..q + width]);
             let weights = &mut self.weights[..width];
             for x in 0..width {
                 let mut light = 0.0;
@@ -160,7 +171,7 @@ impl<'a> Band<'a> {
                 let albedo = square(ar) + square(ag) + square(ab);
                 let normal = square(nx) + square(ny) + square(nz);
                 let beside = (z.1[x] - z.0[x] - slope[0][x] * fx - slope[1][x] * fy) * tight[x];
-                let own = patch[1][x + 1] - BEYOND;
+                let own = 0.5 * patch[1][x + 1] * (v.0[x] + v.1[x]) / (v.0[x] + 1e-12) - BEYOND;
                 let apart = (if light > 0.0 { light } else { 0.0 }) * (1.0 / 9.0)
                     + (if own > 0.0 { own } else { 0.0 }) * 0.5
                     + albedo * by_albedo
@@ -180,7 +191,12 @@ impl<'a> Band<'a> {
                     sums[x] += weight * plane[x];
                 }
             }
-            self.sums[4][to].iter_mut().zip(weights.iter()).for_each(|(sum, weight)| *sum += weight);
+            self.sums[4][to.clone()].iter_mut().zip(weights.iter()).for_each(|(sum, weight)| *sum += weight);
+            if let Some(moments) = &mut self.moments {
+                let light = [0, 1, 2].map(|c| &self.light.planes[c][q..q + width]);
+                let steps = [dx, dy].map(|d| (d / self.step as isize) as f32);
+                moments.add(to.start, steps, weights, light);
+            }
         }
     }
 
@@ -192,6 +208,11 @@ impl<'a> Band<'a> {
             g[i] *= one_over;
             b[i] *= one_over;
             v[i] *= one_over * one_over;
+            if let Some(moments) = &self.moments {
+                let (fits, variance) = moments.fit(i, [r[i], g[i], b[i]], one_over);
+                [r[i], g[i], b[i]] = fits;
+                v[i] *= variance;
+            }
         }
         [r, g, b, v]
     }

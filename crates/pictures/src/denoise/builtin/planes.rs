@@ -112,7 +112,7 @@ impl Light {
         let pixels = outliers::without(size, &pixels);
         // A single estimate of a pixel's variance is uncertain, so its neighbours' estimates are included.
         let raw: Vec<f32> = pixels.iter().map(|(_, variance)| *variance).collect();
-        let blurred = blur(&blur(&raw, width), width);
+        let blurred = blur(&raw, width);
         let planes = Planes::filled(size, |i| {
             let Rgb { r, g, b } = pixels[i].0;
             [r, g, b, blurred[i]]
