@@ -10,6 +10,7 @@ use crate::scene_warnings::{self, oddities};
 use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
+use bilux_pictures::denoise::{Denoiser, Task, denoiser};
 use bilux_scene::{
     AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
 };
@@ -17,6 +18,7 @@ use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
     BatchMeans, Choice, Features, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError,
     RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
+    shadow_alpha_time,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -239,7 +241,7 @@ impl Job {
         let (scene, camera, integrator) = (&self.scene, &*self.camera, &*self.integrator);
         let mut render = self.render.clone();
         let end = render.stop.time_limit.map(|limit| {
-            let aside = now.duration_since(self.begun.unwrap_or(now)) + self.denoising;
+            let aside = now.duration_since(self.begun.unwrap_or(now)) + self.denoising + self.shadow_time();
             now + time_for_rendering(limit, aside)
         });
         let mut features = None;
@@ -254,7 +256,8 @@ impl Job {
             (false, _) => None,
             (true, None) => Some(coverage(scene, camera, integrator, &render, samples)?),
             (true, Some(catcher)) => {
-                Some(shadow_alpha(scene, camera, integrator, &render, samples, catcher)?)
+                let denoiser = self.shadow_denoiser()?;
+                Some(shadow_alpha(scene, camera, integrator, &render, samples, catcher, denoiser.as_deref())?)
             }
         };
         let mut film = rendered.film;
@@ -273,6 +276,27 @@ impl Job {
             batch_means: rendered.batch_means.filter(|_| !rendered.cancelled),
             linear_transfer: self.settings.linear_transfer,
         })
+    }
+
+    /// What removes the noise of a shadow on an invisible ground: the built-in filter, where the picture is denoised.
+    fn shadow_denoiser(&self) -> Result<Option<Box<dyn Denoiser>>, Error> {
+        if self.denoising.is_zero() {
+            return Ok(None);
+        }
+        Ok(Some(denoiser("builtin", &self.threads_task())?.denoiser))
+    }
+
+    /// The time set aside for the shadow on an invisible ground.
+    fn shadow_time(&self) -> Duration {
+        if self.catcher.is_none() || !self.settings.background.is_cut_out() {
+            return Duration::ZERO;
+        }
+        let pixels = self.render.width as usize * self.render.height as usize;
+        shadow_alpha_time(pixels, self.threads_task().threads_at_work())
+    }
+
+    fn threads_task(&self) -> Task {
+        Task { threads: self.settings.threads, ..Task::default() }
     }
 
     /// True if its integrator's strategies can be shown separately.

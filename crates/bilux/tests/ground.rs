@@ -45,6 +45,33 @@ fn an_invisible_ground_writes_its_shadow_to_alpha() {
     }
 }
 
+/// The shadow of a denoised picture is denoised as well: it has far less noise, and is as dark on average.
+#[test]
+fn a_denoised_picture_has_a_denoised_shadow() {
+    let shadow = |denoise: &str| {
+        let mut all = Parameters::default();
+        let settings =
+            [("size", "96x96"), ("ground", "shadow"), ("background", "transparent"), ("denoise", denoise)];
+        settings.into_iter().for_each(|(key, value)| all.set(key, value));
+        all.set("spp", Value::Integer(4));
+        let mut job = Job::new(&slab(None), &all).unwrap();
+        job.denoiser(true).unwrap();
+        alpha(&job.render(&Quiet).unwrap().picture().unwrap())
+    };
+    let (plain, smooth) = (shadow("off"), shadow("builtin"));
+    // Pixels whose neighbours show the ground too, by how much they differ from the mean of the two beside them.
+    let is_ground = |i: usize| (i - 1..=i + 1).all(|j| plain[j] < 0.9 && smooth[j] < 0.9);
+    let ground: Vec<usize> = (1..plain.len() - 1).filter(|&i| is_ground(i)).collect();
+    let noise = |alpha: &[f32]| {
+        let one = |&i: &usize| f64::from(alpha[i] - 0.5 * (alpha[i - 1] + alpha[i + 1])).abs();
+        ground.iter().map(one).sum::<f64>() / ground.len() as f64
+    };
+    let mean = |alpha: &[f32]| ground.iter().map(|&i| f64::from(alpha[i])).sum::<f64>() / ground.len() as f64;
+    assert!(ground.len() > 1000);
+    assert!(noise(&smooth) < 0.5 * noise(&plain), "{} of {}", noise(&smooth), noise(&plain));
+    assert!((mean(&smooth) - mean(&plain)).abs() < 0.01, "{} and {}", mean(&smooth), mean(&plain));
+}
+
 /// Composited over white, the shadow is that on a white ground: as dark as the lid's form factor says.
 #[test]
 fn the_shadow_over_white_is_that_of_the_ground() {

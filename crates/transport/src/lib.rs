@@ -58,7 +58,7 @@ pub use render::{
 };
 pub use replay::{Replay, replay};
 pub use sampler::PixelSampler;
-pub use shadow_catcher::{ShadowCatcher, shadow_alpha};
+pub use shadow_catcher::{ShadowCatcher, shadow_alpha, shadow_alpha_time};
 pub use splats::Splats;
 pub use stop::{Reached, Stop};
 pub use strategies::{Strategies, Strategy, StrategyPicture, strategies};

@@ -5,22 +5,34 @@
 //! is exactly 0, without noise.
 
 use crate::camera_rays::CameraRays;
-use crate::error::RenderError;
+use crate::error::{FilmError, RenderError};
 use crate::film::zeroed;
 use crate::integrators::PixelIntegrator;
 use crate::light_choice::LightChoice;
 use crate::render::{RenderSettings, threads};
 use crate::sampler::PixelSampler;
-use bilux_math::Vec3;
+use bilux_math::{Rgb, Vec3};
+use bilux_pictures::PictureError;
+use bilux_pictures::denoise::{Denoiser, Layer, Noisy, Source};
 use bilux_scene::{Camera, LightSample, Ray, Scene, Surface, Tracer};
 use rayon::prelude::*;
+use std::ops::Range;
+use std::time::Duration;
 
-/// Minimum number of points on lights that are sampled for each pixel.
+/// Minimum number of points on lights that are sampled for each pixel, and the minimum where the result is denoised.
 const MIN_SAMPLES: u32 = 128;
+const MIN_SAMPLES_DENOISED: u32 = 32;
+/// The expected time for one sample of a shadow that is denoised, on one thread.
+const TIME_PER_SAMPLE: Duration = Duration::from_nanos(150);
 /// A stream of random numbers apart from those of the picture's paths.
 const STREAM: u64 = 0x7368_6164;
 /// Maximum number of glass surfaces that light passes straight through.
 const MAX_PANES: usize = 32;
+
+/// The expected time for the alpha of so many pixels, where it is denoised.
+pub fn shadow_alpha_time(pixels: usize, threads: usize) -> Duration {
+    TIME_PER_SAMPLE * MIN_SAMPLES_DENOISED * (pixels / threads.max(1)) as u32
+}
 
 /// The surface that catches the shadow, and the objects that cast it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,12 +53,15 @@ struct Sums {
     /// Light on the ground with the model and without it.
     with: f64,
     without: f64,
+    /// Sum of the squares of the samples of `without`.
+    squares: f64,
 }
 
 /// The alpha of each pixel: 1 where the model is visible, and on the ground the fraction of light that the model
 /// blocks.
 ///
 /// Pixels are in rows of the film's window, the top row first. `samples` is the picture's number of samples per pixel.
+/// With a denoiser, the shadow takes fewer samples and is denoised; the model's outline stays as it is.
 ///
 /// # Errors
 /// As [`crate::features()`].
@@ -57,28 +72,61 @@ pub fn shadow_alpha(
     settings: &RenderSettings,
     samples: u32,
     catcher: ShadowCatcher,
+    denoiser: Option<&dyn Denoiser>,
 ) -> Result<Vec<f32>, RenderError> {
     settings.check()?;
     let window = settings.window();
     let (eye, lights) = (CameraRays::new(scene, camera, integrator, settings), lamps(scene, catcher));
-    let mut alpha = zeroed::<f32>(window.pixels())?;
-    let tries = MIN_SAMPLES.div_ceil(samples.max(1));
-    let of_row = |(row, alpha): (usize, &mut [f32])| {
+    let mut pixels = zeroed::<Sums>(window.pixels())?;
+    let least = if denoiser.is_some() { MIN_SAMPLES_DENOISED } else { MIN_SAMPLES };
+    let tries = least.div_ceil(samples.max(1));
+    let of_row = |(row, pixels): (usize, &mut [Sums])| {
         let mut tracer = Tracer::new(eye.scene, false);
-        for (column, alpha) in alpha.iter_mut().enumerate() {
+        for (column, sums) in pixels.iter_mut().enumerate() {
             let (x, y) = (window.x + column as u32, window.y + row as u32);
-            let mut sums = Sums::default();
             for sample in 0..samples {
                 let (ray, _) = eye.sample(&mut tracer, x, y, sample);
                 let mut sampler = PixelSampler::new(settings.seed, x, y, sample);
                 sampler.enter(STREAM);
                 sums.add(&mut tracer, &ray, (&lights, catcher), (&mut sampler, tries));
             }
-            *alpha = sums.alpha(samples);
         }
     };
-    threads(settings)?.install(|| alpha.par_chunks_mut(window.width as usize).enumerate().for_each(of_row));
-    Ok(alpha)
+    let width = window.width as usize;
+    threads(settings)?.install(|| pixels.par_chunks_mut(width).enumerate().for_each(of_row));
+    let smooth = match denoiser {
+        Some(denoiser) => denoiser.denoise(&Shadow { width, pixels: &pixels }).map_err(FilmError::from)?,
+        None => Vec::new(),
+    };
+    let blocked = |i: usize| smooth.get(i).map_or_else(|| pixels[i].blocked(), |smooth| f64::from(smooth.r));
+    Ok(pixels.iter().enumerate().map(|(i, sums)| sums.alpha(blocked(i), samples)).collect())
+}
+
+/// The blocked fraction of the light as a picture to denoise. Pixels that show only the model have another depth, so that
+/// they do not mix with the ground.
+struct Shadow<'a> {
+    width: usize,
+    pixels: &'a [Sums],
+}
+
+impl Source for Shadow<'_> {
+    fn size(&self) -> (usize, usize) {
+        (self.width, self.pixels.len() / self.width)
+    }
+
+    fn rows(&self, rows: Range<usize>) -> Result<Noisy, PictureError> {
+        let pixels = &self.pixels[rows.start * self.width..rows.end * self.width];
+        let grey = |of: fn(&Sums) -> f64| pixels.iter().map(|sums| Rgb::grey(of(sums) as f32)).collect();
+        let depth = |sums: &Sums| if sums.ground > 0 { 1.0 } else { f32::INFINITY };
+        Ok(Noisy {
+            width: self.width,
+            height: rows.len(),
+            layers: vec![Layer { colour: grey(Sums::blocked), variance: Some(grey(Sums::variance)) }],
+            albedo: None,
+            normal: None,
+            depth: Some(pixels.iter().map(depth).collect()),
+        })
+    }
 }
 
 /// Indices of the lights that remain without the model, as far as their probability is above 0.
@@ -124,13 +172,24 @@ impl Sums {
             {
                 self.with += weight * f64::from(passed);
                 self.without += weight;
+                self.squares += weight * weight;
             }
         }
     }
 
-    fn alpha(&self, samples: u32) -> f32 {
-        let kept = if self.without > 0.0 { 1.0 - self.with / self.without } else { 0.0 };
-        let sum = f64::from(self.model) + f64::from(self.ground) * kept;
+    /// The fraction of the light on the ground that the model blocks.
+    fn blocked(&self) -> f64 {
+        if self.without > 0.0 { 1.0 - self.with / self.without } else { 0.0 }
+    }
+
+    /// Four times the upper bound of the variance of this fraction, which is reached in half shadow. An estimate from the
+    /// same few samples would be low wherever they happen to agree, and so would keep the noise.
+    fn variance(&self) -> f64 {
+        if self.without > 0.0 { self.squares / (self.without * self.without) } else { 0.0 }
+    }
+
+    fn alpha(&self, blocked: f64, samples: u32) -> f32 {
+        let sum = f64::from(self.model) + f64::from(self.ground) * blocked;
         (sum / f64::from(samples.max(1))).clamp(0.0, 1.0) as f32
     }
 }
