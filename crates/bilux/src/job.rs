@@ -10,7 +10,6 @@ use crate::scene_warnings::{self, oddities};
 use crate::settings::Settings;
 use bilux_math::Rgb;
 use bilux_pictures::Picture;
-use bilux_pictures::denoise::{Denoiser, Task, denoiser};
 use bilux_scene::{
     AccelChoice, Camera, Counters, Orientation, Parameters, Reader, Scene, SceneBuilder, Spec, Warning,
 };
@@ -55,7 +54,7 @@ pub struct Job {
     warnings: Vec<Warning>,
     notes: Vec<String>,
     /// The ground of which only the shadow is in the picture.
-    catcher: Option<ShadowCatcher>,
+    pub(crate) catcher: Option<ShadowCatcher>,
 }
 
 /// The result of a render.
@@ -276,27 +275,6 @@ impl Job {
             batch_means: rendered.batch_means.filter(|_| !rendered.cancelled),
             linear_transfer: self.settings.linear_transfer,
         })
-    }
-
-    /// What removes the noise of a shadow on an invisible ground: the built-in filter, where the picture is denoised.
-    fn shadow_denoiser(&self) -> Result<Option<Box<dyn Denoiser>>, Error> {
-        if self.denoising.is_zero() {
-            return Ok(None);
-        }
-        Ok(Some(denoiser("builtin", &self.threads_task())?.denoiser))
-    }
-
-    /// The time set aside for the shadow on an invisible ground.
-    fn shadow_time(&self) -> Duration {
-        if self.catcher.is_none() || !self.settings.background.is_cut_out() {
-            return Duration::ZERO;
-        }
-        let pixels = self.render.width as usize * self.render.height as usize;
-        shadow_alpha_time(pixels, self.threads_task().threads_at_work())
-    }
-
-    fn threads_task(&self) -> Task {
-        Task { threads: self.settings.threads, ..Task::default() }
     }
 
     /// True if its integrator's strategies can be shown separately.

@@ -26,6 +26,7 @@ mod own_light;
 pub mod presets;
 mod scene_warnings;
 pub mod settings;
+mod shadow;
 pub mod strategies;
 mod writing;
 
