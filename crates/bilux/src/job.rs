@@ -17,7 +17,6 @@ use bilux_transport::integrators::PixelIntegrator;
 use bilux_transport::{
     BatchMeans, Choice, Features, Film, Filter, Interval, PixelAnchor, Progress, Reached, RenderError,
     RenderSettings, Replay, SamplePlace, ShadowCatcher, Stop, Strategies, Window, coverage, shadow_alpha,
-    shadow_alpha_time,
 };
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
