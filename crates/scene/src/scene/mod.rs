@@ -144,6 +144,8 @@ pub struct Scene {
     view: Option<FootprintView>,
     /// The gaps between the shells of sheets, if any.
     sheets: Option<Sheets>,
+    /// The bounds of the objects that absorb light and whose medium has no priority.
+    absorbers: Vec<Aabb>,
 }
 
 impl Scene {
@@ -156,7 +158,13 @@ impl Scene {
             _ => None,
         };
         let sheets = Sheets::find(&parts, &accelerator, shutter[0]);
-        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets }
+        let absorbs = |o: &&crate::geometry::Placed| {
+            let material = &parts.materials[o.material as usize];
+            !material.sigma_a().is_black() && material.nested().is_none()
+        };
+        let bounds = |o: &crate::geometry::Placed| o.motion.bounds_over(&o.mesh.bounds(), shutter);
+        let absorbers = parts.geometry.objects().iter().filter(absorbs).map(bounds).collect();
+        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets, absorbers }
     }
 
     /// The same scene at another time: rebuilds only the top level.
@@ -260,6 +268,12 @@ impl Scene {
     #[inline]
     pub fn has_nested(&self) -> bool {
         self.parts.has_nested
+    }
+
+    /// True when a point lies in the bounds of an object that absorbs light and whose medium has no priority.
+    #[inline]
+    pub fn may_absorb_at(&self, p: Vec3) -> bool {
+        self.absorbers.iter().any(|bounds| bounds.contains(p))
     }
 
     /// True when some material refracts each wavelength differently.
