@@ -35,11 +35,13 @@ impl Media {
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
         let (mut media, scene) = (Media::AIR, tracer.scene);
-        // Outside the bounds of everything that absorbs there is no medium.
-        if !scene.has_nested() && !scene.may_absorb_at(ray.origin.into()) {
-            return media;
-        }
-        let (mut ray, mut seen, mut innermost) = (*ray, [NONE; MAX_SURFACES], None);
+        let t_max = match scene.absorbed_up_to(ray) {
+            _ if scene.has_nested() => ray.t_max,
+            Some(t) => t.min(ray.t_max),
+            // Outside the bounds of everything that absorbs there is no medium.
+            None => return media,
+        };
+        let (mut ray, mut seen, mut innermost) = (Ray { t_max, ..*ray }, [NONE; MAX_SURFACES], None);
         for i in 0..MAX_SURFACES {
             let Some(surface) = tracer.closest(&ray) else { break };
             let leaves = surface.n_geom.dot(Vec3::from(ray.direction)) > 0.0;
