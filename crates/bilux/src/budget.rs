@@ -10,6 +10,9 @@ pub const DEFAULT_BUDGET: (f32, f32) = (0.02, 5.0);
 
 /// Adds [`DEFAULT_BUDGET`] to the user's settings if neither the user nor the scene sets samples, noise or time and the
 /// integrator is not one of the classic ones. Returns true if it did. Such a picture is not the same on every machine.
+///
+/// The classic modes take their own number of samples instead: `cook`, which is random, 64 of them, and the others few.
+/// They are compared with pictures of their time, and so have to be the same on every machine.
 pub fn with_default_budget(scene: &Parameters, user: &mut Parameters) -> bool {
     let said = |key: &str| user.find(key).or_else(|| scene.find(key)).map(|(value, _)| value);
     let is_nothing = |value: &Value| matches!(value, Value::Integer(0) | Value::Number(0.0));
@@ -111,5 +114,18 @@ mod tests {
         assert!(!budget(&[("integrator", "whitted".into())], &[]));
         // The user's setting overrides the scene's.
         assert!(budget(&[("integrator", "whitted".into())], &[("integrator", "path".into())]));
+    }
+
+    #[test]
+    fn every_integrator_ends_when_nothing_is_said() {
+        for row in INTEGRATORS {
+            let mut user = Parameters::default();
+            user.set("integrator", row.entry.name);
+            with_default_budget(&Parameters::default(), &mut user);
+            let settings = crate::Settings::resolve(&user).unwrap();
+            let name = row.entry.name;
+            assert!(settings.stop.is_any() != row.classic, "{name}");
+            assert!(settings.stop.is_any() || (1..=64).contains(&settings.spp), "{name}");
+        }
     }
 }

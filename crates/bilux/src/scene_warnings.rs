@@ -219,4 +219,40 @@ mod tests {
         assert!(told(glass(), [0.0, 0.0, -3.0]).is_empty(), "outside");
         assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "a room");
     }
+
+    /// The warnings for a ball in the studio, with these settings.
+    fn told_of_ground(settings: &[(&str, &str)], lights: Vec<Spec>) -> String {
+        let mut scene = SceneBuilder { environment_unspecified: true, lights, ..SceneBuilder::default() };
+        let clay = scene.add_material(Spec::new("", "diffuse"));
+        scene.objects.push(Object::new("ball", Arc::new(shapes::icosphere(Vec3::ZERO, 1.0, 3)), clay));
+        let mut user = Parameters::default();
+        settings.iter().for_each(|(key, value)| user.set(key, *value));
+        let job = Job::new(&scene, &user).unwrap();
+        job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    }
+
+    #[test]
+    fn a_ground_that_is_seen_from_below_is_left_out_with_a_warning() {
+        for ground in ["shadow", "mirror"] {
+            let from = |orbit| told_of_ground(&[("ground", ground), ("orbit", orbit)], Vec::new());
+            assert!(from("30,-20").contains("there is no ground, since the camera looks up"), "{ground}");
+            assert_eq!(from("30,20"), "", "{ground}, from above");
+        }
+        assert_eq!(told_of_ground(&[("ground", "none"), ("orbit", "30,-20")], Vec::new()), "");
+        assert_eq!(told_of_ground(&[("orbit", "30,-20")], Vec::new()), "", "nobody asked for a ground");
+    }
+
+    #[test]
+    fn a_ground_that_hides_the_background_gets_a_warning() {
+        let transparent =
+            |ground| told_of_ground(&[("ground", ground), ("background", "transparent")], Vec::new());
+        assert!(transparent("mirror").contains("--ground shadow lets it through"));
+        assert_eq!(transparent("shadow"), "");
+        let picture = || {
+            let light = Spec::new("", "environment").with("radiance", 0.5f32);
+            vec![light.with("backdrop", true), Spec::new("", "environment")]
+        };
+        assert!(told_of_ground(&[("ground", "mirror")], picture()).contains("leave --ground out"));
+        assert_eq!(told_of_ground(&[], picture()), "");
+    }
 }

@@ -451,3 +451,59 @@ fn a_picture_of_the_surroundings_lights_a_bare_model() {
     let told = String::from_utf8_lossy(&told.get_output().stderr).into_owned();
     assert!(told.contains("--env") && told.contains("nowhere.hdr"), "{told}");
 }
+
+/// A figure with an arm to its left and a nose in front, written with other axes, looks the same once these are named.
+#[test]
+fn up_and_front_turn_a_model() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    let body = [
+        [-0.3f32, 0.0, -0.2],
+        [0.3, 0.0, -0.2],
+        [0.0, 2.0, 0.0],
+        [0.9, 1.2, 0.0],
+        [0.0, 1.7, 0.8],
+        [0.0, 0.0, 0.6],
+    ];
+    let write = |name: &str, place: fn([f32; 3]) -> [f32; 3]| {
+        let vertices = body.iter().map(|p| {
+            let [x, y, z] = place(*p);
+            format!("v {x} {y} {z}\n")
+        });
+        let faces = "f 1 3 2\nf 1 2 6\nf 1 6 3\nf 2 4 3\nf 2 3 6\nf 3 4 5\nf 6 5 3\n";
+        std::fs::write(path.join(name), vertices.collect::<String>() + faces).unwrap();
+    };
+    write("y.obj", |p| p);
+    write("z.obj", |[x, y, z]| [x, -z, y]);
+    write("x.obj", |[x, y, z]| [y, z, x]);
+    let picture = |scene: &str, axes: &[&str]| {
+        let mut run = std::process::Command::new(assert_cmd::cargo::cargo_bin("bilux"));
+        run.current_dir(path)
+            .args(["render", scene, "-o", "a.pfm", "--size", "32x32", "--spp", "4", "-i", "path"]);
+        let output = run.args(axes).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        (bilux::pictures::read(path.join("a.pfm")).unwrap().to_rgb().unwrap(), said)
+    };
+    let (upright, _) = picture("y.obj", &["--up", "y", "--front", "z"]);
+    let apart = |other: &[bilux::math::Rgb]| {
+        let sum = upright.iter().zip(other).map(|(a, b)| (a.g - b.g).abs()).sum::<f32>();
+        sum / upright.iter().map(|p| p.g).sum::<f32>()
+    };
+    for (scene, up, front) in [("z.obj", "z", "-y"), ("x.obj", "x", "y")] {
+        let (found, said) = picture(scene, &["--up", up, "--front", front]);
+        assert!(apart(&found) < 1e-3, "{scene}: {}", apart(&found));
+        assert!(said.contains(&format!("up is {up}, front is {front}, as asked")), "{said}");
+    }
+    // Each axis counts.
+    for axes in
+        [["--up", "-y", "--front", "z"], ["--up", "y", "--front", "-z"], ["--up", "y", "--front", "x"]]
+    {
+        assert!(apart(&picture("y.obj", &axes).0) > 0.02, "{axes:?}");
+    }
+    let told = failing(path, 2, &["render", "y.obj", "-o", "b.pfm", "--up", "y", "--front", "-y"]);
+    assert!(told.contains("up and front are along one axis"), "{told}");
+    let told = failing(path, 2, &["render", "y.obj", "-o", "b.pfm", "--up", "w"]);
+    assert!(told.contains("-z"), "{told}");
+    assert!(!path.join("b.pfm").exists());
+}

@@ -293,3 +293,34 @@ fn commands_work_within_a_sandbox_and_its_enforcement_is_reported() {
         assert_eq!(said.contains("Landlock"), !enforced, "{command}: {said}");
     }
 }
+
+/// pbrt looks for a file in its working directory, so Bilux does too; a sandbox is the scene's folder alone.
+#[test]
+fn the_working_folder_is_searched_except_in_a_sandbox() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path();
+    fs::create_dir(path.join("scenes")).unwrap();
+    fs::create_dir(path.join("out")).unwrap();
+    let scene = "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nInclude \"parts/ball.pbrt\"\n";
+    fs::write(path.join("scenes/ball.pbrt"), scene).unwrap();
+    fs::create_dir(path.join("parts")).unwrap();
+    fs::write(path.join("parts/ball.pbrt"), "Translate 0 0 4\nShape \"sphere\"\n").unwrap();
+    let render = format!("render scenes/ball.pbrt {SMALL} -o out/a.pfm");
+    assert_done(path, &render);
+    let found = fs::read(path.join("out/a.pfm")).unwrap();
+    let refused = |command: &str| {
+        let (code, said) = answer(path, command);
+        // Not even tried: the kernel's own refusal would read otherwise.
+        let what = "there is no file 'parts/ball.pbrt'";
+        assert!(code == Some(1) && said.contains(what), "{command}: {said}");
+    };
+    refused(&format!("{render} --sandbox"));
+    refused("info scenes/ball.pbrt --sandbox");
+    // A file beside the scene comes first, and a sandbox reads it.
+    fs::create_dir(path.join("scenes/parts")).unwrap();
+    fs::write(path.join("scenes/parts/ball.pbrt"), "Translate 1 0 4\nShape \"sphere\"\n").unwrap();
+    assert_done(path, &format!("{render} --sandbox"));
+    let beside = fs::read(path.join("out/a.pfm")).unwrap();
+    assert_done(path, &render);
+    assert!(beside == fs::read(path.join("out/a.pfm")).unwrap() && beside != found);
+}

@@ -44,6 +44,12 @@ impl Aabb {
         !(self.min.x <= self.max.x && self.min.y <= self.max.y && self.min.z <= self.max.z)
     }
 
+    /// True when a point is inside or on the boundary.
+    #[inline]
+    pub fn contains(&self, point: Vec3) -> bool {
+        point.cmpge(self.min).all() && point.cmple(self.max).all()
+    }
+
     /// The centre; meaningless for an empty box.
     #[inline]
     pub fn centre(&self) -> Vec3 {

@@ -35,21 +35,33 @@ impl Media {
     /// The media that a path starts in: those that it would leave without having entered them.
     pub(crate) fn at_start(tracer: &mut Tracer, ray: &Ray) -> Media {
         let (mut media, scene) = (Media::AIR, tracer.scene);
-        if !scene.has_nested() {
-            return media;
-        }
-        let (mut ray, mut seen) = (*ray, [NONE; MAX_SURFACES]);
+        let t_max = match scene.absorbed_up_to(ray) {
+            _ if scene.has_nested() => ray.t_max,
+            Some(t) => t.min(ray.t_max),
+            // Outside the bounds of everything that absorbs there is no medium.
+            None => return media,
+        };
+        let (mut ray, mut seen, mut innermost) = (Ray { t_max, ..*ray }, [NONE; MAX_SURFACES], None);
         for i in 0..MAX_SURFACES {
             let Some(surface) = tracer.closest(&ray) else { break };
             let leaves = surface.n_geom.dot(Vec3::from(ray.direction)) > 0.0;
             let is_first = !seen.contains(&surface.object);
-            if leaves && is_first && scene.material(&surface).nested().is_some() {
-                media.add(surface.object);
+            if leaves && is_first {
+                let material = scene.material(&surface);
+                if material.nested().is_some() {
+                    media.add(surface.object);
+                } else if !material.sigma_a().is_black() && media.around == Media::AIR.around {
+                    // What the ray leaves first is innermost. One without a priority replaces what surrounds it.
+                    let sigma_a = *innermost.get_or_insert(material.sigma_a());
+                    if !scene.has_nested() {
+                        return Media { sigma_a, ..media };
+                    }
+                }
             }
             seen[i] = surface.object;
             ray = beyond(&ray, &surface);
         }
-        media.sigma_a = media.sigma_of_strongest(scene);
+        media.sigma_a = innermost.unwrap_or_else(|| media.sigma_of_strongest(scene));
         media
     }
 

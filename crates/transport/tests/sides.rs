@@ -123,21 +123,31 @@ fn of_sheets() -> [(&'static str, Spec); 2] {
 
 const ALL: [&str; 5] = ["light", "bdpt", "vcm", "sppm", "auto"];
 
+/// One two-sided surface in place of a sheet of two shells.
+fn one_surface(builder: &mut SceneBuilder, material: &Spec) {
+    let both = material.clone().with("emission_sides", "both");
+    put(builder, "sheet", quad(Vec3::new(-1.2, 0.05, 1.2), Vec3::X * 2.4, Vec3::Y * 1.1), both);
+}
+
+/// `auto` that merges, within a radius relative to the scene's.
+///
+/// Two emissive shells are the fourth and the fifth light of the stage, and with more than four lights `auto` merges
+/// direct light too. Its own radius would be a tenth of the scene with so few pixels, and blur the light at the sheet's
+/// foot.
+fn merging(radius: f32) -> Spec {
+    Spec::new("", "auto").with("ways", "vcm").with("radius", radius)
+}
+
 #[test]
 fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
     for (name, material) in of_sheets() {
-        let one = stage(|builder| {
-            let both = material.clone().with("emission_sides", "both");
-            put(builder, "sheet", quad(Vec3::new(-1.2, 0.05, 1.2), Vec3::X * 2.4, Vec3::Y * 1.1), both);
-        });
+        let one = stage(|builder| one_surface(builder, &material));
         let wanted = blocks(&one, &*integrator("path"), 0);
         for gap in [0.0, 1e-4] {
             let two = stage(|builder| sheet(builder, gap, &material));
             for (i, other) in ["path"].iter().chain(&ALL).enumerate() {
-                // Merging is biased. Between emissive shells it loses 0.9%: see docs/adr/0023-shells.md.
-                let merge = if (name, *other) == ("sign", "auto") { "never" } else { "auto" };
-                let spec = Spec::new("", other);
-                let spec = if *other == "auto" { spec.with("merge", merge) } else { spec };
+                let spec =
+                    if (name, *other) == ("sign", "auto") { merging(0.0125) } else { Spec::new("", other) };
                 let integrator = integrators::build(&spec).unwrap();
                 let found = blocks(&two, &*integrator, 100 * (i as u64 + 1));
                 let p = agreement(&wanted, &found);
@@ -145,6 +155,28 @@ fn a_sheet_of_two_shells_is_lit_like_one_two_sided_surface() {
             }
         }
     }
+}
+
+/// The blur of a radius of a tenth of the scene darkens the sheet's surroundings, by as much with two shells as with one
+/// surface among as many lights, and vanishes with the radius.
+#[test]
+fn merging_blurs_as_much_around_two_shells_as_around_one_surface() {
+    let (_, sign) = &of_sheets()[1];
+    let two = stage(|builder| sheet(builder, 1e-4, sign));
+    let one = stage(|builder| {
+        one_surface(builder, sign);
+        let fifth = Spec::new("", "rect").with("position", Vec3::Y * 2.6).with("intensity", 1e-4f32);
+        builder.lights.push(fifth);
+    });
+    let found = |scene: &Scene, spec: &Spec, seed| blocks(scene, &*integrators::build(spec).unwrap(), seed);
+    let wide = found(&two, &merging(0.1), 100);
+    let p = agreement(&wide, &found(&one, &merging(0.1), 200));
+    assert!(p > UNLIKELY, "p = {p}");
+    let light = |blocks: &[Vec<f64>]| blocks.iter().flatten().sum::<f64>();
+    let unblurred = light(&found(&two, &Spec::new("", "path"), 0));
+    let dark = |blocks: &[Vec<f64>]| 1.0 - light(blocks) / unblurred;
+    let (much, little) = (dark(&wide), dark(&found(&two, &merging(0.025), 300)));
+    assert!(much > 0.01 && little.abs() < 0.25 * much, "{much} by a tenth, {little} by a fortieth");
 }
 
 /// Planted bug: shells that the camera looks through but that shade each other, as a canopy shades what is below it.

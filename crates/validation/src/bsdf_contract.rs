@@ -72,7 +72,7 @@ const RADIANCE: TransportMode = TransportMode::Radiance;
 const IMPORTANCE: TransportMode = TransportMode::Importance;
 /// Samples of each χ² test and of each mean.
 const SAMPLES: u64 = 60_000;
-/// Probability of a false alarm of one suite over all its directions, divided among them after Šidák.
+/// Probability of a false alarm of one suite over all its directions, divided evenly among them.
 const SIGNIFICANCE: f64 = 1e-4;
 
 /// Test directions: above and below the surface, steep and grazing.

@@ -13,7 +13,7 @@ use crate::materials::Material;
 use crate::surface::Surface;
 use crate::texture::{ColourMap, Texture, levels};
 use bilux_accel::instancing::TwoLevel;
-use bilux_accel::{Accelerator, Query};
+use bilux_accel::{Accelerator, Query, Ray};
 use bilux_math::{Aabb, Rgb, Vec3};
 use sheets::Sheets;
 use std::sync::Arc;
@@ -144,6 +144,8 @@ pub struct Scene {
     view: Option<FootprintView>,
     /// The gaps between the shells of sheets, if any.
     sheets: Option<Sheets>,
+    /// The bounds of the objects that absorb light and whose medium has no priority.
+    absorbers: Vec<Aabb>,
 }
 
 impl Scene {
@@ -156,7 +158,17 @@ impl Scene {
             _ => None,
         };
         let sheets = Sheets::find(&parts, &accelerator, shutter[0]);
-        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets }
+        let absorbs = |o: &&crate::geometry::Placed| {
+            let material = &parts.materials[o.material as usize];
+            !material.sigma_a().is_black() && material.nested().is_none()
+        };
+        let bounds = |o: &crate::geometry::Placed| {
+            let bounds = o.motion.bounds_over(&o.mesh.bounds(), shutter);
+            // Surfaces that lie on the bounds are inside, whatever is rounded.
+            bounds.grown(1e-3 * bounds.radius())
+        };
+        let absorbers = parts.geometry.objects().iter().filter(absorbs).map(bounds).collect();
+        Scene { parts, accelerator, alone, query: accel.query, shutter, view: None, sheets, absorbers }
     }
 
     /// The same scene at another time: rebuilds only the top level.
@@ -260,6 +272,22 @@ impl Scene {
     #[inline]
     pub fn has_nested(&self) -> bool {
         self.parts.has_nested
+    }
+
+    /// How far a ray may travel inside an object that absorbs light and whose medium has no priority, if it begins in
+    /// one: up to where it leaves the objects' bounds. `None` where it begins in none.
+    pub fn absorbed_up_to(&self, ray: &Ray) -> Option<f32> {
+        let (origin, direction) = (Vec3::from(ray.origin), Vec3::from(ray.direction));
+        let around = self.absorbers.iter().filter(|bounds| bounds.contains(origin));
+        let exit = |bounds: &Aabb| {
+            let far = Vec3::select(direction.cmpgt(Vec3::ZERO), bounds.max, bounds.min);
+            // An axis that the ray is perpendicular to gives infinity, or NaN, which `min` ignores.
+            ((far - origin) / direction)
+                .to_array()
+                .into_iter()
+                .fold(f32::INFINITY, |t, axis| t.min(axis.abs()))
+        };
+        around.map(exit).reduce(f32::max)
     }
 
     /// True when some material refracts each wavelength differently.

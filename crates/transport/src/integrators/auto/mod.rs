@@ -164,14 +164,15 @@ const WAYS: [&str; 1 + SETS.len()] = {
 /// A set must be better by this factor than one that comes before it, or that does not blur.
 const WORTH_MORE: f64 = 1.1;
 
-/// Default merging radius of the first iteration, in pixels.
+/// Default merging radius of the first iteration, in radii of a disc as large as a pixel's footprint.
 const PIXELS: f32 = 3.0;
 
 /// Maximum of that radius, as a fraction of the scene's radius, however large the pixels' footprints are.
 const WIDEST: f32 = 0.1;
 
-/// Approximate number of photons on directly lit surfaces that are merged then, if each pixel has its light subpath.
-const NEAR: f64 = std::f64::consts::PI * (PIXELS * PIXELS) as f64;
+/// Approximate number of photons on directly lit surfaces that are merged then, if each pixel has its light subpath: the
+/// disc is as large as the footprints of this many pixels.
+const NEAR: f64 = (PIXELS * PIXELS) as f64;
 
 /// The iteration whose radius represents all.
 const TYPICAL_ITERATION: u32 = 16;

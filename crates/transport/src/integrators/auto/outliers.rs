@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn rare_fireflies_count_as_missing_light() {
         let usual = 0.5 / 1.09;
-        // One sample in a hundred million: a hundred times the rest of the error, and in no picture.
+        // One sample in ten million: a hundred times the rest of the error, and in no picture.
         let blocks = film(0.1, 1e6);
         assert!(blocks[7].finds[2].square() / 100.0 > 100.0 * usual);
         let missing = 64.0 * 0.1 * 0.1 / 1.09 / 100.0;
