@@ -100,10 +100,10 @@ fn what_can_be_rendered_is_rendered_with_a_warning() {
     }
     let no_numbers = PLAIN.replace(['0', '1'], "nan").replace("f nan", "f 1");
     std::fs::write(path.join("nan.obj"), &no_numbers).unwrap();
-    assert_reports(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing can be seen"]);
+    assert_reports(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing is visible"]);
     let inside = "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\n[[material]]\nname = 'glass'\n\
                   kind = 'dielectric'\n[[model]]\nshape = 'sphere'\nmaterial = 'glass'\n";
-    drawn("inside.toml", inside, &["the camera is inside of something transparent"]);
+    drawn("inside.toml", inside, &["the camera is inside a transparent object"]);
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn command_lines_that_name_missing_things_are_refused() {
     refused(&["--size", "99999x9"], &["--size: '99999x9' is not a size", "1 to 65536"]);
     refused(&["-o", "out.pgn"], &["out.pgn: 'pgn' is not a picture format", "did you mean 'png'?"]);
     refused(&["-o", "out"], &["out: the name has no extension of a picture format", "there are: png"]);
-    refused(&["-o", "none/out.png"], &["there is no folder 'none'", "make it first"]);
+    refused(&["-o", "none/out.png"], &["there is no folder 'none'", "create it first"]);
     refused(&["--max-memory", "1X"], &["write 512M or 8G"]);
     let bilux = |arguments: &[&str]| {
         let mut command = Command::cargo_bin("bilux").unwrap();
@@ -147,7 +147,7 @@ fn command_lines_that_name_missing_things_are_refused() {
         2,
         &["pot.xyy: this is not a scene format"],
     );
-    assert_reports(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render` for that"]);
+    assert_reports(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render`"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
     assert_reports(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
     assert_reports(

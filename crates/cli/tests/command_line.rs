@@ -145,7 +145,7 @@ fn an_interval_is_written_next_to_the_picture() {
     assert!(half_widths.iter().all(|x| x.is_finite()) && half_widths.iter().any(|&x| x > 0.0));
     assert_eq!(interval.metadata["bilux.interval.confidence"], "0.95");
     let picture = bilux::pictures::formats::read(path.join("pots.exr")).unwrap();
-    assert_eq!(picture.metadata["bilux.noise.samples_that_told_it"], "in the mean");
+    assert_eq!(picture.metadata["bilux.noise.noise_samples"], "in the mean");
     let stats = std::fs::read_to_string(path.join("took.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
     assert!(stats["reached"]["bias_at_most"].as_f64().unwrap() <= 0.125);

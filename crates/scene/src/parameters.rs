@@ -361,7 +361,7 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
                 let all = stops.iter().all(|(at, c)| at.is_finite() && c.to_array().into_iter().all(within));
                 !stops.is_empty() && rise && all
             };
-            let wanted = "stops [[position, [r, g, b]], …] whose positions never fall";
+            let wanted = "stops [[position, [r, g, b]], …] whose positions never decrease";
             (stops(value).is_some_and(is_right), format!("{wanted}, with each channel from {min} to {max}"))
         }
         ParameterKind::Vector => (

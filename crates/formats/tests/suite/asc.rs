@@ -85,7 +85,7 @@ fn vertices_may_bring_kd_and_ks() {
 fn a_ninth_number_is_left_out_with_a_warning() {
     let scene = read_text("asc", format!("triangle\n{} 7\n", CORNERS.join(" 7\n"))).unwrap();
     assert_eq!(scene.objects[0].mesh.uvs[1], Vec2::X);
-    assert_eq!(warnings(&scene), "scene.asc:2:1: a ninth number per vertex is left out");
+    assert_eq!(warnings(&scene), "scene.asc:2:1: a ninth number per vertex is ignored");
 }
 
 #[test]

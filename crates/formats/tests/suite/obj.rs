@@ -391,13 +391,12 @@ fn one_bad_number_costs_its_element_and_not_the_file() {
     assert_eq!(
         warnings(&scene).lines().collect::<Vec<_>>(),
         [
-            "scene.obj:5:3: '1.O' is not a number: this vertex is left out, and with it the faces that it is a corner of",
-            "scene.obj:6:8: 'up' is not a number: this normal or texture coordinate is taken as 0",
+            "scene.obj:5:3: '1.O' is not a number: this vertex is left out, together with the faces that use it",
+            "scene.obj:6:8: 'up' is not a number: this normal or texture coordinate is set to 0",
             "scene.obj:9:3: '1/x' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
              vertex/uv/normal, each counted from 1, or backwards from -1: this face is left out (3 times; this is the first)",
             "scene.obj:11:7: '-99' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
-             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to what is not there, and is \
-             left out",
+             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to a vertex that does not exist, and is left out",
             "scene.obj:13:1: 'maybe' is not a smoothing group, which is a number or 'off': this line is left out",
         ]
     );

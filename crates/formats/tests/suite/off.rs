@@ -67,7 +67,7 @@ fn broken_files_are_refused_with_their_place() {
         (SQUARE.replace("4 1 4", "4000000000 1 4"), "the file ends before all of its vertices"),
         (SQUARE.replace("4 1 4", "5000000000 1 4"), "scene.off:2:1: there are more than 4 billion"),
         (SQUARE.replace("4 1 4", "4 7000000000 4"), "the file ends before all of its faces: it was cut off"),
-        (SQUARE.replace("4 1 4", "4 0 0"), "there is no face in it"),
+        (SQUARE.replace("4 1 4", "4 0 0"), "it contains no faces"),
         (SQUARE.replace("1 1 0", "1 one 0"), "scene.off:5:3: 'one' should not stand here"),
         (SQUARE.replace("1 1 0", "1 1"), "scene.off:5:1: a vertex has 3 numbers here, but this line has 2"),
         (SQUARE.replace("2 3\n", "2 4\n"), "scene.off:7:1: this face names vertex"),

@@ -464,7 +464,7 @@ fn what_cannot_be_shown_is_told() {
         ),
         (
             "Texture \"n\" \"float\" \"fbm\" Material \"diffuse\" \"texture displacement\" \"n\" Shape \"sphere\"",
-            "displacement of a material is not shown",
+            "displacement of a material is not supported",
         ),
         (
             "Texture \"n\" \"spectrum\" \"marble\" Material \"diffuse\" \"texture reflectance\" \"n\" Shape \"sphere\"",
@@ -604,7 +604,7 @@ fn a_missing_sky_is_grey_and_so_is_any_light() {
         let (_folder, scene) = in_folder(&[("a.pbrt", format!("WorldBegin\n{light}").as_bytes())]);
         let scene = scene.unwrap();
         let told = warnings(&scene);
-        assert!(told.contains("a texture is replaced by an even grey of 0.5: there is no file"), "{told}");
+        assert!(told.contains("a texture is replaced by a uniform grey of 0.5: there is no file"), "{told}");
         let parameters = &scene.lights[0].parameters;
         let is_grey = |c: Rgb| c.r == c.g && c.g == c.b && c.r > 0.0;
         match parameters.find("radiance") {

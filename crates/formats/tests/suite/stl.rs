@@ -57,7 +57,7 @@ fn false_counts_are_reported() {
 #[test]
 fn broken_files_are_refused_with_their_place() {
     let cases = [
-        ("solid x\nendsolid\n".to_owned(), "there is no triangle in it"),
+        ("solid x\nendsolid\n".to_owned(), "it contains no triangles"),
         (
             format!("solid x\n{FACET}facet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
             "scene.stl:9:1: the file ends within this facet",
