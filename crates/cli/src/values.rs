@@ -44,7 +44,7 @@ fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
 
 /// Parses a whole number from 0.
 pub fn parse_count(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| format!("write a whole number from 0 to {}", u32::MAX))
+    text.parse().map_err(|_| "write a whole number, 0 or more".to_owned())
 }
 
 /// Parses a seed.

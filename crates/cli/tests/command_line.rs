@@ -150,7 +150,7 @@ fn an_interval_is_written_next_to_the_picture() {
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
     assert!(stats["reached"]["bias_at_most"].as_f64().unwrap() <= 0.125);
     let said = failing(path, 2, &["render", "pots.asc", "-i", "cast", "--aov", "interval", "-o", "a.png"]);
-    assert!(said.contains("chance") && !path.join("a.png").exists(), "{said}");
+    assert!(said.contains("no confidence interval") && !path.join("a.png").exists(), "{said}");
 }
 
 /// Runs a command that must fail and returns what it prints.

@@ -267,6 +267,12 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().map(|e| e.to_string_lossy().into_owned())
 }
 
+/// Extensions of scene formats that other programs read.
+const FOREIGN: &[&str] = &[
+    "3ds", "3mf", "abc", "blend", "c4d", "dae", "e57", "fbx", "iges", "igs", "lwo", "ma", "max", "mb", "skp",
+    "step", "stp", "usd", "usda", "usdc", "usdz", "vrm", "wrl", "x3d",
+];
+
 pub(crate) fn unknown(
     path: &Path,
     wanted: &'static str,
@@ -275,6 +281,7 @@ pub(crate) fn unknown(
     let known: Vec<String> =
         SCENE_FORMATS.iter().filter(|r| can(r)).flat_map(|r| r.extensions).map(|&e| e.to_owned()).collect();
     let asked = extension(path).unwrap_or_else(|| path.display().to_string());
-    let nearest = nearest_name(&asked, &known);
+    // The formats of other programs are no slips of the finger.
+    let nearest = nearest_name(&asked, &known).filter(|_| !FOREIGN.contains(&&*asked));
     FormatError::UnknownFormat { name: path.display().to_string(), wanted, nearest, known }
 }

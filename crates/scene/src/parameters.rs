@@ -174,7 +174,11 @@ impl<'a> Reader<'a> {
                 return Err(SceneError::unknown(format!("parameter of {}", entry.name), key, names, span));
             };
             check_kind(parameter, value).map_err(|wanted| SceneError::BadValue {
-                what: format!("{}.{}", entry.name, key),
+                // A flag is its own name.
+                what: match span.file.starts_with("--") {
+                    true => "the value".to_owned(),
+                    false => format!("{}.{}", entry.name, key),
+                },
                 wanted,
                 found: describe(value),
                 at: span.clone(),

@@ -35,7 +35,8 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(index) = skin.get("inverseBindMatrices") {
             let bind = self.attribute::<16>(index, None)?;
             if bind.len() < count {
-                let message = format!("there are only {} matrices for {count} joints", bind.len());
+                let message =
+                    format!("there must be a matrix for each of the {count} joints, not {}", bind.len());
                 return Err(index.error(message));
             }
             for (matrix, bind) in matrices.iter_mut().zip(bind) {

@@ -85,7 +85,7 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     let room = bytes.len().saturating_sub(points) / record;
     if count > room as u64 {
         let message = format!(
-            "the header says {count} points of {record} bytes from byte {points} on, but there are bytes for {room}: \
+            "the header says {count} points of {record} bytes from byte {points} on, but there are bytes for only {room}: \
              the file was cut off"
         );
         return fail(message);

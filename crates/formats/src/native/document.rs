@@ -43,7 +43,7 @@ pub(super) fn parse(bytes: &[u8], name: &Arc<str>) -> Result<Table, FormatError>
     let document = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or_else(|| whole_file(name), |span| places.at(span.start));
         let key = e.span().and_then(|span| text.get(span)).unwrap_or_default().trim();
-        FormatError::malformed(format!("this is not TOML: {}", syntax_fault(e.message(), key)), at)
+        FormatError::malformed(format!("this is not valid TOML: {}", syntax_fault(e.message(), key)), at)
     })?;
     table(document.get_ref(), Span { line: 1, column: 1, ..whole_file(name) }, &places)
 }
