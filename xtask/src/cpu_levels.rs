@@ -39,7 +39,7 @@ struct Picture {
     render: &'static [&'static str],
 }
 
-/// Every integrator except `occlusion`, and every accelerator at least once.
+/// Every integrator and every accelerator at least once.
 const PICTURES: &[Picture] = &[
     Picture { name: "cast", scene: TEAPOTS, render: &["-i", "cast", "--accel", "brute"] },
     Picture { name: "whitted", scene: TEAPOTS, render: &["-i", "whitted", "--accel", "bsp-sah"] },
@@ -49,6 +49,7 @@ const PICTURES: &[Picture] = &[
     Picture { name: "path-bsp", scene: CORNELL, render: &["-i", "path", "--accel", "bsp"] },
     Picture { name: "path-bvh8", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8"] },
     Picture { name: "path-compact", scene: CORNELL, render: &["-i", "path", "--accel", "bvh8-compact"] },
+    Picture { name: "occlusion", scene: CORNELL, render: &["-i", "occlusion"] },
     Picture { name: "light", scene: CORNELL, render: &["-i", "light"] },
     Picture { name: "bdpt", scene: CORNELL, render: &["-i", "bdpt"] },
     Picture { name: "sppm", scene: CORNELL, render: &["-i", "sppm"] },

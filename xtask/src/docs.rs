@@ -21,13 +21,13 @@ const TABLES: &[(&str, &str)] = &[
     ("bsdfs", "BSDFs"),
     ("lights", "Lights"),
     ("cameras", "Cameras"),
-    ("generators", "Scenes that we ship"),
+    ("generators", "Built-in scenes"),
     ("presets", "Presets"),
     ("formats", "Scene formats"),
     ("picture-formats", "Picture formats"),
     ("tonemaps", "Tone curves"),
     ("filters", "Pixel filters"),
-    ("aovs", "Beside the picture"),
+    ("aovs", "Arbitrary output variables"),
     ("metrics", "Metrics"),
     ("settings", "Settings"),
 ];
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<()> {
     let check = match arguments {
         [] => false,
         [word] if word == "--check" => true,
-        _ => bail!("only `--check` can be asked for"),
+        _ => bail!("the only option is `--check`"),
     };
     // Builds as the tests do, so that no package is built a second time with other features.
     run_process(&mut cargo(&["test", "--quiet", "--locked", "--workspace", "--no-run"]))?;
@@ -112,7 +112,7 @@ fn page(name: &str, title: &str, rows: &[Value]) -> String {
 fn parameter(parameter: &Value) -> String {
     let cell = |key: &str| text_of(parameter, key).replace('|', "\\|");
     let default = match text_of(parameter, "default") {
-        "" => "needed".to_owned(),
+        "" => "required".to_owned(),
         default => format!("`{default}`"),
     };
     let (name, summary, values, unit) = (cell("name"), cell("summary"), cell("values"), cell("unit"));
@@ -171,6 +171,6 @@ mod tests {
             page.contains("\n## `x`\nAn x. [[Woop 2013]](../../REFERENCES.md)\n\n| parameter "),
             "{page}"
         );
-        assert!(page.contains("| `mode` | which | a\\|b |  | needed |\n\n## `y`\nA y.\n"), "{page}");
+        assert!(page.contains("| `mode` | which | a\\|b |  | required |\n\n## `y`\nA y.\n"), "{page}");
     }
 }

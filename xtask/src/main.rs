@@ -26,21 +26,29 @@ struct Chore {
 
 /// Every chore.
 const CHORES: &[Chore] = &[
-    Chore { name: "test", summary: "everything that has to hold before a change lands", run: test::run },
+    Chore { name: "test", summary: "every check that a change must pass", run: test::run },
     Chore { name: "tidy", summary: "the repository's own rules", run: tidy::run },
-    Chore { name: "licences", summary: "every package that we build on is permissive", run: licences::run },
+    Chore {
+        name: "licences",
+        summary: "check that the licence of every dependency is permissive",
+        run: licences::run,
+    },
     Chore { name: "docs", summary: "library documentation and reference pages", run: docs::run },
-    Chore { name: "contact-sheet", summary: "models beside their screenshots", run: contact_sheet::run },
-    Chore { name: "dist", summary: "what is released: the binary, its pages, a checksum", run: dist::run },
+    Chore { name: "contact-sheet", summary: "models next to their screenshots", run: contact_sheet::run },
+    Chore {
+        name: "dist",
+        summary: "build the release: the binary, its man pages, a checksum",
+        run: dist::run,
+    },
     Chore {
         name: "package",
-        summary: "the libraries are fit for a package registry (minutes)",
+        summary: "check that the libraries can be published to a package registry (minutes)",
         run: package::run,
     },
-    Chore { name: "instructions", summary: "how many instructions a ray takes", run: instructions::run },
+    Chore { name: "instructions", summary: "count the instructions per ray", run: instructions::run },
     Chore {
         name: "cpu-levels",
-        summary: "the same pictures at every CPU level (minutes)",
+        summary: "check that every CPU level renders the same pictures (minutes)",
         run: cpu_levels::run,
     },
     Chore {

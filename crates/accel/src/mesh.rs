@@ -18,7 +18,7 @@ pub struct TriangleMesh {
 #[non_exhaustive]
 pub enum MeshError {
     /// An index refers to no vertex.
-    #[error("triangle {triangle} names vertex {vertex}, but there are {count} vertices")]
+    #[error("triangle {triangle} refers to vertex {vertex}, but there are only {count} vertices")]
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,

@@ -42,7 +42,7 @@ pub enum BuildError {
     #[error("there is no accelerator '{0}'")]
     UnknownName(String),
     /// The tree would have more nodes than can be numbered.
-    #[error("the mesh is too large for this accelerator: its tree has more nodes than can be numbered")]
+    #[error("the mesh is too large for this accelerator: its tree has more nodes than an index can address")]
     TooManyNodes,
 }
 

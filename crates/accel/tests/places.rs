@@ -165,7 +165,7 @@ fn damaged_trees_are_refused() {
     let expected = bytes.len();
     assert!(
         refuses(&bytes[..expected - 5])
-            .contains(&format!("has {} bytes, and its header says {expected}", expected - 5))
+            .contains(&format!("has {} bytes, but its header says {expected}", expected - 5))
     );
     let mut longer = bytes.clone();
     longer.push(0);

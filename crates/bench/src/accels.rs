@@ -27,7 +27,7 @@ pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOption
         let hint = match nearest_name(name, &names) {
             Some(nearest) => format!("did you mean '{nearest}'?"),
             None => format!(
-                "there are {}, each also with -fast, -best or a CPU level behind it",
+                "known are {}, each also with the suffix -fast, -best or a CPU level",
                 names.join(", ")
             ),
         };
@@ -38,5 +38,5 @@ pub(crate) fn find(name: &str) -> Result<(&'static AcceleratorEntry, BuildOption
 /// Makes a pool of `number` threads, or of one per core for 0.
 pub(crate) fn threads(number: usize) -> Result<ThreadPool, Error> {
     let pool = ThreadPoolBuilder::new().num_threads(number).build();
-    pool.map_err(|e| Error::Settings(format!("no threads can be had: {e}")))
+    pool.map_err(|e| Error::Settings(format!("cannot start threads: {e}")))
 }

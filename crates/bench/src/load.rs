@@ -78,7 +78,8 @@ pub fn report(rows: Vec<Value>) -> Report {
         "build s",
         "peak MB",
     ];
-    let title = "Reading scene files: median seconds, and memory at most beside that of the process; then with its trees";
+    let title = "Reading scene files: median seconds, and peak memory besides that of the process; then with its \
+                 acceleration structures";
     Report { text: table(title, &header, &cells), rows, picture: None }
 }
 

@@ -1,4 +1,4 @@
-//! The paper's Figure 1 and section 4.2, reproduced: one scene by `cast`, `whitted`, `cook` and `path`, how far each is
+//! The paper's Figure 1 and section 4.4, reproduced: one scene by `cast`, `whitted`, `cook` and `path`, how far each is
 //! from a converged `path` inside the mirror, and what Monte Carlo samples cost.
 
 use crate::{Options, ProgressFn, Report, table, timed};
@@ -58,12 +58,12 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
         ]);
     }
     let figure = table(
-        "Figure 1 anew: error inside the mirror against a converged path",
+        "Figure 1 reproduced: error inside the mirror against a converged path",
         &["integrator", "spp", "seconds", "RMSE in the mirror"],
         &cells,
     );
     let cost = table(
-        "The cost of Monte Carlo samples (the last column stays level where the error falls as 1/√N)",
+        "The cost of Monte Carlo samples (the last column is constant if the error falls as 1/√N)",
         &["spp", "seconds", "RMSE", "RMSE × √spp"],
         &costs,
     );

@@ -197,7 +197,7 @@ fn text(rows: &[Row], options: &Options) -> String {
         .collect();
     let (w, h) = options.size_or((512, 512));
     table(
-        &format!("Figure 2 anew: {w}x{h}, whitted, depth 5, one thread, layout '{}'", options.layout),
+        &format!("Figure 2 reproduced: {w}x{h}, whitted, depth 5, one thread, layout '{}'", options.layout),
         &header,
         &cells,
     )

@@ -1,6 +1,7 @@
 //! Which of a scene's cameras takes the picture.
 
 use crate::Error;
+use bilux_scene::error::nearest_name;
 use bilux_scene::{Camera, Scene, SceneError, Span};
 use std::sync::Arc;
 
@@ -13,7 +14,8 @@ pub(crate) fn choose_camera(scene: &Scene, wanted: &str, at: &Span) -> Result<Ar
         return Ok(camera.clone());
     }
     let names: Vec<&str> = cameras.iter().map(|(name, _)| name.as_str()).filter(|n| !n.is_empty()).collect();
-    if names.is_empty() || wanted.parse::<usize>().is_ok() {
+    let near = nearest_name(wanted, &names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>());
+    if near.is_none() || wanted.parse::<usize>().is_ok() {
         let known = cameras.iter().enumerate().map(|(i, (name, _))| match name.as_str() {
             "" => i.to_string(),
             name => format!("{i} ({name})"),

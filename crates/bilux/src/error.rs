@@ -27,8 +27,8 @@ pub enum Error {
     Film(#[from] FilmError),
     /// The picture would take more memory than is allowed.
     #[error(
-        "this would take about {} MB of memory ({} MB for meshes, {} MB for textures, {} MB for the trees that find hits, \
-         {} MB for the picture), and {} MB are allowed: {}, or allow more memory",
+        "this would take about {} MB of memory ({} MB for meshes, {} MB for textures, {} MB for acceleration \
+         structures, {} MB for the picture), but only {} MB are allowed: {}, or allow more memory",
         mega(.needed.total()), mega(.needed.meshes), mega(.needed.textures + .needed.levels), mega(.needed.trees),
         mega(.needed.picture), .most / 1_000_000, smaller(.needed)
     )]

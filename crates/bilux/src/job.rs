@@ -196,6 +196,11 @@ impl Job {
         self.render.samples = range;
     }
 
+    /// The number of samples that each pixel gets, unless noise or time ends the picture.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.render.samples.end - self.render.samples.start
+    }
+
     /// Renders only a window of the picture.
     pub fn crop(&mut self, window: Window) {
         self.render.crop = Some(window);
@@ -363,7 +368,7 @@ impl Outcome {
         let mut note = |key: &str, value: String| picture.metadata.insert(format!("bilux.noise{key}"), value);
         note("", noise.to_string());
         note(".samples", spp.to_string());
-        note(".samples_that_told_it", "in the mean".to_owned());
+        note(".noise_samples", "in the mean".to_owned());
         note(".bias_at_most", format!("{bias} standard errors of a pixel, root mean square"));
     }
 }

@@ -59,16 +59,20 @@ pub(crate) fn is_as_large(alone: &SceneBuilder, completed: &SceneBuilder) -> boo
 fn decision(measured: &Illumination, is_enough: bool) -> String {
     let percent = (measured.lit * 100.0).round();
     if measured.surfaces == 0.0 {
-        return "the studio lights it: all that is seen in it gives light itself, and lights nothing \
-                (--env none: no studio)"
+        return "the studio lights it: everything visible in it is an emitter that lights nothing else (--env none \
+                turns the studio off)"
             .to_owned();
     }
     match is_enough {
         true => {
-            format!("its own light alone lights it: {percent}% of what is seen (--preset studio: the studio)")
+            format!(
+                "only its own lights light it: they reach {percent}% of the visible surfaces (--preset studio \
+                     adds the studio's)"
+            )
         }
         false => format!(
-            "the studio lights it: its own light reaches {percent}% of what is seen (--env none: no studio)"
+            "the studio lights it: its own lights reach only {percent}% of the visible surfaces (--env none turns the \
+             studio off)"
         ),
     }
 }

@@ -67,6 +67,7 @@ fn picture_light(scene: &mut SceneBuilder, picture: &Path, options: &ReadOptions
     let mut read = read.map_err(|error| picture_fault(picture, &options).unwrap_or(error.into()))?;
     let before = scene.textures.len();
     scene.textures.append(&mut read.textures);
+    scene.files.append(&mut read.files);
     let mut light = read.lights.swap_remove(0);
     for (_, value, _) in &mut light.parameters.0 {
         if let Value::Texture(index) = value {

@@ -1,6 +1,7 @@
 //! What is odd about a picture before it is rendered, even though it can be rendered.
 
 use crate::presets::{Ground, Studio};
+use bilux_math::transcendental::{asin, atan2};
 use bilux_math::{Vec2, Vec3};
 use bilux_scene::{
     Camera, CameraSample, Mesh, Ray, Scene, SceneBuilder, SceneError, Span, Spec, Surface, Tracer, Warning,
@@ -13,22 +14,23 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
         |message: &str| warnings.push(Warning { message: message.to_owned(), at: Span::default() });
     if camera_is_inside_solid(scene, camera) {
         warn(
-            "the camera is inside of something transparent, and sees all through it: move the camera out, \
-             unless this is meant",
+            "the camera is inside a transparent object and sees everything through it: move the camera out, unless \
+             this is intended",
         );
     } else if sees_only_back_faces(given.objects.len() as u32, scene, camera) {
-        warn(
-            "the camera sees nothing but backs of surfaces that show their front alone (doubleSided is false, in glTF), \
-             and so nothing: look from the other side, as by --orbit 180",
-        );
+        let [azimuth, elevation] = from_behind(camera);
+        warn(&format!(
+            "the camera sees only the back faces of single-sided surfaces (doubleSided is false in glTF), so it sees \
+             nothing: look from the other side, for example with --orbit {azimuth},{elevation}",
+        ));
     } else if given.environment_unspecified && !given.cameras.is_empty() {
         // Authors of such files have rarely looked through the file's camera; scenes in other formats are made for
         // theirs.
         let share = visible_fraction(given.objects.len() as u32, scene, camera);
         if share < SPECK {
             warn(&format!(
-                "the model fills {:.2}% of what the file's own camera sees: --orbit 26.5,17.8 takes the studio's camera, \
-                 which frames it",
+                "the model fills only {:.2}% of the picture that the file's own camera takes: --orbit 26.5,17.8 uses \
+                 the studio's camera, which frames the model",
                 share * 100.0
             ));
         }
@@ -40,9 +42,9 @@ pub(crate) fn oddities(given: &SceneBuilder, scene: &Scene, camera: &dyn Camera)
 pub(crate) fn of_ground(studio: &Studio, has_ground: bool, has_backdrop: bool) -> Option<Warning> {
     let message = match studio.ground? {
         Ground::None => return None,
-        _ if !has_ground => "--ground: there is no ground, since the camera looks up from below it",
+        _ if !has_ground => "--ground has no effect: the camera is below the ground and looks up",
         Ground::Mirror if studio.cut_out => {
-            "--ground mirror is opaque, and hides the background: --ground shadow lets it through"
+            "--ground mirror is opaque and hides the background: use --ground shadow to keep it visible"
         }
         _ if has_backdrop => "the ground hides the picture behind the model: leave --ground out",
         _ => return None,
@@ -62,9 +64,7 @@ pub(crate) fn check_not_empty(scene: &SceneBuilder) -> Result<(), SceneError> {
         return Ok(());
     }
     let message = match (has_shapes, scene.lights.iter().any(is_seen)) {
-        (true, _) => {
-            "nothing can be seen: no triangle, point or line has coordinates that are all finite numbers"
-        }
+        (true, _) => "nothing is visible: no triangle, point or line has finite coordinates",
         // An environment alone makes a picture, if the format has a way to say so.
         (false, true) if !scene.environment_unspecified => return Ok(()),
         (false, _) => {
@@ -112,6 +112,17 @@ fn sees_only_back_faces(objects: u32, scene: &Scene, camera: &dyn Camera) -> boo
         hides = true;
     }
     hides
+}
+
+/// The orbit of the studio's camera that looks from the other side, in tenths of a degree.
+fn from_behind(camera: &dyn Camera) -> [f32; 2] {
+    let middle = CameraSample { film: Vec2::splat(0.5), lens: Vec2::splat(0.5), time: 0.0 };
+    let towards = -Vec3::from(camera.ray(&middle).direction).normalize();
+    let azimuth = atan2(towards.x, towards.z).to_degrees() + 180.0;
+    let elevation = asin(towards.y.clamp(-1.0, 1.0)).to_degrees();
+    // The other side of what is seen from far above or below is opposite to it; else the same height shows more.
+    let elevation = if elevation.abs() > 45.0 { -elevation } else { elevation };
+    [azimuth, elevation].map(|angle| (angle * 10.0).round() / 10.0 + 0.0)
 }
 
 /// Directions whose rays hit no wall of an ordinary room at an edge.
@@ -172,7 +183,7 @@ mod tests {
     use crate::Job;
     use bilux_math::Vec3;
     use bilux_scene::cameras::CameraSpec;
-    use bilux_scene::{Object, Parameters, SceneBuilder, Spec, Value, generators::shapes};
+    use bilux_scene::{Mesh, Object, Parameters, SceneBuilder, Spec, Value, generators::shapes};
     use std::sync::Arc;
 
     /// The warnings for a camera at this position, with a ball of this material at the origin.
@@ -190,9 +201,35 @@ mod tests {
     #[test]
     fn a_camera_that_sees_only_back_faces_gets_a_warning() {
         let shell = || Spec::new("shell", "diffuse").with("visible_sides", "front");
-        assert!(told(shell(), [0.1, 0.2, 0.0])[0].contains("--orbit 180"));
+        assert!(told(shell(), [0.1, 0.2, 0.0])[0].contains("single-sided"));
         assert!(told(shell(), [0.0, 0.0, -3.0]).is_empty(), "outside");
         assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "both sides");
+    }
+
+    #[test]
+    fn the_advice_to_look_from_the_other_side_works() {
+        let side = |at: [f32; 3]| Vec3::from(at);
+        // A card that faces away from the studio's camera, one that faces the ground, and one that faces the sky.
+        for corners in [
+            [side([0.0, 0.0, 0.0]), side([0.0, 1.0, 0.0]), side([1.0, 0.0, 0.0])],
+            [side([0.0, 0.0, 0.0]), side([1.0, 0.0, 0.0]), side([0.0, 0.0, 1.0])],
+            [side([0.0, 0.0, 0.0]), side([0.0, 0.0, 1.0]), side([1.0, 0.0, 0.0])],
+        ] {
+            let mut scene = SceneBuilder::default();
+            let card = scene.add_material(Spec::new("card", "diffuse").with("visible_sides", "front"));
+            let mesh = Mesh { positions: corners.to_vec(), triangles: vec![[0, 1, 2]], ..Mesh::default() };
+            scene.objects.push(Object::new("card", Arc::new(mesh), card));
+            let warnings = |orbit: &str| {
+                let mut user = Parameters::default();
+                user.set("orbit", Value::from(orbit));
+                let job = Job::new(&scene, &user).unwrap();
+                job.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("")
+            };
+            let blind = ["26.5,17.8", "10,80", "10,-80"].map(warnings).join("");
+            let advice = blind.split("--orbit ").nth(1).expect("one of them sees its back").trim();
+            let advice = advice.split(|c: char| !"0123456789.,-".contains(c)).next().unwrap();
+            assert_eq!(warnings(advice), "", "--orbit {advice}");
+        }
     }
 
     #[test]
@@ -215,7 +252,7 @@ mod tests {
     #[test]
     fn only_a_camera_inside_glass_gets_the_warning() {
         let glass = || Spec::new("glass", "dielectric");
-        assert!(told(glass(), [0.1, 0.2, 0.0])[0].contains("inside of something transparent"));
+        assert!(told(glass(), [0.1, 0.2, 0.0])[0].contains("inside a transparent object"));
         assert!(told(glass(), [0.0, 0.0, -3.0]).is_empty(), "outside");
         assert!(told(Spec::new("clay", "diffuse"), [0.1, 0.2, 0.0]).is_empty(), "a room");
     }

@@ -81,7 +81,7 @@ pub fn sheet(strategies: &Strategies, light: Light) -> Result<Picture, Error> {
         *line = beside(line, (width - line.width()) / 2)?;
     }
     if lines.is_empty() {
-        return Err(Error::Settings("no strategy has found any light".to_owned()));
+        return Err(Error::Settings("no strategy found any light".to_owned()));
     }
     Ok(stacked(&lines, GAP)?)
 }

@@ -55,7 +55,7 @@ pub struct Common {
     /// Print only errors
     #[arg(short, long, global = true, help_heading = help::OUTPUT)]
     pub quiet: bool,
-    /// Print more detail, such as what `auto` chose and why
+    /// Print more detail, such as what `auto` chose and why, and notes on the scene file
     #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = help::OUTPUT)]
     pub verbose: u8,
     /// Show progress as a bar or as lines [default: a bar on a terminal, lines elsewhere]
@@ -124,7 +124,7 @@ pub enum Command {
     bilux render walk.toml -o 'walk-{frame}.png' --frames 0-47\n  \
     bilux render scene.toml -o noisy.exr --spp 64 --aov albedo,normal,depth,variance\n  \
     bilux render scene.toml -o a.exr --samples 0..64    One half here,\n  \
-    bilux render scene.toml -o b.exr --samples 64..128  the other half elsewhere:\n  \
+    bilux render scene.toml -o b.exr --samples 64..128  and the other half elsewhere:\n  \
     bilux merge a.exr b.exr -o scene.png                Merge them\n\n\
     Exit status:\n  \
     0 when every picture was written, 1 when something failed, 2 when the command line is wrong,\n  \
@@ -153,7 +153,7 @@ pub struct Render {
     /// The integrator, the algorithm that computes the light (`bilux list integrators`) [default: auto]
     #[arg(short, long, value_name = "NAME", help_heading = help::COMMON_OPTIONS)]
     pub integrator: Option<String>,
-    /// The camera of the scene, by name or by number from 0
+    /// The camera of the scene, by name or by number from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX", help_heading = help::COMMON_OPTIONS)]
     pub camera: Option<String>,
     #[command(flatten)]
@@ -221,7 +221,7 @@ pub struct Render {
     /// How `bsp` chooses its splitting planes
     #[arg(long, value_name = "mean|fuchs", help_heading = help::SPEED)]
     pub bsp_split: Option<String>,
-    /// What `bsp` keeps together
+    /// Whether `bsp` groups polygons or whole objects
     #[arg(long, value_name = "polygons|objects", help_heading = help::SPEED)]
     pub bsp_group: Option<String>,
     /// The bits per channel of PNG and PPM files

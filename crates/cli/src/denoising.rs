@@ -6,7 +6,7 @@ use crate::values::{Exposure, parse_exposure, parse_quality};
 use anyhow::bail;
 use bilux::pictures::denoise::preload;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Remove the noise from a picture
 #[derive(Args)]
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:\n  bilux denoise noisy.exr -o clean.exr\n  \
     bilux denoise noisy.exr -o clean.png --tonemap agx\n  \
     bilux denoise photo.png -o clean.png --by builtin\n\n\
-    The layers albedo, normal, depth and variance of an .exr help much; this writes them:\n  \
+    The layers albedo, normal, depth and variance of an .exr help a lot; write them with:\n  \
     bilux render scene.toml -o noisy.exr --aov albedo,normal,depth,variance")]
 pub struct Denoise {
     /// The noisy picture
@@ -40,12 +40,19 @@ pub struct Denoise {
     pub threads: usize,
 }
 
-/// Refuses a denoiser's name that was taken for a scene because a space precedes it.
+/// Refuses a denoiser's name that was taken for a scene because it follows `--denoise` after a space.
 pub fn check_scenes(scenes: &[PathBuf]) -> anyhow::Result<()> {
-    let is_denoiser =
-        |scene: &&PathBuf| bilux::settings::DENOISE.iter().any(|name| scene.as_os_str() == *name);
-    if let Some(name) = scenes.iter().find(is_denoiser).filter(|name| !name.exists()) {
-        bail!("'{0}' is not a scene file: write --denoise={0}, with an equals sign", name.display());
+    let line: Vec<_> = std::env::args_os().collect();
+    let follows = |scene: &Path| line.windows(2).any(|pair| pair[0] == "--denoise" && pair[1] == scene);
+    let is_denoiser = |scene: &&PathBuf| {
+        bilux::settings::DENOISE.iter().chain(&["none"]).any(|name| scene.as_os_str() == *name)
+    };
+    let mistaken = scenes.iter().filter(is_denoiser).find(|name| follows(name) && !name.exists());
+    if let Some(name) = mistaken {
+        bail!(
+            "--denoise {0}: '{0}' is not a scene file: write --denoise={0}, with an equals sign",
+            name.display()
+        );
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ pub const TEMPLATE: &str = "{about}\n\n{usage-heading} {usage}{after-help}\n\n{a
 /// The heading of the ten most used options.
 pub const COMMON_OPTIONS: &str = "Most used";
 /// The heading of options for which part of a scene is shown.
-pub const WHAT: &str = "What";
+pub const WHAT: &str = "Scene";
 /// The heading of options for how the picture looks.
 pub const PICTURE: &str = "Picture";
 /// The heading of options for how light is computed.

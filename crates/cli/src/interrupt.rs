@@ -49,11 +49,11 @@ impl Interrupt {
             if renders.load(Ordering::Relaxed) {
                 std::thread::sleep(GRACE);
                 output::say(format_args!(
-                    "error: --timeout: the picture could not be saved {seconds} s after the start"
+                    "error: --timeout: the time of {seconds} s was up, and the picture could not be saved"
                 ));
             } else {
                 output::say(format_args!(
-                    "error: --timeout: {seconds} s were over before there was a picture to save"
+                    "error: --timeout: the time of {seconds} s was up before there was a picture to save"
                 ));
             }
             std::process::exit(i32::from(TIMED_OUT));

@@ -4,6 +4,7 @@
 // A binary exports nothing, so `pub` here means visible to sibling modules.
 #![allow(unreachable_pub)]
 
+mod advice;
 mod arguments;
 mod choices;
 mod commands;
@@ -37,7 +38,7 @@ fn main() -> ExitCode {
     report_panics();
     let result = match Arguments::try_parse() {
         Ok(arguments) => run(&arguments),
-        Err(answer) => print_answer(&answer),
+        Err(answer) => print_answer(&advice::added(answer)),
     };
     match result {
         Ok(code) => ExitCode::from(code),

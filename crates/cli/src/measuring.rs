@@ -14,11 +14,11 @@ use std::path::PathBuf;
     bilux bench paper -o figures.png\n  \
     bilux bench rays                                   On the built-in scenes\n  \
     bilux bench rays room.toml --accel bvh,kd --json\n  \
-    bilux bench rays --against embree=libembree4.so.4  Beside Embree\n  \
+    bilux bench rays --against embree=libembree4.so.4  Compared with Embree\n  \
     bilux bench rays teapot1k teapot10k teapot100k teapot1m teapots10m --accel bvh8,bvh8-best\n  \
     bilux bench rays teapots3 --dump batches           Write meshes and rays for other programs\n  \
     bilux bench rays --mesh batches/teapots3.msh --rays batches/teapots3-ao.ray --hits ao.hit\n  \
-    bilux bench load                                   Files of 100 MB that it makes, and a million instances\n  \
+    bilux bench load                                   Generated files of 100 MB, and a million instances\n  \
     bilux bench load scan.ply house.glb --json\n  \
     bilux bench render --report measured               Ten minutes, and a page of pictures\n  \
     bilux bench render --scenes caustics,pool --integrators path,vcm --seconds 1,4,16\n  \
@@ -106,7 +106,7 @@ pub struct Bench {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum BenchKind {
-    /// The paper's Figure 1 and section 4.2
+    /// The paper's Figure 1 and section 4.4
     Paper,
     /// The paper's Figure 2: render times of teapots, by acceleration structure
     Teapots,
@@ -122,6 +122,6 @@ pub enum BenchKind {
     Render,
     /// How fast scene files are read, and how much memory that takes
     Load,
-    /// Models as they come: the visible error with default settings, in one second, and with --fast
+    /// Models as they are: the visible error with default settings, in one second, and with --fast
     Models,
 }

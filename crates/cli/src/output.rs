@@ -10,7 +10,7 @@ pub struct Unprinted(pub io::Error);
 
 impl std::fmt::Display for Unprinted {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "standard output: cannot write to it: {}", self.0)
+        write!(f, "cannot write to standard output: {}", self.0)
     }
 }
 

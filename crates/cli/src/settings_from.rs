@@ -62,9 +62,12 @@ pub fn render(arguments: &Render) -> anyhow::Result<Parameters> {
 
 /// Parses `KEY=VALUE`; the value is what a scene file would hold: true, 3, 0.5, `1,2,3` or text.
 pub fn assignment_of(assignment: &str) -> anyhow::Result<(String, Value)> {
-    let (key, value) = assignment
-        .split_once('=')
-        .with_context(|| format!("--set {assignment}: write KEY=VALUE, such as --set {assignment}=1; `bilux list settings` names the keys"))?;
+    let (key, value) = assignment.split_once('=').with_context(|| {
+        format!(
+            "--set {assignment}: write KEY=VALUE, such as --set {assignment}=1; `bilux list \
+                                  settings` lists the keys"
+        )
+    })?;
     let parts: Vec<&str> = value.trim_matches(['[', ']']).split(',').map(str::trim).collect();
     let value = match parts.as_slice() {
         [one] => scalar(one),

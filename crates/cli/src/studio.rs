@@ -17,8 +17,8 @@ pub struct StudioArguments {
     /// Look from AZ degrees to the right of the model's front and EL degrees above it [default: 26.5,17.8]
     #[arg(long, value_name = "AZ,EL", allow_hyphen_values = true, help_heading = help::COMMON_OPTIONS)]
     pub orbit: Option<String>,
-    /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none keeps
-    /// the studio's lights out of a glTF file that brings its own
+    /// Light the scene with an environment map in longitude and latitude (.hdr, .exr or any other picture); none turns
+    /// the studio's lights off for a glTF file with lights of its own
     #[arg(long, value_name = "FILE|none", help_heading = help::COMMON_OPTIONS)]
     pub env: Option<PathBuf>,
     /// The background: transparent, a colour (white, '#rrggbb' or R,G,B) or a picture; it lights nothing

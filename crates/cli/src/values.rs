@@ -30,12 +30,12 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
 
 /// Parses a number of samples, which cannot be 0.
 pub fn parse_spp(text: &str) -> Result<u32, String> {
-    at_least_one(text, "the number of samples is a whole number of at least 1, such as 64")
+    at_least_one(text, "write a whole number of at least 1, such as 64")
 }
 
 /// Parses a number of pictures around a model.
 pub fn parse_turntable(text: &str) -> Result<u32, String> {
-    at_least_one(text, "the number of pictures is a whole number of at least 1, such as 36")
+    at_least_one(text, "write a whole number of at least 1, such as 36")
 }
 
 fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
@@ -44,19 +44,19 @@ fn at_least_one(text: &str, advice: &str) -> Result<u32, String> {
 
 /// Parses a whole number from 0.
 pub fn parse_count(text: &str) -> Result<u32, String> {
-    text.parse().map_err(|_| format!("write a whole number from 0 to {}", u32::MAX))
+    text.parse().map_err(|_| "write a whole number, 0 or more".to_owned())
 }
 
 /// Parses a seed.
 pub fn parse_seed(text: &str) -> Result<u64, String> {
     let seed = text.parse().ok().filter(|&seed| i64::try_from(seed).is_ok());
-    seed.ok_or_else(|| format!("a seed is a whole number from 0 to {}", i64::MAX))
+    seed.ok_or_else(|| format!("write a whole number from 0 to {}", i64::MAX))
 }
 
 /// Parses the quality of a JPEG.
 pub fn parse_quality(text: &str) -> Result<u8, String> {
     let quality = text.parse().ok().filter(|quality| (1..=100).contains(quality));
-    quality.ok_or_else(|| "the quality is a whole number from 1 to 100, such as 92".to_owned())
+    quality.ok_or_else(|| "write a whole number from 1 to 100, such as 92".to_owned())
 }
 
 /// Parses a fraction of the light: `0.02` or `2%`.
@@ -72,17 +72,29 @@ pub fn parse_noise(text: &str) -> Result<f32, String> {
         part if part > 1.0 && unit == 1.0 && part <= 100.0 => {
             Err(format!("this is {}% of the light: write {text}% or {}", part * 100.0, part / 100.0))
         }
-        part if part > 1.0 => Err("more noise than light: write 2% or 0.02".to_owned()),
-        0.0 => Err("no picture is without noise: write 1% or 0.01, or more".to_owned()),
+        part if part > 1.0 => Err("this is more noise than light: write a smaller value, such as 2% or \
+                                   0.02"
+            .to_owned()),
+        0.0 => Err("noise of 0 cannot be reached: write a value above 0, such as 1% or 0.01".to_owned()),
         _ => Err(advice()),
     }
 }
 
 /// Parses a time in seconds, above 0.
 pub fn parse_seconds(text: &str) -> Result<f32, String> {
-    let seconds = text.strip_suffix('s').unwrap_or(text).trim_end().parse::<f32>();
-    let seconds = seconds.ok().filter(|&seconds| seconds > 0.0 && seconds.is_finite());
-    seconds.ok_or_else(|| "write a number of seconds above 0, such as 5 or 0.5".to_owned())
+    seconds_of(text)
+        .map(|seconds| seconds as f32)
+        .filter(|seconds| *seconds > 0.0)
+        .ok_or_else(advice_on_seconds)
+}
+
+fn seconds_of(text: &str) -> Option<f64> {
+    let seconds = text.strip_suffix('s').unwrap_or(text).trim_end().parse::<f64>().ok();
+    seconds.filter(|&seconds| seconds > 0.0 && (seconds as f32).is_finite())
+}
+
+fn advice_on_seconds() -> String {
+    "write a number of seconds above 0, such as 5 or 0.5".to_owned()
 }
 
 pub fn parse_frames(text: &str) -> Result<(u32, u32), String> {
@@ -119,9 +131,9 @@ pub fn parse_vector(text: &str) -> Result<[f32; 3], String> {
 
 /// Parses a time in seconds as a duration.
 pub fn parse_duration(text: &str) -> Result<Duration, String> {
-    let seconds = parse_seconds(text)?;
-    Duration::try_from_secs_f32(seconds)
-        .map_err(|_| "this is longer than any picture takes: write less".to_owned())
+    let seconds = seconds_of(text).ok_or_else(advice_on_seconds)?;
+    Duration::try_from_secs_f64(seconds)
+        .map_err(|_| "this time is too long: write a smaller number of seconds".to_owned())
 }
 
 /// Parses a length, 0 or more.

@@ -47,11 +47,11 @@ fn files_that_are_not_scenes_are_refused_in_one_sentence() {
     refused("none.obj", &["none.obj: cannot open it: No such file or directory"]);
     refused("folder.obj", &["folder.obj: this is a folder: name a scene file in it"]);
     refused("empty.obj", &["empty.obj: the file is empty"]);
-    refused("cut.obj", &["cut.obj:3:6: this line has 2 numbers and needs 3", "cut off"]);
+    refused("cut.obj", &["cut.obj:3:6: this line has 2 numbers, but needs 3", "cut off"]);
     refused("cut.asc", &["cut.asc:4:1: this vertex has 4 numbers", "cut off"]);
     refused("program.asc", &["not plain text"]);
     refused("program.obj", &["program.obj:1:1: this file is not plain text"]);
-    refused("index.obj", &["index.obj:4:1: this face names vertex 9, but the file has only 3"]);
+    refused("index.obj", &["index.obj:4:1: this face refers to vertex 9, but the file has only 3"]);
     refused(
         "picture.gif",
         &["picture.gif: this is not a scene format", "known are asc, gltf, glb, pbrt, obj"],
@@ -75,7 +75,7 @@ fn errors_in_scene_files_report_their_location() {
     refused("[[model]]\nfile = 'pots.obj'\n", &["a.toml:2:8: there is no file 'pots.obj'", "put it there"]);
     refused("[[model]]\nfile = 'pot.obj'\nmaterial = 'x'\n", &["a.toml:3:12: there is no material 'x'"]);
     refused("include = ['b.toml']\n", &["b.toml:1:12: 'a.toml' includes itself"]);
-    refused("[[model]\n", &["a.toml:1:", "this is not TOML"]);
+    refused("[[model]\n", &["a.toml:1:", "this is not valid TOML"]);
     let (code, said) = {
         std::fs::write(path.join("a.toml"), "[[model]]\nfile = 'pot.obj'\n").unwrap();
         render(path, "a.toml", &["--camera", "5"])
@@ -100,10 +100,10 @@ fn what_can_be_rendered_is_rendered_with_a_warning() {
     }
     let no_numbers = PLAIN.replace(['0', '1'], "nan").replace("f nan", "f 1");
     std::fs::write(path.join("nan.obj"), &no_numbers).unwrap();
-    assert_reports(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing can be seen"]);
+    assert_reports(render(path, "nan.obj", &[]), 1, &["infinite or not numbers", "nothing is visible"]);
     let inside = "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\n[[material]]\nname = 'glass'\n\
                   kind = 'dielectric'\n[[model]]\nshape = 'sphere'\nmaterial = 'glass'\n";
-    drawn("inside.toml", inside, &["the camera is inside of something transparent"]);
+    drawn("inside.toml", inside, &["the camera is inside a transparent object"]);
 }
 
 #[test]
@@ -134,8 +134,8 @@ fn command_lines_that_name_missing_things_are_refused() {
     refused(&["--size", "0x0"], &["--size: '0x0' is not a size: each side has 1 to 65536 pixels"]);
     refused(&["--size", "99999x9"], &["--size: '99999x9' is not a size", "1 to 65536"]);
     refused(&["-o", "out.pgn"], &["out.pgn: 'pgn' is not a picture format", "did you mean 'png'?"]);
-    refused(&["-o", "out"], &["out: the name has no extension of a picture format", "there are: png"]);
-    refused(&["-o", "none/out.png"], &["there is no folder 'none'", "make it first"]);
+    refused(&["-o", "out"], &["out: the name has no extension of a picture format", "known are: png"]);
+    refused(&["-o", "none/out.png"], &["there is no folder 'none'", "create it first"]);
     refused(&["--max-memory", "1X"], &["write 512M or 8G"]);
     let bilux = |arguments: &[&str]| {
         let mut command = Command::cargo_bin("bilux").unwrap();
@@ -147,7 +147,7 @@ fn command_lines_that_name_missing_things_are_refused() {
         2,
         &["pot.xyy: this is not a scene format"],
     );
-    assert_reports(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render` for that"]);
+    assert_reports(bilux(&["convert", "pot.obj", "-o", "pot.png"]), 2, &["use `bilux render`"]);
     std::fs::write(path.join("t.tif"), b"II*\0\x08\0\0\0").unwrap();
     assert_reports(bilux(&["convert", "t.tif", "-o", "t.png"]), 1, &["t.tif: TIFF: the file ends"]);
     assert_reports(

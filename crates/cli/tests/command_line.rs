@@ -145,12 +145,12 @@ fn an_interval_is_written_next_to_the_picture() {
     assert!(half_widths.iter().all(|x| x.is_finite()) && half_widths.iter().any(|&x| x > 0.0));
     assert_eq!(interval.metadata["bilux.interval.confidence"], "0.95");
     let picture = bilux::pictures::formats::read(path.join("pots.exr")).unwrap();
-    assert_eq!(picture.metadata["bilux.noise.samples_that_told_it"], "in the mean");
+    assert_eq!(picture.metadata["bilux.noise.noise_samples"], "in the mean");
     let stats = std::fs::read_to_string(path.join("took.json")).unwrap();
     let stats: serde_json::Value = serde_json::from_str(&stats).unwrap();
     assert!(stats["reached"]["bias_at_most"].as_f64().unwrap() <= 0.125);
     let said = failing(path, 2, &["render", "pots.asc", "-i", "cast", "--aov", "interval", "-o", "a.png"]);
-    assert!(said.contains("chance") && !path.join("a.png").exists(), "{said}");
+    assert!(said.contains("no confidence interval") && !path.join("a.png").exists(), "{said}");
 }
 
 /// Runs a command that must fail and returns what it prints.

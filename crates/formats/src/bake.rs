@@ -28,8 +28,8 @@ pub(crate) fn with_pictures<'a>(
         if !is_same {
             let (name, width, height) = (&texture.name, picture.width(), picture.height());
             writing.warn(format!(
-                "the format holds no procedural textures: '{name}' is written as a picture of {width} x {height} texels \
-                 that is repeated"
+                "the format cannot store procedural textures: '{name}' is written as a repeating picture of {width} x \
+                 {height} texels"
             ));
         }
         *texture = Arc::new(picture);
@@ -51,7 +51,7 @@ fn is_only_texture(spec: &Spec, index: usize) -> bool {
 /// An object's mesh, transformed to its position at time 0.
 pub(crate) fn in_place<'a>(object: &'a Object, writing: &mut Writing) -> Cow<'a, Mesh> {
     if !object.motion.is_still() {
-        writing.warn("the format holds no motion: objects are written where they are at 0 seconds");
+        writing.warn("the format cannot store motion: objects are written as they are at 0 seconds");
     }
     let transform = object.motion.at(0.0);
     if transform.is_identity() {
@@ -105,7 +105,7 @@ pub(crate) fn warn_of_scene(scene: &SceneBuilder, format: &str, writing: &mut Wr
         ("render settings", scene.settings.0.len()),
     ];
     for (what, count) in parts.into_iter().filter(|&(_, count)| count > 0) {
-        writing.warn(format!("{format} files hold no {what}: {count} left out"));
+        writing.warn(format!("{format} files cannot store {what}: {count} left out"));
     }
 }
 
@@ -120,6 +120,6 @@ pub(crate) fn warn_of_materials(scene: &SceneBuilder, format: &str, writing: &mu
         })
     };
     if !scene.objects.iter().all(is_plain) {
-        writing.warn(format!("{format} files hold no materials: left out"));
+        writing.warn(format!("{format} files cannot store materials: left out"));
     }
 }

@@ -38,7 +38,7 @@ pub enum FormatError {
     },
     /// A file that another file refers to lies outside the scene's folder.
     #[error(
-        "{at}: '{name}' lies outside the scene's folder, and only files in it are opened: copy it there, or \
+        "{at}: '{name}' lies outside the scene's folder, and only files in that folder are opened: copy it there, or \
          allow files outside"
     )]
     Outside {
@@ -59,9 +59,10 @@ pub enum FormatError {
     },
     /// No format has this name.
     #[error(
-        "{name}: this is not a scene format that can be {wanted}{}; known are {}",
+        "{name}: this is not a scene format that can be {wanted}{}; known are {}{}",
         .nearest.as_ref().map(|n| format!(" (did you mean '{n}'?)")).unwrap_or_default(),
-        .known.join(", ")
+        .known.join(", "),
+        if *.wanted == "read" { ": export the scene to one of these, such as .glb" } else { "" }
     )]
     UnknownFormat {
         /// The extension, the name or the file.
@@ -72,6 +73,12 @@ pub enum FormatError {
         nearest: Option<String>,
         /// All known names.
         known: Vec<String>,
+    },
+    /// The file to write is one that the scene was read from.
+    #[error("{}: the scene was read from this file, so it is not overwritten: write to another file", .path.display())]
+    IsInput {
+        /// The file.
+        path: PathBuf,
     },
     /// The file is a picture, not a scene.
     #[error(

@@ -1,7 +1,7 @@
 //! The table of formats, and reading and writing with it.
 
 use crate::bake::with_pictures;
-use crate::reading::{Reading, Source, open};
+use crate::reading::{Reading, Source};
 use crate::strokes::as_triangles;
 use crate::text::whole_file;
 use crate::writing::{Writing, write_all};
@@ -11,8 +11,9 @@ use bilux_math::registry::Entry;
 use bilux_pictures::PICTURE_FORMATS;
 use bilux_scene::error::nearest_name;
 use bilux_scene::{SceneBuilder, UpHint, Warning};
+use std::collections::BTreeSet;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// All scene formats.
@@ -93,7 +94,9 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<SceneBuilder, FormatEr
     let row = extension(path).and_then(|e| format_named(&e));
     let name = path.display().to_string().into();
     reading.open.extend(std::fs::canonicalize(path));
-    read_file(row, &mut reading, path, &name)
+    let mut scene = read_file(row, &mut reading, path, &name)?;
+    scene.files = reading.files;
+    Ok(scene)
 }
 
 /// Reads a file with the given format, or else with the one that its first bytes indicate; messages use `name`.
@@ -134,7 +137,7 @@ fn read_file_once(
     let folder = path.parent();
     if let Some(row @ SceneFormatEntry { read: Some(ReadFormat::Flowing(_)), .. }) = row {
         let failed = |source| FormatError::Io { path: path.to_owned(), action: "read it", source };
-        let (mut file, _) = open(path)?;
+        let (mut file, _) = reading.open_file(path)?;
         let mut head = Vec::new();
         file.by_ref().take(BEGINNING).read_to_end(&mut head).map_err(failed)?;
         return flow(row, reading, &Source { bytes: &head, name, folder }, &mut (&head[..]).chain(file));
@@ -171,24 +174,28 @@ pub fn read_bytes(
     let row = found.ok_or_else(|| unknown(Path::new(asked), "read", SceneFormatEntry::reads))?;
     let mut reading = Reading::new(options, base);
     reading.budget.take_bytes(bytes.len() as u64, name)?;
-    read_source(row, &mut reading, &Source { bytes, name: &Arc::from(name), folder: base })
+    let mut scene = read_source(row, &mut reading, &Source { bytes, name: &Arc::from(name), folder: base })?;
+    scene.files = reading.files;
+    Ok(scene)
 }
 
 /// Writes a scene and its accompanying files, in the format of the path's extension.
 ///
 /// Each file is written under a temporary name in its folder first, then renamed, so that it appears in one step.
-/// Returns a warning for everything that the format could not hold.
+/// Accompanying files get names that no file has that the scene was read from. Returns a warning for everything that the
+/// format could not hold.
 ///
 /// # Errors
-/// If the format is unknown, or a file cannot be written.
+/// If the format is unknown, the scene was read from this file or a file cannot be written.
 pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Result<Vec<Warning>, FormatError> {
     let row = format_of_path(path)?;
-    let mut writing = Writing::new(path, options);
+    check_not_read(path, &scene.files)?;
+    let mut writing = Writing::new(path, scene, options);
     if let Some(write) = row.write {
         if scene.origin != DVec3::ZERO {
             let [x, y, z] = scene.origin.to_array();
             writing.warn(format!(
-                "positions are written as they lie from {x}, {y}, {z}, where the file has its points"
+                "positions are written relative to {x}, {y}, {z}, the centre of the file's points"
             ));
         }
         let scene = with_pictures(scene, row.capabilities, &mut writing);
@@ -196,6 +203,17 @@ pub fn write(path: &Path, scene: &SceneBuilder, options: &WriteOptions) -> Resul
         write(&scene, &mut writing)?;
     }
     write_all(path, writing)
+}
+
+/// Refuses to write to one of the files that a scene was read from ([`SceneBuilder::files`]).
+///
+/// # Errors
+/// [`FormatError::IsInput`].
+pub fn check_not_read(path: &Path, files: &BTreeSet<PathBuf>) -> Result<(), FormatError> {
+    match std::fs::canonicalize(path) {
+        Ok(full) if files.contains(&full) => Err(FormatError::IsInput { path: path.to_owned() }),
+        _ => Ok(()),
+    }
 }
 
 /// Reads with a known format, and checks the result against the options.
@@ -249,6 +267,12 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().map(|e| e.to_string_lossy().into_owned())
 }
 
+/// Extensions of scene formats that other programs read.
+const FOREIGN: &[&str] = &[
+    "3ds", "3mf", "abc", "blend", "c4d", "dae", "e57", "fbx", "iges", "igs", "lwo", "ma", "max", "mb", "skp",
+    "step", "stp", "usd", "usda", "usdc", "usdz", "vrm", "wrl", "x3d",
+];
+
 pub(crate) fn unknown(
     path: &Path,
     wanted: &'static str,
@@ -257,6 +281,7 @@ pub(crate) fn unknown(
     let known: Vec<String> =
         SCENE_FORMATS.iter().filter(|r| can(r)).flat_map(|r| r.extensions).map(|&e| e.to_owned()).collect();
     let asked = extension(path).unwrap_or_else(|| path.display().to_string());
-    let nearest = nearest_name(&asked, &known);
+    // The formats of other programs are no slips of the finger.
+    let nearest = nearest_name(&asked, &known).filter(|_| !FOREIGN.contains(&&*asked));
     FormatError::UnknownFormat { name: path.display().to_string(), wanted, nearest, known }
 }

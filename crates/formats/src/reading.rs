@@ -7,8 +7,8 @@ use crate::{FormatError, ReadOptions};
 use bilux_math::DVec3;
 use bilux_pictures::Limits;
 use bilux_scene::texture::{Channel, Image};
-use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture};
-use std::collections::{HashMap, HashSet};
+use bilux_scene::{Mesh, Object, SceneBuilder, Span, Spec, Texture, Warning};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -61,6 +61,8 @@ pub(crate) struct Reading<'o> {
     counted: HashSet<*const Mesh>,
     /// The chain of nested scenes, from the first one to the current one.
     pub(crate) open: Vec<PathBuf>,
+    /// Every file that was opened, by its full name.
+    pub(crate) files: BTreeSet<PathBuf>,
 }
 
 /// Longer chains of nested scenes are refused, since each level uses some of the stack.
@@ -81,6 +83,7 @@ impl<'o> Reading<'o> {
             models: HashMap::new(),
             counted: HashSet::new(),
             open: Vec::new(),
+            files: BTreeSet::new(),
         }
     }
 
@@ -119,7 +122,10 @@ impl<'o> Reading<'o> {
             FormatError::malformed(format!("the texture '{name}' cannot be read: {e}"), at.clone())
         })?;
         let image = image.ok_or_else(|| {
-            FormatError::malformed(format!("the texture '{name}' has no colours: use another"), at.clone())
+            FormatError::malformed(
+                format!("the texture '{name}' has no colour channels: use another picture"),
+                at.clone(),
+            )
         })?;
         self.hold_image(&image, name)?;
         Ok(image)
@@ -133,7 +139,7 @@ impl<'o> Reading<'o> {
     /// Enters a nested scene.
     pub(crate) fn enter(&mut self, path: &Path, at: &Span) -> Result<(), FormatError> {
         if self.open.len() >= MAX_CHAIN {
-            let message = format!("scenes are put into each other more than {MAX_CHAIN} deep");
+            let message = format!("scenes are nested more than {MAX_CHAIN} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         self.open.push(path.to_owned());
@@ -164,7 +170,7 @@ impl<'o> Reading<'o> {
         at: &Span,
     ) -> Result<PathBuf, FormatError> {
         let Some(folder) = folder.map(non_empty) else {
-            let message = format!("'{name}' cannot be looked for: the scene did not come from a folder");
+            let message = format!("'{name}' cannot be found: the scene was not read from a folder");
             return Err(FormatError::malformed(message, at.clone()));
         };
         let missing =
@@ -203,7 +209,7 @@ impl<'o> Reading<'o> {
 
     /// The bytes of a file. They count as held until [`Reading::release`].
     pub(crate) fn load(&mut self, path: &Path) -> Result<Vec<u8>, FormatError> {
-        let (file, length) = open(path)?;
+        let (file, length) = self.open_file(path)?;
         let limit = self.budget.left();
         // Reserves the memory at once if the system reports a length.
         let mut bytes = Vec::new();
@@ -213,6 +219,13 @@ impl<'o> Reading<'o> {
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(failed)?;
         self.budget.take_bytes(bytes.len() as u64, &path.display().to_string())?;
         Ok(bytes)
+    }
+
+    /// Opens a file for reading; also returns the length that the system reports.
+    pub(crate) fn open_file(&mut self, path: &Path) -> Result<(fs::File, u64), FormatError> {
+        let opened = open(path)?;
+        self.files.extend(fs::canonicalize(path));
+        Ok(opened)
     }
 
     /// Releases the bytes of a loaded file.
@@ -245,8 +258,7 @@ impl<'o> Reading<'o> {
     }
 }
 
-/// Opens a file for reading; also returns the length that the system reports.
-pub(crate) fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
+fn open(path: &Path) -> Result<(fs::File, u64), FormatError> {
     let failed = |source| FormatError::Io { path: path.to_owned(), action: "open it", source };
     let file = fs::File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
@@ -291,6 +303,8 @@ struct Oddity {
     first: String,
     count: u64,
     at: Span,
+    /// Whether nothing is wrong with the file.
+    is_note: bool,
 }
 
 /// The number of kinds that are distinguished: a file of garbage has thousands.
@@ -299,11 +313,12 @@ const MAX_KINDS: usize = 40;
 impl Oddities {
     /// Merges the oddities of a later part of the file, which begins after this many lines.
     pub(crate) fn append(&mut self, part: Oddities, lines: u32) {
-        for Oddity { what, first, count, mut at } in part.kinds {
+        for Oddity { what, first, count, mut at, is_note } in part.kinds {
             at.line = at.line.saturating_add(lines);
             self.note_first(&what, || first, || at);
             if let Some(known) = self.kinds.iter_mut().find(|kind| kind.what == what) {
                 known.count += count - 1;
+                known.is_note = is_note;
             }
         }
     }
@@ -311,6 +326,14 @@ impl Oddities {
     /// Counts one of a kind; evaluates `at` only for the first.
     pub(crate) fn note(&mut self, what: &str, at: impl FnOnce() -> Span) {
         self.note_first(what, String::new, at);
+    }
+
+    /// Counts one of a kind that is no fault of the file and changes nothing in the picture.
+    pub(crate) fn remark(&mut self, what: &str, at: impl FnOnce() -> Span) {
+        self.note(what, at);
+        if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.what == what) {
+            kind.is_note = true;
+        }
     }
 
     /// The same with text about the first of the kind, which precedes the common text.
@@ -326,19 +349,24 @@ impl Oddities {
             None if kinds > MAX_KINDS => {}
             None if kinds == MAX_KINDS => {
                 let what = "further faults from here on are not listed".to_owned();
-                self.kinds.push(Oddity { what, first: String::new(), count: 1, at: at() });
+                let (first, at) = (String::new(), at());
+                self.kinds.push(Oddity { what, first, count: 1, at, is_note: false });
             }
-            None => self.kinds.push(Oddity { what: what.to_owned(), first: first(), count: 1, at: at() }),
+            None => {
+                let (what, first, at) = (what.to_owned(), first(), at());
+                self.kinds.push(Oddity { what, first, count: 1, at, is_note: false });
+            }
         }
     }
 
-    /// Converts them to warnings, each with its count and the location of the first.
+    /// Converts them to warnings and notes, each with its count and the location of the first.
     pub(crate) fn into_warnings(mut self, scene: &mut SceneBuilder) {
         self.kinds.sort_by_key(|kind| (kind.at.line, kind.at.column));
-        for Oddity { what, first, count, at } in self.kinds {
+        for Oddity { what, first, count, at, is_note } in self.kinds {
             let times =
                 if count > 1 { format!(" ({count} times; this is the first)") } else { String::new() };
-            scene.warn(format!("{first}{what}{times}"), at);
+            let warning = Warning { message: format!("{first}{what}{times}"), at };
+            if is_note { scene.notes.push(warning) } else { scene.warnings.push(warning) }
         }
     }
 }

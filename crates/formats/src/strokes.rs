@@ -24,7 +24,7 @@ pub(crate) fn as_triangles<'a>(
     if capabilities.contains(&CAPABILITY) || !scene.objects.iter().any(|object| has_strokes(&object)) {
         return scene;
     }
-    writing.warn("the format holds no points and no lines: they are written as little balls and tubes");
+    writing.warn("the format cannot store points and lines: they are written as small spheres and tubes");
     let widths = scene.stroke_widths.for_size(scene.bounds(0.0).extent().length());
     let mut scene = scene.into_owned();
     let mut objects = Vec::new();

@@ -211,9 +211,7 @@ pub(crate) fn no_text(error: FormatError, source: &Source) -> FormatError {
     match error {
         // Trailing zeros, which some programs leave, count as spaces.
         FormatError::Malformed { message, at } if source.bytes.iter().take(4096).any(|&b| b == 0) => {
-            let message = format!(
-                "this file is not plain text: it is binary, or text with 16 bits a character ({message})"
-            );
+            let message = format!("this file is not plain text: it is binary, or text in UTF-16 ({message})");
             FormatError::Malformed { message, at }
         }
         error => error,

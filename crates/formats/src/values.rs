@@ -57,9 +57,9 @@ impl MaterialSupport<'_> {
         let Some(row) = MATERIALS.iter().find(|row| row.entry.name == *kind) else { return };
         for key in spec.differing(&row.entry) {
             if !of_kind.contains(&key) && !of_any.contains(&key) {
-                writing.warn(format!("{format} files hold no '{key}' of a {kind} material: left out"));
+                writing.warn(format!("{format} files cannot store '{key}' of a {kind} material: left out"));
             } else if texture(spec, key).is_some() && pictured.is_some_and(|held| !held.contains(&key)) {
-                writing.warn(format!("{format} files hold no picture of '{key}': left out"));
+                writing.warn(format!("{format} files cannot store a texture of '{key}': left out"));
             }
         }
     }

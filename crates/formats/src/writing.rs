@@ -4,13 +4,17 @@ use crate::images::is_bright;
 use crate::{FormatError, WriteOptions};
 use bilux_pictures::{ColourSpace, Picture, write_atomically};
 use bilux_scene::{SceneBuilder, Span, Texture, Warning};
-use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The files of a scene under construction.
 pub(crate) struct Writing<'o> {
     pub(crate) options: &'o WriteOptions,
+    /// The path of the main file.
+    path: &'o Path,
+    /// The files that the scene was read from.
+    read: BTreeSet<PathBuf>,
     /// The main file's name without folder and extension.
     pub(crate) stem: String,
     /// Its extension, in lower case.
@@ -18,7 +22,7 @@ pub(crate) struct Writing<'o> {
     /// The main file.
     pub(crate) main: Vec<u8>,
     /// Accompanying files, by name.
-    pub(crate) beside: Vec<(String, Vec<u8>)>,
+    beside: Vec<(String, Vec<u8>)>,
     /// Textures written so far, and the files of each.
     textures: Vec<(Texture, String)>,
     /// Everything that the format could not hold.
@@ -26,11 +30,13 @@ pub(crate) struct Writing<'o> {
 }
 
 impl<'o> Writing<'o> {
-    pub(crate) fn new(path: &Path, options: &'o WriteOptions) -> Writing<'o> {
+    pub(crate) fn new(path: &'o Path, scene: &SceneBuilder, options: &'o WriteOptions) -> Writing<'o> {
         let stem = path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned());
         let extension = path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
         Writing {
             options,
+            path,
+            read: scene.files.clone(),
             stem,
             extension,
             main: Vec::new(),
@@ -58,16 +64,51 @@ impl<'o> Writing<'o> {
         }
         let bright = texture.texels().any(is_bright);
         let format = if bright { "exr" } else { "png" };
-        let name = format!("{}-texture-{}.{format}", self.stem, self.textures.len() + 1);
         let mut picture = Picture::from_rgb(texture.width(), texture.height(), texture.texels().collect())?;
         if texture.is_data && !bright {
             // Texels are written as stored, so that no transfer curve is applied to numbers.
             picture.colour_space = ColourSpace::Srgb;
         }
         let bytes = bilux_pictures::write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
-        self.beside.push((name.clone(), bytes));
+        let name = self.add_numbered("texture", self.textures.len() + 1, format, bytes);
         self.textures.push((texture.clone(), name.clone()));
         Ok(name)
+    }
+
+    /// Adds an accompanying file and returns its name: `STEM.EXTENSION`, or with a number that makes it new.
+    pub(crate) fn add(&mut self, extension: &str, bytes: Vec<u8>) -> String {
+        let stem = self.stem.clone();
+        let numbered = (2..).map(|i: usize| format!("{stem}-{i}.{extension}"));
+        self.add_first_free(std::iter::once(format!("{stem}.{extension}")).chain(numbered), bytes)
+    }
+
+    /// The same for one of several files: `STEM-KIND-NUMBER.EXTENSION`, with this number or the next that is free.
+    pub(crate) fn add_numbered(
+        &mut self,
+        kind: &str,
+        number: usize,
+        extension: &str,
+        bytes: Vec<u8>,
+    ) -> String {
+        let stem = self.stem.clone();
+        self.add_first_free((number..).map(|i| format!("{stem}-{kind}-{i}.{extension}")), bytes)
+    }
+
+    /// The number of accompanying files so far.
+    pub(crate) fn count(&self) -> usize {
+        self.beside.len()
+    }
+
+    /// Adds an accompanying file under the first name that neither another one nor a file of the input has.
+    fn add_first_free(&mut self, mut names: impl Iterator<Item = String>, bytes: Vec<u8>) -> String {
+        let is_free = |name: &String| {
+            let full = std::fs::canonicalize(self.path.with_file_name(name));
+            !self.beside.iter().any(|(other, _)| other == name)
+                && !full.is_ok_and(|full| self.read.contains(&full))
+        };
+        let name = names.find(is_free).unwrap_or_default();
+        self.beside.push((name.clone(), bytes));
+        name
     }
 
     /// Adds a warning unless it exists already.

@@ -24,7 +24,7 @@ pub enum PictureError {
     },
     /// No picture format has this name or extension.
     #[error(
-        "{} that can be {verb}{}; there are: {known}",
+        "{} that can be {verb}{}; known are: {known}",
         format_in_question(name),
         did_you_mean(suggestion)
     )]
@@ -39,7 +39,7 @@ pub enum PictureError {
         known: String,
     },
     /// A table has no row of this name.
-    #[error("there is no {kind} '{name}'{}; there are: {known}", did_you_mean(suggestion))]
+    #[error("there is no {kind} '{name}'{}; known are: {known}", did_you_mean(suggestion))]
     UnknownName {
         /// The kind of table.
         kind: &'static str,
@@ -51,7 +51,7 @@ pub enum PictureError {
         known: String,
     },
     /// The bytes do not look like any known picture format.
-    #[error("this is not a picture of a known format; there are: {known}")]
+    #[error("this is not a picture in a known format; known are: {known}")]
     Unrecognised {
         /// All existing names.
         known: String,
@@ -106,7 +106,7 @@ pub enum PictureError {
         limit: u64,
     },
     /// The machine has no memory left.
-    #[error("{format}: no room for {bytes} bytes; free some memory or make the picture smaller")]
+    #[error("{format}: cannot allocate {bytes} bytes; free some memory or make the picture smaller")]
     OutOfMemory {
         /// The format or operation.
         format: &'static str,

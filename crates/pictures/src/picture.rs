@@ -151,7 +151,7 @@ impl Picture {
         let taken = self.channels.iter().any(|c| c.name == name)
             || self.integer_planes.iter().any(|plane| plane.name == name);
         let what = if name.is_empty() || name.contains('\0') {
-            format!("'{name}' is not a name for a channel: it must have letters and no zero bytes")
+            format!("'{name}' is not a valid channel name: it must not be empty or contain zero bytes")
         } else if taken {
             format!("there is already a channel '{name}'")
         } else if length != self.pixel_count() {

@@ -17,6 +17,8 @@ use crate::texture::Texture;
 use bilux_accel::{BuildOptions, Query};
 use bilux_math::motion::Motion;
 use bilux_math::{DVec3, Rgb, Transform, Vec3};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A mesh placed in the scene.
@@ -75,8 +77,12 @@ pub struct SceneBuilder {
     pub settings: Parameters,
     /// Problems found while reading.
     pub warnings: Vec<Warning>,
+    /// What is worth knowing about the file though nothing is wrong with it, such as data that have no effect.
+    pub notes: Vec<Warning>,
     /// Other choices that the file offers.
     pub inventory: Inventory,
+    /// The files that the scene was read from, by their full names, so that nothing is written over them.
+    pub files: BTreeSet<PathBuf>,
 }
 
 /// The acceleration structure that traces the rays.
@@ -211,7 +217,10 @@ fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
     let name = if object.name.is_empty() { &mesh.name } else { &object.name };
     let fail = |message: String| Err(SceneError::invalid(message, &Span::default()));
     if object.material >= materials {
-        return fail(format!("object '{name}' has material {}, but there are {materials}", object.material));
+        return fail(format!(
+            "object '{name}' has material {}, but there are only {materials}",
+            object.material
+        ));
     }
     let count = mesh.positions.len();
     let attributes = [
@@ -229,7 +238,7 @@ fn check_mesh(object: &Object, materials: usize) -> Result<(), SceneError> {
     }
     let out_of_range = |t: &&[u32; 3]| t.iter().any(|&i| i as usize >= count);
     if let Some(bad) = mesh.triangles.iter().find(out_of_range) {
-        return fail(format!("mesh '{name}' has a triangle {bad:?}, but only {count} vertices"));
+        return fail(format!("mesh '{name}' has the triangle {bad:?}, but only {count} vertices"));
     }
     let strokes = || mesh.points.iter().chain(mesh.lines.iter().flatten());
     if let Some(bad) = strokes().find(|&&i| i as usize >= count) {

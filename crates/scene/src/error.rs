@@ -7,7 +7,7 @@ use crate::parameters::Span;
 #[non_exhaustive]
 pub enum SceneError {
     /// A name that is in no table.
-    #[error("{at}: there is no {}{}", named(.what, .name), suggestion(.nearest, .known))]
+    #[error("{}there is no {}{}", place(.at), named(.what, .name), suggestion(.nearest, .known))]
     Unknown {
         /// The kind of name.
         what: String,
@@ -21,7 +21,7 @@ pub enum SceneError {
         at: Span,
     },
     /// A value of the wrong kind or out of range.
-    #[error("{at}: {what} is {found}, but must be {wanted}")]
+    #[error("{}{what} is {found}, but must be {wanted}", place(.at))]
     BadValue {
         /// Which parameter.
         what: String,
@@ -33,7 +33,7 @@ pub enum SceneError {
         at: Span,
     },
     /// A required value is missing.
-    #[error("{at}: {what} is missing: add it")]
+    #[error("{}{what} is missing: add it", place(.at))]
     Missing {
         /// What is missing.
         what: String,
@@ -41,13 +41,18 @@ pub enum SceneError {
         at: Span,
     },
     /// Any other error, described in full.
-    #[error("{at}: {message}")]
+    #[error("{}{message}", place(.at))]
     Invalid {
         /// What is wrong, and what to do.
         message: String,
         /// Where it was written.
         at: Span,
     },
+}
+
+/// The beginning of a message: where something was written, unless the program made it.
+fn place(at: &Span) -> String {
+    if at.file.is_empty() { String::new() } else { format!("{at}: ") }
 }
 
 impl SceneError {
@@ -174,7 +179,7 @@ fn named(what: &str, name: &str) -> String {
 fn suggestion(nearest: &Option<String>, known: &[String]) -> String {
     match nearest {
         Some(name) => format!("; did you mean '{name}'?"),
-        None if known.is_empty() => ", nor any other: add it, or correct the name".to_owned(),
+        None if known.is_empty() => ", nor any other: add one, or correct the name".to_owned(),
         None => format!(" (known: {})", known.join(", ")),
     }
 }

@@ -174,7 +174,11 @@ impl<'a> Reader<'a> {
                 return Err(SceneError::unknown(format!("parameter of {}", entry.name), key, names, span));
             };
             check_kind(parameter, value).map_err(|wanted| SceneError::BadValue {
-                what: format!("{}.{}", entry.name, key),
+                // A flag is its own name.
+                what: match span.file.starts_with("--") {
+                    true => "the value".to_owned(),
+                    false => format!("{}.{}", entry.name, key),
+                },
                 wanted,
                 found: describe(value),
                 at: span.clone(),
@@ -361,7 +365,7 @@ fn check_kind(parameter: &Parameter, value: &Value) -> Result<(), String> {
                 let all = stops.iter().all(|(at, c)| at.is_finite() && c.to_array().into_iter().all(within));
                 !stops.is_empty() && rise && all
             };
-            let wanted = "stops [[position, [r, g, b]], …] whose positions never fall";
+            let wanted = "stops [[position, [r, g, b]], …] whose positions never decrease";
             (stops(value).is_some_and(is_right), format!("{wanted}, with each channel from {min} to {max}"))
         }
         ParameterKind::Vector => (

@@ -58,7 +58,7 @@ pub const AOVS: &[AovEntry] = &[
     AovEntry {
         entry: Entry {
             name: "strategies",
-            summary: "a picture of each bidirectional technique, weighted and unweighted (bdpt, vcm)",
+            summary: "the contribution of each bidirectional technique, weighted and unweighted (bdpt, vcm)",
             source: "Veach 1997",
             parameters: &[],
         },
@@ -73,15 +73,20 @@ pub const AOVS: &[AovEntry] = &[
         },
         aov: Aov::Interval,
     },
-    layer(Aov::Albedo, "albedo", "the part of the light that surfaces send on, 0..=1: albedo.R, .G, .B"),
-    layer(Aov::Normal, "normal", "shading normals in the world, on the side that is seen: normal.X, .Y, .Z"),
-    layer(Aov::Depth, "depth", "metres from the camera along its rays, infinite where nothing is: depth.Z"),
-    layer(Aov::Ids, "ids", "which object and material: id.object, id.material, from 1 on; 0 for none"),
+    layer(Aov::Albedo, "albedo", "the fraction of light that surfaces scatter, 0..=1: albedo.R, .G, .B"),
+    layer(Aov::Normal, "normal", "shading normals in world space, on the visible side: normal.X, .Y, .Z"),
+    layer(
+        Aov::Depth,
+        "depth",
+        "distance from the camera along its rays in metres, infinite for the background: \
+                       depth.Z",
+    ),
+    layer(Aov::Ids, "ids", "object and material indices: id.object, id.material, counted from 1; 0 for none"),
     layer(
         Aov::Variance,
         "variance",
-        "of each pixel's mean, one estimate from two halves of the samples: variance.R, .G, .B; what light paths have left \
-         apart, as light and light_variance",
+        "variance of each pixel's mean, estimated from two halves of the samples: variance.R, .G, .B; light-traced \
+         samples separately, as light and light_variance",
     ),
 ];
 
@@ -96,5 +101,5 @@ const fn layer(aov: Aov, name: &'static str, summary: &'static str) -> AovEntry 
 pub fn find(name: &str, at: &Span) -> Result<&'static AovEntry, SceneError> {
     let names = AOVS.iter().map(|row| row.entry.name);
     let row = AOVS.iter().find(|row| row.entry.name == name);
-    row.ok_or_else(|| SceneError::unknown("aov", name, names, at))
+    row.ok_or_else(|| SceneError::unknown("AOV", name, names, at))
 }

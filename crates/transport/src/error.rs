@@ -19,7 +19,7 @@ pub enum FilmError {
     },
     /// The crop is empty or extends beyond the film.
     #[error(
-        "the crop {window} (x, y, width, height) has to have a pixel and to lie within {width} x {height} pixels"
+        "the crop {window} (x, y, width, height) must contain a pixel and lie within {width} x {height} pixels"
     )]
     Window {
         /// The crop.
@@ -30,14 +30,15 @@ pub enum FilmError {
         height: u32,
     },
     /// There is not enough memory.
-    #[error("no room for a film of {pixels} pixels; free some memory or make the picture smaller")]
+    #[error("cannot allocate a film of {pixels} pixels; free some memory or make the picture smaller")]
     NoRoom {
         /// The requested number of pixels.
         pixels: u64,
     },
     /// The films have different sizes.
     #[error(
-        "the films are of different sizes, {} x {} and {} x {} pixels; render all parts at one size, with a crop if need be",
+        "the films are of different sizes, {} x {} and {} x {} pixels; render all parts at one size, with --crop if \
+         necessary",
         first[0], first[1], second[0], second[1]
     )]
     OtherSize {
@@ -48,12 +49,13 @@ pub enum FilmError {
     },
     /// The films show different scenes or settings.
     #[error(
-        "the films are of different scenes or settings; parts of one picture differ only in samples and crop"
+        "the films come from different scenes or settings; parts of one picture may differ only in samples and crop"
     )]
     OtherPicture,
     /// Both films hold the same samples.
     #[error(
-        "both films hold the samples {}..{} of the pixels {window} (x, y, width, height); each sample may be in one part only",
+        "both films hold the samples {}..{} of the pixels {window} (x, y, width, height); each sample may be in only \
+         one part",
         samples.start, samples.end
     )]
     Overlap {
@@ -63,13 +65,13 @@ pub enum FilmError {
         samples: Range<u32>,
     },
     /// A pixel has more samples than sums can hold.
-    #[error("{samples} samples in one pixel; the most is {}", crate::film::MAX_SAMPLES)]
+    #[error("{samples} samples in one pixel; the maximum is {}", crate::film::MAX_SAMPLES)]
     TooManySamples {
         /// Number of samples.
         samples: u64,
     },
     /// The picture is not a partial film.
-    #[error("this is not a partial film: {what}; make one with --samples or --crop and an .exr name")]
+    #[error("this is not a partial render: {what}; make one with --samples or --crop, written to an .exr")]
     NotAFilm {
         /// What is missing or wrong.
         what: String,
@@ -84,17 +86,23 @@ pub enum FilmError {
 #[non_exhaustive]
 pub enum RenderError {
     /// A part of a picture cannot know when the whole is good enough.
-    #[error("a target of noise or time is for whole pictures: leave out the crop and the range of samples")]
+    #[error(
+        "a noise level or time limit needs the whole picture: leave out the crop and the range of samples"
+    )]
     StopOfPart,
     /// An integrator without random numbers has no interval.
-    #[error("there is no interval without chance: this integrator samples pixels in a fixed pattern")]
+    #[error(
+        "this integrator samples pixels in a fixed pattern, so there is no confidence interval: choose another \
+             integrator, such as path"
+    )]
     IntervalOfPattern,
     /// The film cannot be made.
     #[error(transparent)]
     Film(#[from] FilmError),
     /// The range of samples is invalid.
     #[error(
-        "samples {start}..{end} of {spp} for each pixel: the range has to hold a sample, end within {spp}, and {spp} may be 1 to {}",
+        "samples {start}..{end} of {spp} per pixel: the range must contain a sample and end within {spp}, which must \
+         be from 1 to {}",
         crate::film::MAX_SAMPLES
     )]
     Samples {
@@ -106,13 +114,15 @@ pub enum RenderError {
         spp: u32,
     },
     /// The depth is beyond the maximum.
-    #[error("a depth of {depth} scattering events; the most is {}", crate::render::MAX_DEPTH)]
+    #[error("a depth of {depth} scattering events; the maximum is {}", crate::render::MAX_DEPTH)]
     Depth {
         /// The requested depth.
         depth: u32,
     },
     /// The pixel is not on the film.
-    #[error("pixel {x},{y} is not on a film of {width} x {height} pixels")]
+    #[error(
+        "pixel {x},{y} is outside the picture, which has {width} x {height} pixels: columns and rows count from 0"
+    )]
     Pixel {
         /// Column.
         x: u32,

@@ -22,19 +22,23 @@ pub struct FilterEntry {
 
 /// All filters; the first is the default.
 pub const FILTERS: &[FilterEntry] = &[
-    FilterEntry { entry: filter("box", "all points of the pixel alike", ""), radius: 0.5, shape: |_| 1.0 },
+    FilterEntry { entry: filter("box", "constant over the pixel", ""), radius: 0.5, shape: |_| 1.0 },
     FilterEntry {
-        entry: filter("tent", "less and less towards the neighbours' middles", ""),
+        entry: filter("tent", "linear fall-off to the neighbours' centres", ""),
         radius: 1.0,
         shape: |x| 1.0 - x,
     },
     FilterEntry {
-        entry: filter("gaussian", "a bell of standard deviation 0.5 pixels, cut at 1.5", ""),
+        entry: filter("gaussian", "Gaussian with a standard deviation of 0.5 pixels, truncated at 1.5", ""),
         radius: 1.5,
         shape: |x| exp_f64(-4.5 * x * x) - exp_f64(-4.5),
     },
     FilterEntry {
-        entry: filter("blackman-harris", "a bell that ends smoothly at 1.5 pixels", "Harris 1978"),
+        entry: filter(
+            "blackman-harris",
+            "a bell-shaped window that ends smoothly at 1.5 pixels",
+            "Harris 1978",
+        ),
         radius: 1.5,
         shape: |x| {
             let wave = |n: f64| cos_f64(n * PI * (x + 1.0));

@@ -84,16 +84,19 @@ impl Film {
     pub fn from_partial(picture: &Picture) -> Result<Film, FilmError> {
         let text = |key: &str| match picture.metadata.get(key) {
             Some(text) => Ok(text.as_str()),
-            None => Err(not_a_film(format!("it has no text '{key}'"))),
+            None => Err(not_a_film(format!("it has no metadata '{key}'"))),
         };
         if text(FORMAT.0)? != FORMAT.1 {
-            return Err(not_a_film(format!("it is of version '{}', and this reads '1'", text(FORMAT.0)?)));
+            return Err(not_a_film(format!(
+                "it has version '{}', but this program reads '1'",
+                text(FORMAT.0)?
+            )));
         }
         let [width, height] = numbers(text("bilux.size")?)?;
         let window = window_of(text("bilux.window")?)?;
         let [scale_exponent] = numbers::<i32, 1>(text("bilux.scale_exponent")?)?;
         if (window.width as usize, window.height as usize) != (picture.width(), picture.height()) {
-            return Err(not_a_film(format!("its window {window} is not of the picture's size")));
+            return Err(not_a_film(format!("its window {window} does not match the picture's size")));
         }
         let mut film = Film::windowed(width, height, window, scale_exponent)?;
         film.fingerprint = text("bilux.fingerprint")?.to_owned();
@@ -123,7 +126,7 @@ impl Film {
             self.iterations.copy_from_slice(plane(ITERATIONS)?);
             if let Some(i) = self.iterations.iter().position(|&count| count > MAX_SAMPLES) {
                 let (x, y) = self.window().position(i);
-                return Err(not_a_film(format!("its iterations at pixel {x},{y} cannot be")));
+                return Err(not_a_film(format!("its iterations at pixel {x},{y} are invalid")));
             }
         }
         self.counts.copy_from_slice(plane(SAMPLES)?);
@@ -131,7 +134,7 @@ impl Film {
             let most = u64::from(count) << SAMPLE_BITS;
             if count > MAX_SAMPLES || sums.iter().any(|sum| sum.unsigned_abs() > most) {
                 let (x, y) = self.window().position(i);
-                return Err(not_a_film(format!("its sums at pixel {x},{y} cannot be")));
+                return Err(not_a_film(format!("its sums at pixel {x},{y} are invalid")));
             }
         }
         if picture.integer_plane(TROUBLE[0]).is_some() {
@@ -174,7 +177,7 @@ fn coverage_text(coverage: &Coverage) -> String {
 }
 
 fn coverage_of(text: &str, within: &Window) -> Result<Coverage, FilmError> {
-    let wrong = || not_a_film(format!("its coverage is not what a film writes: '{:.80}'", text));
+    let wrong = || not_a_film(format!("its coverage is not in the form that a film writes: '{:.80}'", text));
     let mut coverage = Coverage::default();
     for (i, piece) in text.split(';').filter(|piece| !piece.is_empty()).enumerate() {
         let (window, range) = piece.split_once(':').ok_or_else(wrong)?;

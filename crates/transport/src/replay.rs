@@ -82,7 +82,7 @@ impl fmt::Display for Replay {
         }
         let [r, g, b] = self.radiance.to_array();
         if self.splats > 0 {
-            writeln!(f, "its light path is seen in {} pixels", self.splats)?;
+            writeln!(f, "its light path contributes to {} pixels", self.splats)?;
         }
         writeln!(f, "radiance {r} {g} {b}, {} rays", self.rays)
     }

@@ -56,13 +56,13 @@ pub struct Promise {
 
 /// The checks, by name.
 pub const CHECKS: [(&str, Check); 7] = [
-    ("samples follow the density", samples_follow_the_density),
-    ("weight times density is eval", weight_times_density_is_eval),
+    ("samples follow the pdf", samples_follow_the_density),
+    ("weight times pdf is eval", weight_times_density_is_eval),
     ("reciprocity, or else the adjoint", reciprocity_or_adjoint),
-    ("the same from both ends", the_same_from_both_ends),
+    ("radiance and importance agree", the_same_from_both_ends),
     ("energy", energy),
-    ("delta lobes hide from eval", delta_lobes_hide),
-    ("lobes of zero chance give no sample", samples_are_sound),
+    ("eval and pdf exclude delta lobes", delta_lobes_hide),
+    ("lobes with zero probability give no samples", samples_are_sound),
 ];
 
 /// One check; an error describes what is wrong.

@@ -8,11 +8,11 @@ use bilux_scene::{Camera, CameraSample, Ray};
 
 /// The checks, by name.
 pub const CHECKS: [(&str, Check); 5] = [
-    ("a ray's points are seen where it began", rays_come_back),
-    ("density is that of the rays nearby", density_is_that_of_rays),
-    ("a ray knows its own density", rays_know_their_density),
-    ("points of a plane are seen as often as met", planes_are_seen_as_met),
-    ("nothing is seen behind or beside the film", nothing_is_seen_elsewhere),
+    ("points on a ray project to its film position", rays_come_back),
+    ("the density matches that of neighbouring rays", density_is_that_of_rays),
+    ("a ray reports its own density", rays_know_their_density),
+    ("points of a plane are sampled as often as rays hit them", planes_are_seen_as_met),
+    ("nothing behind the camera or off the film is visible", nothing_is_seen_elsewhere),
 ];
 
 /// One check of a camera at a time in seconds; an error describes what is wrong.

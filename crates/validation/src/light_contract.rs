@@ -23,13 +23,13 @@ pub struct LightCase {
 /// The checks, by name.
 pub const CHECKS: [(&str, Check); 8] = [
     ("samples are sound", samples_are_sound),
-    ("densities are as said", densities_are_as_said),
-    ("what is sent is the power", what_is_sent_is_the_power),
-    ("aimed rays go where they should", aimed_rays_go_where_they_should),
-    ("what is aimed everywhere is the power", what_is_aimed_everywhere_is_the_power),
-    ("direct light finds what was sent", direct_light_finds_what_was_sent),
-    ("what is picked is met with the same density", picked_is_met),
-    ("flux through a plane is the same both ways", flux_is_the_same_both_ways),
+    ("densities match the samples", densities_are_as_said),
+    ("emitted samples add up to the power", what_is_sent_is_the_power),
+    ("aimed rays hit their target", aimed_rays_go_where_they_should),
+    ("rays aimed everywhere add up to the power", what_is_aimed_everywhere_is_the_power),
+    ("direct sampling finds the emitted light", direct_light_finds_what_was_sent),
+    ("sampled points are hit with the same density", picked_is_met),
+    ("flux through a plane agrees in both directions", flux_is_the_same_both_ways),
 ];
 
 /// One check; an error describes what is wrong.

@@ -63,7 +63,7 @@ fn turned() -> [Vec3; 3] {
 
 #[test]
 fn a_turned_normal_scatters_the_same_from_both_ends() {
-    let checks = ["the same from both ends", "weight times density is eval"];
+    let checks = ["radiance and importance agree", "weight times pdf is eval"];
     let named =
         |row: &'static BsdfEntry| (row.cases)().into_iter().map(|(case, lobe)| (row.entry.name, case, lobe));
     for (name, case, lobe) in BSDFS.iter().flat_map(named) {
@@ -290,22 +290,27 @@ fn planted() -> Vec<(&'static str, &'static str, Scatterer, Promise)> {
         mirror.sample(wo, c, u, mode).map(|x| bilux_scene::BsdfSample { wi: -x.wi, ..x })
     });
     vec![
-        ("a tilted warp", "samples follow the density", tilted, white),
-        ("pdf × 1.05", "weight times density is eval", denser, white),
-        ("pdf × 1.05", "samples follow the density", spoilt_pdf(lambert), white),
-        ("a cosine divided out", "weight times density is eval", no_cosine, white),
+        ("a tilted warp", "samples follow the pdf", tilted, white),
+        ("pdf × 1.05", "weight times pdf is eval", denser, white),
+        ("pdf × 1.05", "samples follow the pdf", spoilt_pdf(lambert), white),
+        ("a cosine divided out", "weight times pdf is eval", no_cosine, white),
         ("a factor of one side only", "reciprocity, or else the adjoint", one_way, white),
         ("2% too much", "energy", counted_twice, white),
         ("2% lost", "energy", leaking, white),
-        ("a wrong share of refraction", "samples follow the density", wrong_choice, adjoint),
+        ("a wrong share of refraction", "samples follow the pdf", wrong_choice, adjoint),
         ("η² forgotten", "reciprocity, or else the adjoint", no_eta, adjoint),
         ("η² forgotten in rough glass", "reciprocity, or else the adjoint", not_divided, adjoint),
-        ("scratches across each other", "samples follow the density", round, adjoint),
-        ("a turned normal's adjoint forgotten", "the same from both ends", forgetful, white),
-        ("a camera's rule for a light's mirror", "the same from both ends", ruled_as_from_a_camera(), white),
-        ("η² forgotten", "the same from both ends", no_eta_either(glass), adjoint),
-        ("a delta lobe with a density", "delta lobes hide from eval", shown, white),
-        ("a mirror that transmits", "lobes of zero chance give no sample", through, white),
+        ("scratches across each other", "samples follow the pdf", round, adjoint),
+        ("a turned normal's adjoint forgotten", "radiance and importance agree", forgetful, white),
+        (
+            "a camera's rule for a light's mirror",
+            "radiance and importance agree",
+            ruled_as_from_a_camera(),
+            white,
+        ),
+        ("η² forgotten", "radiance and importance agree", no_eta_either(glass), adjoint),
+        ("a delta lobe with a density", "eval and pdf exclude delta lobes", shown, white),
+        ("a mirror that transmits", "lobes with zero probability give no samples", through, white),
     ]
 }
 

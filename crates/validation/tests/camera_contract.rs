@@ -91,38 +91,43 @@ impl Camera for Spoilt {
 
 /// A bug, the camera that has it, and the check that must detect it.
 const PLANTED: &[(&str, &str, &str, Spoil)] = &[
-    ("a lens not looked at", "lens", "a ray's points are seen where it began", |c, from, _, time| {
+    ("a lens not looked at", "lens", "points on a ray project to its film position", |c, from, _, time| {
         c.connect(from, Vec2::ZERO, time)
     }),
-    ("a film upside down", "plan", "a ray's points are seen where it began", |c, from, lens, time| {
+    ("a film upside down", "plan", "points on a ray project to its film position", |c, from, lens, time| {
         let seen = c.connect(from, lens, time)?;
         Some(CameraConnection { film: Vec2::new(seen.film.x, (1.0 - seen.film.y).min(0.999)), ..seen })
     }),
     (
         "a shift of a ten-thousandth",
         "wide",
-        "a ray's points are seen where it began",
+        "points on a ray project to its film position",
         |c, from, lens, time| {
             let seen = c.connect(from, lens, time)?;
             Some(CameraConnection { film: seen.film + Vec2::splat(1e-4), ..seen })
         },
     ),
-    ("a cosine too few", "wide", "density is that of the rays nearby", |c, from, lens, time| {
+    ("a cosine too few", "wide", "the density matches that of neighbouring rays", |c, from, lens, time| {
         let seen = c.connect(from, lens, time)?;
         Some(CameraConnection { density: seen.density * -seen.wi.dot(c.forward(time)), ..seen })
     }),
-    ("the density of another time", "moving lens", "a ray knows its own density", |c, from, lens, time| {
+    ("the density of another time", "moving lens", "a ray reports its own density", |c, from, lens, time| {
         let density = c.connect(from, lens, 0.0).map_or(0.0, |seen| seen.density);
         Some(CameraConnection { density, ..c.connect(from, lens, time)? })
     }),
-    ("4% too dense", "lens", "points of a plane are seen as often as met", |c, from, lens, time| {
-        let seen = c.connect(from, lens, time)?;
-        Some(CameraConnection { density: seen.density * 1.04, ..seen })
-    }),
+    (
+        "4% too dense",
+        "lens",
+        "points of a plane are sampled as often as rays hit them",
+        |c, from, lens, time| {
+            let seen = c.connect(from, lens, time)?;
+            Some(CameraConnection { density: seen.density * 1.04, ..seen })
+        },
+    ),
     (
         "the film's edge clamped",
         "upright",
-        "nothing is seen behind or beside the film",
+        "nothing behind the camera or off the film is visible",
         |c, from, lens, time| {
             c.connect(from, lens, time).or_else(|| {
                 let middle = c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time });
@@ -130,10 +135,15 @@ const PLANTED: &[(&str, &str, &str, Spoil)] = &[
             })
         },
     ),
-    ("what is behind is seen", "lens", "nothing is seen behind or beside the film", |c, from, lens, time| {
-        let eye = Vec3::from(c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time }).origin);
-        c.connect(from, lens, time).or_else(|| c.connect(eye * 2.0 - from, lens, time))
-    }),
+    (
+        "what is behind is seen",
+        "lens",
+        "nothing behind the camera or off the film is visible",
+        |c, from, lens, time| {
+            let eye = Vec3::from(c.ray(&CameraSample { film: Vec2::splat(0.5), lens, time }).origin);
+            c.connect(from, lens, time).or_else(|| c.connect(eye * 2.0 - from, lens, time))
+        },
+    ),
 ];
 
 #[test]

@@ -282,31 +282,31 @@ const PLANTED: &[Bug] = &[
     (
         "one side's density",
         "panel",
-        "densities are as said",
+        "densities match the samples",
         Spoil::Sent(|s| EmissionSample { pdf_emission: 2.0 * s.pdf_emission, ..s }),
     ),
     (
         "1% too dense",
         "moving ball, later",
-        "what is sent is the power",
+        "emitted samples add up to the power",
         Spoil::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
     ),
     (
         "an edge forgotten",
         "spot",
-        "what is sent is the power",
+        "emitted samples add up to the power",
         Spoil::Sent(|s| EmissionSample { le: Rgb::WHITE * 100.0, ..s }),
     ),
     (
         "a cosine counted twice",
         "panel",
-        "what is sent is the power",
+        "emitted samples add up to the power",
         Spoil::Sent(|s| EmissionSample { le: s.le * s.cos(), ..s }),
     ),
     (
         "an aim turned about",
         "panel",
-        "aimed rays go where they should",
+        "aimed rays hit their target",
         Spoil::Aimed(|s| EmissionSample {
             direction: Vec3::new(s.direction.z, s.direction.y, -s.direction.x),
             ..s
@@ -315,49 +315,49 @@ const PLANTED: &[Bug] = &[
     (
         "an aim past the scene",
         "sky",
-        "aimed rays go where they should",
+        "aimed rays hit their target",
         Spoil::Aimed(|s| EmissionSample { p: s.p + Vec3::X * 0.1, ..s }),
     ),
     (
         "2% too dense",
         "near sphere",
-        "what is aimed everywhere is the power",
+        "rays aimed everywhere add up to the power",
         Spoil::Aimed(|s| EmissionSample { pdf_emission: 1.02 * s.pdf_emission, ..s }),
     ),
     (
         "a cosine that the aim has no part in",
         "panel",
-        "what is aimed everywhere is the power",
+        "rays aimed everywhere add up to the power",
         Spoil::Aimed(|s| EmissionSample { pdf_emission: s.pdf_emission * s.cos(), ..s }),
     ),
     (
         "the wrong instance",
         "ball of its own tree",
-        "direct light finds what was sent",
+        "direct sampling finds the emitted light",
         Spoil::Sent(|s| EmissionSample { primitive: Primitive { instance: 0, ..s.primitive }, ..s }),
     ),
     (
         "a density of its own space",
         "moving ball, later",
-        "direct light finds what was sent",
+        "direct sampling finds the emitted light",
         Spoil::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 0.9, ..s }),
     ),
     (
         "the sky upside down",
         "sky",
-        "direct light finds what was sent",
+        "direct sampling finds the emitted light",
         Spoil::Sent(|s| EmissionSample { direction: -s.direction, ..s }),
     ),
     (
         "a picture's density of another place",
         "picture",
-        "direct light finds what was sent",
+        "direct sampling finds the emitted light",
         Spoil::Sent(|s| EmissionSample { pdf_direct: s.pdf_direct * 1.01, ..s }),
     ),
     (
         "one side only",
         "panel",
-        "flux through a plane is the same both ways",
+        "flux through a plane agrees in both directions",
         Spoil::Sent(|s| {
             let up = s.n_light * if s.n_light.y < 0.0 { 1.0 } else { -1.0 };
             EmissionSample { direction: s.direction - s.n_light * s.cos() + up * s.cos(), n_light: up, ..s }
@@ -366,37 +366,37 @@ const PLANTED: &[Bug] = &[
     (
         "a narrow disc",
         "sky",
-        "flux through a plane is the same both ways",
+        "flux through a plane agrees in both directions",
         Spoil::Sent(|s| EmissionSample { p: s.p * 0.9, ..s }),
     ),
     (
         "1% too dense",
         "near sphere",
-        "what is sent is the power",
+        "emitted samples add up to the power",
         Spoil::Sent(|s| EmissionSample { pdf_emission: 1.01 * s.pdf_emission, ..s }),
     ),
     (
         "a density that forgets who asks",
         "near sphere",
-        "direct light finds what was sent",
+        "direct sampling finds the emitted light",
         Spoil::Density(|_, s| s.pdf_direct),
     ),
     (
         "a density of half a cone",
         "near sphere",
-        "what is picked is met with the same density",
+        "sampled points are hit with the same density",
         Spoil::Picked(|s| LightSample { pdf_solid_angle: 1.05 * s.pdf_solid_angle, ..s }),
     ),
     (
         "a point of the far side",
         "sphere",
-        "what is picked is met with the same density",
+        "sampled points are hit with the same density",
         Spoil::Picked(|s| LightSample { point: s.point.map(|p| p + s.wi), ..s }),
     ),
     (
         "a cone of the wrong width",
         "near sphere",
-        "flux through a plane is the same both ways",
+        "flux through a plane agrees in both directions",
         Spoil::Picked(|s| LightSample { pdf_solid_angle: 1.1 * s.pdf_solid_angle, ..s }),
     ),
 ];

@@ -108,7 +108,7 @@ fn what_disperses_keeps_it_at_every_wavelength() {
 #[test]
 fn turned_normals_keep_it_too() {
     let n_shade = Vec3::new(-0.3, 0.4, 1.0).normalize();
-    let (_, run) = CHECKS.iter().find(|(check, _)| *check == "the same from both ends").unwrap();
+    let (_, run) = CHECKS.iter().find(|(check, _)| *check == "radiance and importance agree").unwrap();
     for (name, numbers, _) in &CASES[1..4] {
         let result =
             run(&about(n_shade, numbers, ORANGE).into(), Promise { reciprocal: false, lossless: false });
@@ -125,7 +125,7 @@ fn a_coat_with_a_normal_of_its_own_keeps_it_too() {
         &[("coat_weight", 0.6), ("base_metalness", 0.5), ("specular_roughness", 0.0)],
         &[("coat_weight", 0.5), ("transmission_weight", 0.7), ("specular_roughness", 0.4)],
     ];
-    let checks = ["weight times density is eval", "the same from both ends"];
+    let checks = ["weight times pdf is eval", "radiance and importance agree"];
     let (bump, tilt) = (Vec3::new(-0.3, 0.4, 1.0).normalize(), Vec3::new(0.1, 0.05, 1.0).normalize());
     for numbers in coats {
         for (n_shade, n_smooth) in [(bump, Vec3::Z), (bump, tilt), (Vec3::Z, tilt)] {
@@ -306,7 +306,7 @@ fn the_checks_see_bugs_in_it() {
     });
     let planted = [
         (one_way, "reciprocity, or else the adjoint"),
-        (other_view, "samples follow the density"),
+        (other_view, "samples follow the pdf"),
         (bright, "energy"),
     ];
     for (scatterer, name) in planted {

@@ -28,7 +28,7 @@ use std::sync::Arc;
 pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
     entry: Entry {
         name: "bsp",
-        summary: "the paper's BSP tree: planes through the mean position of the polygons, with their mean orientation",
+        summary: "the paper's BSP tree: planes through the polygons' mean position, with their mean orientation",
         source: "Fuchs 1980",
         parameters: PARAMETERS,
     },
@@ -38,14 +38,15 @@ pub const ENTRY: AcceleratorEntry = AcceleratorEntry {
 const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "bsp_split",
-        summary: "splitting planes from mean position and orientation, or the polygon's plane that cuts the fewest others",
+        summary: "how planes are chosen: by the polygons' mean position and orientation (mean), or the polygon's \
+                  plane that splits the fewest others (fuchs)",
         unit: "",
         kind: ParameterKind::Choice(&["mean", "fuchs"]),
         default: "mean",
     },
     Parameter {
         name: "bsp_group",
-        summary: "what is partitioned: polygons or whole objects",
+        summary: "whether to partition polygons or whole objects",
         unit: "",
         kind: ParameterKind::Choice(&["polygons", "objects"]),
         default: "polygons",

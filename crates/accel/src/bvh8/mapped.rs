@@ -69,7 +69,10 @@ impl Bvh8 {
     /// The file must not be modified or truncated while the tree or a clone of it lives.
     pub unsafe fn map(path: impl AsRef<Path>) -> Result<Bvh8, StorageError> {
         if cfg!(target_endian = "big") {
-            return Err(StorageError::Damaged("only little-endian machines can map trees: load it"));
+            return Err(StorageError::Damaged(
+                "trees can be memory-mapped only on little-endian machines: load the \
+                                              tree instead",
+            ));
         }
         let file = File::open(path)?;
         // SAFETY: the caller promises that the file does not change.

@@ -14,10 +14,15 @@ use crate::mesh::TriangleMesh;
 #[non_exhaustive]
 pub enum RefitError {
     /// The triangles of the tree are not the finite triangles of the mesh.
-    #[error("triangle {0} is in the tree and no finite one of the mesh, or the other way: build a new tree")]
+    #[error(
+        "triangle {0} is in the tree but is not a finite triangle of the mesh, or the reverse: build a new tree"
+    )]
     OtherTriangles(u32),
     /// The boxes of cut triangles cannot be computed from the corners.
-    #[error("the tree was built with triangles cut in pieces, by the quality 'best': build it with another")]
+    #[error(
+        "the tree was built with spatial splits (quality 'best') and cannot be refitted: build it with another \
+             quality"
+    )]
     Pieces,
 }
 

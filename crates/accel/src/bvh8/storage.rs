@@ -29,13 +29,13 @@ pub enum StorageError {
     #[error("cannot read the tree: {0}")]
     Io(#[from] io::Error),
     /// It does not begin with the magic bytes.
-    #[error("this is no tree of bvh8: it does not begin with BILUXBV8")]
+    #[error("this is not a bvh8 tree: it does not begin with BILUXBV8")]
     NotATree,
     /// It was written by another version.
-    #[error("the tree has version {0}, and this library reads {VERSION}: build it anew")]
+    #[error("the tree has version {0}, but this library reads version {VERSION}: rebuild it")]
     Version(u32),
     /// It is too short or too long.
-    #[error("the tree has {found} bytes, and its header says {expected}")]
+    #[error("the tree has {found} bytes, but its header says {expected}")]
     Length {
         /// The length that the header states.
         expected: u64,
@@ -115,7 +115,7 @@ impl Bvh8 {
     /// Makes a tree of what was read, once all of it has been validated.
     pub(super) fn trust(header: &Header, units: Units) -> Result<Bvh8, StorageError> {
         if checksum(&header.front, &units) != header.checksum {
-            return Err(StorageError::Damaged("its checksum is another"));
+            return Err(StorageError::Damaged("its checksum does not match"));
         }
         check(&units, header.root)?;
         let level = CpuLevel::default().available();
@@ -135,7 +135,7 @@ impl Header {
         }
         let units = long(16);
         if units > MAX_UNITS as u64 {
-            return Err(StorageError::Damaged("it has more units than can be numbered"));
+            return Err(StorageError::Damaged("it has more units than an index can address"));
         }
         let corner = |at: usize| [0, 4, 8].map(|k| f32::from_bits(word(at + k)));
         let corners = [corner(24), corner(36)];
@@ -186,14 +186,16 @@ fn check(units: &[Unit], root: Ref) -> Result<(), StorageError> {
         let size = if reference.is_node() { NODE_UNITS } else { blocks * BLOCK_UNITS };
         let range = reference.unit()..reference.unit() + size;
         let Some(own) = reached.get_mut(range.clone()) else {
-            return Err(StorageError::Damaged("a reference leads out of it"));
+            return Err(StorageError::Damaged("a reference points outside it"));
         };
         if own.contains(&true) {
-            return Err(StorageError::Damaged("two references lead to one place"));
+            return Err(StorageError::Damaged("two references point to the same node"));
         }
         own.fill(true);
         if depth > MAX_DEPTH || blocks > MAX_BLOCKS {
-            return Err(StorageError::Damaged("it is deeper, or has larger leaves, than any that is built"));
+            return Err(StorageError::Damaged(
+                "it is deeper, or has larger leaves, than any tree that Bilux builds",
+            ));
         }
         if reference.is_node() {
             let node = &units[range];
@@ -207,7 +209,7 @@ fn check(units: &[Unit], root: Ref) -> Result<(), StorageError> {
                     if corners.iter().flatten().any(|x| !x.is_finite())
                         || primitive > NO_TRIANGLE >> 1 && primitive != NO_TRIANGLE
                     {
-                        return Err(StorageError::Damaged("a leaf holds what is no triangle"));
+                        return Err(StorageError::Damaged("a leaf holds an index that is not a triangle"));
                     }
                     if last.is_some_and(|last| primitive <= last && last != NO_TRIANGLE) {
                         return Err(StorageError::Damaged("the triangles of a leaf are not in order"));

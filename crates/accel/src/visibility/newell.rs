@@ -12,7 +12,7 @@ use bilux_math::{DVec3, registry::Entry};
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "newell",
-        summary: "Newell's painter's algorithm: pairwise tests of order, polygons are split where they form a cycle",
+        summary: "Newell's painter's algorithm: pairwise depth tests; polygons that form a cycle are split",
         source: "Newell 1972",
         parameters: &[],
     },

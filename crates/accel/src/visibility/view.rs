@@ -43,14 +43,15 @@ pub enum ViewError {
     #[error("the eye of a view must be a finite point, not {0:?}")]
     Eye([f32; 3]),
     /// The minimum distance is negative or not finite.
-    #[error("the least distance of a view must be finite and not negative, not {0}")]
+    #[error("the minimum distance of a view must be finite and not negative, not {0}")]
     Near(f32),
     /// No plane has all directions in front of it.
     #[error("the directions of a view must all lie in front of the eye; split a wider view into several")]
     TooWide,
     /// The pinhole camera has no direction.
     #[error(
-        "a pinhole view needs distinct finite points to look from and at, an upward direction that is not along the line between them, and a field of view between 0 and 180 degrees"
+        "a pinhole view needs two distinct finite points (the eye and the target), an up direction that is not \
+         parallel to the line between them, and a field of view between 0 and 180 degrees"
     )]
     Pinhole,
 }

@@ -14,7 +14,7 @@ use std::rc::Rc;
 pub(super) const ENTRY: VisibilityEntry = VisibilityEntry {
     entry: Entry {
         name: "warnock",
-        summary: "Warnock's algorithm: the screen is divided into four until one triangle decides a window",
+        summary: "Warnock's algorithm: the screen is divided into quarters until one triangle covers a window",
         source: "Warnock 1969",
         parameters: &[],
     },

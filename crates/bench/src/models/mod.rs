@@ -98,7 +98,8 @@ pub fn run(options: &Options, tell: ProgressFn) -> Result<Report, Error> {
     let cells: Vec<Vec<String>> = rows.iter().map(Row::cells).collect();
     let header = ["model", "asked for", "seconds", "FLIP", "blotched", "reference", "goal"];
     let title = format!(
-        "Models as they come: 512x512, wall seconds of the whole program; FLIP against the mean of two pictures of {} s each\n\
+        "Models as they are: 512x512, wall seconds of the whole program; FLIP against the mean of two pictures of {} \
+         s each\n\
          ('reference' is the FLIP of these two); blotched: pixels whose surroundings are off by {} L* and more",
         options.seconds,
         blotches::SEEN

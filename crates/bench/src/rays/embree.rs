@@ -151,7 +151,7 @@ impl Embree {
     pub(super) fn load(path: &Path) -> Result<Rc<Embree>, Error> {
         let failed = |why: String| {
             Error::Settings(format!(
-                "'{}' is no Embree 4: {why}; name the library itself, such as libembree4.so.4",
+                "'{}' is not Embree 4: {why}; name the library itself, such as libembree4.so.4",
                 path.display()
             ))
         };
@@ -164,7 +164,7 @@ impl Embree {
         if device.is_null()
             || unsafe { (functions.rtcGetDeviceProperty)(device, PROPERTY_VERSION_MAJOR) } != 4
         {
-            return Err(failed("it makes no device of version 4".to_owned()));
+            return Err(failed("it does not create a device of version 4".to_owned()));
         }
         let held = Box::new(AtomicIsize::new(0));
         let counter: Pointer = std::ptr::from_ref(&*held).cast_mut().cast();

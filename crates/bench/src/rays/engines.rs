@@ -95,7 +95,9 @@ pub(super) fn build(
 pub(super) fn load(against: &[(String, PathBuf)]) -> Result<Vec<Rc<Embree>>, Error> {
     let load = |(name, path): &(String, PathBuf)| match name.as_str() {
         "embree" => Embree::load(path),
-        other => Err(Error::Settings(format!("there is no peer '{other}' to load: embree is one"))),
+        other => {
+            Err(Error::Settings(format!("there is no engine '{other}' to compare with: write embree=PATH")))
+        }
     };
     against.iter().map(load).collect()
 }

@@ -45,16 +45,12 @@ pub(super) fn sources(options: &Options) -> Result<Vec<Source>, Error> {
     let own = |&(name, generator, parameters): &Own| Source::Own { name, generator, parameters };
     if let Some(mesh) = &options.mesh {
         if options.rays.is_empty() {
-            return Err(Error::Settings(
-                "a mesh file is traced by files of rays: give --rays FILE too".into(),
-            ));
+            return Err(Error::Settings("--mesh needs a file of rays: add --rays FILE".into()));
         }
         return Ok(vec![Source::Files { mesh: mesh.clone(), rays: options.rays.clone() }]);
     }
     if !options.rays.is_empty() || options.hits.is_some() {
-        return Err(Error::Settings(
-            "files of rays and of hits belong to a mesh file: give --mesh FILE".into(),
-        ));
+        return Err(Error::Settings("files of rays and of hits need a mesh file: add --mesh FILE".into()));
     }
     if options.scenes.is_empty() {
         return Ok(OWN[..USUAL].iter().map(own).collect());
@@ -72,7 +68,7 @@ fn unknown(path: &Path) -> Error {
     let names = OWN.map(|row| row.0.to_owned());
     let hint = match nearest_name(&path.to_string_lossy(), &names) {
         Some(name) => format!("did you mean '{name}'?"),
-        None => format!("scenes of ours are {}", names.join(", ")),
+        None => format!("built-in scenes are {}", names.join(", ")),
     };
     Error::Settings(format!("there is no scene file '{}'; {hint}", path.display()))
 }
@@ -107,7 +103,7 @@ impl Source {
         let mesh = Arc::new(mesh(&scene)?);
         let batches =
             with_camera(&scene, |camera| classes::make(&mesh, camera, light(&scene), options.count))?
-                .ok_or_else(|| Error::Settings(format!("nothing of '{name}' is seen by its camera")))?;
+                .ok_or_else(|| Error::Settings(format!("the camera of '{name}' sees nothing of it")))?;
         Ok((Subject { name, mesh }, batches))
     }
 }

@@ -316,7 +316,7 @@ fn chosen_integrators(names: &[String]) -> Result<Vec<String>, Error> {
         return Ok(USUAL.map(str::to_owned).into_iter().filter(|name| known.contains(name)).collect());
     }
     let plain = |name: &String| name.strip_prefix("auto:").map_or(name.clone(), |_| "auto".to_owned());
-    names.iter().try_for_each(|name| check("integrator to measure", &plain(name), &known))?;
+    names.iter().try_for_each(|name| check("integrator", &plain(name), &known))?;
     Ok(names.to_vec())
 }
 

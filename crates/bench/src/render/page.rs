@@ -17,8 +17,9 @@ pub(super) fn write(folder: &Path, measured: &[Measured], options: &Options) -> 
     let mut page = String::from(HEAD);
     let _ = write!(
         page,
-        "<h1>Light transport, measured</h1><p>{} scenes, each hard in another way, by {}. Pictures of {}×{} pixels; every \
-         integrator gets the same CPU time, all threads together. Errors are medians over {} seeds, against long renders \
+        "<h1>Light transport, measured</h1><p>{} scenes, each difficult in its own way, rendered by {}. Pictures of \
+         {}×{} pixels; every integrator gets the same CPU time, summed over all threads. Errors are medians over {} \
+         seeds, against long renders \
          by two integrators that agree.</p>{LEGEND}",
         measured.len(),
         integrators.join(", "),
@@ -76,8 +77,9 @@ fn overview(page: &mut String, measured: &[Measured], integrators: &[String]) {
 fn section(page: &mut String, scene: &Measured, integrators: &[String]) -> Result<(), Error> {
     let _ = write!(
         page,
-        "<section id=\"{0}\"><h2>{0}</h2><p>{1}. Reference: {2}; its own relMSE is {3:.1e}, below which nothing can be \
-         told.</p><div class=\"row\"><figure>{4}<figcaption>reference</figcaption></figure><figure class=\"curves\">{5}\
+        "<section id=\"{0}\"><h2>{0}</h2><p>{1}. Reference: {2}; its own relMSE is {3:.1e}, below which errors cannot \
+         be distinguished.</p><div class=\"row\"><figure>{4}<figcaption>reference</figcaption></figure><figure \
+         class=\"curves\">{5}\
          <figcaption>error over time; dashed: without the worst 0.1% of the pixels; grey: the reference's own</figcaption>\
          </figure></div><div class=\"row\">",
         scene.scene,
@@ -149,11 +151,8 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 const LEGEND: &str = "<p class=\"note\"><b>relMSE</b>: the mean of (x − r)² / (r² + 0.01) over pixels and channels. \
-    <b>trimmed</b>: without the worst 0.1% of the pixels. <b>bias² of it</b>: which part of the error would stay with any \
-    number of seeds, by means of blocks of 8×8 pixels. <b>mean</b>: brighter or darker than the reference. <b>/ path</b>: error \
-    over that of <code>path</code> in the same time. <b>s to 0.01</b>: CPU seconds to a relMSE of 0.01, were the error to fall \
-    with time as noise does. <b>foreseen</b>, <b>measured</b>, <b>and trimmed</b>: time to the same error as a multiple \
-    of what <code>auto</code> takes, as its first look foresaw it, by relMSE, and without the worst 0.1% of the pixels. Maps of errors go from black (none) to pale yellow (as large as the light itself).</p>";
+    <b>trimmed</b>: without the worst 0.1% of the pixels. <b>bias² of it</b>: the fraction of the error that would remain with any number of seeds, from means over blocks of 8×8 pixels. <b>mean</b>: brighter or darker than the reference. <b>/ path</b>: error \
+    over that of <code>path</code> in the same time. <b>s to 0.01</b>: CPU seconds to a relMSE of 0.01, if the error falls with time as noise does. <b>foreseen</b>, <b>measured</b>, <b>and trimmed</b>: time to the same error as a multiple of the time that <code>auto</code> takes: as its pilot render predicted it, by relMSE, and without the worst 0.1% of the pixels. Maps of errors go from black (none) to pale yellow (as large as the light itself).</p>";
 
 const HEAD: &str = "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>Bilux: light transport, measured\
 </title><meta name=\"viewport\" content=\"width=device-width\"><style>\

@@ -35,7 +35,7 @@ impl Reference {
         let of_size = (picture.width(), picture.height()) == (SIZE.0 as usize, SIZE.1 as usize);
         match (picture.to_rgb(), text("relmse").parse()) {
             (Some(pixels), Ok(relmse)) if of_size => Ok(Reference { pixels, relmse, origin: text("origin") }),
-            _ => Err(Error::Settings("the file of a reference is none: make it anew".to_owned())),
+            _ => Err(Error::Settings("this is not a reference file: make it again".to_owned())),
         }
     }
 

@@ -46,7 +46,7 @@ pub(super) const HEADER: [&str; 14] = [
 fn of_scene(scene: &Measured) -> String {
     let cells: Vec<Vec<String>> = scene.rows.iter().map(|row| cells(scene, row)).collect();
     let title = format!(
-        "{}: {}\nreference: {}; its own relMSE {:.1e}, below which nothing can be told",
+        "{}: {}\nreference: {}; its own relMSE {:.1e}, below which errors cannot be distinguished",
         scene.scene, scene.summary, scene.reference.origin, scene.reference.relmse
     );
     table(&title, &HEADER, &cells)

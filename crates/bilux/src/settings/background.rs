@@ -54,8 +54,8 @@ pub(super) fn background(reader: &Reader) -> Result<Background, Error> {
     let text = reader.text("background");
     let wrong = || {
         let message = format!(
-            "'{text}' is no background: write transparent, white, #rrggbb, or R,G,B of 0 to 1; a picture \
-             goes by the command line, --background FILE"
+            "'{text}' is not a background: write transparent, white, #rrggbb, or R,G,B from 0 to 1; for a picture, \
+             use --background FILE on the command line"
         );
         SceneError::invalid(message, reader.span("background"))
     };

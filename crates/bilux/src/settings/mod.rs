@@ -12,7 +12,7 @@ use background::background;
 use bilux_accel::registry::{BspGroup, BspSplit, Quality};
 use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
-use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Warning};
+use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value, Warning};
 use bilux_transport::Stop;
 use bilux_transport::integrators::{INTEGRATORS, IntegratorEntry};
 pub use size::{parse_size, size_error};
@@ -35,7 +35,7 @@ pub const RENDER: Entry = Entry {
         integer("spp", "samples per pixel; 0 for the integrator's own choice", 0, 1 << 31, "0"),
         number(
             "noise",
-            "stop when the noise is at most this part of the light, on average; 0 for all samples",
+            "stop when the noise is, on average, at most this fraction of the light; 0 takes all samples",
             "",
             0.0,
             10.0,
@@ -43,29 +43,37 @@ pub const RENDER: Entry = Entry {
         ),
         number(
             "time_limit",
-            "be done after this time, reading and denoising included; 0 for all samples",
+            "finish within this time, including reading and denoising; 0 takes all samples",
             "s",
             0.0,
             1e9,
             "0",
         ),
-        integer("seed", "another number gives other noise", 0, i64::MAX, "0"),
-        integer("max_depth", "scattering events after the camera; 0 is emission only", 0, 10_000, "16"),
-        integer("threads", "threads at work; 0 for all cores", 0, 4096, "0"),
+        integer(
+            "seed",
+            "the seed of the random numbers; a different seed gives different noise",
+            0,
+            i64::MAX,
+            "0",
+        ),
+        integer(
+            "max_depth",
+            "maximum number of scattering events after the camera; 0 is emission only",
+            0,
+            10_000,
+            "16",
+        ),
+        integer("threads", "number of threads; 0 uses all cores", 0, 4096, "0"),
         text("camera", "name or number of the camera", "0"),
-        choice("ground", "what a model without camera and light stands on", GROUNDS, "auto"),
+        choice("ground", "what a model without a camera and lights stands on", GROUNDS, "auto"),
         text(
             "orbit",
-            "from where the studio's camera looks: degrees to the right of the front, and above it, as AZ,EL",
+            "the position of the studio's camera: degrees to the right of the model's front and degrees above it, as \
+             AZ,EL",
             "26.5,17.8",
         ),
-        choice("up", "which of a model's axes is up; auto goes by its format and its shape", AXES, "auto"),
-        choice(
-            "front",
-            "which of a model's axes is its front; auto goes by its format and its shape",
-            AXES,
-            "auto",
-        ),
+        choice("up", "the model's up axis; auto infers it from the format and the shape", AXES, "auto"),
+        choice("front", "the model's front axis; auto infers it from the format and the shape", AXES, "auto"),
         number(
             "focal",
             "focal length of the studio's camera, for a picture 24 mm high",
@@ -74,58 +82,71 @@ pub const RENDER: Entry = Entry {
             10_000.0,
             "45",
         ),
-        number("time", "when the picture is taken", "s", -1e9, 1e9, "0"),
-        number("shutter", "how long light is let in", "s", 0.0, 1e9, "0"),
-        number("fps", "frames a second, for --frames", "1/s", 1e-6, 1e6, "24"),
+        number("time", "the time that the picture shows", "s", -1e9, 1e9, "0"),
+        number("shutter", "how long the shutter is open", "s", 0.0, 1e9, "0"),
+        number("fps", "frames per second, for --frames", "1/s", 1e-6, 1e6, "24"),
         text("filter", "the pixel reconstruction filter", "box"),
         choice(
             "texture_filter",
-            "pictures on surfaces: as coarse as half a pixel, for less noise, or as fine as they come",
+            "how image textures are filtered: over a footprint of half a pixel, for less noise, or not at all",
             &["footprint", "none"],
             "footprint",
         ),
         choice("pixel_anchor", "where pixel (0, 0) is sampled", &["centre", "corner"], "centre"),
-        number("exposure", "brightens by powers of two, in pictures for a display", "EV", -64.0, 64.0, "0"),
+        number(
+            "exposure",
+            "brightens display formats by this many stops (powers of two)",
+            "EV",
+            -64.0,
+            64.0,
+            "0",
+        ),
         Parameter {
             name: "auto_exposure",
-            summary: "also brighten or darken to the brightness of a photograph, in pictures for a display",
+            summary: "also expose display formats automatically, to the brightness of a photograph",
             unit: "",
             kind: ParameterKind::Bool,
             default: "false",
         },
         text(
             "background",
-            "behind what is seen: surroundings, transparent, or a colour: white, #rrggbb, R,G,B",
+            "the background: surroundings, transparent, or a colour (white, #rrggbb or R,G,B)",
             "surroundings",
         ),
         text(
             "tonemap",
-            "the curve for pictures for a display; auto is neutral where the studio lights a model, else none",
+            "the tone-mapping curve for display formats; auto is neutral if the studio lights the model, else none",
             "auto",
         ),
         choice(
             "denoise",
-            "what takes the noise away: display for the best, in pictures for a display that noise or time ends",
+            "the denoiser; display uses the best one for display formats when noise or time ends the render",
             DENOISE,
             "display",
         ),
-        choice("transfer", "how light becomes bytes", &["srgb", "linear"], "srgb"),
-        choice("culling", "back faces of closed, opaque meshes", &["none", "back"], "none"),
+        choice("transfer", "the transfer function from linear light to bytes", &["srgb", "linear"], "srgb"),
+        choice("culling", "which faces of closed, opaque meshes to cull", &["none", "back"], "none"),
         choice(
             "build",
-            "time that a tree may take; auto is best for bvh8 where there are 64 samples a triangle, else balanced",
+            "how much time building the tree may take; auto is best for bvh8 from 64 samples per triangle on, else \
+             balanced",
             &["auto", "fast", "balanced", "best"],
             "auto",
         ),
         choice(
             "cpu",
-            "instructions that kernels may use",
+            "the instruction set that kernels may use",
             &["auto", "baseline", "sse4.2", "avx2", "avx512"],
             "auto",
         ),
         choice("bsp_split", "how bsp chooses its planes", &["mean", "fuchs"], "mean"),
-        choice("bsp_group", "what bsp keeps together", &["polygons", "objects"], "polygons"),
-        switch("early_out", "end a search at the first hit that nothing nearer can beat"),
+        choice(
+            "bsp_group",
+            "whether bsp groups polygons or whole objects",
+            &["polygons", "objects"],
+            "polygons",
+        ),
+        switch("early_out", "end a traversal at the first hit that no closer hit can replace"),
         switch("cull_by_partition", "reject back faces by the side of their partition plane"),
     ],
 };
@@ -233,6 +254,8 @@ impl Settings {
         let (own, rest): (Vec<_>, Vec<_>) = all.0.iter().cloned().partition(|(key, ..)| is_render_key(key));
         let own = own.into_iter().map(|(key, value, at)| match key.as_str() {
             "orbit" => (key, as_orbit(value), at),
+            // Users who know `--ground none` write this.
+            "denoise" if value == Value::from("none") => (key, Value::from("off"), at),
             _ => (key, value, at),
         });
         let own = own.collect();
@@ -295,7 +318,7 @@ impl Settings {
         };
         let warn = |key: &str, at: &Span| {
             let message = format!(
-                "'{key}' does nothing here: it is a setting of {}, and '{}' renders",
+                "'{key}' has no effect here: it is a setting of {}, but the integrator is '{}'",
                 others(key),
                 chosen.name
             );
@@ -324,7 +347,7 @@ fn find_integrator(reader: &Reader) -> Result<&'static IntegratorEntry, Error> {
 /// several.
 fn integrator_parameters(
     chosen: &'static IntegratorEntry,
-    rest: Vec<(String, bilux_scene::Value, bilux_scene::Span)>,
+    rest: Vec<(String, Value, Span)>,
 ) -> Result<Spec, Error> {
     let knows = |row: &IntegratorEntry, key: &str| row.entry.parameters.iter().any(|p| p.name == key);
     let mut spec = Spec::new("", chosen.entry.name);
@@ -388,8 +411,7 @@ fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Parameters, Quality, Settings};
-    use bilux_scene::Value;
+    use super::{Parameters, Quality, Settings, Value};
 
     #[test]
     fn many_samples_are_worth_the_best_tree_unless_another_is_asked_for() {

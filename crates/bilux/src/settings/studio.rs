@@ -24,7 +24,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
         true => {
             let wrong = |text: &str| {
                 let message = format!(
-                    "'{text}' is no orbit: write AZ,EL in degrees, such as 30,15; EL is from -90 to 90"
+                    "'{text}' is not an orbit: write AZ,EL in degrees, such as 30,15, with EL from -90 to 90"
                 );
                 SceneError::invalid(message, reader.span("orbit"))
             };
@@ -36,7 +36,7 @@ pub(super) fn studio(reader: &Reader) -> Result<Studio, Error> {
     let [up, front] = ["up", "front"].map(|key| Axis::named(&reader.text(key)));
     if up.zip(front).is_some_and(|(up, front)| up.index() == front.index()) {
         let message =
-            "up and front are along one axis: the front has to be another one, as in up z and front -y";
+            "up and front lie on the same axis: choose two different axes, such as up z and front -y";
         return Err(SceneError::invalid(message, reader.span("front")).into());
     }
     Ok(Studio {

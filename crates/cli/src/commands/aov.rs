@@ -21,7 +21,7 @@ pub fn check(arguments: &Render) -> anyhow::Result<()> {
         aovs::find(name, &from_flag("--aov"))?;
     }
     if !arguments.aov.is_empty() && arguments.output == Path::new("-") {
-        bail!("--aov writes files beside the picture, which needs a name: -o picture.png");
+        bail!("--aov writes files next to the picture, so the picture needs a file name: -o picture.png");
     }
     Ok(())
 }
@@ -41,7 +41,7 @@ pub fn prepare(arguments: &Render, job: &mut Job) -> anyhow::Result<()> {
     if wants(arguments, Aov::Strategies) && !job.has_strategies() {
         let (name, others) = (job.settings().integrator.entry.name, integrators::with_strategies());
         let message = format!(
-            "the integrator '{name}' has no strategies that could be told apart; choose one of: {}",
+            "the integrator '{name}' has no separate strategies; choose one of: {}",
             others.collect::<Vec<_>>().join(", ")
         );
         return Err(SceneError::invalid(message, &from_flag("--aov")).into());
@@ -79,19 +79,27 @@ pub fn write(
     let strategies = job.strategies(outcome, &report)?;
     let seconds = report.finish();
     let Some(strategies) = strategies else {
-        output::say(format_args!("{}: interrupted, and not written", folder.display()));
+        output::say(format_args!("{}: interrupted, so it was not written", folder.display()));
         return Ok(false);
     };
     write_strategies(&strategies, &folder, &job.write_options()?)?;
     if !common.quiet {
         output::say(format_args!(
-            "{}: {} strategies of paths of at most {LONGEST} edges, {seconds:.2} s{}",
+            "{}: {} strategies for paths of up to {LONGEST} edges, {seconds:.2} s{}",
             folder.display(),
             strategies.pictures.len(),
             longer(&strategies, outcome),
         ));
     }
     Ok(true)
+}
+
+/// The files, other than the picture and its folder of strategies, that a render writes.
+pub fn files(arguments: &Render, output: &Path) -> Vec<PathBuf> {
+    let layers = !layers(arguments).is_empty() && !is_exr(output);
+    let extensions = [("layers.exr", layers), ("interval.exr", wants(arguments, Aov::Interval))];
+    let written = extensions.into_iter().filter(|(_, is_written)| *is_written);
+    written.map(|(extension, _)| output.with_extension(extension)).collect()
 }
 
 /// True for files that hold layers.
@@ -104,7 +112,7 @@ fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow
     let path = output.with_extension("interval.exr");
     if interval.degrees_of_freedom() == 0 {
         output::warning(format_args!(
-            "{}: not written, since it takes at least 2 samples of each pixel to know of an interval",
+            "{}: not written, since an interval needs at least 2 samples per pixel",
             path.display()
         ));
         return Ok(());
@@ -123,7 +131,8 @@ fn write_interval(interval: &Interval, output: &Path, common: &Common) -> anyhow
 
 /// Writes `s1-t2.exr` and `s1-t2-unweighted.exr` for each strategy, and two sheets that show all of them.
 fn write_strategies(strategies: &Strategies, folder: &Path, options: &WriteOptions) -> anyhow::Result<()> {
-    std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{}: cannot create the folder", folder.display()))?;
     for one in &strategies.pictures {
         for (light, end) in [(Light::Weighted, ""), (Light::Unweighted, "-unweighted")] {
             let path: PathBuf = folder.join(format!("{}{end}.exr", one.strategy));
@@ -145,7 +154,7 @@ fn longer(strategies: &Strategies, outcome: &Outcome) -> String {
     let shown: f64 = strategies.pictures.iter().map(|one| light(&one.weighted)).sum();
     let missing = 1.0 - shown / light(&outcome.film.to_rgb());
     if missing > 5e-4 {
-        format!("; {:.1}% of the light has come by longer ones", missing * 100.0)
+        format!("; longer paths carry {:.1}% of the light", missing * 100.0)
     } else {
         String::new()
     }

@@ -11,7 +11,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
     let defaults = Options::default();
     if common.sandbox {
         return Err(usage::wrong(anyhow!(
-            "--sandbox: benchmarks load other engines and write files: leave it out"
+            "--sandbox: benchmarks load other engines and write files, so they cannot run in it: leave it out"
         )));
     }
     let size = |text: &String| parse_size(text).with_context(|| format!("--size: {}", size_error(text)));
@@ -49,7 +49,7 @@ pub fn run(arguments: &Bench, common: &Common) -> anyhow::Result<u8> {
         output::print(report.text.trim_end())?;
     }
     if let Some(path) = &arguments.output {
-        let picture = report.picture.context("-o: this benchmark makes no picture: leave it out")?;
+        let picture = report.picture.context("-o: this benchmark produces no picture: leave it out")?;
         bilux::pictures::write(path, &picture, &Default::default())?;
     }
     Ok(DONE)
@@ -97,8 +97,9 @@ fn load(
     }
     let folder = std::env::temp_dir().join(format!("bilux-load-{}", std::process::id()));
     let files = if arguments.scenes.is_empty() {
-        tell("files of 100 MB and a million instances, which are made now");
-        std::fs::create_dir_all(&folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
+        tell("files of 100 MB and a million instances, generated now");
+        std::fs::create_dir_all(&folder)
+            .with_context(|| format!("{}: cannot create the folder", folder.display()))?;
         make(&folder, 100_000_000, 1_000_000)?
     } else {
         arguments.scenes.clone()
@@ -143,7 +144,10 @@ fn rays(arguments: &Bench, common: &Common) -> anyhow::Result<bilux_bench::rays:
         arguments.rays.iter().partition(|text| text.parse::<u64>().is_ok());
     let count = match numbers.last() {
         Some(text) => text.parse().ok().filter(|n| (1..=MAX_RAYS).contains(n)).with_context(|| {
-            format!("--rays {text}: a class has from 1 to {MAX_RAYS} rays; a file of this name is written as ./{text}")
+            format!(
+                "--rays {text}: write a number of rays from 1 to {MAX_RAYS}; for a file of this name, write \
+                     ./{text}"
+            )
         })?,
         None => defaults.count,
     };

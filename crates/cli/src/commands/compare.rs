@@ -1,6 +1,6 @@
 //! `bilux compare`: how much a picture differs from its reference.
 
-use super::{DONE, check_folder};
+use super::{DONE, check_folder, check_not_input};
 use crate::arguments::{Common, Compare};
 use crate::output;
 use crate::sandbox::SandboxPaths;
@@ -29,6 +29,7 @@ fn compare(arguments: &Compare, common: &Common) -> anyhow::Result<u8> {
     let mut confines = SandboxPaths::default().reading(&arguments.picture).reading(&arguments.reference);
     if let Some(path) = &arguments.heat_map {
         check_folder(path)?;
+        check_not_input(path, [&*arguments.picture, &*arguments.reference])?;
         confines = confines.writing(path);
         confines.check_written(path, common)?;
     }

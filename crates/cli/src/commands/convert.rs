@@ -1,13 +1,14 @@
 //! `bilux convert`: converts between scene formats, and between picture formats.
 
 use super::{
-    DONE, check_choices, check_folder, check_quality, read_options_with, report_warnings, warn_lost_alpha,
+    DONE, check_choices, check_folder, check_not_input, check_quality, load, read_options_with,
+    report_warnings, warn_lost_alpha,
 };
 use crate::arguments::{Common, Convert};
 use crate::sandbox::SandboxPaths;
 use crate::usage;
 use anyhow::anyhow;
-use bilux::formats::WriteOptions;
+use bilux::formats::{WriteOptions, check_not_read};
 use bilux::pictures::Limits;
 use bilux::pictures::format_named;
 use std::path::Path;
@@ -15,6 +16,7 @@ use std::path::Path;
 pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
     check_folder(output).map_err(usage::wrong)?;
+    check_not_input(output, [&**input]).map_err(usage::wrong)?;
     let confines = SandboxPaths::default().reading_scene(input).writing(output);
     confines.check_written(output, common).map_err(usage::wrong)?;
     match (is_picture(input), is_picture(output)) {
@@ -31,22 +33,23 @@ pub fn run(arguments: &Convert, common: &Common) -> anyhow::Result<u8> {
         (false, false) => {
             bilux::formats::format_of_path(output).map_err(usage::wrong)?;
             if arguments.quality.is_some() {
-                return Err(usage::wrong(anyhow!("--quality is for JPEG pictures: leave it out")));
+                return Err(usage::wrong(anyhow!("--quality is only for JPEG pictures: leave it out")));
             }
             confines.enter(common)?;
             let scene =
-                bilux::load(input, &read_options_with(common, &arguments.posed.choices, arguments.posed.at))?;
+                load(input, &read_options_with(common, &arguments.posed.choices, arguments.posed.at))?;
             check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
+            check_not_read(output, &scene.files).map_err(usage::wrong)?;
             report_warnings(&scene.warnings, common)?;
             let options = WriteOptions { ascii: arguments.ascii };
             let lost = bilux::formats::write(output, &scene, &options)?;
             report_warnings(&lost, common)?;
         }
         (false, true) => {
-            return Err(mismatch(input, output, "a scene", "a picture: use `bilux render` for that"));
+            return Err(mismatch(input, output, "a scene", "is a picture: use `bilux render`"));
         }
         (true, false) => {
-            return Err(mismatch(input, output, "a picture", "a scene: name a picture, such as out.png"));
+            return Err(mismatch(input, output, "a picture", "is a scene: write a picture, such as out.png"));
         }
     }
     Ok(DONE)
@@ -59,5 +62,5 @@ fn is_picture(path: &Path) -> bool {
 }
 
 fn mismatch(input: &Path, output: &Path, one: &str, other: &str) -> anyhow::Error {
-    usage::wrong(anyhow!("{} is {one}, and {} {other}", input.display(), output.display()))
+    usage::wrong(anyhow!("{} is {one}, but {} {other}", input.display(), output.display()))
 }

@@ -1,6 +1,6 @@
 //! `bilux denoise`: removes the noise from a picture.
 
-use super::{DONE, check_folder, check_quality, warn_lost_alpha};
+use super::{DONE, check_folder, check_not_input, check_quality, warn_lost_alpha};
 use crate::arguments::{Common, Denoise};
 use crate::sandbox::SandboxPaths;
 use crate::values::Exposure;
@@ -8,11 +8,13 @@ use crate::{output, usage};
 use bilux::pictures::denoise::{Chosen, Task, denoise, denoiser};
 use bilux::pictures::formats::format_of_path;
 use bilux::pictures::{Limits, WriteOptions, auto_exposure, tone_map};
+use std::io::IsTerminal;
 use std::time::Instant;
 
 pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     let (input, output) = (&arguments.input, &arguments.output);
     check_folder(output).map_err(usage::wrong)?;
+    check_not_input(output, [&**input]).map_err(usage::wrong)?;
     format_of_path(output).map_err(usage::wrong)?;
     check_quality(arguments.quality, output).map_err(usage::wrong)?;
     let confines = SandboxPaths::default().reading(input).writing(output);
@@ -37,13 +39,19 @@ pub fn run(arguments: &Denoise, common: &Common) -> anyhow::Result<u8> {
     warn_lost_alpha(&smooth, output, None, common)?;
     bilux::pictures::write(output, &smooth, &options)?;
     if !common.quiet {
-        output::say(format_args!("{}: {}", output.display(), told(&chosen, seconds)));
+        let shows_advice = common.verbose > 0 || std::io::stderr().is_terminal();
+        output::say(format_args!("{}: {}", output.display(), summary(&chosen, seconds, shows_advice)));
     }
     Ok(DONE)
 }
 
 /// Which denoiser ran, and how to get a better one.
-fn told(chosen: &Chosen, seconds: f64) -> String {
-    let advice = chosen.advice.as_ref().map(|advice| format!("; {advice}")).unwrap_or_default();
+fn summary(chosen: &Chosen, seconds: f64, shows_advice: bool) -> String {
+    let advice = chosen
+        .advice
+        .as_ref()
+        .filter(|_| shows_advice)
+        .map(|advice| format!("; {advice}"))
+        .unwrap_or_default();
     format!("denoised by {} in {seconds:.2} s{advice}", chosen.denoiser.describe())
 }

@@ -1,6 +1,6 @@
 //! `bilux generate`: the built-in procedural scenes.
 
-use super::{DONE, check_folder, read_options, report_warnings};
+use super::{DONE, check_folder, check_not_input, load, read_options, report_warnings};
 use crate::arguments::{Common, Generate};
 use crate::sandbox::SandboxPaths;
 use crate::settings_from::{assignment_of, from_flag};
@@ -17,10 +17,11 @@ pub fn run(arguments: &Generate, common: &Common) -> anyhow::Result<u8> {
     if let Some(file) = &arguments.from {
         confines = confines.reading_scene(file);
     }
+    check_not_input(&arguments.output, arguments.from.as_deref()).map_err(usage::wrong)?;
     confines.enter(common)?;
     let scene = match &arguments.from {
         Some(file) => {
-            let model = bilux::load(file, &read_options(common))?;
+            let model = load(file, &read_options(common))?;
             let offset = arguments.offset.map_or(Vec3::X, Vec3::from);
             bilux::scene::generators::copies(&model, arguments.count.unwrap_or(1), offset)
         }

@@ -1,6 +1,6 @@
 //! `bilux info`: what is in a scene.
 
-use super::{DONE, check_choices, read_options_with, report_warnings};
+use super::{DONE, check_choices, load, read_options_with, report_notes, report_warnings};
 use crate::arguments::{Common, Info};
 use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
@@ -15,13 +15,14 @@ pub fn run(arguments: &Info, common: &Common) -> anyhow::Result<u8> {
     let options = read_options_with(common, &arguments.posed.choices, arguments.posed.at);
     let options = ReadOptions { validate: true, ..options };
     SandboxPaths::default().reading_scene(&arguments.scene).enter(common)?;
-    let scene = bilux::load(&arguments.scene, &options)?;
+    let scene = load(&arguments.scene, &options)?;
     check_choices(&scene, &arguments.posed.choices).map_err(usage::wrong)?;
     if arguments.json {
         output::print(serde_json::to_string_pretty(&as_json(&scene))?)?;
     } else {
         output::print(as_text(&scene))?;
         report_warnings(&scene.warnings, common)?;
+        report_notes(&scene.notes, common);
     }
     Ok(DONE)
 }
@@ -78,6 +79,7 @@ fn as_json(scene: &SceneBuilder) -> serde_json::Value {
             "trees_at_most": memory.trees,
         },
         "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
     })
 }
 
@@ -139,7 +141,7 @@ fn strokes(scene: &SceneBuilder) -> String {
     let sum = |count: fn(&Mesh) -> usize| scene.objects.iter().map(|o| count(&o.mesh)).sum::<usize>();
     match (sum(|mesh| mesh.points.len()), sum(|mesh| mesh.lines.len())) {
         (0, 0) => String::new(),
-        (points, lines) => format!("points     {points}, and {lines} lines\n"),
+        (points, lines) => format!("points     {points}; {lines} lines\n"),
     }
 }
 
@@ -147,7 +149,7 @@ fn strokes(scene: &SceneBuilder) -> String {
 fn memory(memory: &Memory) -> String {
     let mega = |bytes: u64| bytes as f64 / 1e6;
     format!(
-        "{:.1} MB of meshes, {:.1} MB of textures; at most {:.1} MB more to render, the picture apart",
+        "{:.1} MB of meshes, {:.1} MB of textures; at most {:.1} MB more to render, not counting the picture",
         mega(memory.meshes),
         mega(memory.textures),
         mega(memory.levels + memory.trees),

@@ -48,12 +48,8 @@ const TABLES: &[Table] = &[
         summary: "lobes that materials are built from",
         rows: rows!(bilux::scene::bsdf::BSDFS),
     },
-    Table { name: "lights", summary: "where light comes from", rows: rows!(bilux::scene::lights::LIGHTS) },
-    Table {
-        name: "cameras",
-        summary: "where pictures are seen from",
-        rows: rows!(bilux::scene::cameras::CAMERAS),
-    },
+    Table { name: "lights", summary: "light sources", rows: rows!(bilux::scene::lights::LIGHTS) },
+    Table { name: "cameras", summary: "cameras", rows: rows!(bilux::scene::cameras::CAMERAS) },
     Table {
         name: "generators",
         summary: "built-in scenes",
@@ -87,13 +83,13 @@ const TABLES: &[Table] = &[
     },
     Table {
         name: "aovs",
-        summary: "arbitrary output variables: what a render can write beside the picture",
+        summary: "arbitrary output variables: what a render can write as well as the picture",
         rows: rows!(bilux::transport::aovs::AOVS),
     },
     Table { name: "metrics", summary: "image metrics", rows: rows!(bilux::pictures::metrics::METRICS) },
     Table {
         name: "settings",
-        summary: "what [render] and --set understand",
+        summary: "the keys of [render] in scene files and of --set",
         rows: || vec![bilux::settings::RENDER],
     },
 ];
@@ -136,7 +132,7 @@ fn row_text(row: &Entry) -> String {
     let mut text = format!("  {:<14} {}{source}", row.name, row.summary);
     for p in row.parameters {
         let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
-        let default = if p.default.is_empty() { "needed".to_owned() } else { format!("= {}", p.default) };
+        let default = if p.default.is_empty() { "required".to_owned() } else { format!("= {}", p.default) };
         text += &format!("\n      {:<18} {} ({}{unit}) {default}", p.name, p.summary, kind_text(p.kind));
     }
     text

@@ -5,6 +5,7 @@ use bilux::budget::DEFAULT_BUDGET;
 use bilux::pictures::denoise::Chosen;
 use bilux::{Job, Outcome};
 use serde_json::json;
+use std::io::IsTerminal;
 use std::path::Path;
 
 /// A picture that was rendered.
@@ -31,7 +32,7 @@ pub struct Rendered<'a> {
 impl Rendered<'_> {
     /// Samples per pixel, on average.
     fn spp(&self) -> u32 {
-        self.outcome.reached.map_or(self.job.settings().spp, |reached| reached.spp)
+        self.outcome.reached.map_or_else(|| self.job.samples_per_pixel(), |reached| reached.spp)
     }
 
     /// The remaining noise, as a fraction of the light, if it was measured.
@@ -43,6 +44,7 @@ impl Rendered<'_> {
     pub fn tell(&self, verbose: u8) {
         let (s, output) = (self.job.settings(), self.output.display());
         if verbose > 0 {
+            self.report_orientation();
             self.report_details();
         }
         let noise = self.noise().map(|noise| format!(", {:.1}% noise", noise * 100.0)).unwrap_or_default();
@@ -52,7 +54,6 @@ impl Rendered<'_> {
             true => "; interrupted: this is the picture so far",
             false => "",
         };
-        self.report_orientation();
         if let Some(overrun) = &self.overrun {
             output::say(format_args!("{output}: {overrun}"));
         }
@@ -64,7 +65,9 @@ impl Rendered<'_> {
             self.total_seconds,
             denoised.unwrap_or_default(),
         ));
-        if let Some(advice) = self.denoiser.and_then(|chosen| chosen.advice.as_ref()) {
+        // A log is no place for advice on what to install.
+        let advice = self.denoiser.and_then(|chosen| chosen.advice.as_ref());
+        if let Some(advice) = advice.filter(|_| verbose > 0 || std::io::stderr().is_terminal()) {
             output::say(format_args!("{output}: {advice}"));
         }
     }
@@ -77,7 +80,10 @@ impl Rendered<'_> {
             let because = orientation.because.words();
             let scene = self.scene.display();
             SAID.call_once(|| {
-                output::say(format_args!("{scene}: up is {up}, front is {front}, {because} (--up, --front)"));
+                output::say(format_args!(
+                    "{scene}: up is {up}, front is {front}, {because} (change it with --up and \
+                                          --front)"
+                ));
             });
         }
     }
@@ -88,7 +94,7 @@ impl Rendered<'_> {
             output::say(format_args!("{output}: {} chose {choice}", s.integrator.entry.name));
         }
         output::say(format_args!(
-            "{output}: {} with {}, {:.2} s of building, {:.2} s of rendering, {:.2} million rays per second",
+            "{output}: {} with {}, built in {:.2} s, rendered in {:.2} s, {:.2} million rays per second",
             s.integrator.entry.name,
             s.accel.name,
             self.build_seconds,
@@ -98,7 +104,7 @@ impl Rendered<'_> {
         // The samples that measure the noise are also in the mean; this reports the bias where it may matter.
         if let Some(bias) = outcome.reached.and_then(|reached| reached.bias).filter(|bias| *bias >= 0.05) {
             output::say(format_args!(
-                "{output}: stopping by the noise shifts the mean by at most {bias:.2} of the noise"
+                "{output}: stopping at a noise level biases the mean by at most {bias:.2} of the noise"
             ));
         }
     }
@@ -126,9 +132,26 @@ pub fn print_failure(scene: &Path, picture: &Path, error: &anyhow::Error) -> any
 pub fn report_default_budget(output: &Path) {
     let (noise, seconds) = DEFAULT_BUDGET;
     output::say(format_args!(
-        "{}: until {}% noise or {seconds} s; --noise and --time-limit change that, and --spp gives the same picture on every \
-         machine",
+        "{}: renders until {}% noise or {seconds} s; --noise and --time-limit change these limits, and --spp makes \
+         the picture the same on every machine",
         output.display(),
         noise * 100.0
     ));
+}
+
+/// Reports samples that are not finite or overflowed: they are counted and located, never hidden.
+pub fn report_sample_failures(outcome: &Outcome) {
+    let trouble = outcome.film.trouble();
+    if let Some(first) = trouble.first_non_finite {
+        output::warning(format_args!(
+            "{} samples were not finite and are left out; see the first with --replay {},{},{}",
+            trouble.non_finite, first.x, first.y, first.sample
+        ));
+    }
+    if let Some(first) = trouble.first_overflowed {
+        output::warning(format_args!(
+            "{} samples were brighter than the film can hold; see the first with --replay {},{},{}",
+            trouble.overflowed, first.x, first.y, first.sample
+        ));
+    }
 }

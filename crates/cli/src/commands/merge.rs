@@ -1,6 +1,6 @@
 //! `bilux merge`: merges partial renders into one picture.
 
-use super::{DONE, check_folder};
+use super::{DONE, check_folder, check_not_input};
 use crate::arguments::{Common, Merge};
 use crate::sandbox::SandboxPaths;
 use crate::{output, usage};
@@ -11,6 +11,8 @@ use bilux::transport::{Film, JoinedLayers};
 
 pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     check_folder(&arguments.output).map_err(usage::wrong)?;
+    let parts = arguments.parts.iter().map(|part| &**part);
+    check_not_input(&arguments.output, parts).map_err(usage::wrong)?;
     let format = format_of_path(&arguments.output).map_err(usage::wrong)?;
     let mut confines = SandboxPaths::default().writing(&arguments.output);
     confines.check_written(&arguments.output, common).map_err(usage::wrong)?;
@@ -35,7 +37,7 @@ pub fn run(arguments: &Merge, common: &Common) -> anyhow::Result<u8> {
     let film = joined.context("there is nothing to merge: name partial renders")?;
     if layers.left_out() {
         output::warning(format_args!(
-            "the variance of light traced from the lights cannot be merged, and is left out"
+            "the variance of light-traced samples cannot be merged, so it is left out"
         ));
     }
     // If a part is still missing, an .exr keeps the sums, so that it can be added later.

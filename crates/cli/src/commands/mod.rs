@@ -25,6 +25,7 @@ use bilux::formats::{Glass, ReadOptions};
 use bilux::math::Rgb;
 use bilux::pictures::Picture;
 use bilux::pictures::formats::format_of_path;
+use bilux::scene::error::nearest_name;
 use bilux::scene::{SceneBuilder, Span, Warning};
 use std::path::{Path, PathBuf};
 
@@ -58,6 +59,20 @@ fn read_options_with(common: &Common, choices: &Choices, time: f32) -> ReadOptio
     }
 }
 
+/// Reads a scene file; if there is none of this name, suggests the one that is called most like it.
+fn load(path: &Path, options: &ReadOptions) -> anyhow::Result<SceneBuilder> {
+    let result = bilux::load(path, options);
+    let (Err(error), false, Some(name)) = (&result, path.exists(), path.file_name()) else {
+        return Ok(result?);
+    };
+    let files = std::fs::read_dir(folder_of(path)).into_iter().flatten().flatten();
+    let files: Vec<String> = files.map(|file| file.file_name().to_string_lossy().into_owned()).collect();
+    match nearest_name(&name.to_string_lossy(), &files) {
+        Some(near) => bail!("{error}; did you mean '{}'?", path.with_file_name(near).display()),
+        None => Ok(result?),
+    }
+}
+
 /// Refuses a choice among things that the file does not have.
 fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> {
     if choices.animation.is_some() && scene.inventory.animations.is_empty() {
@@ -72,7 +87,7 @@ fn check_choices(scene: &SceneBuilder, choices: &Choices) -> anyhow::Result<()> 
 /// Prints each warning; under `--strict` the first one is an error.
 fn report_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> {
     if let (true, Some(first)) = (common.strict, warnings.first()) {
-        bail!("{first} (a warning, which --strict makes an error)");
+        bail!("{first} (--strict treats this warning as an error)");
     }
     if !common.quiet {
         warnings.iter().for_each(output::warning);
@@ -80,14 +95,30 @@ fn report_warnings(warnings: &[Warning], common: &Common) -> anyhow::Result<()> 
     Ok(())
 }
 
+/// Prints what is worth knowing about a file though nothing is wrong with it, with `-v`.
+fn report_notes(notes: &[Warning], common: &Common) {
+    if common.verbose > 0 {
+        notes.iter().for_each(|note| output::say(format_args!("note: {note}")));
+    }
+}
+
 /// Checks, before any work, that a file can be written there.
 fn check_folder(path: &Path) -> anyhow::Result<()> {
     let folder = folder_of(path);
     if !folder.is_dir() {
-        bail!("{}: there is no folder '{}': make it first", path.display(), folder.display());
+        bail!("{}: there is no folder '{}': create it first", path.display(), folder.display());
     }
     if path.is_dir() {
         bail!("{}: this is a folder: name a file in it", path.display());
+    }
+    Ok(())
+}
+
+/// Refuses to write a file over one of the files that the command reads.
+fn check_not_input<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> anyhow::Result<()> {
+    let Ok(full) = output.canonicalize() else { return Ok(()) };
+    if inputs.into_iter().any(|input| input.canonicalize().is_ok_and(|input| input == full)) {
+        bail!("{}: this file is read, so it is not overwritten: write to another file", output.display());
     }
     Ok(())
 }
@@ -96,7 +127,7 @@ fn check_folder(path: &Path) -> anyhow::Result<()> {
 fn check_quality(quality: Option<u8>, output: &Path) -> anyhow::Result<()> {
     let format = format_of_path(output)?.entry.name;
     if quality.is_some() && format != "jpeg" {
-        bail!("{}: --quality is for JPEG: name a .jpg, or leave it out", output.display());
+        bail!("{}: --quality is only for JPEG: write a .jpg, or leave it out", output.display());
     }
     Ok(())
 }
@@ -115,7 +146,7 @@ fn warn_lost_alpha(
     }
     let instead = if format.for_display { "white" } else { "black" };
     let message = format!(
-        "{}: {} cannot be transparent, and has {instead} there: name a .png or an .exr to keep it",
+        "{}: {} does not support transparency and gets {instead} there: write a .png or an .exr to keep it",
         output.display(),
         format.entry.name
     );

@@ -1,7 +1,9 @@
 //! `bilux render`: renders pictures of scenes.
 
-use super::targets::{Target, frame_path, is_stdout, targets};
-use super::{DONE, aov, check_choices, log, read_options_with, report_warnings, stats, time_limit};
+use super::targets::{Target, frame_path, is_stdout, still_frames, targets};
+use super::{
+    DONE, aov, check_choices, load, log, read_options_with, report_notes, report_warnings, stats, time_limit,
+};
 use crate::arguments::{Common, Render};
 use crate::denoising::{begin_loading, check_scenes};
 use crate::interrupt::Interrupt;
@@ -17,8 +19,9 @@ use bilux::scene::{Parameters, SceneBuilder, SceneError};
 use bilux::transport::Window;
 use bilux::{Job, Outcome};
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
@@ -29,6 +32,9 @@ pub fn run(arguments: &Render, common: &Common) -> anyhow::Result<u8> {
     aov::check(arguments).map_err(usage::wrong)?;
     arguments.studio.check().map_err(usage::wrong)?;
     arguments.studio.check_files()?;
+    if let Some(curve) = arguments.tonemap.as_deref().filter(|name| *name != "auto") {
+        bilux::pictures::tone_map(curve).context("--tonemap").map_err(usage::wrong)?;
+    }
     if let Some(timeout) = arguments.timeout {
         interrupt.end_after(timeout);
     }
@@ -95,6 +101,8 @@ struct Input<'a> {
     begun: Cell<Instant>,
     /// Every warning so far, for `--json`.
     warnings: RefCell<Vec<String>>,
+    /// Every file that was read.
+    files: RefCell<BTreeSet<PathBuf>>,
 }
 
 impl Input<'_> {
@@ -109,14 +117,15 @@ impl Input<'_> {
             check_input_format(&arguments.input_format).map_err(usage::wrong)?;
             let mut bytes = Vec::new();
             let input = std::io::stdin().take(common.max_memory).read_to_end(&mut bytes);
-            input.context("standard input: cannot read it")?;
+            input.context("cannot read standard input")?;
             if bytes.is_empty() {
-                bail!("standard input is empty: name a scene file, or send a scene");
+                bail!("standard input is empty: name a scene file, or pipe in a scene");
             }
             piped = Some(bytes);
         }
-        let (begun, warnings) = (Cell::new(Instant::now()), RefCell::default());
-        Ok(Input { path, piped, arguments, common, interrupt, begun, warnings })
+        let begun = Cell::new(Instant::now());
+        let (warnings, files) = (RefCell::default(), RefCell::default());
+        Ok(Input { path, piped, arguments, common, interrupt, begun, warnings, files })
     }
 
     /// Prints warnings, and keeps them for `--json`.
@@ -136,11 +145,19 @@ impl Input<'_> {
                     Some(&*self.arguments.input_format).filter(|name| *name != "auto").unwrap_or_default();
                 bilux::formats::read_bytes(bytes, format, Some(Path::new(".")), "standard input", &options)?
             }
-            None => bilux::load(self.path, &options)?,
+            None => load(self.path, &options)?,
         };
         check_choices(&scene, &self.arguments.choices).map_err(usage::wrong)?;
         self.arguments.studio.set_up(&mut scene, &options)?;
+        self.files.borrow_mut().extend(scene.files.iter().cloned());
         Ok(scene)
+    }
+
+    /// Refuses to write over a file that was read.
+    fn check_outputs(&self, Target { output, stats, .. }: &Target) -> anyhow::Result<()> {
+        let beside = aov::files(self.arguments, output);
+        let mut written = beside.iter().chain([output]).chain(stats).filter(|file| !is_stdout(file));
+        Ok(written.try_for_each(|file| bilux::formats::check_not_read(file, &self.files.borrow()))?)
     }
 
     /// Makes the job for a scene, with everything that the command line says about it.
@@ -163,7 +180,8 @@ impl Input<'_> {
             if !fits(x, width, s.width) || !fits(y, height, s.height) {
                 let size = (s.width, s.height);
                 return Err(usage::wrong(anyhow!(
-                    "--crop {x},{y},{width},{height}: this window has to have pixels and to lie within the picture, which has {}x{}",
+                    "--crop {x},{y},{width},{height}: the window must contain pixels and lie within the picture, \
+                     which is {}x{}",
                     size.0,
                     size.1
                 )));
@@ -187,6 +205,8 @@ fn render_one(
     let input = Input::open(&target.scene, arguments, common, interrupt)?;
     let mut scene = input.read(arguments.at.unwrap_or(0.0), arguments.frames.is_some())?;
     input.warn(&scene.warnings)?;
+    report_notes(&scene.notes, common);
+    input.warn(&still_frames(arguments, &scene))?;
     let Some(count) = arguments.studio.turntable else {
         return render_scene(&input, &mut scene, target, user);
     };
@@ -232,7 +252,7 @@ fn render_scene(
     }
     let build_seconds = begun.elapsed().as_secs_f64();
     input.warn(job.warnings())?;
-    if !common.quiet {
+    if common.verbose > 0 {
         job.notes().iter().for_each(|note| output::say(format_args!("{}: {note}", target.output.display())));
     }
     if let Some([x, y, sample]) = arguments.replay {
@@ -267,6 +287,7 @@ fn render_scene(
 
 fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> anyhow::Result<u8> {
     let Input { arguments, common, interrupt, .. } = *input;
+    input.check_outputs(target).map_err(usage::wrong)?;
     let output = &target.output;
     let label = output.file_name().unwrap_or(output.as_os_str()).to_string_lossy().into_owned();
     let report = Report::new(&label, common, interrupt.clone());
@@ -280,7 +301,7 @@ fn finish(input: &Input, job: &mut Job, target: &Target, build_seconds: f64) -> 
     let denoised = write(input, job, &outcome, denoiser.as_ref(), output)?;
     interrupt.renders(false);
     let overrun = time_limit::overrun(job, &outcome, before, seconds, input.begun.get().elapsed());
-    report_sample_failures(&outcome);
+    log::report_sample_failures(&outcome);
     let all_aovs = aov::write(arguments, job, &outcome, output, common, interrupt)?;
     let rendered = log::Rendered {
         job,
@@ -367,21 +388,4 @@ fn write(
         bilux::pictures::write(output, &picture, &options)?;
     }
     Ok(denoiser.is_some())
-}
-
-/// Reports samples that are not finite or overflowed: they are counted and located, never hidden.
-fn report_sample_failures(outcome: &Outcome) {
-    let trouble = outcome.film.trouble();
-    if let Some(first) = trouble.first_non_finite {
-        output::warning(format_args!(
-            "{} samples were not finite and are left out; see the first with --replay {},{},{}",
-            trouble.non_finite, first.x, first.y, first.sample
-        ));
-    }
-    if let Some(first) = trouble.first_overflowed {
-        output::warning(format_args!(
-            "{} samples were brighter than the film can hold; see the first with --replay {},{},{}",
-            trouble.overflowed, first.x, first.y, first.sample
-        ));
-    }
 }

@@ -35,13 +35,13 @@ pub fn of(rendered: &Rendered) -> serde_json::Value {
         .collect();
     json!({
         "scene": scene.to_string_lossy(), "integrator": s.integrator.entry.name, "accel": s.accel.name,
-        "width": s.width, "height": s.height, "spp": s.spp, "seed": s.seed,
+        "width": s.width, "height": s.height, "spp": job.samples_per_pixel(), "seed": s.seed,
         "build_seconds": build_seconds, "seconds": seconds, "rays": c.rays, "node_visits": c.nodes,
         "triangle_tests": c.triangles, "early_outs": c.early_outs,
         "culled_back_faces": c.culled_back_faces, "cancelled": outcome.cancelled,
         "non_finite_samples": outcome.film.trouble().non_finite, "overflows": outcome.film.trouble().overflowed,
         "tree": trees.first(), "reached": outcome.reached.map(|r| json!({
-            "spp": r.spp, "noise": r.noise, "samples_that_told_it_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
+            "spp": r.spp, "noise": r.noise, "noise_samples_in_mean": r.noise.is_some(), "bias_at_most": r.bias,
         })),
         "choice": outcome.choice.as_ref().map(choice),
     })

@@ -5,6 +5,7 @@ use crate::arguments::Render;
 use anyhow::bail;
 use bilux::pictures::formats::format_of_path;
 use bilux::scene::error::nearest_name;
+use bilux::scene::{SceneBuilder, Span, Warning};
 use std::path::{Path, PathBuf};
 
 /// A scene, and where its picture goes.
@@ -37,7 +38,10 @@ pub fn targets(arguments: &Render) -> anyhow::Result<Vec<Target>> {
             check_output(&output, arguments)?;
         }
         if targets.iter().any(|other| other.output == output) && !is_stdout(&output) {
-            bail!("{}: two scenes would be written to this file; rename one of them", output.display());
+            bail!(
+                "{}: two scenes would write this file: rename one of them, or put them in separate commands",
+                output.display()
+            );
         }
         targets.push(Target { scene: scene.clone(), output, stats: arguments.stats.as_deref().map(named) });
     }
@@ -71,13 +75,13 @@ fn check_names(flag: &str, pattern: &Path, arguments: &Render) -> anyhow::Result
                 .map(|near| format!(" (did you mean {{{near}}}?)"))
                 .unwrap_or_default();
             bail!(
-                "{flag} {text}: {{{name}}} stands for nothing{hint}; known are {{stem}}, the scene's name, and {{frame}}, the \
-                 number of a frame"
+                "{flag} {text}: {{{name}}} is not a known placeholder{hint}; known are {{stem}}, the scene's name, \
+                 and {{frame}}, the frame's number"
             );
         }
         if name == "frame" && !numbered {
             bail!(
-                "{flag} {text}: {{frame}} needs frames: ask for them with --frames or --turntable, or leave it out"
+                "{flag} {text}: {{frame}} needs several frames: add --frames or --turntable, or leave it out"
             );
         }
     }
@@ -92,16 +96,33 @@ fn check_names(flag: &str, pattern: &Path, arguments: &Render) -> anyhow::Result
     Ok(())
 }
 
+/// Warns about frames that will all be the same.
+pub fn still_frames(arguments: &Render, scene: &SceneBuilder) -> Vec<Warning> {
+    let moves = scene.inventory.moves()
+        || scene.objects.iter().any(|object| !object.motion.is_still())
+        || scene.cameras.iter().any(|camera| !camera.keyframes.is_empty());
+    let wants_frames = arguments.frames.is_some_and(|(first, last)| first < last);
+    let message = "--frames: nothing in this scene moves, so all frames show the same; --turntable N turns the camera \
+                   around a model";
+    let warning = Warning { message: message.to_owned(), at: Span::default() };
+    if wants_frames && !moves { vec![warning] } else { Vec::new() }
+}
+
 /// Refuses a picture that cannot be written.
 fn check_output(output: &Path, arguments: &Render) -> anyhow::Result<()> {
     check_folder(output)?;
     let format = format_of_path(output)?;
     let (name, path) = (format.entry.name, output.display());
     if arguments.samples.is_some() && name != "exr" {
-        bail!("{path}: --samples needs an .exr, which keeps exact sums: name one, and merge the parts");
+        bail!(
+            "{path}: --samples needs an .exr, which keeps exact sums: write an .exr, and merge the parts with \
+               `bilux merge`"
+        );
     }
     if arguments.bits == "16" && ["jpeg", "webp"].contains(&name) {
-        bail!("{path}: --bits 16 is for PNG and PPM; {name} has 8 bits: name a .png, or leave out --bits");
+        bail!(
+            "{path}: --bits 16 is only for PNG and PPM, and {name} has 8 bits: write a .png, or leave out --bits"
+        );
     }
     super::check_quality(arguments.quality, output)
 }

@@ -20,11 +20,13 @@ pub fn overrun(
         return None;
     }
     let samples = outcome.reached.map_or(0, |reached| reached.spp);
-    let [limit, before, all] = [limit, before, all].map(|time| time.as_secs_f64());
+    // The limit was given as an f32, and prints as it was given only as one.
+    let limit = limit.as_secs_f32();
+    let [before, all] = [before, all].map(|time| time.as_secs_f64());
     let after = (all - before - rendering).max(0.0);
     let plural = if samples == 1 { "" } else { "s" };
     Some(format!(
-        "took {all:.1} s instead of {limit} s: reading and building {before:.1} s, {samples} sample{plural} of each pixel \
+        "took {all:.1} s instead of {limit} s: reading and building {before:.1} s, {samples} sample{plural} per pixel \
          {rendering:.1} s, denoising and writing {after:.1} s"
     ))
 }
@@ -52,7 +54,8 @@ mod tests {
         };
         assert_eq!(after(1.19), None);
         let line = after(1.5).unwrap();
-        let wanted = "took 1.5 s instead of 1 s: reading and building 0.5 s, 1 sample of each pixel 0.5 s, denoising and writing 0.5 s";
+        let wanted = "took 1.5 s instead of 1 s: reading and building 0.5 s, 1 sample per pixel 0.5 s, denoising and \
+                      writing 0.5 s";
         assert_eq!(line, wanted);
     }
 }

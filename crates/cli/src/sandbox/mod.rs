@@ -76,13 +76,16 @@ impl SandboxPaths {
         }
         let folder = self.write.as_deref().and_then(|folder| folder.canonicalize().ok());
         let Some(folder) = folder else {
-            bail!("{}: --sandbox writes no file beside a picture on standard output", file.display());
+            bail!(
+                "{}: --sandbox writes no other file if the picture goes to standard output",
+                file.display()
+            );
         };
         // A link that is already in the folder may lead anywhere.
         let target = file.canonicalize().or_else(|_| folder_of(file).canonicalize().map(|at| at.join("new")));
         if !target.is_ok_and(|target| target.parent() == Some(&folder)) {
             bail!(
-                "{}: --sandbox writes only into {}, the folder of the picture: name a file there",
+                "{}: --sandbox writes only to {}, the picture's folder: name a file there",
                 file.display(),
                 folder.display()
             );
@@ -100,11 +103,12 @@ impl SandboxPaths {
         if !common.quiet {
             match enforced {
                 Enforcement::Nothing => output::warning(
-                    "this kernel has no Landlock: Bilux itself keeps to the sandbox, but nothing stops a faulty decoder",
+                    "this kernel has no Landlock: Bilux itself respects the sandbox, but nothing would stop a faulty \
+                     decoder",
                 ),
                 Enforcement::Files => {
                     output::warning(
-                        "this kernel is too old to block the network: the sandbox covers files alone",
+                        "this kernel is too old to block the network: the sandbox covers only files",
                     );
                 }
                 Enforcement::FilesAndNetwork => {}

@@ -32,7 +32,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     reader.groups().map_err(|error| no_text(error, source))?;
     let Asc { mut scene, oddities, places, .. } = reader;
     if scene.objects.is_empty() {
-        let message = "there is no triangle in it: each is a line with a word, then three lines of 8 numbers \
+        let message = "it contains no triangles: each is a line with a word, then three lines of 8 numbers \
                        (x y z, nx ny nz, u v)";
         return Err(FormatError::malformed(message, places.whole()));
     }
@@ -111,7 +111,7 @@ impl Asc<'_, '_, '_> {
         let word = line.word();
         if word != b"object" && !word.starts_with(b"#") && !word.starts_with(b"//") {
             let places = &self.places;
-            self.oddities.note("a line is followed by no triangle and left out", || places.at(start));
+            self.oddities.note("a line is not followed by a triangle and is ignored", || places.at(start));
         }
     }
 
@@ -202,8 +202,7 @@ impl Asc<'_, '_, '_> {
             if !fits {
                 let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
                 let count = more.count;
-                let message =
-                    format!("this vertex has {count} numbers, where {stride} were expected{cut_off}");
+                let message = format!("this vertex has {count} numbers, but {stride} were expected{cut_off}");
                 return Err(FormatError::malformed(message, self.places.at(line)));
             }
             numbers.values[count..count + more.count].copy_from_slice(&more.values[..more.count]);
@@ -211,13 +210,14 @@ impl Asc<'_, '_, '_> {
         }
         if numbers.values[..numbers.count].iter().any(|x| !x.is_finite()) {
             let places = &self.places;
-            self.oddities.note("a triangle has numbers that are infinite or no numbers; it is kept", || {
-                places.at(start)
-            });
+            self.oddities
+                .note("a triangle has numbers that are infinite or not numbers (NaN); it is kept", || {
+                    places.at(start)
+                });
         }
         if stride == NINTH {
             let places = &self.places;
-            self.oddities.note("a ninth number per vertex is left out", || places.at(start));
+            self.oddities.note("a ninth number per vertex is ignored", || places.at(start));
         }
         self.push(&numbers.values, stride)
     }
@@ -240,7 +240,7 @@ impl Asc<'_, '_, '_> {
             }
             let Some(value) = parse_f32(word) else {
                 let message =
-                    format!("{} is not a number, and a number of a vertex should be here", quoted(word));
+                    format!("{} is not a number; a number of a vertex should be here", quoted(word));
                 return Err(FormatError::malformed(message, self.places.at(at)));
             };
             let Some(slot) = numbers.values.get_mut(numbers.count) else {
@@ -265,8 +265,7 @@ impl Asc<'_, '_, '_> {
         self.reading.budget.take::<([f32; COLOURED], u32)>(3, &self.name)?;
         let mesh = &mut self.group.mesh;
         let Ok(first) = u32::try_from(mesh.positions.len() + 3).map(|end| end - 3) else {
-            let message =
-                "an object has more than 4 billion vertices: cut it into several with 'object' lines";
+            let message = "an object has more than 4 billion vertices: split it with 'object' lines";
             return Err(FormatError::malformed(message, self.places.whole()));
         };
         for vertex in values[..3 * stride].chunks_exact(stride) {

@@ -59,16 +59,16 @@ impl Config {
             "mirror" => (Rgb::BLACK, grey("reflectance", 0.95), 1.0),
             other => {
                 writing.warn(format!(
-                    ".asc files hold no material '{other}': a white highlight stands in its place"
+                    ".asc files cannot store the material '{other}': it is written with a white highlight"
                 ));
                 (Rgb::BLACK, Rgb::WHITE, 1.0)
             }
         };
         for (key, value, _) in &spec.parameters.0 {
             if !["kd", "ks", "reflectivity", "reflectance"].contains(&key.as_str()) {
-                writing.warn(format!(".asc files hold no '{key}' of a material: left out"));
+                writing.warn(format!(".asc files cannot store '{key}' of a material: left out"));
             } else if matches!(value, Value::Texture(_)) {
-                writing.warn(".asc files hold no textures: their colour is white");
+                writing.warn(".asc files cannot store textures: they are written as white");
             }
         }
         let implied = spec.kind == "phong" && (kd, ks, reflectivity) == (Rgb::WHITE, Rgb::WHITE, 1.0);

@@ -81,7 +81,7 @@ impl<'d> Accessor<'d> {
         let name = kind.as_text()?;
         let Some((_, shape)) = SHAPES.iter().find(|(known, _)| *known == name) else {
             let known = SHAPES.map(|(name, _)| name).join(", ");
-            return Err(kind.error(format!("'{name}' is not a type of elements, which are {known}")));
+            return Err(kind.error(format!("'{name}' is not an element type; known are {known}")));
         };
         let mut accessor = Accessor {
             node,
@@ -98,14 +98,15 @@ impl<'d> Accessor<'d> {
             if drawn.count != count || drawn.bytes.len() != count.saturating_mul(size) {
                 let (have, bytes) = (drawn.count, drawn.bytes.len());
                 let message =
-                    format!("{have} elements of {bytes} bytes are packed for these {count} of {size}");
+                    format!("{have} elements of {bytes} bytes are compressed for these {count} of {size}");
                 return Err(node.error(message));
             }
             accessor.data = Some(Strided { bytes: &drawn.bytes, stride: size });
         } else if let Some(view) = node.get("bufferView") {
             accessor.data = Some(strided(document, node, view, [offset, count, size])?);
         } else if count > document.size() {
-            let message = format!("{count} elements without data are more than a file of this size can mean");
+            let message =
+                format!("{count} elements without data are more than a file of this size can plausibly have");
             return Err(node.error(message));
         }
         if let Some(sparse) = node.get("sparse") {
@@ -165,7 +166,7 @@ impl<'d> Accessor<'d> {
     /// The elements as whole numbers, such as indices.
     pub(super) fn indices(&self, budget: &mut Budget) -> Result<Vec<u32>, FormatError> {
         if self.width() != 1 || !matches!(self.component, Component::U8 | Component::U16 | Component::U32) {
-            return Err(self.node.error("indices must be SCALAR, of 8, 16 or 32 bits without a sign"));
+            return Err(self.node.error("indices must be SCALAR, unsigned, of 8, 16 or 32 bits"));
         }
         budget.take_bytes((self.count as u64).saturating_mul(4), &self.node.at().file)?;
         let mut all = vec![0; self.count];
@@ -232,15 +233,17 @@ fn strided<'d>(
     let view = document.view(view)?;
     let stride = view.stride.unwrap_or(size);
     if stride < size {
-        return Err(node.error(format!("elements of {size} bytes stand {stride} bytes apart (byteStride)")));
+        return Err(
+            node.error(format!("elements of {size} bytes are only {stride} bytes apart (byteStride)"))
+        );
     }
     let last = count.saturating_sub(1).checked_mul(stride);
     let end = last.and_then(|last| last.checked_add(offset)?.checked_add(if count == 0 { 0 } else { size }));
     if end.is_none_or(|end| end > view.bytes.len()) {
         let have = view.bytes.len();
         let message = format!(
-            "{count} elements, {stride} bytes apart, from byte {offset} go beyond the buffer view, which has {have} \
-             bytes"
+            "{count} elements, {stride} bytes apart, from byte {offset} extend beyond the buffer view, which has \
+             {have} bytes"
         );
         return Err(node.error(message));
     }
@@ -262,7 +265,7 @@ impl<'d> Sparse<'d> {
         let (places, values) = (node.need("indices")?, node.need("values")?);
         let component = Component::read(places.need("componentType")?)?;
         if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
-            return Err(places.error("sparse indices must be of 8, 16 or 32 bits without a sign"));
+            return Err(places.error("sparse indices must be unsigned, of 8, 16 or 32 bits"));
         }
         let offset = |node: JsonNode<'d>| Ok::<_, FormatError>(node.count("byteOffset")?.unwrap_or(0));
         let from = strided(
@@ -293,9 +296,9 @@ impl Component {
             5125 => Component::U32,
             5126 => Component::F32,
             other => {
-                return Err(node.error(format!(
-                    "{other} is not a componentType, which are 5120 to 5123, 5125 and 5126"
-                )));
+                return Err(
+                    node.error(format!("{other} is not a componentType: use 5120 to 5123, 5125 or 5126"))
+                );
             }
         })
     }

@@ -62,8 +62,7 @@ impl<'d> Gltf<'d, '_, '_> {
             if plays {
                 taken.extend(targets);
             } else if chosen.is_none() {
-                let what =
-                    "an animation is not played, since one before it moves the same; choose it by its name";
+                let what = "an animation is not played because an earlier one moves the same nodes; choose it by its name";
                 self.oddities.note(what, || node.at());
             }
             let name = node.name().to_owned();
@@ -106,7 +105,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 }
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
-                    let what = format!("a part of an animation is left out: {}", error.without_place());
+                    let what = format!("part of an animation is left out: {}", error.without_place());
                     self.oddities.note(&what, || sampler.at());
                 }
             }
@@ -132,9 +131,8 @@ impl<'d> Gltf<'d, '_, '_> {
             "LINEAR" => Between::Linear,
             "CUBICSPLINE" => Between::Cubic,
             other => {
-                return Err(sampler.error(format!(
-                    "'{other}' is not an interpolation, which are STEP, LINEAR and CUBICSPLINE"
-                )));
+                return Err(sampler
+                    .error(format!("'{other}' is not an interpolation: use STEP, LINEAR or CUBICSPLINE")));
             }
         };
         let rises = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
@@ -148,17 +146,18 @@ impl<'d> Gltf<'d, '_, '_> {
             Moves::Weights => values.len() / (parts * times.len()),
         };
         if width == 0 || values.len() != width * parts * times.len() {
-            let message = format!("{} numbers do not go with {} times", values.len(), times.len());
+            let message =
+                format!("there are {} numbers for {} times, which do not match", values.len(), times.len());
             return Err(output.node.error(message));
         }
         if !values.iter().all(|x| x.is_finite()) {
-            return Err(output.node.error("an animation has numbers that are infinite or no numbers"));
+            return Err(output.node.error("an animation has numbers that are infinite or not numbers (NaN)"));
         }
         let keys = Keys { times: &times, values: &values, width, between, turns: moves == Moves::Rotation };
         let value = keys.at(f64::from(self.time));
         self.reading.budget.give_back(self.reading.budget.spent() - spent);
         if moves == Moves::Rotation && value.iter().all(|x| *x == 0.0) {
-            return Err(output.node.error(format!("the rotation of node {node} is zero, and turns nothing")));
+            return Err(output.node.error(format!("the rotation of node {node} is zero and has no effect")));
         }
         Ok((value, last))
     }

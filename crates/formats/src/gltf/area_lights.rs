@@ -29,7 +29,7 @@ impl<'d> Gltf<'d, '_, '_> {
         let [_, up, forward] = axes.map(DVec3::normalize_or_zero);
         let right = forward.cross(up).normalize_or_zero();
         if radiance.is_black() || !(size > 0.0 && size.is_finite()) || right == DVec3::ZERO {
-            self.oddities.note("a light of no size or no light is left out", || light.at());
+            self.oddities.note("a light without a size or without intensity is left out", || light.at());
             return Ok(());
         }
         let up = right.cross(forward);
@@ -53,9 +53,7 @@ impl<'d> Gltf<'d, '_, '_> {
                 self.scene.objects.push(Object::new(name, Arc::new(mesh), material));
             }
             other => {
-                return Err(
-                    light.error(format!("'{other}' is not a type of area light, which are rect and disk"))
-                );
+                return Err(light.error(format!("'{other}' is not a type of area light: use rect or disk")));
             }
         }
         Ok(())

@@ -19,15 +19,15 @@ pub(super) fn camera(
         "perspective" => "perspective",
         "orthographic" => "orthographic",
         other => {
-            return Err(kind.error(format!(
-                "'{other}' is not a type of camera, which are perspective and orthographic"
-            )));
+            return Err(
+                kind.error(format!("'{other}' is not a type of camera: use perspective or orthographic"))
+            );
         }
     })?;
     let name = if node.name().is_empty() { camera.name() } else { node.name() };
     let axis = |v: DVec3| world.transform_vector3(v).try_normalize();
     let (Some(forward), Some(up)) = (axis(DVec3::NEG_Z), axis(DVec3::Y)) else {
-        oddities.note("a camera's node is scaled to nothing: left out", || node.at());
+        oddities.note("a camera's node has a scale of zero: left out", || node.at());
         return Ok(None);
     };
     let position = world.w_axis.truncate();
@@ -41,7 +41,8 @@ pub(super) fn camera(
     if kind.as_text()? == "perspective" {
         let fov = lens.need("yfov")?.as_number()?.to_degrees();
         if !(0.01..=179.0).contains(&fov) {
-            oddities.note("a camera's yfov is out of range: taken as 0.01 to 179 degrees", || lens.at());
+            oddities
+                .note("a camera's yfov is out of range: it is limited to 0.01 to 179 degrees", || lens.at());
         }
         spec.parameters.set("fov", fov.clamp(0.01, 179.0) as f32);
         if let Some(shape) = lens.get("aspectRatio") {
@@ -53,7 +54,7 @@ pub(super) fn camera(
     } else {
         let half = lens.need("ymag")?.as_number()?.abs();
         if !(5e-10..=5e8).contains(&half) {
-            oddities.note("a camera's ymag is out of range: taken as 5e-10 to 5e8", || lens.at());
+            oddities.note("a camera's ymag is out of range: it is limited to 5e-10 to 5e8", || lens.at());
         }
         spec.parameters.set("height", (2.0 * half).clamp(1e-9, 1e9) as f32);
     }

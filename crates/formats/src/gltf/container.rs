@@ -37,7 +37,7 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
     };
     if version != 2 {
         return fail(format!(
-            "this is GLB of version {version}, and only 2 can be read: export it as glTF 2.0"
+            "this is GLB version {version}, but only version 2 can be read: export it as glTF 2.0"
         ));
     }
     let length = length as usize;
@@ -69,13 +69,13 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
         match (number, kind) {
             (0, JSON) => container.json = chunk,
             (0, _) => {
-                return fail("the first chunk of a GLB file must be JSON, and this one is not".to_owned());
+                return fail("the first chunk of a GLB file must be JSON, but this one is not".to_owned());
             }
             (1, BIN) => container.binary = Some(chunk),
             (_, JSON | BIN) => {
-                container.warnings.push(format!(
-                    "chunk {number} at byte {at} stands where none of its kind may, and is ignored"
-                ));
+                container
+                    .warnings
+                    .push(format!("chunk {number} at byte {at} is not allowed here and is ignored"));
             }
             _ => container
                 .warnings
@@ -89,7 +89,7 @@ pub(super) fn open<'a>(source: &Source<'a>) -> Result<Container<'a>, FormatError
         at += 8 + chunk.len();
     }
     if container.json.is_empty() {
-        return fail("this GLB file has no JSON in it".to_owned());
+        return fail("this GLB file contains no JSON".to_owned());
     }
     Ok(container)
 }

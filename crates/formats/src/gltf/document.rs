@@ -50,8 +50,9 @@ impl<'a> Document<'a> {
         for (i, node) in root.list("buffers")?.into_iter().enumerate() {
             let wanted = node.need("byteLength")?.as_count()?;
             if node.get("uri").is_some_and(|uri| uri.as_text().is_ok_and(uri::is_odd)) {
-                oddities
-                    .note("the part of a data URI before its comma is broken, and is ignored", || node.at());
+                oddities.note("the part of a data URI before its comma is malformed and is ignored", || {
+                    node.at()
+                });
             }
             let bytes: Cow<[u8]> = match (node.get("uri"), container.binary) {
                 (Some(uri), _) => Cow::Owned(uri::load(reading, source, uri)?),
@@ -65,7 +66,7 @@ impl<'a> Document<'a> {
             buffers.push(bytes);
         }
         if container.binary.is_some_and(|b| !b.is_empty()) && buffers.is_empty() {
-            oddities.note("the binary chunk is named by no buffer and not used", || root.at());
+            oddities.note("no buffer refers to the binary chunk, so it is not used", || root.at());
         }
         let size = buffers.iter().map(|b| b.len()).sum::<usize>() + source.bytes.len();
         let mut document = Document {
@@ -126,7 +127,9 @@ impl<'a> Document<'a> {
         Ok(match found.stride {
             Some(stride) if stride % 4 != 0 => Some("byteStride must be a multiple of 4"),
             Some(stride) if stride > found.bytes.len() => Some("byteStride is more than the view has bytes"),
-            _ if found.bytes.is_empty() => Some("a buffer view must have at least 1 byte, and this has none"),
+            _ if found.bytes.is_empty() => {
+                Some("a buffer view must have at least 1 byte, but this one has none")
+            }
             _ => None,
         })
     }
@@ -137,7 +140,7 @@ impl<'a> Document<'a> {
         self.root.item(list, number).ok_or_else(|| {
             let count = self.root.list(list).map_or(0, |items| items.len());
             index.error(format!(
-                "this names number {number} of '{list}', but the file has {count}, counted from 0"
+                "this refers to number {number} of '{list}', but the file has only {count}, counted from 0"
             ))
         })
     }
@@ -164,7 +167,8 @@ impl<'a> Document<'a> {
         let end = offset.checked_add(length);
         let bytes = end.and_then(|end| buffer.get(offset..end)).ok_or_else(|| {
             let have = buffer.len();
-            let message = format!("{length} bytes from byte {offset} go beyond the buffer, which has {have}");
+            let message =
+                format!("{length} bytes from byte {offset} extend beyond the buffer, which has {have}");
             node.error(message)
         })?;
         let stride = node.count("byteStride")?;

@@ -28,7 +28,7 @@ pub(super) fn unpack(
         for primitive in mesh.list("primitives")? {
             let Some(extension) = primitive.extension(NAME) else { continue };
             if Mode::of(primitive)? != Mode::Triangles {
-                return Err(primitive.error("only triangles can be packed by Draco: mode must be 4"));
+                return Err(primitive.error("Draco compresses only triangles: mode must be 4"));
             }
             let wanted = wanted(primitive, extension)?;
             if wanted.iter().all(|(number, _)| drawn.contains_key(number)) {
@@ -77,7 +77,7 @@ fn decoded(document: &Document, extension: JsonNode, budget: &mut Budget) -> Res
     };
     let broken = |what: &str| {
         extension.error(format!(
-            "the packed bytes of this primitive cannot be unpacked: {what}; export the file again"
+            "the Draco data of this primitive cannot be decompressed: {what}; export the file again"
         ))
     };
     match guarded_decoding(decode) {
@@ -98,9 +98,9 @@ fn decoded(document: &Document, extension: JsonNode, budget: &mut Budget) -> Res
 /// Describes a kind of decoder error.
 fn fault(kind: ErrorKind) -> &'static str {
     match kind {
-        ErrorKind::LimitExceeded => "they become more than there is memory for",
+        ErrorKind::LimitExceeded => "they need more memory than is allowed",
         ErrorKind::UnsupportedFeature | ErrorKind::UnsupportedVersion => {
-            "they are packed in a way that is not known here"
+            "they use an unknown kind of compression"
         }
         _ => "they are damaged",
     }
@@ -125,14 +125,14 @@ fn of_accessor(
             5121 if fits(0xff) => corners.map(|corner| corner as u8).collect(),
             5123 if fits(0xffff) => corners.flat_map(|corner| (corner as u16).to_le_bytes()).collect(),
             5125 => corners.flat_map(u32::to_le_bytes).collect(),
-            _ => return Err(component.error("the packed indices do not fit this componentType")),
+            _ => return Err(component.error("the compressed indices do not fit this componentType")),
         };
         return Ok(DecodedAccessor { bytes, count: mesh.num_faces() * 3 });
     };
     let number = attribute.as_count()?;
     let packed = u32::try_from(number).ok().and_then(|id| mesh.attribute_by_unique_id(id));
     let packed =
-        packed.ok_or_else(|| attribute.error(format!("the packed data have no attribute {number}")))?;
+        packed.ok_or_else(|| attribute.error(format!("the compressed data have no attribute {number}")))?;
     let count = mesh.num_points();
     let bytes = if component_of(packed.data_type()) == Some(kind) {
         raw(packed, count).ok_or_else(|| attribute.error("this attribute has fewer values than points"))?
@@ -140,7 +140,7 @@ fn of_accessor(
         let numbers = packed.read_f32s(count, packed.num_components().into());
         numbers.into_iter().flat_map(f32::to_le_bytes).collect()
     } else {
-        return Err(component.error("the packed attribute has another componentType"));
+        return Err(component.error("the compressed attribute has another componentType"));
     };
     Ok(DecodedAccessor { bytes, count })
 }

@@ -45,10 +45,9 @@ pub(super) fn check(root: JsonNode, oddities: &mut Oddities) -> Result<(), Forma
         if !KNOWN.contains(&text) && !WITHOUT_VISIBLE_EFFECT.contains(&text) {
             let known: Vec<String> = KNOWN.iter().map(|&name| name.to_owned()).collect();
             let meant = nearest_name(text, &known).filter(|n| n.len().abs_diff(text.len()) < 3);
-            let meant = meant.map_or_else(String::new, |name| format!(" (did it mean {name}?)"));
+            let meant = meant.map_or_else(String::new, |name| format!(" (did you mean {name}?)"));
             let message = format!(
-                "this file needs the extension {text}, which is not supported{meant}: export it \
-                 without"
+                "this file requires the extension {text}, which is not supported{meant}: export the file without it"
             );
             return Err(name.error(message));
         }

@@ -23,7 +23,7 @@ impl Gltf<'_, '_, '_> {
         for (key, value, at) in draft.parameters.0 {
             let Some(parameter) = known.iter().find(|parameter| parameter.name == key) else {
                 if !needs_no_warning(&key, &value) {
-                    let what = format!("{} of a material is not shown", key.replace('_', " "));
+                    let what = format!("{} of a material is not supported", key.replace('_', " "));
                     self.oddities.note(&what, || at.clone());
                 }
                 continue;
@@ -52,7 +52,7 @@ impl Gltf<'_, '_, '_> {
         };
         let held = match &value {
             Value::Texture(_) if !takes_pictures => {
-                let what = format!("{} from a picture is not shown", parameter.name.replace('_', " "));
+                let what = format!("{} from a texture is not supported", parameter.name.replace('_', " "));
                 self.oddities.note(&what, || at.clone());
                 return None;
             }
@@ -61,7 +61,8 @@ impl Gltf<'_, '_, '_> {
             _ => value.clone(),
         };
         if held != value {
-            let what = format!("{} of a material is out of range: taken as {min} to {max}", parameter.name);
+            let what =
+                format!("{} of a material is out of range: it is limited to {min} to {max}", parameter.name);
             self.oddities.note(&what, || at.clone());
         }
         Some(held)

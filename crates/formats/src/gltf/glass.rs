@@ -30,12 +30,15 @@ impl<'d> Gltf<'d, '_, '_> {
                 self.reading.budget.take_bytes(edges, &self.file)?;
                 let is_closed = is_closed(mesh);
                 self.reading.budget.give_back(edges);
-                let what = if is_closed {
-                    "clear without a thickness, on a closed mesh: solid glass; --glass thin makes it a wall"
+                if is_closed {
+                    let what = "a transmissive material without a thickness, on a closed mesh, is shown as solid glass; \
+                                --glass thin shows it as a thin wall";
+                    self.oddities.note(what, || node.at());
                 } else {
-                    "clear without a thickness, on an open mesh: a thin wall; --glass solid makes it solid"
-                };
-                self.oddities.note(what, || node.at());
+                    let what = "a transmissive material without a thickness, on an open mesh, is shown as a thin wall; \
+                                --glass solid shows it as solid glass";
+                    self.oddities.remark(what, || node.at());
+                }
                 Ok(is_closed)
             }
         }

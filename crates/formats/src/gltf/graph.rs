@@ -35,12 +35,12 @@ impl<'d> Gltf<'d, '_, '_> {
             let number = index.as_count()?;
             let slot = &mut self.order[number];
             if slot.replace(placed.len()).is_some() {
-                let message = "this node has two parents, or is below itself: a node has one parent";
+                let message = "this node has two parents, or is its own ancestor: a node has one parent";
                 return Err(index.error(message));
             }
             let world = parent * place::local(node, number, &self.pose)?;
             if !world.is_finite() {
-                return Err(node.error("this node is scaled or moved to numbers that are not finite"));
+                return Err(node.error("the transform of this node overflows to numbers that are not finite"));
             }
             placed.push(Placed { node, index: number, world });
             let children = node.list("children")?;
@@ -58,9 +58,18 @@ impl<'d> Gltf<'d, '_, '_> {
             None => scenes.first().copied(),
         };
         if scenes.len() > 1 {
-            let chosen = if root.get("scene").is_some() { "the default one" } else { "the first" };
-            let what = format!("the file has {} scenes: {chosen} is shown", scenes.len());
-            self.oddities.note(&what, || root.at_key("scenes"));
+            let at = || root.at_key("scenes");
+            match root.get("scene") {
+                Some(_) => {
+                    let what = format!("the file has {} scenes: the default one is shown", scenes.len());
+                    self.oddities.remark(&what, at);
+                }
+                None => {
+                    let what =
+                        format!("the file has {} scenes and no default: the first is shown", scenes.len());
+                    self.oddities.note(&what, at);
+                }
+            }
         }
         // A scene that Bilux wrote records all of its surroundings.
         let around = scene.as_ref().and_then(|scene| scene.get("extras")?.get(SURROUNDINGS));
@@ -69,7 +78,7 @@ impl<'d> Gltf<'d, '_, '_> {
             Some(scene) => scene.list("nodes"),
             None => {
                 if root.get("nodes").is_some() {
-                    let what = "the file has no scene, and so nothing of it is shown";
+                    let what = "the file has no scene, so nothing in it is rendered";
                     self.oddities.note(what, || root.at());
                 }
                 Ok(Vec::new())

@@ -51,11 +51,11 @@ impl<'d> Gltf<'d, '_, '_> {
         for (key, index) in attributes.entries() {
             let here = Accessor::named(self.document, index, &mut self.reading.budget)?.count;
             if count.is_some_and(|count| count != here) {
-                return Err(index.error("all attributes of instances have to have as many elements"));
+                return Err(index.error("all instance attributes must have the same number of elements"));
             }
             count = Some(here);
             if !matches!(key, "TRANSLATION" | "ROTATION" | "SCALE") {
-                self.oddities.note("an attribute of instances is not used", || index.at());
+                self.oddities.note("an instance attribute is not used", || index.at());
             }
         }
         let count = count.unwrap_or(0);

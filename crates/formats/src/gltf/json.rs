@@ -158,7 +158,7 @@ impl<'a> JsonNode<'a> {
         let whole = |x: &f64| x.fract() == 0.0 && (0.0..9e15).contains(x);
         let count = self.value.as_u64().or_else(|| self.value.as_f64().filter(whole).map(|x| x as u64));
         let count = count.and_then(|count| usize::try_from(count).ok());
-        count.ok_or_else(|| self.wrong("a whole number, not below 0"))
+        count.ok_or_else(|| self.wrong("a whole number, 0 or more"))
     }
 
     pub(super) fn as_text(&self) -> Result<&'a str, FormatError> {

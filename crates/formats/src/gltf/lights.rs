@@ -24,7 +24,7 @@ pub(super) fn light<'d>(
     };
     let (position, kind) = (placed.world.w_axis.truncate(), light.need("type")?);
     let Some(forward) = placed.world.transform_vector3(DVec3::NEG_Z).try_normalize() else {
-        oddities.note("a light's node is scaled to nothing: left out", || placed.node.at());
+        oddities.note("a light's node has a scale of zero: left out", || placed.node.at());
         return Ok(None);
     };
     let colour = light.numbers::<3>("color")?.unwrap_or([1.0; 3]).map(|c| c.max(0.0) as f32);
@@ -53,18 +53,18 @@ pub(super) fn light<'d>(
                 .with("inner_angle", inner)
         }
         other => {
-            return Err(kind
-                .error(format!("'{other}' is not a type of light, which are directional, point and spot")));
+            return Err(
+                kind.error(format!("'{other}' is not a type of light: use directional, point or spot"))
+            );
         }
     };
     if radius > 0.0 && spec.kind != "sphere" {
-        oddities.note("only lights of type point are given a radius", || light.at());
+        oddities.note("only point lights get a radius", || light.at());
     }
     if light.get("range").is_some() {
-        oddities
-            .note("a light's range is ignored: its light falls off with the square of the distance", || {
-                light.at()
-            });
+        oddities.note("a light's range is ignored: light falls off with the square of the distance", || {
+            light.at()
+        });
     }
     Ok(Some(Spec { span: light.at(), ..spec }))
 }

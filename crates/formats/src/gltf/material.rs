@@ -94,8 +94,8 @@ impl<'d> Gltf<'d, '_, '_> {
             draft.set("normal_scale", scale as f32, info.at());
         }
         if let Some(info) = node.get("occlusionTexture") {
-            let what = "occlusion textures are not used: how much light reaches a crease is computed";
-            self.oddities.note(what, || info.at());
+            let what = "occlusion textures are not used: light transport computes the occlusion";
+            self.oddities.remark(what, || info.at());
         }
         if let Some(ior) = node.extension("KHR_materials_ior") {
             let number = ior.number("ior")?.unwrap_or(1.5);
@@ -145,9 +145,7 @@ impl<'d> Gltf<'d, '_, '_> {
             "BLEND" => None,
             "MASK" => Some(node.number("alphaCutoff")?.unwrap_or(0.5) as f32),
             other => {
-                return Err(
-                    node.error(format!("'{other}' is not an alphaMode, which are OPAQUE, MASK and BLEND"))
-                );
+                return Err(node.error(format!("'{other}' is not an alphaMode: use OPAQUE, MASK or BLEND")));
             }
         };
         let opacity = match (picture, threshold) {
@@ -205,7 +203,8 @@ impl<'d> Gltf<'d, '_, '_> {
             let ior = draft.number("specular_ior").unwrap_or(1.5) as f32;
             let (root, most) = ((ior - 1.0) / (ior + 1.0) * greatest.sqrt(), 9.0 / 11.0);
             if root > most {
-                self.oddities.note("a highlight reflects at most 0.67 straight on", || extension.at());
+                self.oddities
+                    .note("specular reflectance at normal incidence is limited to 0.67", || extension.at());
             }
             let root = root.min(most);
             draft.set("specular_ior", (1.0 + root) / (1.0 - root), at.clone());
@@ -276,7 +275,8 @@ impl<'d> Gltf<'d, '_, '_> {
         draft.set("transmission_color", Rgb::from_array(colour), volume.at());
         draft.set("transmission_depth", depth as f32, volume.at());
         if base.is_some_and(|base| base != Value::from(Rgb::WHITE)) {
-            let what = "the base colour of what absorbs light on its way does not tint it at the surface too";
+            let what =
+                "the base colour of a material with absorption does not tint light at the surface as well";
             self.oddities.note(what, || volume.at());
         }
         Ok(())
@@ -337,7 +337,7 @@ impl<'d> Gltf<'d, '_, '_> {
 
     /// An unlit surface looks the same in any light, so its colour becomes emission.
     fn unlit(&mut self, unlit: JsonNode<'d>, draft: &mut Draft) {
-        let what = "what is unlit gives light in its own colour, which falls on its surroundings too";
+        let what = "an unlit material emits its colour, so it also lights its surroundings";
         self.oddities.note(what, || unlit.at());
         let mut spec = Spec { span: draft.spec.span.clone(), ..Spec::new(&draft.spec.name, "principled") };
         for (key, value, at) in std::mem::take(&mut draft.spec.parameters.0) {

@@ -44,7 +44,7 @@ const SURROUNDINGS: &str = "surroundings";
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "gltf",
-        summary: "glTF 2.0 with its binaries and pictures, or all in one as GLB",
+        summary: "glTF 2.0 with its binary files and pictures, or all in one file as GLB",
         source: "glTF 2.0",
         parameters: &[],
     },

@@ -23,7 +23,7 @@ pub(super) fn local(node: JsonNode, index: usize, pose: &Pose) -> Result<DMat4, 
     let rotation = pose.numbers(index, Moves::Rotation).or(rotation).unwrap_or([0.0, 0.0, 0.0, 1.0]);
     let scale = pose.numbers(index, Moves::Scale).or(scale).unwrap_or([1.0; 3]);
     compose(translation, rotation, scale).ok_or_else(|| {
-        FormatError::malformed("this rotation is zero, which turns nothing", node.at_key("rotation"))
+        FormatError::malformed("this rotation is zero and has no effect", node.at_key("rotation"))
     })
 }
 

@@ -74,7 +74,7 @@ impl<'d> Gltf<'d, '_, '_> {
             thin => self.add_strokes(node, thin, &mut mesh)?,
         }
         if mesh.is_empty() {
-            self.oddities.note("a primitive has nothing to draw and is left out", || node.at());
+            self.oddities.note("a primitive has nothing to render and is left out", || node.at());
             return Ok(None);
         }
         Ok(Some(Part { mesh: Arc::new(mesh), material: material.index }))
@@ -91,7 +91,7 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(normal) = attributes.get("NORMAL") {
             mesh.normals = vec3(self.attribute::<3>(normal, Some(count))?);
             if mesh.normals.iter().any(|n| (n.length_squared() - 1.0).abs() > 0.1) {
-                self.oddities.note("normals do not have length one; they are normalized", || normal.at());
+                self.oddities.note("some normals do not have length 1; they are normalised", || normal.at());
             }
         }
         if let Some(tangent) = attributes.get("TANGENT").filter(|_| material.has_direction) {
@@ -127,7 +127,8 @@ impl<'d> Gltf<'d, '_, '_> {
                     .map(|[u, v]| Vec2::new(u, 1.0 - v))
                     .collect(),
                 None if material.uv_sets[slot].is_some() => {
-                    let what = "a material needs texture coordinates that its mesh does not have; they are taken as 0";
+                    let what =
+                        "a material needs texture coordinates that its mesh does not have; they are set to 0";
                     self.oddities.note(what, || attributes.at());
                     self.reading.budget.take_bytes(count as u64 * 8, &self.file)?;
                     vec![Vec2::Y; count]
@@ -180,7 +181,7 @@ impl<'d> Gltf<'d, '_, '_> {
     fn morph(&mut self, node: JsonNode<'d>, weights: &[f64], mesh: &mut Mesh) -> Result<(), FormatError> {
         let targets = node.list("targets")?;
         if targets.len() != weights.len() && !weights.is_empty() {
-            let what = "the number of weights is not that of the morph targets";
+            let what = "the number of weights differs from the number of morph targets";
             self.oddities.note(what, || node.at_key("targets"));
         }
         for (target, &weight) in targets.into_iter().zip(weights) {
@@ -244,7 +245,7 @@ fn vec3(list: Vec<[f32; 3]>) -> Vec<Vec3> {
 fn same_count(index: JsonNode, accessor: &Accessor, count: Option<usize>) -> Result<(), FormatError> {
     match count {
         Some(count) if count != accessor.count => Err(index.error(format!(
-            "this attribute has {} elements for {count} vertices: it needs as many",
+            "this attribute has {} elements for {count} vertices: the numbers must be equal",
             accessor.count
         ))),
         _ => Ok(()),

@@ -28,7 +28,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let json = parse(reading, container.json, source)?;
     let root = JsonNode::root(&json, source.name);
     if !root.is_object() {
-        return Err(root.error("this JSON is not glTF, which is an object in braces"));
+        return Err(root.error("this JSON is not glTF: it must be an object in braces"));
     }
     check_version(root)?;
     extensions::check(root, &mut oddities)?;
@@ -157,7 +157,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         let skins = root.list("skins")?;
         self.scene.inventory.skins = skins.iter().map(|skin| skin.name().to_owned()).collect();
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() {
-            self.oddities.note("there is nothing to see in this file", || root.at());
+            self.oddities.note("there is nothing to render in this file", || root.at());
         }
         Ok(())
     }
@@ -196,7 +196,7 @@ impl<'d, 'o, 'r> Gltf<'d, 'o, 'r> {
         };
         for world in places.iter() {
             let Some(transform) = Transform::from_matrix(world) else {
-                self.oddities.note("a node is scaled to nothing and is not drawn", || node.at());
+                self.oddities.note("a node has a scale of zero and is not rendered", || node.at());
                 continue;
             };
             let motion = Motion::still(transform);
@@ -257,22 +257,22 @@ fn parse(reading: &mut Reading, bytes: &[u8], source: &Source) -> Result<serde_j
 
 /// Fragments of the JSON parser's errors, and what they mean.
 const SYNTAX_FAULTS: &[(&str, &str)] = &[
-    ("EOF", "the file ends in the middle of it, and was cut off"),
-    ("expected value", "a value should stand here"),
-    ("`,` or `}`", "a comma or a closing brace should stand here"),
-    ("`,` or `]`", "a comma or a closing bracket should stand here"),
-    ("`:`", "a colon should stand here"),
-    ("expected ident", "a value should stand here"),
-    ("trailing comma", "a comma stands before a closing bracket or brace"),
-    ("trailing characters", "something stands after its end"),
-    ("key must be a string", "a name in double quotes should stand here"),
-    ("control character", "a control character stands in a text, where it must be escaped"),
-    ("escape", "a text has an escape that does not exist"),
-    ("surrogate", "a text has half of a Unicode character"),
-    ("unicode", "a text has a Unicode character that does not exist"),
+    ("EOF", "the file ends in the middle of it: it was cut off"),
+    ("expected value", "a value is missing here"),
+    ("`,` or `}`", "a comma or a closing brace is missing here"),
+    ("`,` or `]`", "a comma or a closing bracket is missing here"),
+    ("`:`", "a colon is missing here"),
+    ("expected ident", "a value is missing here"),
+    ("trailing comma", "there is a comma before a closing bracket or brace"),
+    ("trailing characters", "there is more text after its end"),
+    ("key must be a string", "a name in double quotes is missing here"),
+    ("control character", "a string contains a control character, which must be escaped"),
+    ("escape", "a string has an escape that does not exist"),
+    ("surrogate", "a string has half of a Unicode character"),
+    ("unicode", "a string has a Unicode character that does not exist"),
     ("number out of range", "this number is too large"),
     ("invalid number", "this is not a number"),
-    ("recursion", "lists and objects are nested too deep"),
+    ("recursion", "lists and objects are nested too deeply"),
 ];
 
 fn syntax_fault(report: &str) -> &'static str {
@@ -289,11 +289,11 @@ fn check_version(root: JsonNode) -> Result<(), FormatError> {
         let version = parts.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
         version
             .map(Some)
-            .ok_or_else(|| text.error("a version is two numbers with a point between, such as 2.0"))
+            .ok_or_else(|| text.error("a version is two numbers separated by a point, such as 2.0"))
     };
     let wrong = |major: u32, minor: u32| {
         let message =
-            format!("this is glTF {major}.{minor}, and only 2.0 can be read: export it as glTF 2.0");
+            format!("this is glTF {major}.{minor}, but only 2.0 can be read: export it as glTF 2.0");
         Err(FormatError::malformed(message, asset.at()))
     };
     let Some((major, minor)) = parse(asset, "version")? else {

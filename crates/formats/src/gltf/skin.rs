@@ -24,8 +24,10 @@ impl<'d> Gltf<'d, '_, '_> {
             matrices.push(match self.order[joint.as_count()?] {
                 Some(order) => self.nodes[order].world,
                 None => {
-                    self.oddities
-                        .note("a joint is in no scene that is shown, and stands by itself", || joint.at());
+                    self.oddities.note(
+                        "a joint is not in the scene that is shown; it is placed without parents",
+                        || joint.at(),
+                    );
                     place::local(node, joint.as_count()?, &self.pose)?
                 }
             });
@@ -33,7 +35,8 @@ impl<'d> Gltf<'d, '_, '_> {
         if let Some(index) = skin.get("inverseBindMatrices") {
             let bind = self.attribute::<16>(index, None)?;
             if bind.len() < count {
-                let message = format!("{} matrices are too few for {count} joints", bind.len());
+                let message =
+                    format!("there must be a matrix for each of the {count} joints, not {}", bind.len());
                 return Err(index.error(message));
             }
             for (matrix, bind) in matrices.iter_mut().zip(bind) {
@@ -71,7 +74,7 @@ impl<'d> Gltf<'d, '_, '_> {
                     }
                     let Some(matrix) = joints.0.get(joint as usize) else {
                         let message = format!(
-                            "vertex {vertex} follows joint {joint}, but there are {}",
+                            "vertex {vertex} refers to joint {joint}, but there are only {}",
                             joints.0.len()
                         );
                         return Err(accessor.node.error(message));
@@ -82,12 +85,12 @@ impl<'d> Gltf<'d, '_, '_> {
             }
         }
         if sums.iter().any(|&sum| (sum - 1.0).abs() > 0.02) {
-            let what = "the weights of a skin do not add up to one; they are divided by their sum";
+            let what = "the weights of a skin do not add up to 1; they are normalised";
             self.oddities.note(what, || attributes.at());
         }
         if sums.contains(&0.0) {
             self.oddities
-                .note("vertices of a skin follow no joint, and stay as they are", || attributes.at());
+                .note("some vertices of a skin have no joint and stay where they are", || attributes.at());
         }
         for (blend, sum) in blends.iter_mut().zip(sums) {
             *blend = if sum == 0.0 { DMat4::IDENTITY } else { *blend * (1.0 / sum) };

@@ -15,12 +15,12 @@ impl<'d> Gltf<'d, '_, '_> {
             let wanted = buffer.count("byteLength")?;
             let is_stand_in = buffer.extension(meshopt::NAME).is_some();
             if wanted == Some(0) {
-                self.oddities.note("a buffer must have at least 1 byte, and this has none", || {
+                self.oddities.note("a buffer must have at least 1 byte, but this one has none", || {
                     buffer.at_key("byteLength")
                 });
             } else if buffer.get("uri").is_none() && !self.document.has_binary() && !is_stand_in {
                 self.oddities
-                    .note("a buffer has no uri, and no binary chunk brings its bytes", || buffer.at());
+                    .note("a buffer has no uri, and there is no binary chunk with its bytes", || buffer.at());
             }
         }
         for view in root.list("bufferViews")? {
@@ -45,7 +45,7 @@ impl<'d> Gltf<'d, '_, '_> {
             Err(error @ FormatError::TooLarge { .. }) => return Err(error),
             Err(error) => self.oddities.note(&error.without_place(), || node.at()),
             Ok(accessor) if !accessor.is_aligned(self.document)? => {
-                let what = "elements do not begin at multiples of their size; they are read as they are";
+                let what = "elements are not aligned to multiples of their size; they are read as they are";
                 self.oddities.note(what, || node.at());
             }
             Ok(_) => {}

@@ -80,7 +80,7 @@ impl<'d> Gltf<'d, '_, '_> {
         match slot {
             Some(slot) => uv_sets[slot] = Some(set),
             None => {
-                let what = "a material looks up textures by three sets of texture coordinates, of which two are used";
+                let what = "a material uses three sets of texture coordinates, but only two are supported";
                 self.oddities.note(what, || info.at());
             }
         }
@@ -113,7 +113,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// The image of a texture and its name; `None`, with a warning, if it cannot be read.
     fn picture(&mut self, texture: JsonNode<'d>, is_data: bool) -> Result<Option<Named>, FormatError> {
         let Some(index) = source(texture) else {
-            let what = "a texture has no picture that can be read, and is replaced by a magenta checker";
+            let what = "a texture has no readable picture and is replaced by a magenta checker";
             self.oddities.note(what, || texture.at());
             return Ok(None);
         };
@@ -193,7 +193,7 @@ fn wrap<'d>(sampler: JsonNode<'d>, key: &'d str) -> Result<Wrap, FormatError> {
         Some(33071) => Wrap::Clamp,
         Some(33648) => Wrap::Mirror,
         Some(other) => {
-            let message = format!("{other} is not a way to wrap, which are 10497, 33071 and 33648");
+            let message = format!("{other} is not a wrapping mode: use 10497, 33071 or 33648");
             return Err(FormatError::malformed(message, sampler.at_key(key)));
         }
     })

@@ -54,7 +54,7 @@ impl<'d> Gltf<'d, '_, '_> {
     /// The corners of a primitive: its indices, or all vertices in order.
     pub(super) fn corners(&mut self, node: JsonNode<'d>, vertices: usize) -> Result<Vec<u32>, FormatError> {
         let Ok(count) = u32::try_from(vertices) else {
-            return Err(node.error("there are more than 4 billion vertices: cut the mesh into several"));
+            return Err(node.error("there are more than 4 billion vertices: split the mesh"));
         };
         let Some(index) = node.get("indices") else {
             self.reading.budget.take_bytes(u64::from(count) * 4, &self.file)?;
@@ -81,7 +81,7 @@ impl<'d> Gltf<'d, '_, '_> {
             _ => corners.len().saturating_sub(2),
         };
         if mode == Mode::Triangles && corners.len() % 3 != 0 {
-            self.oddities.note("the last corners of a list of triangles make none", || node.at());
+            self.oddities.note("the last corners of a triangle list do not make a triangle", || node.at());
         }
         self.reading.budget.take_bytes(n as u64 * 12, &self.file)?;
         // This order of corners gives all triangles of a strip the same winding. [glTF 2.0, 3.7.2.1]

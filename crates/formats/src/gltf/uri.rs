@@ -24,7 +24,7 @@ pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource,
     let uri = node.as_text()?;
     if let Some(data) = uri.strip_prefix("data:") {
         let Some((kind, payload)) = data.split_once(',') else {
-            return Err(node.error("this data URI has no comma, after which its data would stand"));
+            return Err(node.error("this data URI has no comma before its data"));
         };
         reading.budget.take_bytes(payload.len() as u64, &node.at().file)?;
         if kind.ends_with(";base64") {
@@ -32,7 +32,7 @@ pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource,
             let start = uri.len() - payload.len();
             return decoded.map(Resource::Data).map_err(|error| {
                 node.error(format!(
-                    "the base64 of this data URI is broken: {}",
+                    "the base64 of this data URI is malformed: {}",
                     fault(&error, payload, start)
                 ))
             });
@@ -41,7 +41,8 @@ pub(super) fn resolve(reading: &mut Reading, node: JsonNode) -> Result<Resource,
     }
     if scheme(uri).is_some() || uri.starts_with("//") {
         return Err(node.error(format!(
-            "'{uri}' is an address, and nothing is fetched from the network: put the file beside the scene, and name it here"
+            "'{uri}' is a web address, but nothing is loaded from the network: put the file next to the scene, and \
+             write its name here"
         )));
     }
     let name = String::from_utf8(percent_decoded(uri).into_owned());
@@ -55,10 +56,12 @@ fn fault(error: &DecodeError, payload: &str, start: usize) -> String {
             let letter = payload.get(at..).and_then(|rest| rest.chars().next()).unwrap_or(' ');
             let letter =
                 if letter.is_control() { "a control character".to_owned() } else { format!("'{letter}'") };
-            format!("{letter} stands at its character {}, where none may", start + at + 1)
+            format!("its character {} is {letter}, which is not allowed there", start + at + 1)
         }
-        DecodeError::InvalidLength(length) => format!("{length} characters are not a whole number of bytes"),
-        DecodeError::InvalidPadding => "'=' stands where it may not, or is missing at the end".to_owned(),
+        DecodeError::InvalidLength(length) => {
+            format!("{length} characters do not make a whole number of bytes")
+        }
+        DecodeError::InvalidPadding => "'=' is misplaced, or missing at the end".to_owned(),
     }
 }
 

@@ -50,7 +50,8 @@ pub(crate) fn assemble(
         }
         let made = piece.made.len();
         if piece.add_face(corners, &mut welder, &mut triangulator).is_none() {
-            let what = "a hollow polygon has too many corners to be cut, and is drawn as if it bulged";
+            let what =
+                "a concave polygon has too many corners to triangulate exactly and is treated as convex";
             oddities.note(what, || place(soup.places.at(face)));
         }
         reading.budget.take::<Vertex>(piece.made.len() - made, source.name)
@@ -103,7 +104,7 @@ fn check_indices(
             }
             let (named, count) = (u64::from(corner[0]) + u64::from(soup.first_vertex), counts[0]);
             let from = if soup.first_vertex == 0 { ", counted from 0" } else { "" };
-            let message = format!("this face names vertex {named}, but the file has only {count}{from}");
+            let message = format!("this face refers to vertex {named}, but the file has only {count}{from}");
             let at = || place(places.at(face));
             if !soup.leaves_out || count == 0 {
                 return Err(FormatError::malformed(message, at()));
@@ -117,7 +118,7 @@ fn check_indices(
         for part in [1, 2] {
             if corner[part] != NONE && corner[part] >= counts[part] {
                 corner[part] = NONE;
-                let what = "a face names texture coordinates or a normal that the file does not have";
+                let what = "a face refers to texture coordinates or a normal that the file does not have";
                 oddities.note(what, || place(places.at(face)));
             }
         }
@@ -191,8 +192,9 @@ pub(crate) fn material_of(
         return index;
     }
     if let Some(offset) = offset {
-        let what =
-            format!("the material '{name}' is in no library that was read: a plain one is used instead");
+        let what = format!(
+            "the material '{name}' is not in any material library that was read: a plain one is used instead"
+        );
         oddities.note(&what, || place(offset));
     }
     let mut spec = plain_material(!soup.colours.is_empty(), !soup.specular.is_empty());
@@ -324,7 +326,7 @@ impl<'s> Piece<'s> {
         if !self.has_uvs {
             self.mesh.uvs = Vec::new();
         } else if self.lacks_uvs {
-            let what = "some corners of an object have no texture coordinates; they are 0 there";
+            let what = "some corners of an object have no texture coordinates; they are set to 0";
             oddities.note(what, || place(self.soup.places.at(run.first_face)));
         }
         let mesh = &mut self.mesh;

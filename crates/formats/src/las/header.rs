@@ -56,22 +56,21 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     }
     let (major, minor) = (bytes[24], bytes[25]);
     if major != 1 || minor > 4 {
-        return fail(format!("this is LAS {major}.{minor}, but 1.0 to 1.4 are read"));
+        return fail(format!("this is LAS {major}.{minor}, but only 1.0 to 1.4 can be read"));
     }
     // The highest bits mark compressed records.
     let format = bytes[104];
     if format & 0xc0 != 0 {
-        let message =
-            "this file is compressed (LAZ), which is not read: uncompress it first, as with laszip or PDAL";
+        let message = "this file is compressed (LAZ), which cannot be read: decompress it first, for example with laszip or PDAL";
         return fail(message.to_owned());
     }
     let Some(&(least, colour)) = FORMATS.get(usize::from(format)) else {
-        return fail(format!("its points are of format {format}, but there are 0 to 10"));
+        return fail(format!("its points have format {format}, but only 0 to 10 exist"));
     };
     let record = usize::from(u16_at(bytes, 105));
     if record < least {
         let message =
-            format!("a point of format {format} has {least} bytes or more, but the header says {record}");
+            format!("a point of format {format} has at least {least} bytes, but the header says {record}");
         return fail(message);
     }
     let legacy = u64::from(u32_at(bytes, 107));
@@ -80,22 +79,22 @@ pub(super) fn read_header(source: &Source) -> Result<Header, FormatError> {
     let vector = |at: usize| DVec3::new(f64_at(bytes, at), f64_at(bytes, at + 8), f64_at(bytes, at + 16));
     let (scale, offset) = (vector(131), vector(155));
     if !(scale.is_finite() && offset.is_finite()) || scale.cmpeq(DVec3::ZERO).any() {
-        return fail("the scale of its coordinates is 0 or no number: its header is damaged".to_owned());
+        return fail("the scale of its coordinates is 0 or not a number: its header is damaged".to_owned());
     }
     let points = u32_at(bytes, 96) as usize;
     let room = bytes.len().saturating_sub(points) / record;
     if count > room as u64 {
         let message = format!(
-            "the header says {count} points of {record} bytes from byte {points} on, but there are bytes for {room}: \
+            "the header says {count} points of {record} bytes from byte {points} on, but there are bytes for only {room}: \
              the file was cut off"
         );
         return fail(message);
     }
     if count == 0 {
-        return fail("there is no point in it".to_owned());
+        return fail("it contains no points".to_owned());
     }
     if count >= u64::from(u32::MAX) {
-        return fail("there are more than 4 billion points: cut the file into several".to_owned());
+        return fail("there are more than 4 billion points: split the file".to_owned());
     }
     Ok(Header { points, count, record, colour, scale, offset })
 }

@@ -38,20 +38,21 @@ pub(super) const BYTES_PER_BYTE: u64 = 160;
 pub(super) fn parse(bytes: &[u8], name: &Arc<str>) -> Result<Table, FormatError> {
     let places = Places::new(name, bytes);
     let text = std::str::from_utf8(bytes).map_err(|e| {
-        FormatError::malformed(
-            "a TOML file is UTF-8 text, and here are other bytes",
-            places.at(e.valid_up_to()),
-        )
+        FormatError::malformed("a TOML file must be UTF-8 text, but this is not", places.at(e.valid_up_to()))
     })?;
     let document = DeTable::parse(text).map_err(|e| {
         let at = e.span().map_or_else(|| whole_file(name), |span| places.at(span.start));
-        FormatError::malformed(format!("this is not TOML: {}", syntax_fault(e.message())), at)
+        let key = e.span().and_then(|span| text.get(span)).unwrap_or_default().trim();
+        FormatError::malformed(format!("this is not valid TOML: {}", syntax_fault(e.message(), key)), at)
     })?;
     table(document.get_ref(), Span { line: 1, column: 1, ..whole_file(name) }, &places)
 }
 
-/// The parser's message with quotes as in Bilux's other messages.
-fn syntax_fault(report: &str) -> String {
+/// The parser's message with quotes as in Bilux's other messages; `key` is the text that it is about.
+fn syntax_fault(report: &str, key: &str) -> String {
+    if report == "duplicate key" {
+        return format!("the key '{key}' occurs twice: remove one of them");
+    }
     report.replace("`\"`", "a double quote").replace('`', "'")
 }
 
@@ -81,7 +82,9 @@ fn item(value: &DeValue, at: Span, places: &Places) -> Result<Item, FormatError>
             Ok(x) => TomlValue::Number(x),
             Err(_) => return refuse("this is not a number"),
         },
-        DeValue::Datetime(_) => return refuse("a scene has no dates: write text in quotes, or seconds"),
+        DeValue::Datetime(_) => {
+            return refuse("scenes do not use dates: write text in quotes, or a number of seconds");
+        }
         DeValue::Array(array) => {
             let items = array.iter().map(|v| item(v.get_ref(), places.at(v.span().start), places));
             TomlValue::List(items.collect::<Result<_, _>>()?)

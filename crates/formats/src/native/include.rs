@@ -59,11 +59,12 @@ impl Gathering<'_, '_> {
     ) -> Result<(), FormatError> {
         let path = self.reading.locate(folder, file, at)?;
         if self.open.contains(&path) {
-            let message = format!("'{file}' includes itself, directly or through others: take it out here");
+            let message =
+                format!("'{file}' includes itself, directly or through other files: remove it here");
             return Err(FormatError::malformed(message, at.clone()));
         }
         if self.open.len() >= MAX_CHAIN {
-            let message = format!("files include each other more than {MAX_CHAIN} deep");
+            let message = format!("files are included more than {MAX_CHAIN} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         if !self.seen.insert(path.clone()) {

@@ -54,8 +54,10 @@ pub(super) fn moved(object: &Object, by: &Motion, at: &Span) -> Result<Object, F
         }
         _ => {
             let name = &object.name;
-            let message =
-                format!("'{name}' in this model moves by itself, so that the model must not be placed too");
+            let message = format!(
+                "'{name}' in this model is animated, so the model cannot be placed as well: remove its \
+                         transform"
+            );
             Err(SceneError::invalid(message, at).into())
         }
     }

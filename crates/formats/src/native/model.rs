@@ -32,7 +32,7 @@ impl Native<'_, '_> {
             }
             [("shape", item)] => (self.shape_model(table, item)?, None),
             [("generate", item)] => (self.generated_model(table, item)?, None),
-            _ => return Err(missing("one of file, shape and generate (what the model is made of)", table)),
+            _ => return Err(missing("one of file, shape or generate (the source of the model)", table)),
         };
         self.place(table, &model, origin)?;
         self.add_requested_parts(table, &model)
@@ -108,7 +108,7 @@ impl Native<'_, '_> {
         let path = self.reading.locate(part.folder.as_deref(), name, &item.at)?;
         if self.reading.open.contains(&path) {
             let message =
-                format!("'{name}' is put into itself, directly or through others: take it out here");
+                format!("'{name}' contains itself, directly or through other files: remove it here");
             return Err(FormatError::malformed(message, item.at.clone()));
         }
         Ok(path)
@@ -144,6 +144,7 @@ impl Native<'_, '_> {
             moved.for_each(|(motion, object)| object.motion = motion);
         }
         self.scene.warnings.append(&mut model.warnings);
+        self.scene.notes.append(&mut model.notes);
         self.scene.inventory.animations.extend(model.inventory.animations.iter().cloned());
         let model = Arc::new(model);
         self.reading.models.insert(path.to_owned(), model.clone());
@@ -171,7 +172,7 @@ impl Native<'_, '_> {
         let kind = item.text("generate")?;
         let Some(row) = GENERATORS.iter().find(|row| row.entry.name == kind) else {
             let names = GENERATORS.iter().map(|row| row.entry.name);
-            return Err(SceneError::unknown("scene to generate", kind, names, &item.at).into());
+            return Err(SceneError::unknown("built-in scene", kind, names, &item.at).into());
         };
         let spec = self.parameters(table, kind, &row.entry)?;
         let model = (row.generate)(&Reader::new(&spec, &row.entry)?)?;
@@ -205,8 +206,7 @@ impl Native<'_, '_> {
     fn add_requested_parts(&mut self, table: &Table, model: &SceneBuilder) -> Result<(), FormatError> {
         let Some(item) = table.find("with") else { return Ok(()) };
         if place::KEYS.iter().any(|key| table.find(key).is_some()) {
-            let message =
-                "lights and cameras stay where they are, so that 'with' and a place do not go together";
+            let message = "lights and cameras are not moved, so 'with' cannot be combined with a transform";
             return Err(SceneError::invalid(message, &item.at).into());
         }
         for word in item.list("with", "a list of \"lights\" and \"cameras\"")? {

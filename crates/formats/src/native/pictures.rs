@@ -21,21 +21,21 @@ const FILTER_WORDS: &[&str] = &[FILTERS[0].0, FILTERS[1].0];
 /// The keys of an image texture besides its file and its channel.
 pub(super) const PICTURE: Entry = Entry {
     name: "texture",
-    summary: "a picture from a file",
+    summary: "an image texture from a file",
     source: "",
     parameters: &[
-        number("u_scale", "what u is multiplied by: how often the picture comes", "1"),
-        number("v_scale", "the same of v, upwards", "1"),
-        Parameter { unit: "degrees", ..number("turn", "by which u and v are turned behind that", "0") },
-        number("u_offset", "what is added to u behind that", "0"),
-        number("v_offset", "the same of v", "0"),
-        choice("wrap_u", "what lies beyond the left and the right edge", WRAP_WORDS, "repeat"),
-        choice("wrap_v", "what lies beyond the lower and the upper edge", WRAP_WORDS, "repeat"),
-        choice("filter", "what lies between texels", FILTER_WORDS, "linear"),
-        integer("uv_set", "which texture coordinates of the mesh count", 1, 2, "1"),
+        number("u_scale", "factor on u: how often the picture repeats", "1"),
+        number("v_scale", "factor on v: how often it repeats upwards", "1"),
+        Parameter { unit: "degrees", ..number("turn", "rotation of u and v afterwards", "0") },
+        number("u_offset", "offset added to u afterwards", "0"),
+        number("v_offset", "offset added to v afterwards", "0"),
+        choice("wrap_u", "how the texture continues beyond its left and right edges", WRAP_WORDS, "repeat"),
+        choice("wrap_v", "how the texture continues beyond its lower and upper edges", WRAP_WORDS, "repeat"),
+        choice("filter", "interpolation between texels", FILTER_WORDS, "linear"),
+        integer("uv_set", "the mesh's set of texture coordinates to use", 1, 2, "1"),
         Parameter {
             kind: ParameterKind::Number { min: 0.0, max: 1.0 },
-            ..number("threshold", "what is less becomes 0, and all else 1; 0 for none", "0")
+            ..number("threshold", "threshold: lower values become 0, all others 1; 0 for no threshold", "0")
         },
     ],
 };

@@ -23,8 +23,8 @@ pub(super) fn motion(table: &Table) -> Result<Motion, FormatError> {
         {
             return Ok(Motion::still(read_matrix(matrix)?));
         }
-        let message =
-            "'matrix' stands alone: leave out translate, rotate, scale and keyframes, or put all into it";
+        let message = "'matrix' cannot be combined with translate, rotate, scale or keyframes: use either the matrix or the \
+             others";
         return Err(SceneError::invalid(message, &matrix.at).into());
     }
     if frames.is_empty() {
@@ -46,8 +46,8 @@ pub(super) fn motion(table: &Table) -> Result<Motion, FormatError> {
     }
     let keys = keys.iter().map(|(time, pose)| pose.key(*time)).collect();
     Motion::from_keys(keys).ok_or_else(|| {
-        let message = "these keyframes give no motion: times have to rise, no scale may be 0 or change its sign on \
-                       the way, and numbers must be finite";
+        let message = "these keyframes are not a valid motion: times must increase, no scale may be 0 or change its \
+                       sign, and numbers must be finite";
         SceneError::invalid(message, &table.at).into()
     })
 }
@@ -98,7 +98,7 @@ impl Pose {
         Transform::from_matrix(DMat4::from_scale_rotation_translation(scale, rotation, self.translation))
             .ok_or_else(|| {
                 let message =
-                    "this place is none: no scale may be 0, and numbers must be finite and not huge";
+                    "this transform is not valid: no scale may be 0, and numbers must be finite and not huge";
                 SceneError::invalid(message, at).into()
             })
     }
@@ -124,8 +124,9 @@ impl Pose {
         };
         let steps = (degrees / 90.0).ceil().max(1.0);
         if steps > MAX_STEPS {
-            let message =
-                format!("this is a turn by {degrees} degrees between two keyframes: put more of them");
+            let message = format!(
+                "this is a rotation by {degrees} degrees between two keyframes: add keyframes in between"
+            );
             return Err(SceneError::invalid(message, at).into());
         }
         Ok(steps as u32)
@@ -196,7 +197,7 @@ fn read_matrix(item: &Item) -> Result<Transform, FormatError> {
     let matrix = DMat4::from_cols_array(&numbers).transpose();
     Transform::from_matrix(matrix).ok_or_else(|| {
         let message =
-            "this matrix places nothing: it must be invertible, finite, and end in the row [0, 0, 0, 1]";
+            "this matrix is not a valid transform: it must be invertible and finite, and end in the row [0, 0, 0, 1]";
         SceneError::invalid(message, &item.at).into()
     })
 }

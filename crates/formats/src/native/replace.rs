@@ -26,8 +26,7 @@ impl Native<'_, '_> {
         let before: Vec<usize> = self.scene.objects.iter().map(|object| object.material).collect();
         for table in tables {
             table.check_keys("a replacement", KEYS.into_iter())?;
-            let with =
-                table.find("with").ok_or_else(|| missing("with (the material that comes instead)", table))?;
+            let with = table.find("with").ok_or_else(|| missing("with (the replacement material)", table))?;
             let with = self.material_named(with)?;
             let (material, object) = (pattern(table, "material")?, pattern(table, "object")?);
             if material.is_none() && object.is_none() {
@@ -77,7 +76,7 @@ impl Native<'_, '_> {
             let known = known.iter().copied().filter(|name| !name.is_empty()).take(MAX_NAMES);
             return SceneError::unknown(key, wanted, known, at).into();
         }
-        SceneError::invalid("no object has this name and this material: take one of them out", &table.at)
+        SceneError::invalid("no object has both this name and this material: remove one of them", &table.at)
             .into()
     }
 }
@@ -86,7 +85,9 @@ fn pattern<'t>(table: &'t Table, key: &str) -> Result<Option<&'t str>, FormatErr
     let Some(text) = table.text(key)? else { return Ok(None) };
     if text.len() > LONGEST {
         return Err(SceneError::invalid(
-            format!("names of more than {LONGEST} bytes are not looked for"),
+            format!(
+                "names of more than {LONGEST} bytes are not supported here: use a pattern, as in \"Glass*\""
+            ),
             &table.at,
         )
         .into());

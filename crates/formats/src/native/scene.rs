@@ -50,10 +50,7 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     native.replace(&replaced)?;
     let mut scene = native.scene;
     if scene.objects.is_empty() && scene.lights.is_empty() {
-        scene.warn(
-            "there is no [[model]] in it, and so there is nothing to render: add one",
-            whole_file(source.name),
-        );
+        scene.warn("it has no [[model]], so there is nothing to render: add one", whole_file(source.name));
     }
     Ok(scene)
 }
@@ -75,7 +72,7 @@ impl Native<'_, '_> {
         for table in root.tables("render")? {
             for (key, at, item) in &table.entries {
                 if self.scene.settings.0.len() >= MAX_SETTINGS {
-                    let message = format!("there are more than {MAX_SETTINGS} settings: take some out");
+                    let message = format!("there are more than {MAX_SETTINGS} settings: remove some");
                     return Err(SceneError::invalid(message, at).into());
                 }
                 let value = specs::plain_value(key, item)?;
@@ -96,7 +93,7 @@ impl Native<'_, '_> {
             let index = self.materials.len();
             if let Some((_, first)) = self.materials.insert(name.to_owned(), (index, at.clone())) {
                 let message =
-                    format!("there is a material '{name}' already, at {first}: give this one another name");
+                    format!("there is already a material '{name}', at {first}: give this one another name");
                 return Err(SceneError::invalid(message, &at).into());
             }
         }

@@ -14,7 +14,7 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
     let rows = |entries: Vec<&Entry>, extra: &[(&str, Value)], kind_default: Option<&str>| {
         one_of(entries, "kind", extra, kind_default)
     };
-    let name = ("name", described("string", "what it is called"));
+    let name = ("name", described("string", "its name"));
     let materials = rows(MATERIALS.iter().map(|r| &r.entry).collect(), std::slice::from_ref(&name), None);
     let lights = rows(LIGHTS.iter().map(|r| &r.entry).collect(), std::slice::from_ref(&name), None);
     let cameras: Vec<&Entry> = CAMERAS.iter().map(|r| &r.entry).collect();
@@ -27,12 +27,12 @@ pub fn toml_schema(settings: &[Parameter]) -> Value {
         "additionalProperties": false,
         "properties": {
             "include": {
-                "description": "other scene files of any format, relative to this one, that belong to it",
+                "description": "scene files of any format, relative to this one, to include",
                 "type": "array",
                 "items": { "type": "string" },
             },
             "render": {
-                "description": "settings of the render",
+                "description": "the render settings",
                 "type": "object",
                 "additionalProperties": settings.is_empty(),
                 "properties": properties(settings),
@@ -156,11 +156,11 @@ fn default_value(parameter: &Parameter) -> Option<Value> {
 
 fn camera_keyframes(cameras: &[&Entry]) -> Value {
     let mut all: Map<String, Value> = cameras.iter().flat_map(|entry| properties(entry.parameters)).collect();
-    all.insert("time".to_owned(), described("number", "when, in seconds"));
+    all.insert("time".to_owned(), described("number", "the time in seconds"));
     let mut schema = list(
         json!({ "type": "object", "additionalProperties": false, "properties": all, "required": ["time"] }),
     );
-    schema["description"] = "times, rising, each with the parameters that differ".into();
+    schema["description"] = "keyframes in order of time, each with the parameters that change".into();
     schema
 }
 
@@ -186,10 +186,10 @@ fn common_of_models() -> Vec<(&'static str, Value)> {
     let words = json!({ "type": "array", "items": { "enum": ["lights", "cameras"] } });
     let renamed = json!({ "type": "object", "additionalProperties": { "type": "string" } });
     vec![
-        ("name", described("string", "what it is called")),
-        ("material", described("string", "the name of the material of all of it")),
+        ("name", described("string", "its name")),
+        ("material", described("string", "the name of the material for the whole model")),
         ("materials", renamed),
-        ("instance", described("boolean", "keep one copy of each mesh, however often it stands here")),
+        ("instance", described("boolean", "keep one copy of each mesh, however many instances there are")),
         ("with", words),
     ]
 }
@@ -202,7 +202,7 @@ fn replacement() -> Value {
         "properties": {
             "material": described("string", "the name of the material that is replaced; * is any text, ? any character"),
             "object": described("string", "the name of the objects whose material is replaced; * is any text, ? any character"),
-            "with": described("string", "the name of the material that comes instead"),
+            "with": described("string", "the name of the replacement material"),
         },
         "required": ["with"],
         "anyOf": [{ "required": ["material"] }, { "required": ["object"] }],
@@ -221,7 +221,7 @@ fn place() -> Vec<(&'static str, Value)> {
     });
     let rotate = json!({ "oneOf": [vector(), axis], "description": "degrees about x, then y, then z; or about an axis" });
     let pose = [
-        ("time", described("number", "when, in seconds")),
+        ("time", described("number", "the time in seconds")),
         ("translate", vector()),
         ("rotate", rotate),
         ("scale", vector()),

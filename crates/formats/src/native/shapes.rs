@@ -19,7 +19,7 @@ pub const SHAPES: &[ShapeEntry] = &[
     ShapeEntry {
         entry: Entry {
             name: "floor",
-            summary: "a level square, seen from above",
+            summary: "a horizontal square that faces up",
             source: "",
             parameters: &[length("side", "length of a side", "10")],
         },
@@ -28,11 +28,11 @@ pub const SHAPES: &[ShapeEntry] = &[
     ShapeEntry {
         entry: Entry {
             name: "quad",
-            summary: "a parallelogram, seen from where u × v points",
+            summary: "a parallelogram that faces the direction of u × v",
             source: "",
             parameters: &[
-                vector("u", "from one side to the other", "1 0 0"),
-                vector("v", "from one end to the other", "0 1 0"),
+                vector("u", "edge from one side to the other", "1 0 0"),
+                vector("v", "edge from one end to the other", "0 1 0"),
             ],
         },
         build: |reader| shapes::quad(Vec3::ZERO, reader.vector("u"), reader.vector("v")),
@@ -40,7 +40,7 @@ pub const SHAPES: &[ShapeEntry] = &[
     ShapeEntry {
         entry: Entry {
             name: "disc",
-            summary: "a level disc, seen from above",
+            summary: "a horizontal disc that faces up",
             source: "",
             parameters: &[length("radius", "radius", "1"), pieces("around", "triangles", "64")],
         },
@@ -61,10 +61,10 @@ pub const SHAPES: &[ShapeEntry] = &[
     ShapeEntry {
         entry: Entry {
             name: "prism",
-            summary: "a closed upright prism, its first edge along x",
+            summary: "a closed upright prism, with its first edge along x",
             source: "",
             parameters: &[
-                length("radius", "from the middle to its edges", "1"),
+                length("radius", "distance from the centre to its edges", "1"),
                 length("height", "height", "1"),
                 pieces("sides", "sides", "3"),
             ],
@@ -96,7 +96,7 @@ pub const SHAPES: &[ShapeEntry] = &[
             summary: "a ring around the y axis",
             source: "",
             parameters: &[
-                length("radius", "from the middle to the middle of the tube", "1"),
+                length("radius", "distance from the centre to the middle of the tube", "1"),
                 length("tube", "radius of the tube", "0.3"),
                 pieces("around", "quadrilaterals along the ring", "96"),
                 pieces("along", "quadrilaterals around the tube", "48"),

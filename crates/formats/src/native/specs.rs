@@ -147,16 +147,14 @@ impl Native<'_, '_> {
                 // Magenta light would tint the whole scene.
                 let (stands_in, texture) = match holds {
                     Texels::Colours if key == "radiance" => (
-                        "a texture is replaced by an even grey of 0.5".to_owned(),
+                        "a texture is replaced by a uniform grey of 0.5".to_owned(),
                         Some(Texture::missing_light(name)),
                     ),
                     Texels::Colours => (
                         "a texture is replaced by a magenta checker".to_owned(),
                         Some(Texture::missing(name)),
                     ),
-                    Texels::Numbers(_) => {
-                        (format!("the default of '{key}' stands in place of a texture"), None)
-                    }
+                    Texels::Numbers(_) => (format!("a texture is replaced by the default of '{key}'"), None),
                 };
                 let message = format!("{stands_in}: {}", error.without_place());
                 self.scene.warn(message, file.at.clone());

@@ -101,12 +101,11 @@ fn write_model(
     let file = match meshes.get(&Arc::as_ptr(&object.mesh)) {
         Some(file) => file.clone(),
         None => {
-            let file = format!("{}-mesh-{}.ply", writing.stem, meshes.len() + 1);
             let Some(bytes) = encode(&[&object.mesh], writing.options.ascii) else {
                 let message = "a mesh has more vertices than its file can hold";
                 return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
             };
-            writing.beside.push((file.clone(), bytes));
+            let file = writing.add_numbered("mesh", meshes.len() + 1, "ply", bytes);
             meshes.insert(Arc::as_ptr(&object.mesh), file.clone());
             file
         }
@@ -179,8 +178,9 @@ fn texture_text(
 ) -> Result<String, FormatError> {
     let Some(formula) = texture.formula() else {
         if texture.second_uv {
-            writing
-                .warn("the second texture coordinates of meshes are not written: the first are used instead");
+            writing.warn(
+                "the second texture coordinates of meshes cannot be written: the first are used instead",
+            );
         }
         let texels = Texture { threshold: None, ..Texture::clone(texture) };
         let mut out = format!("{{ texture = {}", quoted(&writing.texture_file(&texels)?));

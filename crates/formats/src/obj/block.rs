@@ -110,11 +110,12 @@ pub(super) fn bad_corner(word: &[u8]) -> String {
 }
 
 /// What happens to elements that cannot be read.
-const VERTEX_LEFT_OUT: &str = ": this vertex is left out, and with it the faces that it is a corner of";
-const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is taken as 0";
+const VERTEX_LEFT_OUT: &str = ": this vertex is left out, together with the faces that use it";
+const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is set to 0";
 const FACE_LEFT_OUT: &str = ": this face is left out";
 /// This is known only when blocks are joined.
-pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to what is not there, and is left out";
+pub(super) const BACKWARD_LEFT_OUT: &str =
+    ": this face counts back to a vertex that does not exist, and is left out";
 
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,
@@ -260,8 +261,8 @@ impl<'a> Reader<'a> {
         }
         if count < least {
             let at = self.at(self.cursor.offset());
-            let cut_off = if self.cursor.is_done() { ", as the file was cut off here" } else { "" };
-            let message = format!("this line has {count} numbers and needs {least}{cut_off}");
+            let cut_off = if self.cursor.is_done() { ": the file was cut off here" } else { "" };
+            let message = format!("this line has {count} numbers, but needs {least}{cut_off}");
             self.fault(message, left_out, at);
             numbers.fill(0.0);
             return 0;
@@ -311,7 +312,7 @@ impl<'a> Reader<'a> {
         }
         self.budget.take::<Corner>(count % MANY, self.file)?;
         if self.block.corners.len() as u64 >= u64::from(NONE) {
-            let message = "there are more than 4 billion corners: cut the file into several";
+            let message = "there are more than 4 billion corners: split the file";
             return Err(FormatError::malformed(message, start.in_file(self.file)));
         }
         self.budget.take::<[usize; 2]>(1, self.file)?;
@@ -363,8 +364,7 @@ impl<'a> Reader<'a> {
             (b"on", _) => 1,
             (_, Some(group)) => group.min(BY_ANGLE - 1),
             _ => {
-                let message =
-                    format!("{} is not a smoothing group, which is a number or 'off'", quoted(word));
+                let message = format!("{} is not a smoothing group: write a number or 'off'", quoted(word));
                 self.fault(message, ": this line is left out", start.in_file(self.file));
                 return Ok(());
             }
@@ -377,12 +377,14 @@ impl<'a> Reader<'a> {
         let what = match word {
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" => {
-                "free-form curves and surfaces are not drawn".to_owned()
+                "free-form curves and surfaces are not supported".to_owned()
             }
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
-            | b"stech" | b"mg" | b"maplib" | b"usemap" | b"vw" | b"t" | b"call" | b"csh" => {
+            | b"stech" | b"mg" | b"maplib" | b"usemap" | b"t" | b"call" | b"csh" => {
                 format!("the statement {} is ignored", quoted(word))
             }
+            // Weights of a skin that no OBJ file can move.
+            b"vw" => return Ok(()),
             _ => {
                 let readable = word.iter().all(|b| b.is_ascii_graphic()) && word.len() <= 20;
                 if !readable {

@@ -80,7 +80,9 @@ impl Library<'_, '_, '_> {
                 (b"-blendu" | b"-blendv" | b"-imfchan" | b"-type" | b"-colorspace" | b"-texres", _) => {}
                 (option, _) => {
                     let (places, name) = (&self.places, String::from_utf8_lossy(option));
-                    self.oddities.note(&format!("{name} of a texture is not applied"), || places.at(start));
+                    self.oddities.note(&format!("the option {name} of a texture is not supported"), || {
+                        places.at(start)
+                    });
                 }
             }
         }
@@ -164,7 +166,7 @@ impl Library<'_, '_, '_> {
             Err(error @ FormatError::TooLarge { .. }) => Err(error),
             Err(error) => {
                 let reason = error.without_place();
-                scene.warn(format!("a texture of numbers is left out: {reason}"), map.at.clone());
+                scene.warn(format!("a data texture is left out: {reason}"), map.at.clone());
                 Ok(None)
             }
         }

@@ -188,7 +188,8 @@ impl Library<'_, '_, '_> {
                 Ok(None)
             }
             None => {
-                let message = format!("{} is not a number", quoted(word));
+                let message =
+                    format!("{} is not a number: write one, such as 0.5, or remove this line", quoted(word));
                 Err(FormatError::malformed(message, self.places.at(offset)))
             }
         }

@@ -33,9 +33,8 @@ pub(super) fn write_library(
         out.push(b'\n');
     }
     if !out.is_empty() {
-        let library = format!("{}.mtl", writing.stem);
+        let library = writing.add("mtl", out);
         writing.main.extend_from_slice(format!("mtllib {library}\n").as_bytes());
-        writing.beside.push((library, out));
     }
     Ok(names)
 }
@@ -94,7 +93,10 @@ fn write_material(
 ) -> Result<(), FormatError> {
     let spec = &*with_indices(spec);
     if !HOLDS.of_kinds.iter().any(|(kind, _)| *kind == spec.kind) {
-        writing.warn(format!("OBJ files hold no material '{}': a matt one stands in its place", spec.kind));
+        writing.warn(format!(
+            "OBJ files cannot store the material '{}': a diffuse one is written instead",
+            spec.kind
+        ));
     }
     HOLDS.tell(spec, writing);
     let grey = |key: &str, default: f32| colour(spec, key).unwrap_or(Rgb::grey(default));
@@ -152,7 +154,7 @@ fn push_map(
     let mut options = String::new();
     if let Some(([u, v], turn, [x, y])) = parts {
         if turn != 0.0 {
-            writing.warn("OBJ files hold no turned textures: they are written upright");
+            writing.warn("OBJ files cannot store rotated textures: they are written without rotation");
         }
         options = format!("-o {u} {} -s {x} {y} ", 1.0 - y - v);
     }
@@ -184,7 +186,8 @@ fn write_principled(
         Some(weight) => {
             if weight < 1.0 {
                 writing
-                    .warn("OBJ files hold no parts of 'transmission_weight': what is clear in part is written as clear");
+                    .warn("OBJ files cannot store fractions of 'transmission_weight': partly transmissive materials \
+                           are written as fully transmissive");
             }
             push_colour(out, "Tf", colour(spec, "transmission_color").unwrap_or(Rgb::WHITE));
             out.extend_from_slice(b"illum 7\n");

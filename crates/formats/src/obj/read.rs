@@ -126,7 +126,7 @@ impl Obj<'_, '_, '_> {
             Some(error) => Err(moved_down(error, before)),
             // Indices are 32-bit numbers, and the largest one stands for a missing index.
             None if most.iter().any(|&count| count as u64 >= u64::from(NONE)) => {
-                let message = "there are more than 4 billion vertices or corners: cut the file into several";
+                let message = "there are more than 4 billion vertices or corners: split the file";
                 Err(FormatError::malformed(message, end.in_file(self.source.name)))
             }
             None => Ok(()),
@@ -215,7 +215,7 @@ impl Obj<'_, '_, '_> {
         let place = stroke.place.after(self.lines);
         let run = || Run { first_face: 0, name: self.name.clone(), material: self.material.clone() };
         self.strokes.add(stroke, before, run, place.key()).ok_or_else(|| {
-            let message = "this point or line names a vertex that the file does not have";
+            let message = "this point or line refers to a vertex that the file does not have";
             FormatError::malformed(message, place.in_file(self.source.name))
         })
     }
@@ -268,7 +268,10 @@ impl Obj<'_, '_, '_> {
                 Ok(loaded) => loaded,
                 Err(error @ FormatError::TooLarge { .. }) => return Err(error),
                 Err(error) => {
-                    self.scene.warn(format!("materials are missing: {}", error.without_place()), at.clone());
+                    self.scene.warn(
+                        format!("a material library is missing: {}", error.without_place()),
+                        at.clone(),
+                    );
                     continue;
                 }
             };

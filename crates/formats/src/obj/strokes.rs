@@ -160,7 +160,7 @@ impl Strokes {
             if let Some(vertex) = failure {
                 let (named, count) = (u64::from(vertex) + 1, soup.positions.len());
                 let message =
-                    format!("a point or a line names vertex {named}, but the file has only {count}");
+                    format!("a point or line refers to vertex {named}, but the file has only {count}");
                 return Err(FormatError::malformed(message, place(group.place)));
             }
             reading.budget.take::<(Vec3, Rgb)>(used.len(), source.name)?;

@@ -22,7 +22,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
         }
         let mesh = in_place(object, writing);
         if !mesh.vertex_ks.is_empty() {
-            writing.warn("OBJ files hold no ks of vertices: left out");
+            writing.warn("OBJ files cannot store ks of vertices: left out");
         }
         vertices(&mesh, &mut writing.main);
         faces(&mesh, &mut counts, &mut writing.main);

@@ -81,10 +81,10 @@ impl<'a> Off<'a, '_, '_> {
         let start = self.next_line("its first word, OFF")?;
         let word = self.cursor.word();
         let Some((columns, length)) = Columns::of_word(word) else {
-            let known = "an OFF file begins with OFF, behind ST, C and N at most, in this order";
+            let known = "an OFF file begins with OFF, preceded only by ST, C and N, in this order";
             let message = match word.ends_with(b"OFF") {
                 true => format!("{} has other columns or dimensions: {known}", quoted(word)),
-                false => format!("{} should not stand here: {known}", quoted(word)),
+                false => format!("{} is not expected here: {known}", quoted(word)),
             };
             return Err(FormatError::malformed(message, self.places.at(start)));
         };
@@ -102,13 +102,13 @@ impl<'a> Off<'a, '_, '_> {
         let mut counts = [0; 2];
         for count in &mut counts {
             *count = integer(self.cursor.word()).ok_or_else(|| {
-                let message = "here stand the numbers of vertices, faces and edges, such as '8 6 12'";
+                let message = "this line gives the numbers of vertices, faces and edges, such as '8 6 12'";
                 FormatError::malformed(message, self.places.at(start))
             })?;
         }
         self.cursor.end_line();
         if counts[0] >= u64::from(NONE) {
-            let message = "there are more than 4 billion vertices: cut the file into several";
+            let message = "there are more than 4 billion vertices: split the file";
             return Err(FormatError::malformed(message, self.places.at(start)));
         }
         Ok(counts)
@@ -155,7 +155,7 @@ impl<'a> Off<'a, '_, '_> {
             self.oddities.note(what, || places.at(row.start));
         }
         if row.numbers.iter().any(|x| !x.is_finite()) {
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.oddities.note(what, || places.at(row.start));
         }
     }
@@ -167,7 +167,7 @@ impl<'a> Off<'a, '_, '_> {
             let start = self.next_line("all of its faces")?;
             corners.clear();
             for _ in 0..self.index("a face begins with its number of corners")? {
-                let vertex = self.index("a face has the numbers of its vertices, counted from 0")?;
+                let vertex = self.index("a face lists the indices of its vertices, counted from 0")?;
                 self.reading.budget.take::<Corner>(1, self.source.name)?;
                 let (uv, normal) = (of_vertex(columns.uvs, vertex), of_vertex(columns.normals, vertex));
                 corners.push([vertex, uv, normal]);
@@ -190,7 +190,7 @@ impl<'a> Off<'a, '_, '_> {
         }
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
         if (soup.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
-            let message = "there are more than 4 billion corners: cut the file into several";
+            let message = "there are more than 4 billion corners: split the file";
             return Err(FormatError::malformed(message, places.at(start)));
         }
         soup.smooth(self.smoothing);
@@ -202,7 +202,7 @@ impl<'a> Off<'a, '_, '_> {
     fn finish(self) -> Result<SceneBuilder, FormatError> {
         let Off { reading, source, places, mut soup, mut oddities, .. } = self;
         if soup.faces.is_empty() {
-            return Err(FormatError::malformed("there is no face in it", places.whole()));
+            return Err(FormatError::malformed("it contains no faces", places.whole()));
         }
         soup.runs.push(Run { first_face: 0, name: source.stem(), material: None });
         let mut scene = SceneBuilder::default();
@@ -261,7 +261,7 @@ impl<'a> Off<'a, '_, '_> {
     fn no_number(&self, word: &'a [u8], wanted: &str) -> FormatError {
         let message = match word {
             b"" => format!("the line ends too early: {wanted}"),
-            word => format!("{} should not stand here: {wanted}", quoted(word)),
+            word => format!("{} is not expected here: {wanted}", quoted(word)),
         };
         FormatError::malformed(message, self.places.at(self.cursor.offset() - word.len()))
     }

@@ -15,15 +15,15 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     warn_of_scene(scene, "OFF", writing);
     warn_of_materials(scene, "OFF", writing);
     if scene.objects.len() > 1 {
-        writing.warn("OFF files hold one object: all are joined");
+        writing.warn("OFF files hold one object: all objects are merged");
     }
     let meshes: Vec<Cow<Mesh>> = scene.objects.iter().map(|object| in_place(object, writing)).collect();
     if meshes.iter().any(|mesh| !mesh.vertex_ks.is_empty()) {
-        writing.warn("OFF files hold no specular colours: left out");
+        writing.warn("OFF files cannot store specular colours: left out");
     }
     let vertices: usize = meshes.iter().map(|mesh| mesh.positions.len()).sum();
     if u32::try_from(vertices).is_err() {
-        let message = "an OFF file holds at most 4,294,967,295 vertices: write several";
+        let message = "an OFF file holds at most 4,294,967,295 vertices: split the scene";
         return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
     }
     let columns = Columns {

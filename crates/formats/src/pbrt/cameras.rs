@@ -24,7 +24,7 @@ impl Pbrt<'_, '_> {
             // `environment` is a name of version 3.
             "realistic" | "spherical" | "environment" => {
                 let what = format!(
-                    "the camera '{}' is not there: a perspective one stands in its place",
+                    "the camera '{}' is not supported: a perspective camera is used instead",
                     entity.kind
                 );
                 self.oddities.note(&what, || entity.at.clone());
@@ -46,7 +46,7 @@ impl Pbrt<'_, '_> {
         let to_world = matrices.map(|m| m.inverse());
         let sound = |m: &DMat4| m.is_finite() && bilux_math::Mat3::from_mat4(m.as_mat4()).is_finite();
         if !to_world.iter().all(sound) {
-            let message = "this camera is scaled to nothing: mend the transforms before it";
+            let message = "this camera has a scale of zero: correct the transforms before it";
             return Err(FormatError::malformed(message, entity.at.clone()));
         }
         let place = |m: &DMat4| place(m, &entity);
@@ -102,7 +102,9 @@ impl Pbrt<'_, '_> {
         let vertical = 2.0 * atan(half as f32).to_degrees();
         if !(0.01..=179.0).contains(&vertical) {
             self.oddities
-                .note("a field of view is out of range: taken as 0.01 to 179 degrees", || list.place("fov"));
+                .note("a field of view is out of range: it is limited to 0.01 to 179 degrees", || {
+                    list.place("fov")
+                });
         }
         spec.parameters.set_at("fov", vertical.clamp(0.01, 179.0).into(), list.place("fov"));
         if radius > 0.0 {
@@ -125,19 +127,19 @@ impl Pbrt<'_, '_> {
             [] => {}
             [a, b, c, d] => screen = [*a, *b, *c, *d].map(f64::from),
             other => {
-                let message = format!("'screenwindow' has 4 numbers, and not {}", other.len());
+                let message = format!("'screenwindow' takes 4 numbers, not {}", other.len());
                 return Err(FormatError::malformed(message, list.place("screenwindow")));
             }
         }
         let [left, right, bottom, top] = screen;
         let (half_width, half_height) = (0.5 * (right - left).abs(), 0.5 * (top - bottom).abs());
         if !(half_width > 0.0 && half_height > 0.0) {
-            let message = "the screen has no size: mend 'screenwindow'";
+            let message = "the screen has no area: correct 'screenwindow'";
             return Err(FormatError::malformed(message, list.place("screenwindow")));
         }
         let shifted = (left + right).abs() > 1e-4 * half_width || (bottom + top).abs() > 1e-4 * half_height;
         if shifted || (half_width / half_height / film - 1.0).abs() > 1e-3 {
-            let what = "a screen that is shifted or stretched is not shown: its height alone is kept";
+            let what = "a shifted or stretched screen window is not supported: only its height is used";
             self.oddities.note(what, || list.place("screenwindow"));
         }
         Ok(half_height)
@@ -149,7 +151,7 @@ fn place(to_world: &DMat4, entity: &Entity) -> Result<Parameters, FormatError> {
     let position = to_world.w_axis.truncate();
     let axis = |v: DVec3| to_world.transform_vector3(v).try_normalize();
     let (Some(forward), Some(up)) = (axis(DVec3::Z), axis(DVec3::Y)) else {
-        let message = "this camera is scaled to nothing: mend the transforms before it";
+        let message = "this camera has a scale of zero: correct the transforms before it";
         return Err(FormatError::malformed(message, entity.at.clone()));
     };
     // Far from the origin, 32-bit floats may not resolve one metre.

@@ -72,7 +72,7 @@ pub(super) fn run(pbrt: &mut Pbrt, lexer: &mut Lexer) -> Result<(), FormatError>
     while let Some((token, offset)) = lexer.next()? {
         let at = lexer.place(offset);
         let Token::Word(word) = token else {
-            let message = format!("here should be a directive, and not {}", shown(&token));
+            let message = format!("a directive is expected here, not {}", shown(&token));
             return Err(FormatError::malformed(message, at));
         };
         let mut directive = Directive { pbrt, lexer, at };
@@ -153,7 +153,7 @@ impl Directive<'_, '_, '_, '_> {
 
     fn push(&mut self, opened: Opened) -> Result<(), FormatError> {
         if self.pbrt.pushed.len() >= MAX_DEPTH {
-            return self.error(format!("attributes are nested more than {MAX_DEPTH} deep"));
+            return self.error(format!("attributes are nested more than {MAX_DEPTH} levels deep"));
         }
         self.pbrt.pushed.push((opened, self.at.clone(), self.pbrt.state.clone()));
         Ok(())
@@ -161,12 +161,11 @@ impl Directive<'_, '_, '_, '_> {
 
     fn pop(&mut self, opened: Opened) -> Result<(), FormatError> {
         let Some((began, at, state)) = self.pbrt.pushed.pop() else {
-            return self.error("nothing is open here that this could end: take it out");
+            return self.error("this ends something that was never begun: remove it");
         };
         if (began == Opened::Object) != (opened == Opened::Object) {
             // Version 3 uses one stack for both, and its own scenes interleave them.
-            let what =
-                "an object and attributes are not nested in each other: each end closes what began last";
+            let what = "objects and attributes are not properly nested: each End closes the last Begin";
             self.pbrt.oddities.note(what, || at);
         }
         if began == Opened::Transform {
@@ -181,10 +180,10 @@ impl Directive<'_, '_, '_, '_> {
     fn object_begin(&mut self) -> Result<(), FormatError> {
         let (name, _) = self.lexer.text("the name of an object")?;
         if let Some((open, _)) = &self.pbrt.definition {
-            return self.error(format!("objects are not made of objects: end '{open}' first"));
+            return self.error(format!("objects cannot be defined inside objects: end '{open}' first"));
         }
         if self.pbrt.definitions.contains_key(&name) {
-            return self.error(format!("there is an object '{name}' already: give this one another name"));
+            return self.error(format!("there is already an object '{name}': give this one another name"));
         }
         self.push(Opened::Object)?;
         self.pbrt.definition = Some((name, Vec::new()));
@@ -193,7 +192,7 @@ impl Directive<'_, '_, '_, '_> {
 
     fn object_end(&mut self) -> Result<(), FormatError> {
         let Some((name, pieces)) = self.pbrt.definition.take() else {
-            return self.error("no object is open here that this could end: take it out");
+            return self.error("this ends an object that was never begun: remove it");
         };
         self.pbrt.definitions.insert(name, Arc::new(pieces));
         self.pop(Opened::Object)
@@ -202,7 +201,7 @@ impl Directive<'_, '_, '_, '_> {
     fn object_instance(&mut self) -> Result<(), FormatError> {
         let (object, _) = self.lexer.text("the name of an object")?;
         if self.pbrt.definition.is_some() {
-            return self.error("objects are not made of objects: put this one behind ObjectEnd");
+            return self.error("objects cannot contain instances: move this one after ObjectEnd");
         }
         self.pbrt.reading.budget.take::<Use>(1, &self.at.file)?;
         let matrices = self.pbrt.state.matrices;
@@ -212,7 +211,7 @@ impl Directive<'_, '_, '_, '_> {
 
     fn world_begin(&mut self) -> Result<(), FormatError> {
         if std::mem::replace(&mut self.pbrt.in_world, true) {
-            return self.error("the world has begun already: take this out");
+            return self.error("the world has already begun: remove this");
         }
         let state = &mut self.pbrt.state;
         (state.matrices, state.is_active) = ([DMat4::IDENTITY; 2], [true; 2]);
@@ -221,7 +220,7 @@ impl Directive<'_, '_, '_, '_> {
     }
 
     fn attribute(&mut self) -> Result<(), FormatError> {
-        let (target, at) = self.lexer.text("what the attribute is for")?;
+        let (target, at) = self.lexer.text("the target of the attribute")?;
         let list = parameters::read(self.lexer, self.pbrt.state.space, &mut self.pbrt.reading.budget)?;
         let Some(index) = TARGETS.iter().position(|known| *known == target) else {
             let at = self.lexer.place(at);
@@ -250,7 +249,7 @@ impl Directive<'_, '_, '_, '_> {
                 // Options of pbrt itself; some state the type before the name, as parameters do.
                 let (name, _) = self.lexer.text("the name of an option")?;
                 self.lexer.need("the value of an option")?;
-                let what = format!("the option '{name}' is pbrt's own and does nothing here");
+                let what = format!("the option '{name}' applies only to pbrt and has no effect here");
                 let at = self.at.clone();
                 self.pbrt.oddities.note(&what, || at);
             }
@@ -289,7 +288,9 @@ impl Directive<'_, '_, '_, '_> {
                     }
                 };
                 if let Some((_, first)) = self.pbrt.named_materials.get(name.as_str()) {
-                    let what = format!("there is a material of this name at {first}: the later one holds");
+                    let what = format!(
+                        "there is already a material of this name, at {first}: the later one is used"
+                    );
                     let at = self.at.clone();
                     self.pbrt.oddities.note(&what, || at);
                 }
@@ -344,7 +345,9 @@ impl Directive<'_, '_, '_, '_> {
         let matrices = self.pbrt.state.matrices;
         if matrices[0] != matrices[1] {
             let at = self.at.clone();
-            self.pbrt.oddities.note("lights do not move: this one stays where it is at the start", || at);
+            self.pbrt
+                .oddities
+                .note("moving lights are not supported: this one stays at its start position", || at);
         }
         self.pbrt.lights.push((entity, matrices[0]));
         Ok(())
@@ -353,7 +356,7 @@ impl Directive<'_, '_, '_, '_> {
     fn shape(&mut self) -> Result<(), FormatError> {
         let entity = self.entity("shape", "shape")?;
         if !self.pbrt.in_world {
-            return self.error("'Shape' belongs behind WorldBegin: move it there");
+            return self.error("'Shape' belongs after WorldBegin: move it there");
         }
         let made = self.pbrt.shape(&entity)?;
         entity.parameters.report_unused(&mut self.pbrt.oddities);

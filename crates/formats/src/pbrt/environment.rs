@@ -18,7 +18,7 @@ pub(super) fn infinite(
 ) -> Result<Option<Spec>, FormatError> {
     let file = picture_name(list)?;
     if list.has("portal") {
-        let what = "light comes in from all sides, and not through a portal alone";
+        let what = "portals are not supported: light comes from all sides";
         pbrt.oddities.note(what, || list.place("portal"));
     }
     for name in ["samples", "nsamples"] {
@@ -33,13 +33,13 @@ pub(super) fn infinite(
     };
     let at = list.place(if is_old { "mapname" } else { "filename" });
     if list.has("L") && !is_old {
-        let message = "'L' and 'filename' both say what this light gives: take one of them out";
+        let message = "'L' and 'filename' both define this light's radiance: remove one of them";
         return Err(FormatError::malformed(message, list.place("L")));
     }
     let picture = pbrt.light_file(&name, &at)?;
     let is_square = picture.width() == picture.height();
     if !is_square && !is_old {
-        let what = "the picture of an infinite light is no square: taken as one by longitude and latitude";
+        let what = "the picture of an infinite light is not square: it is read as a longitude-latitude map";
         pbrt.oddities.note(what, || at.clone());
     }
     let mapping = if is_old || !is_square { Mapping::Latitudes } else { Mapping::Square };
@@ -152,7 +152,7 @@ impl Pbrt<'_, '_> {
         }
         let to_light = matrix.inverse();
         if !to_light.is_finite() {
-            return Err(FormatError::malformed("this light is scaled to nothing", list.at.clone()));
+            return Err(FormatError::malformed("this light has a scale of zero", list.at.clone()));
         }
         let height = picture.height().clamp(16, MAX);
         let width = 2 * height;

@@ -44,7 +44,7 @@ impl Pbrt<'_, '_> {
         share_trees(&mut self.scene);
         self.set_shutter();
         if self.scene.objects.is_empty() && self.scene.lights.is_empty() && self.in_world {
-            self.oddities.note("there is nothing to see in this file", Span::default);
+            self.oddities.note("there is nothing to render in this file", Span::default);
         }
         Ok(())
     }
@@ -102,7 +102,7 @@ impl Pbrt<'_, '_> {
     ) -> Result<Option<AreaEmission>, FormatError> {
         let Some(index) = piece.dress.area_light else { return Ok(None) };
         if used.is_some() {
-            self.oddities.note("surfaces of objects give no light, as in pbrt", || piece.at.clone());
+            self.oddities.note("surfaces of object instances emit no light, as in pbrt", || piece.at.clone());
             return Ok(None);
         }
         if let Some(glow) = resolved_attributes.glows.get(&index) {
@@ -192,12 +192,12 @@ impl Pbrt<'_, '_> {
         let [inside, outside] = &piece.dress.media;
         let absorption = self.absorption_of(inside, &piece.at)?;
         if !self.absorption_of(outside, &piece.at)?.is_black() {
-            let what = "what a medium on the outside of shapes absorbs is not shown";
+            let what = "absorption by a medium outside shapes is not supported";
             self.oddities.note(what, || piece.at.clone());
         }
         let base = self.base_material(piece)?;
         if base.is_none() && radiance.is_some() {
-            self.oddities.note("an interface gives no light", || piece.at.clone());
+            self.oddities.note("an interface material emits no light", || piece.at.clone());
         }
         let mut spec = match base {
             Some(spec) => spec,
@@ -208,7 +208,7 @@ impl Pbrt<'_, '_> {
             if spec.kind == "dielectric" && spec.parameters.find("thin").is_none() {
                 spec.parameters.set("absorption", absorption.clamp(0.0, 1e6));
             } else {
-                let what = "what is absorbed inside is shown in dielectrics alone";
+                let what = "absorption inside is supported only in dielectrics";
                 self.oddities.note(what, || piece.at.clone());
             }
         }
@@ -227,7 +227,7 @@ impl Pbrt<'_, '_> {
         let mut spec = if can {
             spec
         } else {
-            let what = format!("a {} that gives light reflects none", spec.kind);
+            let what = format!("a {} that emits light reflects none", spec.kind);
             self.oddities.note(&what, || piece.at.clone());
             let dark = Spec::new(&spec.name, "diffuse").with("reflectance", 0.0f32);
             Spec { span: spec.span, ..dark }
@@ -254,7 +254,7 @@ impl Pbrt<'_, '_> {
             Alpha::Even(bits) => {
                 let alpha = f32::from_bits(*bits).clamp(0.0, 1.0);
                 if alpha == 0.0 && spec.parameters.find("emission").is_some() {
-                    let what = "a light that is not to be seen is seen";
+                    let what = "lights cannot be hidden: this one is visible";
                     self.oddities.note(what, || piece.at.clone());
                     return Ok(Some(spec));
                 }
@@ -276,7 +276,7 @@ impl Pbrt<'_, '_> {
     /// Converts two matrices to a motion; `None`, with a warning, for a degenerate matrix.
     fn motion(&mut self, matrices: &Matrices, at: &Span) -> Option<Motion> {
         let Some(start) = Transform::from_matrix(matrices[0]) else {
-            self.oddities.note("what is scaled to nothing is not drawn", || at.clone());
+            self.oddities.note("objects with a scale of zero are not rendered", || at.clone());
             return None;
         };
         if matrices[0] == matrices[1] {
@@ -295,7 +295,8 @@ impl Pbrt<'_, '_> {
         };
         let motion = key(0).zip(key(1)).and_then(|(a, b)| Motion::from_keys(vec![a, b]));
         if motion.is_none() {
-            let what = "a motion that is none of shifts, turns and scales is not shown: its start is";
+            let what = "a motion that is not made of translations, rotations and scales is not supported: the start \
+                        is shown";
             self.oddities.note(what, || at.clone());
         }
         Some(motion.unwrap_or(Motion::still(start)))

@@ -24,7 +24,10 @@ pub(super) fn plain(
     let mut unpacked = Vec::new();
     let mut decoder = MultiGzDecoder::new(bytes.as_slice()).take(limit.saturating_add(1));
     decoder.read_to_end(&mut unpacked).map_err(|error| {
-        FormatError::malformed(format!("'{name}' cannot be unpacked: {error}; pack it again"), at.clone())
+        FormatError::malformed(
+            format!("'{name}' cannot be decompressed: {error}; compress it again"),
+            at.clone(),
+        )
     })?;
     reading.budget.take_bytes(unpacked.len() as u64, &name)?;
     reading.release(bytes);

@@ -86,7 +86,7 @@ impl<'a> Lexer<'a> {
     /// The next token, which must exist; `wanted` describes it in the error.
     pub(super) fn need(&mut self, wanted: &str) -> Result<(Token<'a>, usize), FormatError> {
         let end = self.bytes.len();
-        self.next()?.ok_or_else(|| self.error(format!("the file ends here, where {wanted} should be"), end))
+        self.next()?.ok_or_else(|| self.error(format!("the file ends here, but {wanted} is expected"), end))
     }
 
     /// A quoted string.
@@ -94,7 +94,7 @@ impl<'a> Lexer<'a> {
         match self.need(wanted)? {
             (Token::Quoted(text), at) => Ok((String::from_utf8_lossy(&text).into_owned(), at)),
             (token, at) => {
-                Err(self.error(format!("here should be {wanted}, in quotes, and not {}", shown(&token)), at))
+                Err(self.error(format!("{wanted}, in quotes, is expected here, not {}", shown(&token)), at))
             }
         }
     }
@@ -108,9 +108,9 @@ impl<'a> Lexer<'a> {
             _ => None,
         };
         let number = number
-            .ok_or_else(|| self.error(format!("here should be {wanted}, and not {}", shown(&token)), at))?;
+            .ok_or_else(|| self.error(format!("{wanted} is expected here, not {}", shown(&token)), at))?;
         if !number.is_finite() {
-            return Err(self.error(format!("{wanted} has to be finite, and not {number}"), at));
+            return Err(self.error(format!("{wanted} must be finite, not {number}"), at));
         }
         Ok(number)
     }
@@ -137,7 +137,7 @@ impl<'a> Lexer<'a> {
                 Some(b'"') => break,
                 Some(b'\\') => (escaped, length) = (true, length + 2),
                 None | Some(b'\n' | b'\r') => {
-                    return Err(self.error("this quote is not closed on its line: put a \" behind it", at));
+                    return Err(self.error("this quote is not closed on its line: add a \" at its end", at));
                 }
                 Some(_) => length += 1,
             }

@@ -65,7 +65,7 @@ impl Pbrt<'_, '_> {
         let colour = self.spectrum(list, name, Meaning::Light)?.unwrap_or(Rgb::WHITE);
         let shone = colour * self.light_scale(list)?;
         if shone.max_channel() > MAX_LIGHT {
-            self.oddities.note("a light is brighter than numbers can tell", || list.at.clone());
+            self.oddities.note("the brightness of a light overflows", || list.at.clone());
         }
         Ok(shone.clamp(0.0, MAX_LIGHT))
     }
@@ -91,7 +91,7 @@ impl Pbrt<'_, '_> {
         let radiance = match list.text("filename")? {
             Some(name) => {
                 if list.has("L") {
-                    let message = "'L' and 'filename' both say what this light gives: take one of them out";
+                    let message = "'L' and 'filename' both define this light's radiance: remove one of them";
                     return Err(FormatError::malformed(message, list.place("L")));
                 }
                 let at = list.place("filename");
@@ -134,9 +134,8 @@ fn from(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
 fn forward(list: &ParameterList, matrix: &DMat4) -> Result<DVec3, FormatError> {
     let towards = list.triple("to", Vec3::Z)?.as_dvec3() - list.triple("from", Vec3::ZERO)?.as_dvec3();
     let direction = matrix.transform_vector3(towards).try_normalize();
-    direction.ok_or_else(|| {
-        FormatError::malformed("a light must not look at the point where it stands", list.place("to"))
-    })
+    direction
+        .ok_or_else(|| FormatError::malformed("a light must not point at its own position", list.place("to")))
 }
 
 /// The factor that scales a light to its requested power, if any; `all` is the power at an intensity of 1.
@@ -173,7 +172,7 @@ fn distant(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Opti
     let from = list.triple("from", Vec3::ZERO)?.as_dvec3();
     let direction = matrix.transform_vector3(to - from).try_normalize().ok_or_else(|| {
         FormatError::malformed(
-            "a light's direction must not be zero: 'from' and 'to' are one point",
+            "a light's direction must not be zero: 'from' and 'to' are the same point",
             list.at.clone(),
         )
     })?;
@@ -206,7 +205,7 @@ fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<
     let mean = match picture_name(list)? {
         None => 1.0,
         Some((name, _)) => {
-            let what = "a goniometric light shines in all directions alike, by the mean of its picture";
+            let what = "a goniometric light shines uniformly in all directions, with the mean of its picture";
             pbrt.oddities.note(what, || list.at.clone());
             let picture = pbrt.light_file(&name, &list.place("filename"))?;
             let mean = TextureOrValue::Picture(Arc::new(picture)).mean();
@@ -219,14 +218,14 @@ fn goniometric(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<
 
 /// A spot light as wide as the image at its middle, with the image's mean intensity.
 fn projection(pbrt: &mut Pbrt, list: &ParameterList, matrix: &DMat4) -> Result<Option<Spec>, FormatError> {
-    let what = "a projection light shines into a cone, by the mean of its picture";
+    let what = "a projection light shines uniformly into a cone, with the mean of its picture";
     pbrt.oddities.note(what, || list.at.clone());
     let mean = match picture_name(list)? {
         Some((name, _)) => {
             TextureOrValue::Picture(Arc::new(pbrt.light_file(&name, &list.place("filename"))?)).mean()
         }
         None => {
-            let what = "filename (of the picture that is thrown)".to_owned();
+            let what = "filename (of the projected picture)".to_owned();
             return Err(SceneError::Missing { what, at: list.at.clone() }.into());
         }
     };

@@ -42,7 +42,7 @@ impl Pbrt<'_, '_> {
     pub(super) fn add_medium(&mut self, name: String, list: &ParameterList) -> Result<(), FormatError> {
         let kind = list.text("type")?.unwrap_or("homogeneous").to_owned();
         if kind != "homogeneous" {
-            let what = format!("a medium of type '{kind}' is not shown");
+            let what = format!("a medium of type '{kind}' is not supported");
             self.oddities.note(&what, || list.at.clone());
             self.media.insert(name.into(), Medium { absorption: Rgb::BLACK });
             return Ok(());
@@ -50,7 +50,7 @@ impl Pbrt<'_, '_> {
         let preset = list.text("preset")?;
         let preset = match preset.map(|name| (name, measured(name))) {
             Some((name, None)) => {
-                let what = format!("the measured medium '{name}' is not known: as if it were not named");
+                let what = format!("the measured medium '{name}' is not known and is ignored");
                 self.oddities.note(&what, || list.place("preset"));
                 None
             }
@@ -68,11 +68,11 @@ impl Pbrt<'_, '_> {
         };
         list.has("g");
         if !scattering.is_black() {
-            let what = "scattering within a medium is not shown: only its absorption is";
+            let what = "scattering in a medium is not supported: only its absorption is used";
             self.oddities.note(what, || list.place("sigma_s"));
         }
         if list.has("Le") {
-            self.oddities.note("light given out by a medium is not shown", || list.place("Le"));
+            self.oddities.note("emission by a medium is not supported", || list.place("Le"));
             list.has("Lescale");
         }
         let scale = list.finite("scale", 1.0)?;

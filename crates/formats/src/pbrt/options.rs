@@ -46,7 +46,7 @@ impl Pbrt<'_, '_> {
             "camera" => {
                 let matrices = self.state.matrices;
                 if !self.state.media[1].is_empty() {
-                    self.oddities.note("a medium around the camera is not shown", || entity.at.clone());
+                    self.oddities.note("a medium around the camera is not supported", || entity.at.clone());
                 }
                 self.systems.insert("camera".to_owned(), matrices.map(|m| m.inverse()));
                 self.options.camera = Some((entity, matrices));
@@ -56,7 +56,7 @@ impl Pbrt<'_, '_> {
             "sampler" => self.options.sampler = Some(entity),
             "integrator" | "surfaceintegrator" => self.options.integrator = Some(entity),
             "volumeintegrator" | "renderer" => {
-                let message = format!("'{what}' of version 2 is not used");
+                let message = format!("'{what}' of pbrt-v2 is not used");
                 self.oddities.note(&message, || entity.at.clone());
             }
             _ => {}
@@ -112,23 +112,24 @@ impl Pbrt<'_, '_> {
             if gain > 0.0 {
                 self.options.gain = gain;
             } else {
-                let what = "a film that is exposed to no light would be black: as if it were, for one second";
+                let what =
+                    "an exposure of zero would make the picture black: an exposure of one second is used";
                 self.oddities.note(what, || film.at.clone());
             }
         }
         if film.kind == "spectral" {
-            self.oddities
-                .note("a spectral film is not made: pictures are red, green and blue", || film.at.clone());
+            self.oddities.note("spectral films are not supported: pictures are RGB", || film.at.clone());
         }
         let sensor = list.text("sensor")?.unwrap_or("cie1931");
         if sensor != "cie1931" || list.finite("whitebalance", 0.0)? != 0.0 {
             list.has("whitebalance");
-            let what = "colours are those of the standard observer, and not of a sensor or a white balance";
+            let what =
+                "sensors and white balance are not supported: colours are those of the standard observer";
             self.oddities.note(what, || list.place("sensor"));
         }
         for name in ["cropwindow", "pixelbounds"] {
             if list.has(name) {
-                let what = "the whole film is rendered, and not only a part of it; use --crop";
+                let what = "the whole film is rendered, not only a part of it; use --crop";
                 self.oddities.note(what, || list.place(name));
             }
         }
@@ -177,7 +178,7 @@ impl Pbrt<'_, '_> {
             list.has(name);
         }
         if !is_same {
-            let what = format!("the pixel filter is '{ours}' of radius {radius}, and not this one");
+            let what = format!("the pixel filter is '{ours}' with radius {radius} instead of this one");
             self.oddities.note(&what, || filter.at.clone());
         }
         list.report_unused(&mut self.oddities);
@@ -210,11 +211,14 @@ impl Pbrt<'_, '_> {
     fn integrator(&mut self, integrator: &Entity) -> Result<(i32, Span), FormatError> {
         let list = &integrator.parameters;
         if ["ao", "ambientocclusion", "function"].contains(&integrator.kind.as_str()) {
-            let what = format!("the integrator '{}' is not used: light is followed", integrator.kind);
+            let what = format!(
+                "the integrator '{}' is not supported: the default integrator is used",
+                integrator.kind
+            );
             self.oddities.note(&what, || integrator.at.clone());
         }
         if list.flag("regularize", false)? {
-            self.oddities.note("rough reflections are not regularised", || list.place("regularize"));
+            self.oddities.note("regularisation is not supported", || list.place("regularize"));
         }
         Ok((list.integer("maxdepth")?.unwrap_or(5), list.place("maxdepth")))
     }

@@ -93,7 +93,7 @@ impl Parameter {
             Values::Texts(list) => counted(list.len(), "text"),
             Values::Bools(list) => counted(list.len(), "truth value"),
         };
-        let message = format!("'{}' has to be {wanted}, and here are {found}", self.name);
+        let message = format!("'{}' must be {wanted}, not {found}", self.name);
         FormatError::malformed(message, self.at.clone())
     }
 
@@ -135,7 +135,7 @@ pub(super) fn read(
         let mut words = declared.split_ascii_whitespace();
         let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
             let message = format!(
-                "'{declared}' declares no parameter: it takes a type and a name, as in \"float radius\""
+                "'{declared}' does not declare a parameter: write a type and a name, as in \"float radius\""
             );
             return Err(FormatError::malformed(message, place));
         };
@@ -203,7 +203,7 @@ fn is_text(lexer: &mut Lexer) -> Result<bool, FormatError> {
 
 fn push(values: &mut Values, token: &Token, lexer: &Lexer, name: &str, at: usize) -> Result<(), FormatError> {
     let wrong = |wanted: &str| {
-        let message = format!("'{name}' takes {wanted}, and not {}", shown(token));
+        let message = format!("'{name}' takes {wanted}, not {}", shown(token));
         Err(lexer.error(message, at))
     };
     match values {
@@ -298,7 +298,7 @@ impl ParameterList {
         if number.is_finite() {
             return Ok(number);
         }
-        Err(FormatError::malformed(format!("'{name}' has to be finite, and not {number}"), self.place(name)))
+        Err(FormatError::malformed(format!("'{name}' must be finite, not {number}"), self.place(name)))
     }
 
     /// A single whole number.
@@ -372,7 +372,7 @@ impl ParameterList {
             [] => Ok(default),
             [one] if one.is_finite() => Ok(*one),
             _ => {
-                let message = format!("'{name}' has to be three finite numbers");
+                let message = format!("'{name}' must be three finite numbers");
                 Err(FormatError::malformed(message, self.place(name)))
             }
         }

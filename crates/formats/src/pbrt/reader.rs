@@ -179,17 +179,19 @@ impl Pbrt<'_, '_> {
         directives::run(self, &mut lexer)?;
         if let Some((_, at, _)) = self.pushed.last() {
             let message =
-                "what begins here does not end in the file: close it with AttributeEnd or ObjectEnd";
+                "what begins here is not closed before the file ends: add AttributeEnd or ObjectEnd";
             return Err(FormatError::malformed(message, at.clone()));
         }
         if let Some((name, _)) = &self.definition {
-            let message = format!("the object '{name}' does not end in the file: close it with ObjectEnd");
+            let message = format!("the object '{name}' is not closed before the file ends: add ObjectEnd");
             return Err(FormatError::malformed(message, crate::text::whole_file(source.name)));
         }
         if !self.in_world {
-            self.oddities.note("there is no WorldBegin in it, so that nothing can be seen", || {
-                crate::text::whole_file(source.name)
-            });
+            self.oddities.note(
+                "it has no WorldBegin, so there is nothing to render: add WorldBegin before the \
+                                shapes",
+                || crate::text::whole_file(source.name),
+            );
         }
         self.finish()
     }
@@ -198,18 +200,19 @@ impl Pbrt<'_, '_> {
     pub(super) fn include(&mut self, name: &str, at: &Span) -> Result<(), FormatError> {
         let path = self.reading.locate_except(self.folder.as_deref(), name, &self.open, at)?;
         if self.open.contains(&path) {
-            let message = format!("'{name}' includes itself, directly or through others: take it out here");
+            let message =
+                format!("'{name}' includes itself, directly or through other files: remove it here");
             return Err(FormatError::malformed(message, at.clone()));
         }
         if self.open.len() >= MAX_CHAIN {
-            let message = format!("files include each other more than {MAX_CHAIN} deep");
+            let message = format!("files are included more than {MAX_CHAIN} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         let raw = self.reading.load(&path)?;
         let bytes = super::gzip::plain(raw, self.reading, &path, at)?;
         self.included = self.included.saturating_add(bytes.len() as u64 + MIN_FILE);
         if self.included > self.reading.options.max_memory {
-            let message = "so much is included, over and over, that reading it would not end: take some out";
+            let message = "the includes multiply so much that reading would not end: remove some";
             return Err(FormatError::malformed(message, at.clone()));
         }
         let shown = Path::new(&*at.file).with_file_name(name).display().to_string().into();

@@ -212,7 +212,7 @@ impl Pbrt<'_, '_> {
     pub(super) fn colour_of(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
         let at = &parameter.at;
         let wrong = |wanted: &str| {
-            let message = format!("'{}' has to be {wanted}", parameter.name);
+            let message = format!("'{}' must be {wanted}", parameter.name);
             Err(FormatError::malformed(message, at.clone()))
         };
         let colour = match (parameter.kind, &parameter.values) {
@@ -235,12 +235,12 @@ impl Pbrt<'_, '_> {
             _ => return wrong("a colour or a spectrum"),
         };
         if !colour.is_finite() || colour.to_array().iter().any(|c| *c < 0.0) {
-            let what = "colours have numbers that are negative or none: these are taken as 0";
+            let what = "colours have negative numbers or NaN: these are set to 0";
             self.oddities.note(what, || at.clone());
         }
         let held = colour.map(|c| if c.is_finite() { c.max(0.0) } else { 0.0 });
         if meaning == Meaning::Surface && held.max_channel() > 1.0 {
-            self.oddities.note("more is reflected than falls in: taken as all of it", || at.clone());
+            self.oddities.note("a reflectance is above 1: it is limited to 1", || at.clone());
         }
         Ok(if meaning == Meaning::Surface { held.clamp(0.0, 1.0) } else { held })
     }
@@ -276,7 +276,7 @@ impl Pbrt<'_, '_> {
         }
         if let Some(pair) = pairs.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
             let message = format!(
-                "the wavelengths of the spectrum '{}' have to rise, but behind {} comes {}",
+                "the wavelengths of the spectrum '{}' must increase, but {} is followed by {}",
                 parameter.name, pair[0][0], pair[1][0]
             );
             return wrong(message);
@@ -287,7 +287,7 @@ impl Pbrt<'_, '_> {
     /// A spectrum by its name, or from the file with that name.
     fn of_name(&mut self, parameter: &Parameter, meaning: Meaning) -> Result<Rgb, FormatError> {
         let Some(name) = parameter.text() else {
-            let message = format!("'{}' has to be one spectrum", parameter.name);
+            let message = format!("'{}' must be one spectrum", parameter.name);
             return Err(FormatError::malformed(message, parameter.at.clone()));
         };
         Ok(match spectra::named(name) {
@@ -332,7 +332,7 @@ impl Pbrt<'_, '_> {
                 match super::lexer::number_of(word) {
                     Some(number) => numbers.push(number),
                     None => {
-                        let message = format!("'{name}' is no spectrum: it takes pairs of numbers");
+                        let message = format!("'{name}' is not a spectrum: it needs pairs of numbers");
                         return Err(FormatError::malformed(message, parameter.at.clone()));
                     }
                 }

@@ -110,7 +110,7 @@ impl Pbrt<'_, '_> {
             Some(Slot::Ready(ink)) => return Ok(ink.clone()),
             Some(Slot::Defined(entity)) => entity.clone(),
             _ => {
-                let message = format!("the texture '{name}' is made of itself, directly or through others");
+                let message = format!("the texture '{name}' contains itself, directly or through others");
                 return Err(FormatError::malformed(message, at.clone()));
             }
         };
@@ -118,7 +118,7 @@ impl Pbrt<'_, '_> {
         let meaning = if slot == 1 { Meaning::Number } else { Meaning::Surface };
         self.textures.depth += 1;
         if self.textures.depth > MAX_DEPTH {
-            let message = format!("textures are made of each other more than {MAX_DEPTH} deep");
+            let message = format!("textures are nested more than {MAX_DEPTH} levels deep");
             return Err(FormatError::malformed(message, at.clone()));
         }
         let ink = self.made(&entity, meaning)?;
@@ -138,7 +138,7 @@ impl Pbrt<'_, '_> {
             let names = TEXTURES.iter().map(|(name, _)| *name).chain(PLAIN.iter().map(|(name, _)| *name));
             return Err(unknown("texture", &entity.kind, names, &entity.at));
         };
-        let what = format!("the texture '{}' is not shown: one colour stands in its place", entity.kind);
+        let what = format!("the texture '{}' is not supported: one colour is used instead", entity.kind);
         self.oddities.note(&what, || entity.at.clone());
         Ok(TextureOrValue::Colour(Rgb::from_array(*plain)))
     }
@@ -163,7 +163,7 @@ impl Pbrt<'_, '_> {
         let mapping = list.text("mapping")?.unwrap_or("uv");
         if mapping != "uv" {
             let what =
-                format!("the mapping '{mapping}' is not shown: texture coordinates of meshes are used");
+                format!("the mapping '{mapping}' is not supported: the meshes' texture coordinates are used");
             self.oddities.note(&what, || list.place("mapping"));
             for name in ["v1", "v2", "udelta", "vdelta", "uscale", "vscale"] {
                 list.has(name);
@@ -186,7 +186,7 @@ impl Pbrt<'_, '_> {
     /// The image of a light; a uniform grey, with a warning, if it cannot be read: any colour would tint the whole
     /// scene.
     pub(super) fn light_file(&mut self, name: &str, at: &Span) -> Result<Texture, FormatError> {
-        self.file_or(name, Texels::Colours, at, "an even grey of 0.5", Texture::missing_light)
+        self.file_or(name, Texels::Colours, at, "a uniform grey of 0.5", Texture::missing_light)
     }
 
     fn file_or(
@@ -251,7 +251,7 @@ fn direction_mix(
 ) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 0.0)?, pbrt.part(list, "tex2", meaning, 1.0)?);
     list.has("dir");
-    let what = "the texture 'directionmix' is not shown: the mean of its parts stands in its place";
+    let what = "the texture 'directionmix' is not supported: the mean of its parts is used instead";
     pbrt.oddities.note(what, || list.at.clone());
     Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5))
 }
@@ -263,8 +263,7 @@ fn checkerboard(
 ) -> Result<TextureOrValue, FormatError> {
     let (a, b) = (pbrt.part(list, "tex1", meaning, 1.0)?, pbrt.part(list, "tex2", meaning, 0.0)?);
     if list.integer("dimension")?.unwrap_or(2) == 3 {
-        let what =
-            "a checkerboard of three dimensions is not shown: the mean of its parts stands in its place";
+        let what = "a three-dimensional checkerboard is not supported: the mean of its parts is used instead";
         pbrt.oddities.note(what, || list.at.clone());
         return Ok(TextureOrValue::Colour((a.mean() + b.mean()) * 0.5));
     }
@@ -332,13 +331,13 @@ fn wrap(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Wrap, FormatError> {
         "repeat" => Wrap::Repeat,
         "clamp" => Wrap::Clamp,
         other @ ("black" | "octahedralsphere") => {
-            let what = format!("beyond the edges of a texture its edge is seen, and not '{other}'");
+            let what = format!("the wrap mode '{other}' is not supported: the texture's edge is repeated");
             pbrt.oddities.note(&what, || list.place("wrap"));
             Wrap::Clamp
         }
         other => {
             let known = ["repeat", "clamp", "black", "octahedralsphere"];
-            return Err(unknown("way to wrap", other, known, &list.place("wrap")));
+            return Err(unknown("wrap mode", other, known, &list.place("wrap")));
         }
     })
 }

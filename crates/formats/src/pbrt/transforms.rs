@@ -44,7 +44,7 @@ impl Directive<'_, '_, '_, '_> {
         if self.pbrt.state.matrices.iter().all(DMat4::is_finite) {
             return Ok(());
         }
-        self.error("with this, things are scaled or moved beyond all numbers")
+        self.error("this transform overflows")
     }
 
     fn active_transform(&mut self) -> Result<(), FormatError> {
@@ -54,7 +54,7 @@ impl Directive<'_, '_, '_, '_> {
             Token::Word(b"StartTime") => [true, false],
             Token::Word(b"EndTime") => [false, true],
             _ => {
-                let message = format!("here should be All, StartTime or EndTime, and not {}", shown(&token));
+                let message = format!("All, StartTime or EndTime is expected here, not {}", shown(&token));
                 return Err(self.lexer.error(message, at));
             }
         };
@@ -68,19 +68,22 @@ impl Directive<'_, '_, '_, '_> {
             b"Scale" => Some(DMat4::from_scale(self.vector("a scale")?)),
             b"Rotate" => {
                 let degrees = self.lexer.number("an angle")?;
-                rotation(degrees, self.vector("the axis of a turn")?)
+                rotation(degrees, self.vector("the axis of a rotation")?)
             }
             b"LookAt" => {
-                let [eye, at, up] =
-                    [self.vector("the eye")?, self.vector("what is looked at")?, self.vector("what is up")?];
+                let [eye, at, up] = [
+                    self.vector("the eye")?,
+                    self.vector("the point to look at")?,
+                    self.vector("the up direction")?,
+                ];
                 look_at(eye, at, up)
             }
             _ => Some(self.matrix()?),
         };
         match step {
             Some(step) => Ok(step),
-            None if word == b"Rotate" => self.error("this turn has no axis: it must not be 0 0 0"),
-            None => self.error("a camera must not look along its own up, nor at the point where it stands"),
+            None if word == b"Rotate" => self.error("this rotation has no axis: it must not be 0 0 0"),
+            None => self.error("a camera must not look along its own up direction, nor at its own position"),
         }
     }
 
@@ -100,9 +103,9 @@ impl Directive<'_, '_, '_, '_> {
             *number = self.lexer.number("one of 16 numbers of a matrix")?;
         }
         if bracket {
-            let (token, at) = self.lexer.need("']', behind 16 numbers")?;
+            let (token, at) = self.lexer.need("']' after 16 numbers")?;
             if token != Token::Close {
-                let message = format!("a matrix has 16 numbers; here is {} in place of ']'", shown(&token));
+                let message = format!("a matrix has 16 numbers; ']' is expected here, not {}", shown(&token));
                 return Err(self.lexer.error(message, at));
             }
         }
@@ -116,7 +119,7 @@ impl Directive<'_, '_, '_, '_> {
         if last == DVec4::W {
             return matrix;
         }
-        let what = "a matrix has another last row than 0 0 0 1: its affine part is used";
+        let what = "a matrix does not end in the row 0 0 0 1: its affine part is used";
         self.pbrt.oddities.note(what, || self.at.clone());
         // Points are divided by their homogeneous coordinate, so a single number there scales all of them.
         let is_scale = last.truncate() == DVec3::ZERO && last.w != 0.0;

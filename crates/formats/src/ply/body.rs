@@ -186,7 +186,8 @@ impl<'a> Body<'a> {
 
     #[cold]
     fn cut_off(&self) -> FormatError {
-        let message = "the file ends before all that its header says: it was cut off, or its header is wrong";
+        let message = "the file ends before everything that its header promises: it was cut off, or its header is \
+                       wrong";
         let at = if self.encoding == Encoding::Ascii {
             self.places.at(self.bytes.len())
         } else {
@@ -198,6 +199,6 @@ impl<'a> Body<'a> {
     #[cold]
     fn bad_word(&self, word: &[u8], wanted: &str) -> FormatError {
         let at = self.places.at(self.cursor.offset() - word.len());
-        FormatError::malformed(format!("{} is not a {wanted}, which should be here", quoted(word)), at)
+        FormatError::malformed(format!("{} is not a {wanted}, which is expected here", quoted(word)), at)
     }
 }

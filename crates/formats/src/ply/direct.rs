@@ -41,9 +41,9 @@ impl Ply<'_, '_, '_> {
                 let index = self.body.integer(list.scalar)?;
                 if !(0..known as i64).contains(&index) {
                     let message = match index < 0 {
-                        true => format!("this face names vertex {index}: vertices are counted from 0"),
+                        true => format!("this face refers to vertex {index}: vertices are counted from 0"),
                         false => format!(
-                            "this face names vertex {index}, but the file has only {known}, counted from 0"
+                            "this face refers to vertex {index}, but the file has only {known}, counted from 0"
                         ),
                     };
                     return Err(FormatError::malformed(message, self.places.at(start)));
@@ -60,7 +60,8 @@ impl Ply<'_, '_, '_> {
             let points = corners.iter().map(|&i| self.soup.positions[i as usize]);
             let cut = triangulator.triangulate(points, |t| triangles.push(t.map(|i| corners[i as usize])));
             if cut.is_none() {
-                let what = "a hollow polygon has too many corners to be cut, and is drawn as if it bulged";
+                let what =
+                    "a concave polygon has too many corners to triangulate exactly and is treated as convex";
                 let places = self.places;
                 self.oddities.note(what, || places.at(start));
             }

@@ -136,7 +136,7 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
                 }
                 let Some(element) = elements.last_mut() else {
                     return fail(
-                        "a property belongs to an element, which is declared before".to_owned(),
+                        "a property belongs to an element: declare the element first".to_owned(),
                         start,
                     );
                 };
@@ -152,7 +152,8 @@ pub(super) fn read_header(source: &Source, places: &Places) -> Result<Header, Fo
             b"" => {}
             word => {
                 let message = format!(
-                    "{} is not a keyword of a PLY header, which are format, comment, obj_info, element, property, end_header",
+                    "{} is not a keyword of a PLY header: use format, comment, obj_info, element, property or \
+                     end_header",
                     quoted(word)
                 );
                 return fail(message, start);
@@ -171,7 +172,7 @@ fn read_encoding(cursor: &mut Cursor, places: &Places) -> Result<Encoding, Forma
         b"binary_big_endian" => Encoding::Big,
         _ => {
             let message = format!(
-                "{} is not a format of PLY files, which are ascii, binary_little_endian or binary_big_endian",
+                "{} is not a PLY format: use ascii, binary_little_endian or binary_big_endian",
                 quoted(word)
             );
             return Err(FormatError::malformed(message, places.at(cursor.offset() - word.len())));
@@ -197,7 +198,7 @@ fn read_property(cursor: &mut Cursor, places: &Places) -> Result<Property, Forma
         let word = cursor.word();
         Scalar::named(word).ok_or_else(|| {
             let message = format!(
-                "{} is not a type of PLY files, which are char, uchar, short, ushort, int, uint, float or double",
+                "{} is not a PLY type: use char, uchar, short, ushort, int, uint, float or double",
                 quoted(word)
             );
             FormatError::malformed(message, places.at(cursor.offset() - word.len()))

@@ -111,7 +111,7 @@ impl Ply<'_, '_, '_> {
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
         if element.count >= u64::from(NONE) {
-            let message = "there are more than 4 billion vertices: cut the file into several";
+            let message = "there are more than 4 billion vertices: split the file";
             return Err(FormatError::malformed(message, self.places.at(element.offset)));
         }
         let floats = 3 * (1 + usize::from(slots.normals) + usize::from(slots.kd) + usize::from(slots.ks))
@@ -155,7 +155,7 @@ impl Ply<'_, '_, '_> {
     pub(super) fn end_row(&mut self, start: usize) {
         if self.body.end_row() {
             let places = self.places;
-            self.oddities.note("a line has more words than the header says", || places.at(start));
+            self.oddities.note("a line has more values than the header declares", || places.at(start));
         }
     }
 
@@ -190,7 +190,7 @@ impl Ply<'_, '_, '_> {
         }
         if values.iter().any(|x| !x.is_finite()) {
             let places = self.places;
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.oddities.note(what, || places.at(start));
         }
     }
@@ -241,7 +241,7 @@ impl Ply<'_, '_, '_> {
             match vertex {
                 None if strips && index == -1 => (strip, turned) = ([NONE; 2], false),
                 None => {
-                    let message = format!("this face names vertex {index}: vertices are counted from 0");
+                    let message = format!("this face refers to vertex {index}: vertices are counted from 0");
                     return Err(FormatError::malformed(message, self.places.at(start)));
                 }
                 Some(vertex) if strips => {
@@ -275,7 +275,7 @@ impl Ply<'_, '_, '_> {
         self.reading.budget.take::<Corner>(corners.len(), self.source.name)?;
         self.reading.budget.take::<[usize; 2]>(1, self.source.name)?;
         if (soup.faces.corner_count() + corners.len()) as u64 >= u64::from(NONE) {
-            let message = "there are more than 4 billion corners: cut the file into several";
+            let message = "there are more than 4 billion corners: split the file";
             return Err(FormatError::malformed(message, self.places.at(start)));
         }
         soup.smooth(self.smoothing);
@@ -301,7 +301,7 @@ impl Ply<'_, '_, '_> {
         if uvs.len() != corners.len() {
             if !uvs.is_empty() && !corners.is_empty() {
                 let places = self.places;
-                let what = "a face has other numbers of corners and of texture coordinates";
+                let what = "a face has different numbers of corners and of texture coordinates";
                 self.oddities.note(what, || places.at(start));
             }
             return;
@@ -329,7 +329,7 @@ impl Ply<'_, '_, '_> {
         }
         if !self.edges.is_empty() {
             let places = self.places;
-            self.oddities.note("edges beside faces are not drawn", || places.whole());
+            self.oddities.note("edges are not rendered if there are faces", || places.whole());
         }
         let (normals, uvs) = (self.vertices.normals, self.vertices.uvs);
         let wedges = std::mem::take(&mut self.wedge_uvs);

@@ -43,13 +43,13 @@ impl Ply<'_, '_, '_> {
         let (soup, mut lines) = (std::mem::take(&mut self.soup), std::mem::take(&mut self.edges));
         let known = soup.positions.len();
         if known == 0 {
-            return Err(FormatError::malformed("there is no face and no vertex in it", self.places.whole()));
+            return Err(FormatError::malformed("it contains no faces and no vertices", self.places.whole()));
         }
         let given = lines.len();
         lines.retain(|ends| ends.iter().all(|&end| (end as usize) < known));
         if lines.len() < given {
             let places = self.places;
-            let what = "edges name vertices that the file does not have; they are left out";
+            let what = "some edges refer to vertices that the file does not have; they are left out";
             self.oddities.note(what, || places.whole());
         }
         self.reading.budget.take_bytes(known as u64 * 4, self.source.name)?;

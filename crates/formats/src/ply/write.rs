@@ -14,18 +14,20 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     warn_of_scene(scene, "PLY", writing);
     warn_of_materials(scene, "PLY", writing);
     if scene.objects.len() > 1 {
-        writing.warn("PLY files hold one object: all are joined");
+        writing.warn("PLY files hold one object: all objects are merged");
     }
     let meshes: Vec<Cow<Mesh>> = scene.objects.iter().map(|object| in_place(object, writing)).collect();
     let meshes: Vec<&Mesh> = meshes.iter().map(|mesh| &**mesh).collect();
     if !holds_all(&meshes) {
-        writing.warn("a PLY file holds faces, lines or points: of a scene with several of these, the first are written");
+        writing.warn(
+            "a PLY file holds faces, lines or points: only the first kind that the scene has is written",
+        );
     }
     let ascii = writing.options.ascii;
     match encode(&meshes, ascii) {
         Some(bytes) => writing.main = bytes,
         None => {
-            let message = "a PLY file holds at most 2,147,483,647 vertices: write several";
+            let message = "a PLY file holds at most 2,147,483,647 vertices: split the scene";
             return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
         }
     }

@@ -60,7 +60,7 @@ impl Ascii<'_, '_, '_> {
                 b"endsolid" | b"outer" | b"endloop" | b"end" => {}
                 _ => {
                     let message = format!(
-                        "{} should not stand here: a text STL has 'facet', 'outer loop', three times 'vertex x y z', \
+                        "{} is not expected here: a text STL has 'facet', 'outer loop', three times 'vertex x y z', \
                          'endloop', 'endfacet'",
                         quoted(word)
                     );
@@ -100,7 +100,7 @@ impl Ascii<'_, '_, '_> {
             *number = parse_f32(word).ok_or_else(|| {
                 let at = self.places.at(self.cursor.offset() - word.len());
                 let message = match word {
-                    b"" => "a vertex has three numbers, but the line ends before".to_owned(),
+                    b"" => "a vertex has three numbers, but the line ends earlier".to_owned(),
                     word => format!("{} is not a number; a vertex has three", quoted(word)),
                 };
                 FormatError::malformed(message, at)
@@ -109,7 +109,7 @@ impl Ascii<'_, '_, '_> {
         let point = Vec3::from(point);
         if !point.is_finite() {
             let (places, offset) = (&self.places, self.cursor.offset());
-            let what = "a vertex has numbers that are infinite or no numbers; it is kept";
+            let what = "a vertex has numbers that are infinite or not numbers (NaN); it is kept";
             self.oddities.note(what, || places.at(offset));
         }
         self.reading.budget.take::<(Vec3, [u32; 3])>(1, self.source.name)?;
@@ -126,7 +126,7 @@ impl Ascii<'_, '_, '_> {
         }
         let first = mesh.positions.len();
         if (first + corners.len()) as u64 >= u64::from(u32::MAX) {
-            let message = "there are more than 4 billion corners: cut the file into several";
+            let message = "there are more than 4 billion corners: split the file";
             return Err(FormatError::malformed(message, self.places.at(start)));
         }
         let triangles = &mut mesh.triangles;
@@ -137,7 +137,8 @@ impl Ascii<'_, '_, '_> {
         self.corners.clear();
         if whole.is_none() {
             let places = &self.places;
-            let what = "a hollow polygon has too many corners to be cut, and is drawn as if it bulged";
+            let what =
+                "a concave polygon has too many corners to triangulate exactly and is treated as convex";
             self.oddities.note(what, || places.at(start));
         }
         Ok(())

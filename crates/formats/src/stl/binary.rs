@@ -27,8 +27,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let whole = || whole_file(source.name);
     let Some(count) = claimed(source.bytes) else {
         let message = format!(
-            "a binary STL file has {HEADER} bytes before its first triangle, but this has {} in all, and it does \
-             not begin with 'solid' as a text one does",
+            "a binary STL file has {HEADER} bytes before its first triangle, but this file has only {}, and it does \
+             not begin with 'solid' as a text STL does",
             source.bytes.len()
         );
         return Err(FormatError::malformed(message, whole()));
@@ -37,14 +37,15 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
     let room = body.len() / TRIANGLE;
     if (room as u64) < u64::from(count) {
         let message = format!(
-            "the header says {count} triangles, but there are bytes for {room}: the file was cut off, or is not an STL"
+            "the header says {count} triangles, but there are bytes for only {room}: the file was cut off, or is not \
+             an STL file"
         );
         return Err(FormatError::malformed(message, whole()));
     }
     let mut scene = SceneBuilder::default();
     let mut oddities = Oddities::default();
     if body.len() as u64 != u64::from(count) * TRIANGLE as u64 {
-        oddities.note("there are bytes behind the last triangle; they are left out", whole);
+        oddities.note("there are bytes after the last triangle; they are ignored", whole);
     }
     reading.budget.take_bytes(u64::from(count) * size_of::<([Vec3; 3], [u32; 3])>() as u64, source.name)?;
     let mut mesh = Mesh { name: source.stem(), ..Mesh::default() };
@@ -56,7 +57,8 @@ pub(super) fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilde
         mesh.triangles.push([first, first + 1, first + 2]);
     }
     if mesh.positions.iter().any(|p| !p.is_finite()) {
-        oddities.note("there are triangles with infinite or no numbers; they are kept", whole);
+        oddities
+            .note("some triangles have numbers that are infinite or not numbers (NaN); they are kept", whole);
     }
     if count > 0 {
         let name = mesh.name.clone();

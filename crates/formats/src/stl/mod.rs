@@ -14,7 +14,7 @@ use bilux_scene::{Axis, SceneBuilder, UpHint};
 pub(crate) const ENTRY: SceneFormatEntry = SceneFormatEntry {
     entry: Entry {
         name: "stl",
-        summary: "STL, text or binary: triangles as 3D printers have them",
+        summary: "STL, text or binary: triangles, as for 3D printing",
         source: "",
         parameters: &[],
     },
@@ -34,7 +34,7 @@ fn read(reading: &mut Reading, source: &Source) -> Result<SceneBuilder, FormatEr
         ascii::read(reading, source)?
     };
     if scene.objects.is_empty() {
-        return Err(FormatError::malformed("there is no triangle in it", whole_file(source.name)));
+        return Err(FormatError::malformed("it contains no triangles", whole_file(source.name)));
     }
     scene.add_material(default_material());
     scene.unit = unit(source.bytes);

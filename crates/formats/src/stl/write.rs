@@ -15,7 +15,7 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
     let ascii = writing.options.ascii;
     if !ascii {
         if scene.objects.len() > 1 {
-            writing.warn("binary STL files hold one object: all are joined");
+            writing.warn("binary STL files hold one object: all objects are merged");
         }
         // Readers take a file that begins with 'solid' for text.
         writing.main = b"binary STL".to_vec();
@@ -28,11 +28,11 @@ pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), F
             [("normals of vertices", !mesh.normals.is_empty()), ("texture coordinates", !mesh.uvs.is_empty())]
         {
             if given {
-                writing.warn(format!("STL files hold no {what}: left out"));
+                writing.warn(format!("STL files cannot store {what}: left out"));
             }
         }
         if !(mesh.vertex_kd.is_empty() && mesh.vertex_ks.is_empty()) {
-            writing.warn("STL files hold no colours: left out");
+            writing.warn("STL files cannot store colours: left out");
         }
         let out = &mut writing.main;
         match ascii {

@@ -78,10 +78,10 @@ impl Xyz<'_, '_, '_> {
                 }
                 Line::Words(names) if lines == 0 => columns = Columns::named(&names),
                 Line::Words(_) => {
-                    let words = "a line is no point: it has words in place of numbers, and is left out";
+                    let words = "a line has words instead of numbers and is left out";
                     let places = self.places;
                     if self.cloud.positions.is_empty() {
-                        let message = "a point should stand here: three numbers or more, x y z [r g b]";
+                        let message = "a point is expected here: three numbers or more, x y z [r g b]";
                         return Err(FormatError::malformed(message, places.at(start)));
                     }
                     self.oddities.note(words, || places.at(start));
@@ -107,7 +107,7 @@ impl Xyz<'_, '_, '_> {
             match parse_f64(word) {
                 Some(value) => *number = value,
                 None if words.len() > 64 || word.iter().any(|b| b.is_ascii_control()) => {
-                    let message = format!("{} is no number of a point", quoted(word));
+                    let message = format!("{} is not a number", quoted(word));
                     return Err(FormatError::malformed(message, self.places.at(start)));
                 }
                 None => {
@@ -134,8 +134,7 @@ impl Xyz<'_, '_, '_> {
         let are_numbers = |words: &[&[u8]]| words.iter().take(3).all(|word| parse_f64(word).is_some());
         match words.split_first() {
             Some((atom, rest)) if is_atom(atom) && rest.len() >= 3 && are_numbers(rest) => {
-                let message =
-                    "this is a molecule, as chemists write it, and no cloud of points: it is not read";
+                let message = "this is an XYZ file of a molecule, not a point cloud: it cannot be read";
                 Err(FormatError::malformed(message, self.places.at(at)))
             }
             _ => Ok(()),
@@ -166,12 +165,12 @@ impl Xyz<'_, '_, '_> {
         }
         self.reading.budget.take::<(DVec3, u32)>(1, self.source.name)?;
         if self.cloud.positions.len() as u64 >= u64::from(u32::MAX) - 1 {
-            let message = "there are more than 4 billion points: cut the file into several";
+            let message = "there are more than 4 billion points: split the file";
             return Err(FormatError::malformed(message, places.at(start)));
         }
         let p = DVec3::from(columns.position.map(|column| row.numbers[column]));
         if !p.is_finite() {
-            let what = "a point has numbers that are infinite or no numbers, and is left out";
+            let what = "a point has numbers that are infinite or not numbers (NaN), and is left out";
             self.oddities.note(what, || places.at(start));
             return Ok(());
         }
@@ -188,7 +187,7 @@ impl Xyz<'_, '_, '_> {
 
     fn finish(mut self) -> Result<SceneBuilder, FormatError> {
         if self.cloud.positions.is_empty() {
-            let message = "there is no point in it: each is a line of three numbers or more, x y z [r g b]";
+            let message = "it contains no points: each is a line of three numbers or more, x y z [r g b]";
             return Err(FormatError::malformed(message, self.places.whole()));
         }
         self.reading.budget.take::<Rgb>(self.cloud.positions.len(), self.source.name)?;

@@ -85,7 +85,7 @@ fn vertices_may_bring_kd_and_ks() {
 fn a_ninth_number_is_left_out_with_a_warning() {
     let scene = read_text("asc", format!("triangle\n{} 7\n", CORNERS.join(" 7\n"))).unwrap();
     assert_eq!(scene.objects[0].mesh.uvs[1], Vec2::X);
-    assert_eq!(warnings(&scene), "scene.asc:2:1: a ninth number per vertex is left out");
+    assert_eq!(warnings(&scene), "scene.asc:2:1: a ninth number per vertex is ignored");
 }
 
 #[test]
@@ -101,8 +101,8 @@ fn broken_files_are_refused_with_their_place() {
     let good = triangle("triangle", " ", "\n");
     let cases = [
         (String::new(), "the file is empty"),
-        ("\n\n".to_owned(), "no triangle"),
-        ("\0\u{1}binary\u{2}".to_owned(), "no triangle"),
+        ("\n\n".to_owned(), "no triangles"),
+        ("\0\u{1}binary\u{2}".to_owned(), "no triangles"),
         (format!("{good}triangle\n"), "scene.asc:5:1: the file ends after this line"),
         (
             format!("{good}triangle\n0 0 0 0 0 1 0 0\n"),
@@ -110,7 +110,7 @@ fn broken_files_are_refused_with_their_place() {
         ),
         (
             format!("{good}triangle\n0 0 0 0 0 1 0 0\n0 0 0 0"),
-            "scene.asc:7:1: this vertex has 4 numbers, where 8",
+            "scene.asc:7:1: this vertex has 4 numbers, but 8",
         ),
         (good.replace("1 0 0 0 0 2", "1 0 x 0 0 2"), "scene.asc:3:5: 'x' is not a number"),
         (good.replace("1 0 0 0 0 2 1 0", "1 0 0 0 0 2 1"), "scene.asc:3:1: this vertex has 7 numbers"),

@@ -31,12 +31,12 @@ fn a_ply_without_faces_is_a_cloud_and_with_edges_it_is_lines() {
     assert_eq!((&only(&scene).lines[..], only(&scene).points.len()), (&[[0, 1], [1, 2]][..], 0));
     let scene = read_text("ply", format!("{PLY}{edges}end_header\n{VERTICES}0 1\n1 3\n")).unwrap();
     assert_eq!(only(&scene).lines, [[0, 1]]);
-    assert!(warnings(&scene).contains("edges name vertices"), "{}", warnings(&scene));
+    assert!(warnings(&scene).contains("some edges refer to vertices"), "{}", warnings(&scene));
     let message = refusal(
         "ply",
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
     );
-    assert!(message.contains("no face and no vertex"), "{message}");
+    assert!(message.contains("no faces and no vertices"), "{message}");
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn points_and_lines_of_an_obj_are_objects_beside_its_faces() {
     for (text, wanted) in [
         ("v 0 0 0\nl 1 2\n", "vertex 2, but the file has only 1"),
         ("v 0 0 0\np x\n", "'x' is not a vertex of a point"),
-        ("v 0 0 0\nl 1 -3\n", "names a vertex that the file does not have"),
+        ("v 0 0 0\nl 1 -3\n", "refers to a vertex that the file does not have"),
         ("o nothing\n", "no faces and no vertices"),
     ] {
         let message = refusal("obj", text);
@@ -84,11 +84,11 @@ fn xyz_has_its_columns_by_name_or_by_what_stands_in_them() {
     assert!(greys[0].r < greys[2].r && greys[2].r < greys[1].r, "{greys:?}");
     assert_eq!(named.up, UpHint::Usually(Axis::Z));
     for (text, wanted) in [
-        ("3\nwater\nO 0 0 0\n", "scene.xyz:3:1: this is a molecule"),
+        ("3\nwater\nO 0 0 0\n", "scene.xyz:3:1: this is an XYZ file of a molecule"),
         ("1\nC 0 0 0\n", "a molecule"),
-        ("1 2\n3 4\n", "no point in it"),
-        ("some words\n", "no point in it"),
-        ("some words\nand more\n", "scene.xyz:2:1: a point should stand here"),
+        ("1 2\n3 4\n", "it contains no points"),
+        ("some words\n", "it contains no points"),
+        ("some words\nand more\n", "scene.xyz:2:1: a point is expected here"),
     ] {
         let message = refusal("xyz", text);
         assert!(message.contains(wanted), "{text:?}: {message}");
@@ -129,11 +129,11 @@ fn las_has_positions_and_colours_in_all_of_its_formats() {
     }
     for (name, wanted) in [
         ("broken_compressed.laz", "compressed (LAZ)"),
-        ("broken_cut_off.las", "3 points of 26 bytes from byte 227 on, but there are bytes for 1"),
+        ("broken_cut_off.las", "3 points of 26 bytes from byte 227 on, but there are bytes for only 1"),
         ("broken_count.las", "was cut off"),
-        ("broken_format.las", "format 20, but there are 0 to 10"),
+        ("broken_format.las", "format 20, but only 0 to 10 exist"),
         ("broken_scale.las", "scale"),
-        ("broken_version.las", "LAS 2.2, but 1.0 to 1.4"),
+        ("broken_version.las", "LAS 2.2, but only 1.0 to 1.4"),
     ] {
         let message = refusal("las", corpus(name));
         assert!(message.contains(wanted), "{name}: {message}");
@@ -166,7 +166,7 @@ fn points_and_lines_come_back_where_a_format_holds_them_and_else_as_triangles() 
             let path = folder.join(format!("there.{extension}"));
             let lost = write(&path, &scene, &WriteOptions::default()).unwrap();
             assert!(
-                lost.iter().any(|w| w.message.contains("little balls and tubes")),
+                lost.iter().any(|w| w.message.contains("small spheres and tubes")),
                 "{extension}: {lost:?}"
             );
             let back = read(&path, &ReadOptions::default()).unwrap();

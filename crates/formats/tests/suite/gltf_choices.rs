@@ -74,7 +74,7 @@ fn glass_without_a_thickness_is_what_was_asked_for() {
         let scene = read(text, &ReadOptions { glass, ..ReadOptions::default() });
         let spec = &scene.materials[scene.objects[0].material];
         assert_eq!(spec.parameters.find("thin_walled").unwrap().0, &Value::Bool(thin), "{glass:?}");
-        assert_eq!(warnings(&scene).contains("on a closed mesh: solid glass"), glass == Glass::Auto && !thin);
+        assert_eq!(warnings(&scene).contains("is shown as solid glass"), glass == Glass::Auto && !thin);
     }
 }
 

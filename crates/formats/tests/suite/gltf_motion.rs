@@ -184,12 +184,12 @@ fn skins_that_are_broken_are_refused_or_told_of() {
     let text = bent(false);
     let too_few = text.replace(r#""joints":[1,2]"#, r#""joints":[1]"#);
     let error = read_text("gltf", &too_few).unwrap_err().to_string();
-    assert!(error.contains("vertex 1 follows joint 1, but there are 1"), "{error}");
+    assert!(error.contains("vertex 1 refers to joint 1, but there are only 1"), "{error}");
     let many = text.replace(r#""joints":[1,2]"#, r#""joints":[1,2,2]"#);
     let error = read_text("gltf", &many).unwrap_err().to_string();
-    assert!(error.contains("2 matrices are too few for 3 joints"), "{error}");
+    assert!(error.contains("there must be a matrix for each of the 3 joints, not 2"), "{error}");
     let apart = text.replace(r#"{"nodes":[0,1]}"#, r#"{"nodes":[0]}"#);
-    assert!(warnings(&read_text("gltf", &apart).unwrap()).contains("a joint is in no scene"));
+    assert!(warnings(&read_text("gltf", &apart).unwrap()).contains("a joint is not in the scene"));
 }
 
 #[test]

@@ -44,12 +44,16 @@ fn draco_gives_back_points_texture_coordinates_and_triangles() {
 fn what_is_broken_in_draco_is_refused_with_its_pointer() {
     let text = &seeds_of_draco()[1];
     let cases = [
-        (r#""TEXCOORD_0":0"#, r#""TEXCOORD_0":7"#, "TEXCOORD_0: the packed data have no attribute 7"),
+        (r#""TEXCOORD_0":0"#, r#""TEXCOORD_0":7"#, "TEXCOORD_0: the compressed data have no attribute 7"),
         (r#"{"POSITION":1"#, r#"{"NORMAL":1"#, "the primitive has no such attribute"),
-        (r#""count":54"#, r#""count":51"#, "#/accessors/2: 54 elements of 108 bytes are packed for these 51"),
+        (
+            r#""count":54"#,
+            r#""count":51"#,
+            "#/accessors/2: 54 elements of 108 bytes are compressed for these 51",
+        ),
         ("\"componentType\":5123", "\"componentType\":5120", "do not fit this componentType"),
-        (r#""indices":2"#, r#""indices":2,"mode":5"#, "only triangles can be packed"),
-        ("base64,RFJBQ08", "base64,RFJBR08", "the packed bytes of this primitive cannot be unpacked"),
+        (r#""indices":2"#, r#""indices":2,"mode":5"#, "Draco compresses only triangles"),
+        ("base64,RFJBQ08", "base64,RFJBR08", "the Draco data of this primitive cannot be decompressed"),
     ];
     for (from, to, part) in cases {
         assert!(text.contains(from), "{from}");

@@ -87,7 +87,8 @@ fn names_groups_and_materials_make_objects() {
     assert_eq!(used, ["default", "default", "red paint", "red paint"]);
     assert_eq!(scene.objects[3].mesh.triangles.len(), 2);
     assert!(
-        warnings(&scene).starts_with("scene.obj:8:1: the material 'red paint' is in no library"),
+        warnings(&scene)
+            .starts_with("scene.obj:8:1: the material 'red paint' is not in any material library"),
         "{}",
         warnings(&scene)
     );
@@ -359,9 +360,9 @@ fn textures_of_older_formats_are_shown() {
 #[test]
 fn broken_files_are_refused_with_their_place() {
     let cases = [
-        ("v 0 0\n", "scene.obj:1:6: this line has 2 numbers and needs 3"),
+        ("v 0 0\n", "scene.obj:1:6: this line has 2 numbers, but needs 3"),
         ("v 0 0 zero\n", "scene.obj:1:7: 'zero' is not a number"),
-        ("v 0 0 0\nf 1 1 2\n", "scene.obj:2:1: this face names vertex 2, but the file has only 1"),
+        ("v 0 0 0\nf 1 1 2\n", "scene.obj:2:1: this face refers to vertex 2, but the file has only 1"),
         ("v 0 0 0\nf 0 1 1\n", "scene.obj:2:3: '0' is not a corner"),
         ("v 0 0 0\nf -2 1 1\n", "'-2' is not a corner"),
         ("v 0 0 0\nf 1/ 1 1/1/1/1\n", "'1/1/1/1' is not a corner"),
@@ -391,14 +392,13 @@ fn one_bad_number_costs_its_element_and_not_the_file() {
     assert_eq!(
         warnings(&scene).lines().collect::<Vec<_>>(),
         [
-            "scene.obj:5:3: '1.O' is not a number: this vertex is left out, and with it the faces that it is a corner of",
-            "scene.obj:6:8: 'up' is not a number: this normal or texture coordinate is taken as 0",
+            "scene.obj:5:3: '1.O' is not a number: this vertex is left out, together with the faces that use it",
+            "scene.obj:6:8: 'up' is not a number: this normal or texture coordinate is set to 0",
             "scene.obj:9:3: '1/x' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
              vertex/uv/normal, each counted from 1, or backwards from -1: this face is left out (3 times; this is the first)",
             "scene.obj:11:7: '-99' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
-             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to what is not there, and is \
-             left out",
-            "scene.obj:13:1: 'maybe' is not a smoothing group, which is a number or 'off': this line is left out",
+             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to a vertex that does not exist, and is left out",
+            "scene.obj:13:1: 'maybe' is not a smoothing group: write a number or 'off': this line is left out",
         ]
     );
 }
@@ -409,7 +409,7 @@ fn a_face_can_do_without_the_uv_and_the_normal_that_it_names() {
     assert!(scene.objects[0].mesh.uvs.is_empty());
     let all = warnings(&scene);
     assert!(
-        all.starts_with("scene.obj:5:1: a face names texture coordinates or a normal")
+        all.starts_with("scene.obj:5:1: a face refers to texture coordinates or a normal")
             && all.contains("6 times")
     );
 }

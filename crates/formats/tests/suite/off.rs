@@ -59,19 +59,19 @@ fn what_is_odd_but_can_be_drawn_is_a_warning() {
 #[test]
 fn broken_files_are_refused_with_their_place() {
     let cases = [
-        (SQUARE.replace("OFF", "OBJ"), "scene.off:1:1: 'OBJ' should not stand here: an OFF file begins with"),
+        (SQUARE.replace("OFF", "OBJ"), "scene.off:1:1: 'OBJ' is not expected here: an OFF file begins with"),
         (SQUARE.replace("OFF", "4OFF"), "scene.off:1:1: '4OFF' has other columns or dimensions"),
         (SQUARE.replace("OFF\n", "OFF BINARY\n"), "scene.off:1:1: this OFF file is binary"),
-        (SQUARE.replace("4 1 4", "4"), "scene.off:2:1: here stand the numbers of vertices"),
-        (SQUARE.replace("4 1 4", "-4 1 4"), "scene.off:2:1: here stand the numbers of vertices"),
+        (SQUARE.replace("4 1 4", "4"), "scene.off:2:1: this line gives the numbers of vertices"),
+        (SQUARE.replace("4 1 4", "-4 1 4"), "scene.off:2:1: this line gives the numbers of vertices"),
         (SQUARE.replace("4 1 4", "4000000000 1 4"), "the file ends before all of its vertices"),
         (SQUARE.replace("4 1 4", "5000000000 1 4"), "scene.off:2:1: there are more than 4 billion"),
         (SQUARE.replace("4 1 4", "4 7000000000 4"), "the file ends before all of its faces: it was cut off"),
-        (SQUARE.replace("4 1 4", "4 0 0"), "there is no face in it"),
-        (SQUARE.replace("1 1 0", "1 one 0"), "scene.off:5:3: 'one' should not stand here"),
+        (SQUARE.replace("4 1 4", "4 0 0"), "it contains no faces"),
+        (SQUARE.replace("1 1 0", "1 one 0"), "scene.off:5:3: 'one' is not expected here"),
         (SQUARE.replace("1 1 0", "1 1"), "scene.off:5:1: a vertex has 3 numbers here, but this line has 2"),
-        (SQUARE.replace("2 3\n", "2 4\n"), "scene.off:7:1: this face names vertex"),
-        (SQUARE.replace("2 3\n", "2 -1\n"), "scene.off:7:9: '-1' should not stand here"),
+        (SQUARE.replace("2 3\n", "2 4\n"), "scene.off:7:1: this face refers to vertex"),
+        (SQUARE.replace("2 3\n", "2 -1\n"), "scene.off:7:9: '-1' is not expected here"),
         (SQUARE.replace("2 3\n", "2\n"), "scene.off:7:8: the line ends too early"),
         (SQUARE.replace("4 0 1", "4000000000 0 1"), "the line ends too early"),
     ];

@@ -75,7 +75,7 @@ fn a_replacement_without_a_match_suggests_the_nearest_name() {
         ("[[replace]]\nobject = \"wheels left\"\nwith = \"gold\"", "did you mean 'wheel left'?"),
         ("[[replace]]\nmaterial = \"Glass*\"\nwith = \"gold\"", "known: Paint, Rubber.001, Rubber.002"),
         ("[[replace]]\nmaterial = \"Paint\"\nwith = \"gld\"", "did you mean 'gold'?"),
-        ("[[replace]]\nmaterial = \"Paint\"\n", "with (the material that comes instead)"),
+        ("[[replace]]\nmaterial = \"Paint\"\n", "with (the replacement material)"),
         ("[[replace]]\nwith = \"gold\"\n", "material, or object"),
         ("[[replace]]\nmaterials = \"Paint\"\nwith = \"gold\"", "did you mean 'material'?"),
         (

@@ -92,7 +92,7 @@ fn lights_come_back() {
          [[light]]\nkind = \"rect\"\nposition = [0, 5, 0]\nedge_u = [2, 0, 0]\nedge_v = [0, 0, 1]\nintensity = 6\nsides = \"front\"\n\
          [[light]]\nkind = \"ambient\"\n",
     );
-    assert_eq!(told, ["pbrt files hold no light of kind 'ambient': left out"]);
+    assert_eq!(told, ["pbrt files cannot store lights of kind 'ambient': left out"]);
     let of =
         |kind: &str| back.lights.iter().find(|light| light.kind == kind).unwrap_or_else(|| panic!("{kind}"));
     assert_near(of("point"), "intensity", &[4.0, 5.0, 6.0]);
@@ -150,9 +150,9 @@ fn materials_come_back() {
     assert_near(&spec, "dispersion", &[20.0 / 25.68]);
     let (told, spec) = material("kind = \"dielectric\"\nglass = \"diamond\"");
     assert_near(&spec, "eta", &[2.4175]);
-    assert_eq!(told, ["pbrt files hold no 'dispersion' of a dielectric material: left out"]);
+    assert_eq!(told, ["pbrt files cannot store 'dispersion' of a dielectric material: left out"]);
     let (told, _) = material("kind = \"diffuse\"\nroughness = 0.5");
-    assert_eq!(told, ["pbrt files hold no 'roughness' of a diffuse material: left out"]);
+    assert_eq!(told, ["pbrt files cannot store 'roughness' of a diffuse material: left out"]);
     let (told, spec) = material("kind = \"principled\"\nfuzz_weight = 1\ncoat_weight = 0.5");
     assert_eq!((told.len(), &*spec.kind), (2, "principled"), "{told:?}");
 }

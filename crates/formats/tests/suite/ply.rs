@@ -84,24 +84,24 @@ fn broken_files_are_refused_with_their_place() {
     let cases = [
         ("plx\n".to_owned(), "scene.ply:1:1: a PLY file begins with"),
         ("ply\nformat ascii 1.0\n".to_owned(), "scene.ply:3:1: the file ends within its header"),
-        (good.replace("ascii", "utf8"), "scene.ply:2:8: 'utf8' is not a format"),
-        (good.replace("float x", "real x"), "scene.ply:6:10: 'real' is not a type"),
+        (good.replace("ascii", "utf8"), "scene.ply:2:8: 'utf8' is not a PLY format"),
+        (good.replace("float x", "real x"), "scene.ply:6:10: 'real' is not a PLY type"),
         (good.replace("vertex 4", "vertex many"), "scene.ply:5:1: an element has a name and a count"),
         (good.replace("element vertex 4\n", ""), "a property belongs to an element"),
         (good.replace("property float z", "property float w"), "no properties x, y and z"),
         (good.replace("vertex_indices", "corners"), "no list 'vertex_indices'"),
         (
             good.replace("0 1 2 3", "0 1 2 4"),
-            "scene.ply:16:1: this face names vertex 4, but the file has only 4, counted from 0",
+            "scene.ply:16:1: this face refers to vertex 4, but the file has only 4, counted from 0",
         ),
-        (good.replace("0 1 2 3", "0 1 2 -1"), "scene.ply:16:1: this face names vertex -1"),
+        (good.replace("0 1 2 3", "0 1 2 -1"), "scene.ply:16:1: this face refers to vertex -1"),
         (good.replace("1 1 0", "1 one 0"), "scene.ply:14:3: 'one' is not a number"),
         (
             good.replace("vertex 4", "vertex 4000000000"),
             "scene.ply:5:1: the header says 4000000000 of the element 'vertex'",
         ),
-        (good.replace("4 0 1 2 3", "4 0 1 2"), "the file ends before all"),
-        (good.replace("4 0 1 2 3", "4000000000 0 1 2"), "the file ends before all"),
+        (good.replace("4 0 1 2 3", "4 0 1 2"), "the file ends before everything"),
+        (good.replace("4 0 1 2 3", "4000000000 0 1 2"), "the file ends before everything"),
         (good.replace("element", "elements"), "'elements' is not a keyword of a PLY header"),
     ];
     for (text, part) in cases {
@@ -197,7 +197,7 @@ fn faces_of_vertices_that_are_not_there_are_refused_in_every_form() {
         for bytes in [[0x7f; 4], [0xff; 4]] {
             file[first..first + 4].copy_from_slice(&bytes);
             let message = crate::refusal("ply", &file);
-            assert!(message.contains("this face names vertex"), "{message}");
+            assert!(message.contains("this face refers to vertex"), "{message}");
         }
     }
 }

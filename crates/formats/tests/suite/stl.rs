@@ -48,16 +48,16 @@ fn each_solid_is_an_object_and_empty_ones_are_none() {
 #[test]
 fn false_counts_are_reported() {
     let message = refusal("stl", binary("x", 4_000_000_000, 2));
-    assert!(message.contains("says 4000000000 triangles, but there are bytes for 2"), "{message}");
+    assert!(message.contains("says 4000000000 triangles, but there are bytes for only 2"), "{message}");
     let scene = read_text("stl", binary("x", 1, 2)).unwrap();
     assert_eq!(scene.objects[0].mesh.triangles.len(), 1);
-    assert!(warnings(&scene).contains("bytes behind the last triangle"));
+    assert!(warnings(&scene).contains("bytes after the last triangle"));
 }
 
 #[test]
 fn broken_files_are_refused_with_their_place() {
     let cases = [
-        ("solid x\nendsolid\n".to_owned(), "there is no triangle in it"),
+        ("solid x\nendsolid\n".to_owned(), "it contains no triangles"),
         (
             format!("solid x\n{FACET}facet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
             "scene.stl:9:1: the file ends within this facet",
@@ -68,7 +68,7 @@ fn broken_files_are_refused_with_their_place() {
             format!("solid x\n{}", FACET.replace("  vertex 1 0 0\n", "")),
             "scene.stl:7:1: a facet with 2 corners",
         ),
-        ("solid x\nv 0 0 0\n".to_owned(), "scene.stl:2:1: 'v' should not stand here"),
+        ("solid x\nv 0 0 0\n".to_owned(), "scene.stl:2:1: 'v' is not expected here"),
         ("\u{1}\u{2}".to_owned(), "a binary STL file has 84 bytes"),
     ];
     for (text, part) in cases {

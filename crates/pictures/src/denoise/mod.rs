@@ -115,8 +115,9 @@ pub fn denoiser(name: &str, task: &Task) -> Result<Chosen, PictureError> {
         match (row.find)(task) {
             Ok(_) if is_too_slow => {
                 let (name, seconds) = (row.entry.name, time.as_secs_f64());
-                let longer =
-                    format!("'{name}' does better, but takes about {seconds:.1} s: --denoise={name}");
+                let longer = format!(
+                    "'{name}' gives a cleaner picture, but takes about {seconds:.1} s: --denoise={name}"
+                );
                 advice = advice.or(Some(longer));
             }
             Ok(denoiser) => return Ok(Chosen { denoiser, time, advice }),

@@ -11,7 +11,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "bmp",
-        summary: "8 bits, sRGB, with palettes, in runs or with alpha: read only",
+        summary: "8 bits, sRGB, with palettes, run-length encoding or alpha: read only",
         source: "BMP",
         parameters: &[],
     },
@@ -65,7 +65,7 @@ impl Mask {
         let shift = bits.trailing_zeros() % 32;
         let most = bits >> shift;
         if most & most.wrapping_add(1) != 0 {
-            let what = format!("the bits {bits:#010x} of a colour do not stand together");
+            let what = format!("the bits {bits:#010x} of a colour channel are not contiguous");
             return Err(PictureError::invalid(FORMAT, what));
         }
         Ok(Mask { shift, most })
@@ -161,10 +161,10 @@ fn packing(bytes: &[u8], compression: u32, depth: u16) -> Result<Packing, Pictur
         (4 | 5, _) => Err(PictureError::Unsupported {
             format: FORMAT,
             what: "a JPEG or PNG within it".to_owned(),
-            advice: "save it without compression, or as PNG",
+            advice: "save it uncompressed, or as PNG",
         }),
         _ => {
-            let what = format!("there are no pixels of {depth} bits in compression {compression}");
+            let what = format!("compression {compression} does not have pixels of {depth} bits");
             Err(PictureError::invalid(FORMAT, what))
         }
     }

@@ -21,7 +21,8 @@ use std::io::Cursor;
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "exr",
-        summary: "OpenEXR: linear light, layers, integers and texts, all exact: for further work and partial films",
+        summary: "OpenEXR: linear light, layers, integers and metadata, all exact: for further processing and partial \
+                  renders",
         source: "OpenEXR",
         parameters: &[],
     },
@@ -149,16 +150,14 @@ impl Frame {
     /// channel, then of the second, and so on.
     fn insert(&mut self, block: &UncompressedBlock) -> Result<(), PictureError> {
         let (width, height) = (self.window.size.width() as i64, self.window.size.height() as i64);
-        let wrong = || PictureError::invalid(FORMAT, "a block of pixels is not where it should be");
+        let wrong =
+            || PictureError::invalid(FORMAT, "a block of pixels is not at the offset that the header gives");
         let part = self.parts.get_mut(block.index.layer).ok_or_else(wrong)?;
         let (columns, rows) = (block.index.pixel_size.width(), block.index.pixel_size.height());
         if Some(block.data.len())
             != columns.checked_mul(rows).and_then(|n| n.checked_mul(part.bytes_per_pixel))
         {
-            return Err(PictureError::invalid(
-                FORMAT,
-                "a block of pixels has not the size that it should have",
-            ));
+            return Err(PictureError::invalid(FORMAT, "a block of pixels has the wrong size"));
         }
         let left = block.index.pixel_position.x() as i64 + i64::from(part.origin.x())
             - i64::from(self.window.position.x());

@@ -143,11 +143,11 @@ fn channel_list(planes: &[Plane]) -> Vec<u8> {
 fn check_text(key: &str, value: &str) -> Result<(), PictureError> {
     let reserved = standard_names::ALL.contains(&key.as_bytes()) && !STANDARD_TEXTS.contains(&key);
     let what = if key.is_empty() || key.len() > 255 || key.contains('\0') {
-        format!("the name '{key}' of a text needs 1 to 255 bytes, none of them zero; rename it")
+        format!("the metadata key '{key}' must have 1 to 255 bytes, none of them zero; rename it")
     } else if reserved {
-        format!("'{key}' is an attribute of the format itself; rename this text")
+        format!("'{key}' is an attribute of the format itself; rename this metadata key")
     } else if value.len() > i32::MAX as usize {
-        format!("the text '{key}' is longer than 2 GiB; shorten it")
+        format!("the metadata '{key}' is longer than 2 GiB; shorten it")
     } else {
         return Ok(());
     };

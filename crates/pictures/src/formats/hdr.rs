@@ -14,7 +14,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "hdr",
-        summary: "Radiance RGBE: linear light at about 1% precision, small; usual for environment maps",
+        summary: "Radiance RGBE: linear light at about 1% precision, small; the usual format of environment maps",
         source: "Ward 1991",
         parameters: &[],
     },
@@ -145,7 +145,7 @@ fn number(key: &str, value: &str) -> Result<f32, PictureError> {
     match value.trim().parse() {
         Ok(number) if number > 0.0 && f32::is_finite(number) => Ok(number),
         _ => {
-            let what = format!("its {} is '{}', not a number above zero", key.trim(), value.trim());
+            let what = format!("its {} is '{}', but must be a number above zero", key.trim(), value.trim());
             Err(PictureError::invalid(FORMAT, what))
         }
     }
@@ -223,8 +223,9 @@ impl<'a> Source<'a> {
         }
         let length = usize::from(first[2]) << 8 | usize::from(first[3]);
         if length != columns {
-            let what =
-                format!("the row at byte {start} has {length} pixels, and the picture is {columns} across");
+            let what = format!(
+                "the row at byte {start} has {length} pixels, but the picture is {columns} pixels wide"
+            );
             return Err(PictureError::invalid(FORMAT, what));
         }
         row.resize(columns, [0; 4]);
@@ -241,7 +242,7 @@ impl<'a> Source<'a> {
             if count == 0 || count > rest.len() {
                 let what = {
                     let (at, left) = (self.at - 1, rest.len());
-                    format!("the run at byte {at} has {count} pixels, and its row has {left} left")
+                    format!("the run at byte {at} has {count} pixels, but only {left} are left in its row")
                 };
                 return Err(PictureError::invalid(FORMAT, what));
             }

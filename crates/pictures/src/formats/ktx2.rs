@@ -12,7 +12,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "ktx2",
-        summary: "8 bits, sRGB or linear, plain or packed by Basis Universal: read only",
+        summary: "8 bits, sRGB or linear, uncompressed or with Basis Universal: read only",
         source: "KTX 2.0",
         parameters: &[],
     },
@@ -97,10 +97,10 @@ impl<'a> Header<'a> {
         };
         let pixels = limits.check(FORMAT, width.into(), height.into(), BYTES_PER_PIXEL)?;
         if depth > 1 || layers > 1 || faces != 1 {
-            return invalid("it has layers, faces or a depth, and only flat pictures can be read".to_owned());
+            return invalid("it has layers, faces or depth, but only flat pictures can be read".to_owned());
         }
         if levels > 32 {
-            return invalid(format!("it has {levels} levels, and there cannot be more than 32"));
+            return invalid(format!("it has {levels} mipmap levels, but at most 32 are possible"));
         }
         let descriptor =
             part(bytes, [u32_at(bytes, 48)?.into(), u32_at(bytes, 52)?.into()], "its description")?;
@@ -140,8 +140,8 @@ impl<'a> Header<'a> {
             }
             _ => {
                 return invalid(format!(
-                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} cannot be read; Basis Universal (ETC1S \
-                     and UASTC) and plain pixels of 8 bits can"
+                    "pixels of VkFormat {kind}, colour model {model}, scheme {scheme} cannot be read; Basis Universal \
+                     (ETC1S and UASTC) and uncompressed pixels of 8 bits can"
                 ));
             }
         };

@@ -244,7 +244,7 @@ fn check_sides(format: &'static str, picture: &Picture, most: usize) -> Result<[
         _ => Err(PictureError::Unwritable {
             format,
             what: format!(
-                "it has {width} x {height} pixels, and a side has at most {most}; write .png instead"
+                "it has {width} x {height} pixels, but a side can have at most {most}; write .png instead"
             ),
         }),
     }
@@ -258,7 +258,7 @@ fn require_colour(format: &'static str, picture: &Picture) -> Result<(), Picture
     let names =
         if names.is_empty() { "no channels".to_owned() } else { format!("only {}", names.join(", ")) };
     let what = format!(
-        "it needs the channels R, G and B, or Y, and there are {names}; write .exr instead, or choose a layer"
+        "it needs the channels R, G and B, or Y, but the picture has {names}; write .exr instead, or choose a layer"
     );
     Err(PictureError::Unwritable { format, what })
 }

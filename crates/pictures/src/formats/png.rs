@@ -173,7 +173,7 @@ fn unwritable(error: ::png::EncodingError) -> PictureError {
     let what = match error {
         ::png::EncodingError::IoError(error) => format!("its bytes cannot be written: {error}"),
         ::png::EncodingError::LimitsExceeded => "it takes more memory than is allowed".to_owned(),
-        _ => "its size, or the name or text of one of its notes, is not what PNG allows".to_owned(),
+        _ => "PNG does not allow its size, or the key or text of one of its metadata entries".to_owned(),
     };
     PictureError::Unwritable { format: FORMAT, what }
 }

@@ -39,7 +39,7 @@ fn read(bytes: &[u8], limits: &Limits) -> Result<Picture, PictureError> {
     let bitmap = matches!(magic, "P1" | "P4");
     let maximum = if bitmap { 1 } else { tokens.integer("greatest value")? };
     if !(1..=65535).contains(&maximum) {
-        let what = format!("the greatest value is {maximum}; it must be 1 to 65535");
+        let what = format!("the maximum value is {maximum}, but must be from 1 to 65535");
         return Err(PictureError::invalid(FORMAT, what));
     }
     let pixels = limits.check(FORMAT, width, height, 4 * channels)?;
@@ -95,7 +95,7 @@ fn read_text(mut tokens: Tokens, bitmap: bool, layout: &Layout) -> Result<Vec<Ve
         } else {
             let value = tokens.integer("pixels")?;
             if value > u64::from(layout.maximum) {
-                let what = format!("a sample is {value}, and the greatest value is {}", layout.maximum);
+                let what = format!("a sample is {value}, but the maximum value is {}", layout.maximum);
                 return Err(PictureError::invalid(FORMAT, what));
             }
             layout.scale(value as u32)

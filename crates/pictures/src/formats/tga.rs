@@ -11,7 +11,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "tga",
-        summary: "8 bits, sRGB, with alpha, packed in runs or not; told by its name only: read only",
+        summary: "8 bits, sRGB, with alpha, run-length encoded or not; recognised only by its extension: read only",
         source: "TGA 2.0",
         parameters: &[],
     },
@@ -75,10 +75,10 @@ impl Header {
             1 => Kind::Indices,
             2 => Kind::Colours,
             3 => Kind::Greys,
-            _ => return invalid(format!("its type of picture is {}, which does not exist", h[2])),
+            _ => return invalid(format!("its image type is {}, which does not exist", h[2])),
         };
         if h[1] > 1 {
-            return invalid(format!("its type of palette is {}, which does not exist", h[1]));
+            return invalid(format!("its palette type is {}, which does not exist", h[1]));
         }
         let palette = Palette {
             at: 18 + usize::from(h[0]),
@@ -98,7 +98,7 @@ impl Header {
             } else {
                 String::new()
             };
-            return invalid(format!("type {} has no pixels of {depth} bits{palette}", h[2]));
+            return invalid(format!("image type {} does not have pixels of {depth} bits{palette}", h[2]));
         }
         Ok(Header {
             width: u16_at(12),

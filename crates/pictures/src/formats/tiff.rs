@@ -16,8 +16,8 @@ use tiff::tags::{SampleFormat, Tag};
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "tiff",
-        summary: "whole numbers of 1 to 32 bits, sRGB; floats of 16 to 64, linear; with alpha; packed by Deflate, LZW, \
-                  PackBits or not; its first picture: read only",
+        summary: "integers of 1 to 32 bits, sRGB; floats of 16 to 64 bits, linear; with alpha; Deflate, LZW, PackBits \
+                  or no compression; only the first image: read only",
         source: "TIFF 6.0",
         parameters: &[],
     },
@@ -124,7 +124,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     if channels > MAX_CHANNELS || usize::from(channels) < colours + usize::from(opacity != Opacity::None) {
         return Err(PictureError::invalid(
             FORMAT,
-            format!("it has {channels} channels, which no picture has"),
+            format!("it has {channels} channels, which is not possible"),
         ));
     }
     let each = u64::from(channels) * u64::from(bits.div_ceil(8));
@@ -145,7 +145,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Decoded, PictureError> {
     let mut samples = DecodingResult::U8(Vec::new());
     let layout = decoder.read_image_to_buffer(&mut samples).map_err(|error| explain(error, bytes))?;
     if layout.sample_format == SampleFormat::Int {
-        return Err(unsupported("a picture of numbers with a sign".to_owned()));
+        return Err(unsupported("a picture with signed integers".to_owned()));
     }
     let (width, height, channels) = (width as usize, height as usize, usize::from(channels));
     let in_planes = layout.planes > 1;
@@ -236,7 +236,7 @@ impl Decoded {
             DecodingResult::F16(all) => fill(&|i| all.get(i).map(|s| s.to_f32())),
             DecodingResult::F32(all) => fill(&|i| all.get(i).copied()),
             DecodingResult::F64(all) => fill(&|i| all.get(i).map(|&s| s as f32)),
-            _ => return Err(unsupported("a picture of whole numbers of 64 bits".to_owned())),
+            _ => return Err(unsupported("a picture with 64-bit integers".to_owned())),
         };
         filled.map(|()| plane).ok_or_else(|| PictureError::truncated(FORMAT, "the pixels"))
     }

@@ -76,7 +76,7 @@ impl<'a> Tokens<'a> {
             }
             Some(_) => Err(PictureError::invalid(
                 self.format,
-                format!("at byte {} a blank should separate the header from the pixels", self.at),
+                format!("a space should separate the header from the pixels at byte {}", self.at),
             )),
             None => Err(PictureError::truncated(self.format, "the header")),
         }

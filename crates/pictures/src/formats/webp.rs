@@ -14,7 +14,7 @@ use std::io::Cursor;
 pub(super) const ENTRY: PictureFormatEntry = PictureFormatEntry {
     entry: Entry {
         name: "webp",
-        summary: "8 bits, sRGB, with alpha, written without loss: smaller than PNG, for the web",
+        summary: "8 bits, sRGB, with alpha, written losslessly: smaller than PNG, for the web",
         source: "WebP",
         parameters: &[],
     },
@@ -42,7 +42,7 @@ fn decode(bytes: &[u8], limits: &Limits) -> Result<Interleaved, PictureError> {
         .checked_mul(if decoder.has_alpha() { 4 } else { 3 })
         .filter(|&size| decoder.output_buffer_size() == Some(size));
     let size =
-        size.ok_or_else(|| PictureError::invalid(FORMAT, "its header says a size that its pixels have not"))?;
+        size.ok_or_else(|| PictureError::invalid(FORMAT, "its header and its pixels differ in size"))?;
     let mut samples = zeroed::<u8>(FORMAT, size)?;
     decoder.read_image(&mut samples).map_err(|error| explain(&error, bytes))?;
     Ok(Interleaved { width: width as usize, height: height as usize, samples })

@@ -15,7 +15,8 @@ use std::f64::consts::PI;
 pub(super) const ENTRY: MetricEntry = MetricEntry {
     entry: Entry {
         name: "flip",
-        summary: "mean LDR-FLIP: the difference that one sees when flipping between the two; 0 where equal, at most 1",
+        summary: "mean LDR-FLIP: the difference that viewers see when flipping between the pictures; 0 if equal, at \
+                  most 1",
         source: "Andersson 2020",
         parameters: &[],
     },

@@ -7,7 +7,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: MetricEntry = MetricEntry {
     entry: Entry {
         name: "max",
-        summary: "greatest absolute difference of light or alpha in any pixel; 0 where equal",
+        summary: "maximum absolute difference of light or alpha in any pixel; 0 if equal",
         source: "",
         parameters: &[],
     },

@@ -8,7 +8,7 @@ use bilux_math::transcendental::ln_f64;
 pub(super) const ENTRY: MetricEntry = MetricEntry {
     entry: Entry {
         name: "psnr",
-        summary: "peak signal-to-noise ratio of what is shown, in decibels; infinite where equal",
+        summary: "peak signal-to-noise ratio of the displayed picture, in decibels; infinite if equal",
         source: "",
         parameters: &[],
     },

@@ -7,7 +7,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: MetricEntry = MetricEntry {
     entry: Entry {
         name: "relmse",
-        summary: "mean of (x − r)² / (r² + 0.01) of light over pixels and channels; 0 where equal",
+        summary: "mean of (x − r)² / (r² + 0.01) of light over pixels and channels; 0 if equal",
         source: "Rousselle 2011",
         parameters: &[],
     },

@@ -7,7 +7,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: MetricEntry = MetricEntry {
     entry: Entry {
         name: "rmse",
-        summary: "root mean squared error of light over pixels and channels; 0 where equal",
+        summary: "root mean square error of light over pixels and channels; 0 if equal",
         source: "",
         parameters: &[],
     },

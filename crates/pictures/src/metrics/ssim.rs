@@ -10,7 +10,7 @@ use bilux_math::transcendental::exp_f64;
 pub(super) const ENTRY: MetricEntry = MetricEntry {
     entry: Entry {
         name: "ssim",
-        summary: "structural similarity of what is shown, on luma; 1 where equal",
+        summary: "structural similarity of the displayed picture, on luma; 1 if equal",
         source: "Wang 2004",
         parameters: &[],
     },

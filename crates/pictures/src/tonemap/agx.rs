@@ -10,7 +10,7 @@ use bilux_math::transcendental::{log2, powf};
 pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     entry: Entry {
         name: "agx",
-        summary: "film-like: 16 stops of light, bright colours pale without a change of hue",
+        summary: "film-like: 16 stops of light; bright colours desaturate without a change of hue",
         source: "Sobotka 2022",
         parameters: &[],
     },

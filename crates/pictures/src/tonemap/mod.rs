@@ -33,7 +33,7 @@ pub struct ToneMapEntry {
 /// The curve of this name.
 pub fn tone_map(name: &str) -> Result<&'static ToneMapEntry, PictureError> {
     TONEMAPS.iter().find(|row| row.entry.name == name).ok_or_else(|| PictureError::UnknownName {
-        kind: "tone map",
+        kind: "tone-mapping curve",
         name: name.to_owned(),
         suggestion: nearest(name, TONEMAPS.iter().map(|row| row.entry.name)),
         known: TONEMAPS.iter().map(|row| row.entry.name).collect::<Vec<_>>().join(", "),

@@ -9,7 +9,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     entry: Entry {
         name: "neutral",
-        summary: "Khronos PBR Neutral: true colours of products, only highlights compressed",
+        summary: "Khronos PBR Neutral: true product colours; only highlights are compressed",
         source: "Khronos 2024",
         parameters: &[],
     },

@@ -8,7 +8,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     entry: Entry {
         name: "none",
-        summary: "no curve: values are clamped to 0 to 1",
+        summary: "no curve: values are clamped to the range from 0 to 1",
         source: "",
         parameters: &[],
     },

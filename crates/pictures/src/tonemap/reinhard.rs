@@ -8,7 +8,7 @@ use bilux_math::registry::Entry;
 pub(super) const ENTRY: ToneMapEntry = ToneMapEntry {
     entry: Entry {
         name: "reinhard",
-        summary: "Reinhard's curve on luminance, white at 4 times the brightness of 1",
+        summary: "Reinhard's curve on luminance, with the white point at 4",
         source: "Reinhard 2002",
         parameters: &[],
     },

@@ -119,7 +119,7 @@ pub fn build(camera: &CameraSpec, aspect: f32) -> Result<Arc<dyn Camera>, SceneE
     }
     if keys.windows(2).any(|pair| pair[0].0 >= pair[1].0 || pair[1].0.is_nan()) {
         return Err(SceneError::invalid(
-            "the times of a camera's keyframes have to rise: put them in order, each once",
+            "the times of a camera's keyframes must increase: put them in order, each once",
             &camera.spec.span,
         ));
     }

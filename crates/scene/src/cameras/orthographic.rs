@@ -14,12 +14,12 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
         summary: "orthographic camera: parallel rays",
         source: "",
         parameters: &[
-            vector("position", "the middle of the film", "0 0 5"),
-            vector("look_at", "the point in the middle of the picture", "0 0 0"),
-            vector("up", "what is up in the picture", "0 1 0"),
+            vector("position", "the centre of the film", "0 0 5"),
+            vector("look_at", "the point at the centre of the picture", "0 0 0"),
+            vector("up", "the up direction in the picture", "0 1 0"),
             Parameter {
                 name: "height",
-                summary: "height of what is seen",
+                summary: "height of the view",
                 unit: "m",
                 kind: ParameterKind::Number { min: 1e-9, max: 1e9 },
                 default: "2",
@@ -37,7 +37,7 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
                 let axes =
                     look(position, reader.vector("look_at"), reader.vector("up")).ok_or_else(|| {
                         SceneError::invalid(
-                            "a camera must not look along its own 'up', nor at the point where it stands",
+                            "a camera must not look along its own up direction, nor at its own position",
                             reader.span("look_at"),
                         )
                     })?;

@@ -15,9 +15,9 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
         summary: "perspective camera: a pinhole, or a thin lens if it has an aperture",
         source: "",
         parameters: &[
-            vector("position", "where the eye is", "0 0 5"),
-            vector("look_at", "the point in the middle of the picture", "0 0 0"),
-            vector("up", "what is up in the picture", "0 1 0"),
+            vector("position", "position of the eye", "0 0 5"),
+            vector("look_at", "the point at the centre of the picture", "0 0 0"),
+            vector("up", "the up direction in the picture", "0 1 0"),
             Parameter {
                 name: "fov",
                 summary: "vertical field of view",
@@ -27,7 +27,8 @@ pub(super) const ENTRY: CameraEntry = CameraEntry {
             },
             Parameter {
                 name: "frame",
-                summary: "width over height of what is shown whole also in narrower pictures; 0 for the height alone",
+                summary: "aspect ratio (width over height) that stays fully visible in narrower pictures too; 0 to \
+                          fix only the height",
                 unit: "",
                 kind: ParameterKind::Number { min: 0.0, max: 1000.0 },
                 default: "0",
@@ -70,7 +71,7 @@ pub(super) const fn vector(name: &'static str, summary: &'static str, default: &
 
 pub(super) const MIRRORED: Parameter = Parameter {
     name: "mirrored",
-    summary: "swap left and right, as left-handed cameras do",
+    summary: "mirror left and right, as left-handed cameras do",
     unit: "",
     kind: ParameterKind::Bool,
     default: "false",
@@ -111,7 +112,7 @@ impl Key {
         match look(key.position, key.look_at, key.up) {
             Some(_) => Ok(key),
             None => Err(SceneError::invalid(
-                "a camera must not look along its own 'up', nor at the point where it stands",
+                "a camera must not look along its own up direction, nor at its own position",
                 reader.span("look_at"),
             )),
         }

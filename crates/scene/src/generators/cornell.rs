@@ -33,7 +33,7 @@ pub(super) const SPHERES: GeneratorEntry = GeneratorEntry {
         name: "cornell-spheres",
         summary: "the Cornell box with a mirror and a glass sphere",
         source: "Cornell 1998",
-        parameters: &[integer("level", "how finely the spheres are cut: 20 · 4^level triangles", 0, 7, "5")],
+        parameters: &[integer("level", "subdivision of the spheres: 20 · 4^level triangles", 0, 7, "5")],
     },
     generate: |reader| {
         let (mut room, _) = empty_room();

@@ -66,7 +66,7 @@ pub fn generate(spec: &Spec) -> Result<SceneBuilder, SceneError> {
     let row = GENERATORS
         .iter()
         .find(|row| row.entry.name == spec.kind)
-        .ok_or_else(|| SceneError::unknown("scene to generate", &spec.kind, names, &spec.span))?;
+        .ok_or_else(|| SceneError::unknown("built-in scene", &spec.kind, names, &spec.span))?;
     (row.generate)(&Reader::new(spec, &row.entry)?)
 }
 

@@ -15,12 +15,12 @@ use std::sync::Arc;
 pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: Entry {
         name: "teapot",
-        summary: "the teapot alone; camera and light are left to the studio",
+        summary: "only the teapot; the studio provides camera and lights",
         source: "Newell 1975",
         parameters: &[
             Parameter { default: "16", ..TESSELLATION },
-            length("height", "from the table to the top of the lid", "3.15"),
-            switch("bottom", "closed below, which Newell's own was not", "true"),
+            length("height", "height from the table to the top of the lid", "3.15"),
+            switch("bottom", "whether it has a bottom, which Newell's original did not", "true"),
         ],
     },
     generate: |reader| {
@@ -42,7 +42,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
 };
 
 pub(super) const TESSELLATION: Parameter =
-    integer("tessellation", "pieces that each edge of the 32 patches is cut into", 1, 256, "8");
+    integer("tessellation", "number of segments along each edge of the 32 patches", 1, 256, "8");
 
 /// The height of the original control points.
 pub const NEWELL_HEIGHT: f64 = 3.15;

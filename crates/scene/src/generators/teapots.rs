@@ -16,26 +16,30 @@ use std::sync::Arc;
 pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: Entry {
         name: "teapots",
-        summary: "the paper's scene: teapots on a green floor, each at a fixed offset from the last",
+        summary: "the paper's scene: teapots on a green floor, each at a fixed offset from the one before",
         source: "Newell 1975",
         parameters: &[
-            integer("count", "how many teapots", 1, 10_000, "3"),
-            vector("offset", "from each teapot to the next, in the layout paper", "1.6 0 -4.6"),
+            integer("count", "number of teapots", 1, 10_000, "3"),
+            vector("offset", "offset from each teapot to the next, in the layout 'paper'", "1.6 0 -4.6"),
             choice(
                 "layout",
-                "paper: in a row, seen from one place; equal-coverage: in a block, seen from so far that the \
-                 teapots cover a fifth of a square picture whatever their number",
+                "paper: in a row, seen from a fixed position; equal-coverage: in a block, seen from a distance at \
+                 which the teapots always cover a fifth of a square picture",
                 &["paper", "equal-coverage"],
                 "paper",
             ),
             TESSELLATION,
-            switch("instanced", "one tree for all teapots, in place of one tree over all triangles", "false"),
+            switch(
+                "instanced",
+                "one tree that all teapots share, instead of one tree over all triangles",
+                "false",
+            ),
             switch("per_vertex", "diffuse and specular reflectance that vary from vertex to vertex", "false"),
             switch("moving", "the last teapot circles around the one before", "false"),
-            switch("walk", "the camera walks around the teapots and closer", "false"),
+            switch("walk", "the camera moves around the teapots and closer", "false"),
             Parameter {
                 name: "seconds",
-                summary: "how long the teapot or the camera moves",
+                summary: "duration of the movement",
                 unit: "s",
                 kind: ParameterKind::Number { min: 1e-3, max: 1e6 },
                 default: "4",

@@ -19,11 +19,11 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         summary: "distant light: parallel rays, or those of a disc such as the sun",
         source: "",
         parameters: &[
-            vector("direction", "where the light goes", "-1 -1 -1"),
-            colour("irradiance", "what falls on a surface that faces it", "W/m²", "3"),
+            vector("direction", "direction in which the light travels", "-1 -1 -1"),
+            colour("irradiance", "irradiance on a surface that faces it", "W/m²", "3"),
             Parameter {
                 name: "diameter",
-                summary: "angle under which it is seen, which makes edges of shadows soft: 0.533 for the sun, 0 for a point",
+                summary: "angular diameter, which softens the edges of shadows: 0.533 for the sun, 0 for a point",
                 unit: "degrees",
                 kind: ParameterKind::Number { min: 0.0, max: 180.0 },
                 default: "0",

@@ -14,30 +14,31 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "environment",
-        summary: "environment light: a constant colour, a gradient of height, or an environment map",
+        summary: "environment light: a constant colour, a vertical gradient, or an environment map",
         source: "",
         parameters: &[
             Parameter {
                 name: "radiance",
-                summary: "what comes from every direction; a picture by longitude and latitude, its middle towards -z",
+                summary: "radiance from every direction; a texture is a longitude-latitude map, with its centre \
+                          towards -z",
                 unit: "W/(m² sr)",
                 kind: ParameterKind::ColourTexture { min: 0.0, max: 1e12 },
                 default: "1",
             },
-            super::colour("scale", "factor on all of it", "", "1"),
+            super::colour("scale", "factor on the whole light", "", "1"),
             Parameter {
                 name: "rotation",
-                summary: "turns a picture about the y axis, to the right",
+                summary: "rotation of the environment map about the y axis, to the right",
                 unit: "degrees",
                 kind: ParameterKind::Number { min: -360.0, max: 360.0 },
                 default: "0",
             },
-            sky("zenith", "what comes from straight above; -1 for radiance"),
-            sky("horizon", "what comes from the sides; -1 for radiance"),
-            sky("ground", "what comes from straight below; -1 for radiance"),
+            sky("zenith", "radiance from straight above; -1 uses 'radiance'"),
+            sky("horizon", "radiance from the horizon; -1 uses 'radiance'"),
+            sky("ground", "radiance from straight below; -1 uses 'radiance'"),
             Parameter {
                 name: "backdrop",
-                summary: "only to be seen, in place of the environments that light the scene: it lights nothing",
+                summary: "only visible, in place of the environments that light the scene; it lights nothing itself",
                 unit: "",
                 kind: ParameterKind::Bool,
                 default: "false",

@@ -313,7 +313,7 @@ fn classic_colour_of(intensity: Rgb, position: Vec3, bounds: &Aabb) -> Rgb {
 
 const CLASSIC: Parameter = Parameter {
     name: "classic",
-    summary: "colour in cast, whitted and cook; -1 for the irradiance at the middle of the scene over π",
+    summary: "colour in cast, whitted and cook; -1 uses the irradiance at the centre of the scene, divided by π",
     unit: "",
     kind: ParameterKind::Colour { min: -1.0, max: 1e6 },
     default: "-1",

@@ -17,8 +17,8 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         summary: "isotropic point light",
         source: "",
         parameters: &[
-            vector("position", "where it is", "0 5 0"),
-            colour("intensity", "what it sends into each direction", "W/sr", "100"),
+            vector("position", "position", "0 5 0"),
+            colour("intensity", "intensity in every direction", "W/sr", "100"),
             CLASSIC,
         ],
     },

@@ -14,13 +14,18 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         source: "",
         parameters: &[
             vector("position", "its middle", "0 5 0"),
-            vector("edge_u", "from one side to the other", "1 0 0"),
-            vector("edge_v", "from one end to the other", "0 0 1"),
-            colour("radiance", "what it gives out; or give intensity", "W/(m² sr)", "0"),
-            colour("intensity", "radiance times area: kept while the panel shrinks", "W/sr", "0"),
+            vector("edge_u", "edge from one side to the other", "1 0 0"),
+            vector("edge_v", "edge from one end to the other", "0 0 1"),
+            colour("radiance", "emitted radiance; or give 'intensity'", "W/(m² sr)", "0"),
+            colour(
+                "intensity",
+                "radiance times area, which stays the same when the panel shrinks",
+                "W/sr",
+                "0",
+            ),
             Parameter {
                 name: "sides",
-                summary: "where it gives light: on both, or in front, which is where edge_u × edge_v points",
+                summary: "which sides emit light: both, or the front, to which edge_u × edge_v points",
                 unit: "",
                 kind: ParameterKind::Choice(Sides::NAMES),
                 default: "both",
@@ -32,7 +37,7 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         let (p, u, v) = (reader.vector("position"), reader.vector("edge_u"), reader.vector("edge_v"));
         let area = u.cross(v).length();
         if !(area > 0.0 && area.is_finite()) {
-            let message = "edge_u and edge_v of a rect light have to span an area";
+            let message = "edge_u and edge_v of a rect light must span an area";
             return Err(SceneError::invalid(message, reader.span("edge_u")));
         }
         let emission = if reader.is_given("radiance") {

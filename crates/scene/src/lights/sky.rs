@@ -13,21 +13,21 @@ use std::sync::Arc;
 pub(super) const ENTRY: LightEntry = LightEntry {
     entry: Entry {
         name: "sky",
-        summary: "analytic daylight sky with its sun, clear or hazy",
+        summary: "analytic daylight sky with the sun, clear or hazy",
         source: "Preetham 1999",
         parameters: &[
-            number("elevation", "how high the sun stands", "degrees", [0.0, 90.0], "40"),
-            number("azimuth", "where it stands, to the right of -z", "degrees", [-360.0, 360.0], "50"),
-            number("turbidity", "haze: 2 is clear, 10 is misty", "", [1.7, 10.0], "3"),
-            super::colour("ground", "the part of its light that the ground far below sends on", "", "0.2"),
+            number("elevation", "elevation of the sun", "degrees", [0.0, 90.0], "40"),
+            number("azimuth", "azimuth of the sun, to the right of -z", "degrees", [-360.0, 360.0], "50"),
+            number("turbidity", "turbidity: 2 is clear, 10 is hazy", "", [1.7, 10.0], "3"),
+            super::colour("ground", "albedo of the ground", "", "0.2"),
             super::colour(
                 "scale",
-                "factor on all of it: 1 is about as bright as white paper is in the midday sun",
+                "factor on the whole light: at 1 it is about as bright as white paper in the midday sun",
                 "",
                 "1",
             ),
-            number("sun_scale", "factor on the sun alone", "", [0.0, 1e6], "1"),
-            number("sun_diameter", "angle under which the sun is seen", "degrees", [0.01, 90.0], "0.533"),
+            number("sun_scale", "factor on the sun only", "", [0.0, 1e6], "1"),
+            number("sun_diameter", "angular diameter of the sun", "degrees", [0.01, 90.0], "0.533"),
         ],
     },
     build: |reader, _| {

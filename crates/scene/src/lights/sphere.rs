@@ -24,15 +24,15 @@ pub(super) const ENTRY: LightEntry = LightEntry {
             vector("position", "its middle", "0 5 0"),
             Parameter {
                 name: "radius",
-                summary: "from its middle to its surface; above 0",
+                summary: "radius; above 0",
                 unit: "m",
                 kind: ParameterKind::Number { min: 0.0, max: 1e12 },
                 default: "0.5",
             },
-            colour("radiance", "what it gives out; or give intensity", "W/(m² sr)", "0"),
+            colour("radiance", "emitted radiance; or give 'intensity'", "W/(m² sr)", "0"),
             colour(
                 "intensity",
-                "radiance times the area of its disc: kept while the ball shrinks",
+                "radiance times the area of its disc, which stays the same when the sphere shrinks",
                 "W/sr",
                 "0",
             ),

@@ -18,18 +18,18 @@ pub(super) const ENTRY: LightEntry = LightEntry {
         summary: "spotlight: a point light that shines into a cone, with a soft edge",
         source: "",
         parameters: &[
-            vector("position", "where it is", "0 5 0"),
-            vector("look_at", "the point in the middle of the cone", "0 0 0"),
-            colour("intensity", "what it sends along its axis", "W/sr", "100"),
-            angle("angle", "from the axis to where it is dark", "30"),
-            angle("inner_angle", "from the axis to where it begins to fade", "25"),
+            vector("position", "position", "0 5 0"),
+            vector("look_at", "the point at the centre of the cone", "0 0 0"),
+            colour("intensity", "intensity along its axis", "W/sr", "100"),
+            angle("angle", "angle from the axis to the edge of the cone", "30"),
+            angle("inner_angle", "angle from the axis at which it begins to fade", "25"),
             CLASSIC,
         ],
     },
     build: |reader, _| {
         let position = reader.vector("position");
         let axis = (reader.vector("look_at") - position).try_normalize().ok_or_else(|| {
-            SceneError::invalid("a spot must not look at the point where it stands", reader.span("look_at"))
+            SceneError::invalid("a spotlight must not point at its own position", reader.span("look_at"))
         })?;
         let outer = reader.number("angle");
         Ok(BuiltLight::Light(Arc::new(Spot {

@@ -21,21 +21,17 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         parameters: &[
             Parameter {
                 name: "metal",
-                summary: "a metal as it was measured",
+                summary: "a measured metal",
                 unit: "",
                 kind: ParameterKind::Choice(NAMES),
                 default: "aluminium",
             },
-            index("eta", "in place of a metal: the real part of its refractive index", 1e-3),
-            index("k", "in place of a metal: the imaginary part, the extinction", 0.0),
-            reflectance(
-                "reflectance",
-                "in place of a metal: reflected fraction of light that falls in straight",
-                "1",
-            ),
+            index("eta", "instead of 'metal': the real part of the refractive index", 1e-3),
+            index("k", "instead of 'metal': the imaginary part, the extinction coefficient", 0.0),
+            reflectance("reflectance", "instead of 'metal': reflectance at normal incidence", "1"),
             Parameter {
                 name: "edge",
-                summary: "with a reflectance: what remains of Schlick's law at 82 degrees",
+                summary: "with 'reflectance': factor on Schlick's approximation at 82 degrees",
                 unit: "",
                 kind: ParameterKind::Colour { min: 0.0, max: 1.0 },
                 default: "1",
@@ -88,14 +84,18 @@ fn one_colour(reader: &Reader) -> Result<(), SceneError> {
     let given: Vec<&str> =
         ["metal", "eta", "reflectance"].into_iter().filter(|key| reader.is_given(key)).collect();
     if let [first, second, ..] = given[..] {
-        let message = format!("'{first}' and '{second}' both say what metal this is: take one of them out");
+        let message = format!("'{first}' and '{second}' both define the metal: remove one of them");
         return Err(SceneError::invalid(message, reader.span(second)));
     }
     let alone = [("eta", "k"), ("k", "eta"), ("edge", "reflectance")];
     match alone.into_iter().find(|(key, with)| reader.is_given(key) && !reader.is_given(with)) {
-        Some((key, with)) => {
-            Err(SceneError::invalid(format!("'{key}' says nothing without '{with}'"), reader.span(key)))
-        }
+        Some((key, with)) => Err(SceneError::invalid(
+            format!(
+                "'{key}' has no effect without '{with}': add '{with}', or remove \
+                                             '{key}'"
+            ),
+            reader.span(key),
+        )),
         None => Ok(()),
     }
 }

@@ -20,21 +20,21 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "dielectric",
-        summary: "glass, water, diamond; frosted where it is rough",
+        summary: "glass, water or diamond; frosted glass if it is rough",
         source: "Fresnel 1823",
         parameters: &[
             GLASS,
             ETA,
             DISPERSION,
-            reflectance("tint", "factor on all light; white for real glass", "1"),
+            reflectance("tint", "factor on reflected and transmitted light; white for real glass", "1"),
             ABSORPTION,
             PRIORITY,
             THIN,
             roughness("0"),
             ANISOTROPY,
             ROTATION,
-            spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
-            spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
+            spread("gloss", "maximum angle by which reflected rays spread, in cook only"),
+            spread("translucency", "maximum angle by which refracted rays spread, in cook only"),
             OPACITY,
             NORMAL,
             NORMAL_SCALE,
@@ -45,7 +45,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         if let (Some(_), Some(key)) =
             (glass_indices(&name), ["eta", "dispersion"].into_iter().find(|key| reader.is_given(key)))
         {
-            let message = format!("'glass' and '{key}' both say what this is: take one of them out");
+            let message = format!("'glass' and '{key}' both define the material: remove one of them");
             return Err(SceneError::invalid(message, reader.span(key)));
         }
         let said = (reader.number("eta"), reader.number("dispersion") / 20.0);
@@ -67,8 +67,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
 
 pub(super) const PRIORITY: Parameter = Parameter {
     name: "priority",
-    summary: "where several of these overlap, that of the greatest priority is, and eta is over that of air; 0 takes no \
-              part in it",
+    summary: "where dielectrics overlap, the one with the highest priority fills the overlap, and eta is relative to \
+              air; 0 ignores overlaps",
     unit: "",
     kind: ParameterKind::Integer { min: 0, max: 1000 },
     default: "0",
@@ -76,7 +76,7 @@ pub(super) const PRIORITY: Parameter = Parameter {
 
 const GLASS: Parameter = Parameter {
     name: "glass",
-    summary: "in place of eta and dispersion: what it is, as it was measured",
+    summary: "instead of eta and dispersion: a measured glass",
     unit: "",
     kind: ParameterKind::Choice(NAMES),
     default: "none",
@@ -84,7 +84,7 @@ const GLASS: Parameter = Parameter {
 
 const DISPERSION: Parameter = Parameter {
     name: "dispersion",
-    summary: "how far colours are parted: 20 over Abbe's number, so 0.31 for window glass, 0.55 for flint glass, 0.36 for \
+    summary: "dispersion: 20 divided by the Abbe number, so 0.31 for window glass, 0.55 for flint glass, 0.36 for \
               diamond",
     unit: "",
     kind: ParameterKind::Number { min: 0.0, max: 20.0 },

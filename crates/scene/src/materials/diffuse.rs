@@ -21,8 +21,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             reflectance("reflectance", "reflected fraction of the light", "0.7"),
             Parameter {
                 name: "roughness",
-                summary: "roughness of the diffuse microsurface: 0 is Lambertian, 1 as rough as clay or the moon: brighter where the light comes from behind \
-                          the viewer",
+                summary: "roughness of the diffuse microsurface: 0 is Lambertian, 1 is like clay or the moon, which \
+                          are brighter when the light is behind the viewer",
                 unit: "",
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
                 default: "0",

@@ -20,7 +20,7 @@ pub(super) const EMISSION: Parameter = Parameter {
 /// A factor on an emission texture.
 pub(super) const EMISSION_SCALE: Parameter = Parameter {
     name: "emission_scale",
-    summary: "factor on an emission texture",
+    summary: "factor on the emission",
     unit: "",
     kind: ParameterKind::Colour { min: 0.0, max: 1e12 },
     default: "1",
@@ -29,7 +29,7 @@ pub(super) const EMISSION_SCALE: Parameter = Parameter {
 /// The emitting sides.
 pub(super) const EMISSION_SIDES: Parameter = Parameter {
     name: "emission_sides",
-    summary: "where it gives light out: on both sides, or in front, where a triangle's corners run counter-clockwise",
+    summary: "which sides emit light: both, or the front, from which a triangle's corners run counter-clockwise",
     unit: "",
     kind: ParameterKind::Choice(Sides::NAMES),
     default: "both",

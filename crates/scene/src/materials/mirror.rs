@@ -18,7 +18,7 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         source: "",
         parameters: &[
             reflectance("reflectance", "reflected fraction of the light", "0.95"),
-            spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
+            spread("gloss", "maximum angle by which reflected rays spread, in cook only"),
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,

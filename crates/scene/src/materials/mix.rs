@@ -18,8 +18,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         summary: "a mixture of two materials",
         source: "",
         parameters: &[
-            part("a", "the first material, by its name"),
-            part("b", "the second material, by its name; may be a mix itself"),
+            part("a", "the name of the first material"),
+            part("b", "the name of the second material, which may be a mix itself"),
             Parameter {
                 name: "amount",
                 summary: "weight of the second material",
@@ -37,8 +37,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         let lobes = a.max_lobes() + b.max_lobes();
         if lobes > MAX_LOBES {
             let message = format!(
-                "these materials scatter light in {lobes} ways together, and a mix has at most {MAX_LOBES}: \
-                 a phong material has 3, others have 1"
+                "these materials have {lobes} lobes together, but a mix has at most {MAX_LOBES}: a phong material has \
+                 3, others have 1"
             );
             return Err(SceneError::invalid(message, reader.span("a")));
         }
@@ -58,20 +58,25 @@ fn read_part(
     let index = reader.material(key);
     let material = ingredients.material(index, reader.span(key))?;
     if ingredients.materials[index].parameters.find("normal").is_some() {
-        let message = format!("'{key}' has a normal map, which its mix would not: give it to the mix");
+        let message =
+            format!("'{key}' has a normal map, which the mix would ignore: give the map to the mix");
         return Err(SceneError::invalid(message, reader.span(key)));
     }
     if material.opacity().is_some() {
-        let message = format!("'{key}' has holes, which its mix would not: give the opacity to the mix");
+        let message =
+            format!("'{key}' has an opacity, which the mix would ignore: give the opacity to the mix");
         return Err(SceneError::invalid(message, reader.span(key)));
     }
     if material.visible_sides() != Sides::Both {
-        let message = format!("'{key}' is seen from its front, and a mix is seen from both sides");
+        let message = format!(
+            "'{key}' is visible only from its front, but a mix is visible from both sides: remove \
+                               its visible_sides"
+        );
         return Err(SceneError::invalid(message, reader.span(key)));
     }
     if !material.emission().is_black() {
         let message =
-            format!("'{key}' gives light, which a mix cannot: give an object of its own that material");
+            format!("'{key}' emits light, which a mix cannot: give that material to an object of its own");
         return Err(SceneError::invalid(message, reader.span(key)));
     }
     Ok(material)

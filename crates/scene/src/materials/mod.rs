@@ -161,7 +161,7 @@ impl<'a> MaterialInputs<'a> {
             return Err(SceneError::invalid(format!("no material {index}"), at));
         };
         if self.depth >= DEEPEST {
-            let message = format!("materials are mixed more than {DEEPEST} deep, or one with itself");
+            let message = format!("mixes are nested more than {DEEPEST} deep, or contain themselves");
             return Err(SceneError::invalid(message, at));
         }
         build(spec, &MaterialInputs { depth: self.depth + 1, ..*self })
@@ -229,7 +229,7 @@ const ABSORPTION: Parameter = Parameter {
 
 const ETA: Parameter = Parameter {
     name: "eta",
-    summary: "refractive index of the inside over that of the outside",
+    summary: "refractive index of the inside relative to the outside",
     unit: "",
     kind: ParameterKind::Number { min: 0.1, max: 10.0 },
     default: "1.5",
@@ -237,7 +237,7 @@ const ETA: Parameter = Parameter {
 
 const THIN: Parameter = Parameter {
     name: "thin",
-    summary: "thin-walled: light passes straight through",
+    summary: "thin-walled: light passes straight through without refraction",
     unit: "",
     kind: ParameterKind::Bool,
     default: "false",

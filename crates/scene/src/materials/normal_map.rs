@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 pub(super) const NORMAL: Parameter = Parameter {
     name: "normal",
-    summary: "normals as a picture, in tangent space, green up as in OpenGL and glTF",
+    summary: "normal map in tangent space, with green up as in OpenGL and glTF",
     unit: "",
     kind: ParameterKind::Texture,
     default: "none",
@@ -20,7 +20,7 @@ pub(super) const NORMAL: Parameter = Parameter {
 
 pub(super) const NORMAL_SCALE: Parameter = Parameter {
     name: "normal_scale",
-    summary: "factor on how far the picture's normals lean",
+    summary: "strength of the normal map",
     unit: "",
     kind: ParameterKind::Number { min: 0.0, max: 10.0 },
     default: "1",
@@ -28,7 +28,7 @@ pub(super) const NORMAL_SCALE: Parameter = Parameter {
 
 pub(super) const COAT_NORMAL: Parameter = Parameter {
     name: "coat_normal",
-    summary: "normals of the coat as a picture; without it the coat is as smooth as the mesh",
+    summary: "normal map of the coat; without it the coat is as smooth as the mesh",
     ..NORMAL
 };
 

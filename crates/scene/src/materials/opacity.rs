@@ -13,7 +13,7 @@ use bilux_math::registry::{Parameter, ParameterKind};
 /// Shared by all materials.
 pub(super) const OPACITY: Parameter = Parameter {
     name: "opacity",
-    summary: "opacity: 0 is a hole; a texture cuts out leaves and lace",
+    summary: "opacity: 0 is a hole; a texture makes cut-outs such as leaves and lace",
     unit: "",
     kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
     default: "1",

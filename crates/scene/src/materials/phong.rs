@@ -19,23 +19,23 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "phong",
-        summary: "the paper's material: ambient, diffuse, specular and refracted light, each with its constant",
+        summary: "the paper's material: ambient, diffuse, specular and refracted light, each with its coefficient",
         source: "Phong 1975",
         parameters: &[
-            reflectance("ka", "ambient reflection; kd where it is not given", "0"),
+            reflectance("ka", "ambient reflection; kd if it is not given", "0"),
             reflectance("kd", "diffuse reflection", "0.7"),
             reflectance("ks", "specular reflection: the weight of S in Equation 2", "0.3"),
             reflectance("kt", "refraction: the weight of T in Equation 2", "0"),
             Parameter {
                 name: "exponent",
-                summary: "exponent of the highlight",
+                summary: "exponent of the specular highlight",
                 unit: "",
                 kind: ParameterKind::Number { min: 0.0, max: 1e5 },
                 default: "32",
             },
             Parameter {
                 name: "reflectivity",
-                summary: "how much of S is light from the reflected direction; 1 in the paper",
+                summary: "share of S that comes from the reflected direction; 1 in the paper",
                 unit: "",
                 kind: ParameterKind::Number { min: 0.0, max: 1.0 },
                 default: "1",
@@ -43,8 +43,8 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
             ETA,
             ABSORPTION,
             THIN,
-            spread("gloss", "greatest angle by which reflected rays spread, in cook only"),
-            spread("translucency", "greatest angle by which refracted rays spread, in cook only"),
+            spread("gloss", "maximum angle by which reflected rays spread, in cook only"),
+            spread("translucency", "maximum angle by which refracted rays spread, in cook only"),
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,

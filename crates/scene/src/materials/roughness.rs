@@ -76,7 +76,7 @@ pub(super) const fn roughness(default: &'static str) -> Parameter {
 
 pub(super) const ANISOTROPY: Parameter = Parameter {
     name: "anisotropy",
-    summary: "anisotropy: how much smoother the surface is along its tangent than across",
+    summary: "anisotropy: how much smoother the surface is along its tangent than across it",
     unit: "",
     kind: ParameterKind::NumberTexture { min: 0.0, max: 1.0 },
     default: "0",

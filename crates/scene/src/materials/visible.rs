@@ -10,8 +10,8 @@ use bilux_math::registry::{Parameter, ParameterKind};
 /// Shared by materials that light does not enter.
 pub(super) const VISIBLE_SIDES: Parameter = Parameter {
     name: "visible_sides",
-    summary: "from where the camera sees it: from both sides, or from the front, where a triangle's corners run \
-              counter-clockwise; light meets both",
+    summary: "the sides that the camera sees: both, or the front, from which a triangle's corners run \
+              counter-clockwise; light reaches both",
     unit: "",
     kind: ParameterKind::Choice(Sides::NAMES),
     default: "both",

@@ -116,9 +116,9 @@ impl Because {
     pub fn words(self) -> &'static str {
         match self {
             Because::Asked => "as asked",
-            Because::Format => "as its format says",
+            Because::Format => "as its format defines",
             Because::Usual => "as is usual in its format",
-            Because::Shape => "judged by its shape",
+            Because::Shape => "guessed from its shape",
         }
     }
 }

@@ -19,7 +19,8 @@ use std::sync::Arc;
 pub(super) const ENTRY: PresetEntry = PresetEntry {
     entry: Entry {
         name: "course",
-        summary: "as the course renderer that .asc files come from: its camera, lights, material, pixels, bytes",
+        summary: "like the course renderer that .asc files come from: its camera, lights, material, pixels and \
+                  transfer function",
         source: "",
         parameters: &[],
     },
@@ -29,7 +30,7 @@ pub(super) const ENTRY: PresetEntry = PresetEntry {
 pub(super) const SECOND: PresetEntry = PresetEntry {
     entry: Entry {
         name: "course-2",
-        summary: "as course, through the second camera of that renderer",
+        summary: "like 'course', with that renderer's second camera",
         source: "",
         parameters: &[],
     },

@@ -134,9 +134,7 @@ impl<'w, const N: usize> Walk<'w, N> {
             });
             return None;
         };
-        task.note(self.depth, || {
-            format!("{} meets object {} at {}", self.whose(), surface.object, surface.p)
-        });
+        task.note(self.depth, || format!("{} hits object {} at {}", self.whose(), surface.object, surface.p));
         let wo = -Vec3::from(self.ray.direction);
         self.beta *= passed;
         let distance2 = if self.by_area { 1.0 } else { surface.t * surface.t };

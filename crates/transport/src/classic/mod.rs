@@ -21,8 +21,8 @@ pub(crate) const SPECULAR: Parameter = Parameter {
 
 pub(crate) const SHADOW_RULE: Parameter = Parameter {
     name: "shadow_rule",
-    summary: "which light is off in shadow: each that is blocked (per-light), or all, with the ambient light, \
-              where every one is blocked (paper)",
+    summary: "which lights a shadow removes: each one that is blocked (per-light), or all, with the ambient light, if \
+              every one is blocked (paper)",
     unit: "",
     kind: ParameterKind::Choice(&["per-light", "paper"]),
     default: "per-light",
@@ -38,7 +38,7 @@ pub(crate) const SHADOWS: Parameter = Parameter {
 
 pub(crate) const FRESNEL: Parameter = Parameter {
     name: "fresnel",
-    summary: "share of reflected light in glass: Schlick's approximation, or Fresnel's equations",
+    summary: "reflectance of glass: Schlick's approximation, or the Fresnel equations",
     unit: "",
     kind: ParameterKind::Choice(&["schlick", "exact"]),
     default: "schlick",
@@ -46,7 +46,7 @@ pub(crate) const FRESNEL: Parameter = Parameter {
 
 pub(crate) const CUTOFF: Parameter = Parameter {
     name: "cutoff",
-    summary: "rays that contribute less than this to the picture are not traced; 0 traces all",
+    summary: "minimum contribution of a ray to the picture; 0 traces all rays",
     unit: "",
     kind: ParameterKind::Number { min: 0.0, max: 1.0 },
     default: "0.004",

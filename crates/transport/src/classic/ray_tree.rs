@@ -88,7 +88,7 @@ impl RayTree {
             return left * emission.clamp(0.0, 1.0);
         }
         if node.depth >= task.max_depth {
-            task.note(node.depth, || format!("is not followed beyond {}", surface.p));
+            task.note(node.depth, || format!("is not traced beyond {}", surface.p));
             return Rgb::BLACK;
         }
         left * self.shade(task, &surface, &material.classic(&surface), -direction, node)
@@ -110,7 +110,7 @@ impl RayTree {
             self.local.illuminate(task, surface, material, eye, least);
         task.note(node.depth, || {
             let name = &task_name(surface);
-            format!("meets {name} at {}, {}", surface.p, if place.outside { "outside" } else { "inside" })
+            format!("hits {name} at {}, {}", surface.p, if place.outside { "outside" } else { "inside" })
         });
         let mut sum = ambient + diffuse;
         let share = self.reflected_share(&place);

@@ -14,7 +14,8 @@ use bilux_scene::Ray;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "light",
-        summary: "light tracing: paths from the lights, each vertex connected to the camera; mirrors and glass are not seen",
+        summary: "light tracing: paths from the lights, each vertex connected to the camera; mirrors and glass stay \
+                  black",
         source: "Arvo 1986",
         parameters: &[super::ROULETTE_DEPTH],
     },

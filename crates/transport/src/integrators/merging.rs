@@ -34,12 +34,12 @@ pub(super) const LIGHT_PATHS: Parameter = Parameter {
 };
 
 /// Whether subpaths are connected with each other, and whether light subpaths are connected with the camera.
-pub(super) const JOINS: Parameter = switch("joins", "join the vertices of both ends");
-pub(super) const SPLATS: Parameter = switch("splats", "show light paths to the camera");
+pub(super) const JOINS: Parameter = switch("joins", "connect the vertices of the two subpaths");
+pub(super) const SPLATS: Parameter = switch("splats", "connect light paths to the camera");
 
 /// Whether light subpaths look for direct light as well.
 pub(super) const DIRECT: Parameter =
-    switch("direct", "see and merge light paths also where they have come straight from a light");
+    switch("direct", "also connect and merge light paths that come straight from a light");
 
 const fn switch(name: &'static str, summary: &'static str) -> Parameter {
     Parameter { name, summary, unit: "", kind: ParameterKind::Bool, default: "true" }

@@ -10,7 +10,8 @@ use bilux_scene::Ray;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "occlusion",
-        summary: "ambient occlusion: the share of the hemisphere that is open at each point, without materials and lights",
+        summary: "ambient occlusion: the unoccluded fraction of the hemisphere at each point, without materials and \
+                  lights",
         source: "Zhukov 1998",
         parameters: &[Parameter {
             name: "distance",

@@ -16,8 +16,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         parameters: &[
             Parameter {
                 name: "sampling",
-                summary: "how direct light is sampled: by multiple importance sampling (mis), by sampling lights alone, or by \
-                          scattering alone",
+                summary: "how direct light is sampled: by multiple importance sampling (mis), only by the lights, or \
+                          only by the BSDF",
                 unit: "",
                 kind: ParameterKind::Choice(&["mis", "lights", "scattering"]),
                 default: "mis",
@@ -161,7 +161,7 @@ impl Path {
         if radiance.is_black() {
             return radiance;
         }
-        task.note(walk.depth, || format!("meets a light at {}", surface.p));
+        task.note(walk.depth, || format!("hits a light at {}", surface.p));
         match (walk.last, task.scene().light_index_of(surface.object)) {
             (Some((from, pdf)), Some(index)) => {
                 let light = &task.scene().lights()[index].light;

@@ -51,26 +51,27 @@ pub(super) fn unpacked(
         "TRIANGLES" => Mode::Triangles,
         "INDICES" => Mode::Indices,
         other => {
-            return Err(extension
-                .error(format!("'{other}' is not a mode, which are ATTRIBUTES, TRIANGLES and INDICES")));
+            return Err(
+                extension.error(format!("'{other}' is not a mode: use ATTRIBUTES, TRIANGLES or INDICES"))
+            );
         }
     };
     let filter = Filter::named(extension.text("filter")?.unwrap_or("NONE")).ok_or_else(|| {
-        extension.error("this filter is none: NONE, OCTAHEDRAL, QUATERNION and EXPONENTIAL are")
+        extension.error("this is not a filter: use NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL")
     })?;
     let strides_fit = match mode {
         Mode::Attributes => stride % 4 == 0 && (4..=256).contains(&stride) && filter.takes(stride),
         _ => matches!(stride, 2 | 4) && filter == Filter::None,
     };
     if !strides_fit || (mode == Mode::Triangles && count % 3 != 0) {
-        let message = format!("{count} elements of {stride} bytes cannot be packed in this way");
+        let message = format!("{count} elements of {stride} bytes cannot be compressed in this mode");
         return Err(extension.error(message));
     }
     let (offset, length) = (extension.count("byteOffset")?.unwrap_or(0), number("byteLength")?);
     let end = offset.checked_add(length).filter(|&end| end <= bytes.len());
     let Some(bytes) = end.map(|end| &bytes[offset..end]) else {
         let have = bytes.len();
-        let message = format!("{length} bytes from byte {offset} go beyond the buffer, which has {have}");
+        let message = format!("{length} bytes from byte {offset} extend beyond the buffer, which has {have}");
         return Err(extension.error(message));
     };
     // The best compression ratio is sixteen elements' bytes in two bits, or a triangle in a byte.
@@ -86,7 +87,8 @@ pub(super) fn unpacked(
         Mode::Indices => indices::unpack_sequence(bytes, stride, &mut elements),
     };
     done.map_err(|Broken| {
-        extension.error("the packed bytes of this buffer view cannot be unpacked: export the file again")
+        extension
+            .error("the compressed data of this buffer view cannot be decompressed: export the file again")
     })?;
     filter.undo(stride, &mut elements);
     Ok(elements)

@@ -103,7 +103,7 @@ pub(super) fn sparse<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         check.report_key(
             sparse,
             "count",
-            format!("{} cannot stand in for {all}", counted(count, "sparse element")),
+            format!("{} cannot replace {all}", counted(count, "sparse element")),
         );
     }
     for part in ["indices", "values"].into_iter().filter_map(|key| sparse.get(key)) {

@@ -22,7 +22,7 @@ pub(super) fn all<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
             {
                 check.report(
                     target,
-                    format!("another channel of this animation moves the {path} of node {node} too"),
+                    format!("another channel of this animation also animates the {path} of node {node}"),
                 );
             }
             aim(check, target, path);
@@ -67,14 +67,17 @@ fn aim<'d>(check: &mut Check<'d, '_>, target: JsonNode<'d>, path: &str) {
     let mesh = check.named("meshes", node, "mesh").map(|(_, mesh)| mesh);
     if path == "weights" {
         if mesh.is_none_or(|mesh| target_count(mesh) == 0) {
-            check.report(target, "the weights of this node are moved, but it has no mesh with morph targets");
+            check.report(
+                target,
+                "the weights of this node are animated, but it has no mesh with morph targets",
+            );
         }
     } else if node.get("matrix").is_some() {
-        check.report(target, format!("the {path} of this node is moved, but it stands by a matrix"));
+        check.report(target, format!("the {path} of this node is animated, but the node has a matrix"));
     } else if node.get("skin").is_some() && mesh.is_some_and(has_joints) {
         check.report(
             target,
-            format!("the {path} of a node with a skinned mesh has no effect: its joints place it"),
+            format!("the {path} of a node with a skinned mesh has no effect: its joints position it"),
         );
     }
 }
@@ -91,7 +94,8 @@ fn input<'d>(check: &mut Check<'d, '_>, sampler: JsonNode<'d>) {
         check.report(accessor, "the times of keyframes need min and max");
     }
     if text(sampler, "interpolation") == Some("CUBICSPLINE") && whole(accessor, "count") == Some(1) {
-        check.report(sampler, "a spline (CUBICSPLINE) needs two keyframes or more, and there is one");
+        check
+            .report(sampler, "CUBICSPLINE interpolation needs at least two keyframes, but there is only one");
     }
     let Some(times) = check.numbers(index).filter(|_| accessor.get("bufferView").is_some()) else { return };
     if times.first().is_some_and(|time| *time < 0.0) {
@@ -106,7 +110,7 @@ fn input<'d>(check: &mut Check<'d, '_>, sampler: JsonNode<'d>) {
     {
         let (before, after) = (times[at], times[at + 1]);
         let message = format!(
-            "keyframe {} is at {after} s, and the one before it at {before} s: times must grow",
+            "keyframe {} is at {after} s, but the one before it at {before} s: times must increase",
             at + 1
         );
         check.report_key(sampler, "input", message);
@@ -160,7 +164,8 @@ fn quaternions<'d>(check: &mut Check<'d, '_>, channel: JsonNode<'d>, index: usiz
     let counts = |i: usize| !is_cubic || i % 3 == 1;
     let bad = numbers.chunks_exact(4).enumerate().find(|(i, q)| counts(*i) && is_off(length(q) - 1.0, 0.01));
     if let Some((at, q)) = bad {
-        let message = format!("the rotation of element {at} has length {:.3}, but must have 1", length(q));
+        let message =
+            format!("the rotation of element {at} has length {:.3}, but must have length 1", length(q));
         check.report_key(channel, "sampler", message);
     }
 }

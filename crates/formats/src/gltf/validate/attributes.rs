@@ -61,14 +61,15 @@ pub(super) fn names<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     for (name, at) in holder.entries().chain(targets.flat_map(|target| target.entries())) {
         if semantic(name).is_none() && !name.starts_with('_') {
             let known = "POSITION, NORMAL, TANGENT, TEXCOORD_0, COLOR_0, JOINTS_0 and WEIGHTS_0";
-            let message =
-                format!("'{name}' is no attribute of glTF, which has {known}; your own begin with '_'");
+            let message = format!(
+                "'{name}' is not an attribute of glTF, which are {known}; names of your own begin with '_'"
+            );
             check.report(at, message);
         }
     }
     let has = |name: &str| holder.value().get(name).is_some();
     if !has("POSITION") {
-        check.report(holder, "this primitive has no POSITION, and so nothing of it is seen");
+        check.report(holder, "this primitive has no POSITION, so it is invisible");
     }
     if has("TANGENT") && !has("NORMAL") {
         check.report_key(holder, "TANGENT", "tangents need normals: add NORMAL, or remove TANGENT");
@@ -101,7 +102,7 @@ pub(super) fn formats<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
             check.report_key(
                 node,
                 "attributes",
-                format!("{name} is made of UNSIGNED_INT, which only indices may be"),
+                format!("{name} is UNSIGNED_INT, which only indices may be"),
             );
             continue;
         }
@@ -144,7 +145,7 @@ pub(super) fn layout<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         let sharing = check.attributes_in.entry(number).or_default();
         sharing.insert(index);
         if sharing.len() == 2 && view.get("byteStride").is_none() {
-            let message = "this buffer view holds several attributes, and so needs a byteStride";
+            let message = "this buffer view holds several attributes, so it needs a byteStride";
             check.report(view, message);
         }
     }

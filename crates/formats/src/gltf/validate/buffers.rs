@@ -10,13 +10,13 @@ pub(super) fn has_bytes<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let have = check.document.buffer_length(index);
     let (is_first, has_binary) = (index == 0, check.document.has_binary());
     if node.get("uri").is_none() && node.extension(meshopt::NAME).is_none() && !(is_first && has_binary) {
-        check.report(node, "this buffer has no uri, and no binary chunk brings its bytes");
+        check.report(node, "this buffer has no uri, and there is no binary chunk with its bytes");
     } else if node.get("uri").is_none() && is_first && have > wanted.saturating_add(3) {
         let more = counted(have - wanted, "byte");
         check.report(node, format!("the binary chunk of the GLB file has {more} more than this buffer"));
     } else if node.get("uri").is_some_and(|uri| uri.value().is_string()) && have < wanted {
         let have = counted(have, "byte");
-        check.report(node, format!("byteLength is {wanted}, but the buffer has {have}: it was cut off"));
+        check.report(node, format!("byteLength is {wanted}, but the buffer has only {have}: it was cut off"));
     }
 }
 
@@ -60,7 +60,7 @@ pub(super) fn view<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
 pub(super) fn stride_target<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if node.get("byteStride").is_some() && whole(node, "target") == Some(34963) {
         let message =
-            "byteStride is for vertex attributes, and the target says that these are indices: remove it";
+            "byteStride is for vertex attributes, but the target says that these are indices: remove it";
         check.report_key(node, "byteStride", message);
     }
 }

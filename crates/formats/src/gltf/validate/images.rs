@@ -12,7 +12,7 @@ pub(super) fn source<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
             check.report(node, "this image has both a uri and a bufferView: it needs one of them");
         }
         (None, Some(_)) if node.get("mimeType").is_none() => {
-            check.report(node, "'mimeType' is missing here, which an image in a buffer view needs");
+            check.report(node, "'mimeType' is missing here; an image in a buffer view needs it");
         }
         _ => {}
     }
@@ -86,11 +86,11 @@ impl<'d> Gltf<'d, '_, '_> {
         let in_uri = || text(image, "uri")?.strip_prefix("data:")?.split([';', ',']).next();
         let declared = text(image, "mimeType").or_else(in_uri).filter(|kind| kind.starts_with("image/"));
         let Some(found) = recognised(bytes) else {
-            let what = "this image is neither PNG nor JPEG, the two that glTF has without extensions";
+            let what = "this image is neither PNG nor JPEG, the only two formats in glTF without extensions";
             return self.oddities.note(what, || image.at());
         };
         if let Some(declared) = declared.filter(|declared| *declared != found) {
-            let what = format!("this image is said to be {declared}, but is {found}");
+            let what = format!("this image is declared as {declared}, but is {found}");
             self.oddities.note(&what, || image.at());
         }
         let Some(extension) = extension_for(found) else { return };

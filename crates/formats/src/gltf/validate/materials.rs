@@ -23,14 +23,14 @@ pub(super) fn go_together<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         if let Some((other, _)) = other {
             check.report(
                 extension,
-                format!("{alone} and {other} do not go together: one of them has no effect"),
+                format!("{alone} and {other} cannot be combined: one of them has no effect"),
             );
         }
     }
     if let Some(volume) = has("KHR_materials_volume") {
         let transmits = has("KHR_materials_transmission").or(has("KHR_materials_diffuse_transmission"));
         if transmits.is_none() {
-            let message = "a volume has no effect where no light enters: add KHR_materials_transmission";
+            let message = "a volume has no effect if no light enters it: add KHR_materials_transmission";
             check.report(volume, message);
         }
         let is_walled = number(volume, "thicknessFactor").is_some_and(|x| x > 0.0);

@@ -39,7 +39,7 @@ pub(super) fn weights<'d>(check: &mut Check<'d, '_>, mesh: JsonNode<'d>) {
     let (have, wanted) = (weights.children().count(), target_count(mesh));
     if have != wanted {
         let message = format!("{} for {}", counted(have, "weight"), counted(wanted, "morph target"));
-        check.report(weights, message + ": there must be as many");
+        check.report(weights, message + ": the numbers must be equal");
     }
 }
 
@@ -60,7 +60,7 @@ pub(super) fn position_bounds<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>)
     all.extend(targets(node).into_iter().flat_map(|target| attributes(check, target)));
     for (_, _, accessor) in all.into_iter().filter(|(name, ..)| *name == "POSITION") {
         if accessor.get("min").is_none() || accessor.get("max").is_none() {
-            check.report(accessor, "positions need min and max: programs frame the model by them");
+            check.report(accessor, "positions need min and max, which programs use to frame the model");
         }
     }
 }
@@ -75,7 +75,7 @@ pub(super) fn counts<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
             && have != wanted
         {
             let message =
-                format!("{name} has {have} elements and {first} has {wanted}: there must be as many");
+                format!("{name} has {have} elements but {first} has {wanted}: the numbers must be equal");
             check.report_key(node, "attributes", message);
         }
     }
@@ -145,14 +145,16 @@ fn index_values<'d>(
     };
     if let Some(at) = all.iter().position(|&index| index == restart) {
         let message = format!(
-            "index {restart}, in element {at}, is kept for restarting primitives, which glTF does not do"
+            "index {restart}, in element {at}, is reserved for primitive restart, which glTF does not have"
         );
         check.report_key(node, "indices", message);
     }
     let beyond = |index: &u32| *index as usize >= vertices && *index != restart;
     if let Some(at) = all.iter().position(beyond) {
-        let message =
-            format!("element {at} names vertex {}, but there are {vertices}, counted from 0", all[at]);
+        let message = format!(
+            "element {at} refers to vertex {}, but there are only {vertices}, counted from 0",
+            all[at]
+        );
         check.report_key(node, "indices", message);
     }
 }
@@ -175,7 +177,10 @@ pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     if let Some(list) = node.get("targets") {
         check.items(list, |check, target| {
             if !target.is_object() || target.entries().next().is_none() {
-                return check.report(target, "a morph target must name what it moves, such as POSITION");
+                return check.report(
+                    target,
+                    "a morph target must name the attribute that it moves, such as POSITION",
+                );
             }
             target.entries().for_each(|(_, index)| check.index(index, "accessors"));
         });
@@ -191,7 +196,7 @@ pub(super) fn morph<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
                     check.report_key(
                         target,
                         name,
-                        format!("a morph target moves {name}, which the primitive has not"),
+                        format!("a morph target moves {name}, which the primitive does not have"),
                     );
                 }
                 Some((_, _, moved)) if whole(*moved, "count") != whole(accessor, "count") => {
@@ -226,21 +231,21 @@ pub(super) fn material<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let missing = infos.iter().map(|(key, info)| (key, coordinates(*info)));
     let missing = missing.into_iter().find(|(_, set)| !has(&format!("TEXCOORD_{set}")));
     if let Some((key, set)) = missing {
-        let message = format!("the {key} of this material needs TEXCOORD_{set}, which the primitive has not");
+        let message =
+            format!("the {key} of this material needs TEXCOORD_{set}, which the primitive does not have");
         check.report_key(node, "material", message);
     }
     let directed = infos.iter().find(|(key, _)| matches!(*key, "normalTexture" | "clearcoatNormalTexture"));
     let is_brushed = material.extension("KHR_materials_anisotropy").is_some();
     if has("TANGENT") {
         if directed.is_none() && !is_brushed {
-            check.report(holder, "the tangents are not used, since the material has no normal texture");
+            check.remark(holder, "the tangents are not used, since the material has no normal texture");
         }
     } else if directed.is_some_and(|(key, _)| *key == "normalTexture") {
-        let message =
-            "the primitive has no TANGENT, which its normal texture goes by: programs differ in making it up";
-        check.report_key(node, "material", message);
+        let message = "the primitive has no TANGENT for its normal texture: tangents are computed, and programs differ in how";
+        check.remark(node.get("material").unwrap_or(node), message);
     } else if directed.is_some() || is_brushed {
-        let message = "the material needs directions, and there is neither a TANGENT nor a normal texture to take them from";
+        let message = "the material needs tangent directions, but the primitive has no TANGENT and the material no normal texture";
         check.report_key(node, "material", message);
     }
 }

@@ -103,6 +103,11 @@ impl<'d> Check<'d, '_> {
         self.oddities.note(message.as_ref(), || at.at());
     }
 
+    /// Reports something at a node that has no effect on the picture.
+    fn remark(&mut self, at: JsonNode<'d>, message: &str) {
+        self.oddities.remark(message, || at.at());
+    }
+
     /// Reports a fault at a property, or at the object if it has no such property.
     fn report_key(&mut self, at: JsonNode<'d>, key: &'d str, message: impl AsRef<str>) {
         self.report(at.get(key).unwrap_or(at), message);
@@ -141,7 +146,7 @@ impl<'d> Check<'d, '_> {
 
     fn unless_too_large<T>(&mut self, node: JsonNode<'d>, read: Result<T, FormatError>) -> Option<T> {
         if let Err(FormatError::TooLarge { .. }) = &read {
-            self.report(node, "these data were not checked, since that takes more memory than is allowed");
+            self.report(node, "these data were not checked because that needs more memory than is allowed");
         }
         read.ok()
     }

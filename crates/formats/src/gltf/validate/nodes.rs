@@ -18,7 +18,7 @@ pub(super) fn transform<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         a.dot(b).abs() > 1e-3 * a.length() * b.length()
     });
     if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] || is_skewed {
-        let message = "this matrix is not made of a translation, a rotation and a scale, as it must be";
+        let message = "this matrix must be made of a translation, a rotation and a scale, but is not";
         check.report(matrix, message);
     }
 }
@@ -31,7 +31,7 @@ pub(super) fn rotation<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         check.report_key(
             node,
             "rotation",
-            format!("the length of this rotation is {length:.4}, but must be 1"),
+            format!("this rotation has length {length:.4}, but must have length 1"),
         );
     }
 }
@@ -61,7 +61,7 @@ pub(super) fn mesh<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     let (have, wanted) = (weights.children().count(), target_count(mesh));
     if have != wanted {
         let message = format!("{} for {}", counted(have, "weight"), counted(wanted, "morph target"));
-        check.report(weights, message + ": there must be as many");
+        check.report(weights, message + ": the numbers must be equal");
     } else if mesh.get("weights").is_some() {
         check.report_key(mesh, "weights", "these weights are not used, since the node has its own");
     }
@@ -77,7 +77,10 @@ pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         ["matrix", "translation", "rotation", "scale"].iter().any(|key| node.value().get(key).is_some())
     };
     if stands(node) {
-        check.report(node, "the transform of a node with a skinned mesh has no effect: its joints place it");
+        check.report(
+            node,
+            "the transform of a node with a skinned mesh has no effect: its joints position it",
+        );
     }
     let parents = parents(check);
     let mut above = node.number_in_list().and_then(|index| *parents.get(index)?);
@@ -85,7 +88,7 @@ pub(super) fn skinned_place<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
         let Some(index) = above else { break };
         if check.root.item("nodes", index).is_some_and(stands) {
             let message =
-                "the transforms of the nodes above a skinned mesh have no effect: its joints place it";
+                "the transforms of the nodes above a skinned mesh have no effect: its joints position it";
             return check.report(node, message);
         }
         above = parents[index];
@@ -112,7 +115,13 @@ pub(super) fn roots<'d>(check: &mut Check<'d, '_>, scene: JsonNode<'d>) {
     for item in scene.get("nodes").into_iter().flat_map(|list| list.children()) {
         let index = item.value().as_u64().and_then(|index| usize::try_from(index).ok());
         if let Some(parent) = index.and_then(|index| *parents.get(index)?) {
-            check.report(item, format!("a scene names roots, and node {parent} is above this one"));
+            check.report(
+                item,
+                format!(
+                    "a scene may list only root nodes, but node {parent} is the parent of this \
+                                        one"
+                ),
+            );
         }
     }
 }
@@ -125,14 +134,16 @@ pub(super) fn trees<'d>(check: &mut Check<'d, '_>, _: JsonNode<'d>) {
             let first = number.and_then(|child| *parents.get(child)?);
             if first.is_some_and(|first| first != index) {
                 let other = first.unwrap_or(0);
-                check
-                    .report(child, format!("this node is below node {other} already: a node has one parent"));
+                check.report(
+                    child,
+                    format!("this node is already a child of node {other}: a node has one parent"),
+                );
             }
         }
         let (mut above, mut steps) = (parents[index], 0);
         while let Some(parent) = above.filter(|_| steps < parents.len()) {
             if parent == index {
-                check.report(node, "this node is below itself, so that the nodes form no tree");
+                check.report(node, "this node is its own ancestor: nodes must form a tree");
                 break;
             }
             (above, steps) = (parents[parent], steps + 1);

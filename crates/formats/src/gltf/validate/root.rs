@@ -40,13 +40,12 @@ pub(super) fn extensions<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
                 && is_word(rest, |c| c.is_ascii_alphanumeric() || c == '_')
         });
         if !fits {
-            let message =
-                format!("'{name}' is not a name of an extension, which are like KHR_materials_unlit");
+            let message = format!("'{name}' is not the name of an extension, such as KHR_materials_unlit");
             check.report(item, message);
         }
         let is_known = EXTENSIONS.iter().any(|row| row.name == name);
         if is_known && !check.extensions.contains(name) {
-            check.report(item, format!("{name} is declared here, but nothing in the file has it"));
+            check.report(item, format!("{name} is declared here, but nothing in the file uses it"));
         }
         if name == "KHR_mesh_quantization" && !contains(&required, name) {
             check.report(item, "KHR_mesh_quantization must be in extensionsRequired too");
@@ -55,7 +54,7 @@ pub(super) fn extensions<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
     for &item in &required {
         let Some(name) = item.value().as_str() else { continue };
         if !contains(&used, name) {
-            check.report(item, format!("{name} is required, and so must be in extensionsUsed too"));
+            check.report(item, format!("{name} is required, so it must also be in extensionsUsed"));
         }
     }
     let mut undeclared: Vec<_> =
@@ -92,7 +91,7 @@ pub(super) fn unused<'d>(check: &mut Check<'d, '_>, root: JsonNode<'d>) {
     }
     let names: HashSet<_> = root.entries().map(|(key, _)| key).collect();
     if names.contains("scenes") && !names.contains("nodes") && !nodes_of_scenes {
-        check.report_key(root, "scenes", "no scene of this file has a node");
+        check.report_key(root, "scenes", "no scene in this file has a node");
     }
 }
 
@@ -101,7 +100,7 @@ pub(super) fn camera<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     for lens in ["perspective", "orthographic"] {
         match node.get(lens) {
             None if lens == kind => {
-                check.report(node, format!("'{lens}' is missing here, which the type names"))
+                check.report(node, format!("'{lens}' is missing here; the camera's type requires it"))
             }
             Some(found) if lens != kind => {
                 check.report(found, format!("the type of this camera is {kind}: remove '{lens}'"));
@@ -148,7 +147,7 @@ pub(super) fn spot<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>) {
     }
     let Some(cone) = node.get("spot") else {
         if kind == "spot" {
-            check.report(node, "'spot' is missing here, which a light of type spot needs");
+            check.report(node, "'spot' is missing here; a light of type spot needs it");
         }
         return;
     };

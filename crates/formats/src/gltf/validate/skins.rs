@@ -15,7 +15,7 @@ pub(super) fn matrices<'d>(check: &mut Check<'d, '_>, skin: JsonNode<'d>) {
     check.give_role(skin, accessor, Role::InverseBindMatrices);
     let (have, wanted) = (whole(accessor, "count").unwrap_or(0), named_nodes(skin, "joints").len());
     if have < wanted {
-        let message = format!("{have} inverse bind matrices are too few for {}", counted(wanted, "joint"));
+        let message = format!("there are only {have} inverse bind matrices for {}", counted(wanted, "joint"));
         check.report_key(skin, key, message);
     }
     let Some(numbers) = check.numbers(index).filter(|_| accessor.get("bufferView").is_some()) else { return };

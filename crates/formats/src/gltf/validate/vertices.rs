@@ -113,7 +113,9 @@ fn influences<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[(&'d str
     }
     let mut report = |message: String| check.report_key(node, "attributes", message);
     if let (Some((vertex, joint)), Some(limit)) = (beyond, limit) {
-        report(format!("vertex {vertex} follows joint {joint}, but its skin has {limit}, counted from 0"));
+        report(format!(
+            "vertex {vertex} refers to joint {joint}, but its skin has only {limit}, counted from 0"
+        ));
     }
     if sums > 0 {
         report(format!(
@@ -122,7 +124,7 @@ fn influences<'d>(check: &mut Check<'d, '_>, node: JsonNode<'d>, all: &[(&'d str
         ));
     }
     if twice > 0 {
-        report(format!("a vertex follows the same joint twice ({twice} times in this primitive)"));
+        report(format!("a vertex refers to the same joint twice ({twice} times in this primitive)"));
     }
     if idle > 0 {
         report(format!("joints with a weight of zero should be joint 0 ({idle} are not)"));

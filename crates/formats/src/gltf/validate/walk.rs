@@ -44,7 +44,7 @@ impl<'d> Check<'d, '_> {
             let known: Vec<String> = kind.properties.iter().map(|p| p.key.to_owned()).collect();
             let advice = match nearest_name(key, &known) {
                 Some(name) => format!("did you mean '{name}'?"),
-                None => "put data of your own under 'extras'".to_owned(),
+                None => "put your own data under 'extras'".to_owned(),
             };
             self.report(value, format!("{} have no property '{key}' in glTF: {advice}", kind.plural));
         }
@@ -127,7 +127,7 @@ impl<'d> Check<'d, '_> {
         self.items(list, |this, item| {
             check(this, item);
             if !seen.insert(item.value().to_string()) {
-                this.report(item, format!("{} stands in this list twice", item.shortened()));
+                this.report(item, format!("{} occurs in this list twice", item.shortened()));
             }
         });
     }
@@ -143,9 +143,9 @@ impl<'d> Check<'d, '_> {
             let have = match count {
                 0 => format!("the file has no {noun}"),
                 1 => format!("the only {noun} of the file is number 0"),
-                _ => format!("the file has {count}, counted from 0"),
+                _ => format!("the file has only {count}, counted from 0"),
             };
-            self.report(node, format!("this names {noun} {index}, but {have}"));
+            self.report(node, format!("this refers to {noun} {index}, but {have}"));
         }
     }
 
@@ -178,7 +178,7 @@ impl<'d> Check<'d, '_> {
                     let places = places.join(" or ");
                     self.report(
                         extension,
-                        format!("{name} extends {places}, not {}: nothing looks at it here", extended.plural),
+                        format!("{name} extends {places}, not {}: it has no effect here", extended.plural),
                     );
                 }
             }

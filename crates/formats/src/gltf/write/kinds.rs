@@ -82,7 +82,7 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
         "phong" => {
             let exponent = number(spec, "exponent").unwrap_or(10.0).max(0.0);
             writing.warn(
-                "a phong material becomes one of metal and roughness, which reflects a little otherwise",
+                "a phong material is written as metallic-roughness, which reflects slightly differently",
             );
             out.with("base_color", taken("kd", 0.7.into()))
                 .with("specular_color", taken("ks", 0.2.into()))
@@ -93,8 +93,9 @@ pub(super) fn as_principled(spec: &Spec, document: &Document, writing: &mut Writ
                 Value::Material(index) => document.scene.materials.get(*index),
                 _ => None,
             });
-            writing
-                .warn(format!("glTF files hold no material '{other}': its first part stands in its place"));
+            writing.warn(format!(
+                "glTF files cannot store the material '{other}': its first part is written instead"
+            ));
             match first.filter(|first| first.kind != "mix") {
                 Some(first) => Spec { name: spec.name.clone(), ..as_principled(first, document, writing) },
                 None => out,

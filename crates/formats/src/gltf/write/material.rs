@@ -88,7 +88,7 @@ impl Document<'_> {
         let is_one_sided = is_front("visible_sides");
         let glows = principled.parameters.find("emission").is_some();
         if glows && is_front("emission_sides") != is_one_sided {
-            writing.warn("in glTF files a surface gives light on those sides from which it is seen");
+            writing.warn("in glTF files a surface emits light on the sides that are visible");
         }
         let mut out = json!({ "doubleSided": !is_one_sided });
         if !spec.name.is_empty() {
@@ -220,7 +220,8 @@ impl Document<'_> {
         let has_coat = texture(spec, "coat_weight").is_some()
             || number(spec, "coat_weight").is_some_and(|weight| weight > 0.0);
         if has_coat && number(spec, "coat_ior") != Some(1.5) {
-            writing.warn("glTF files hold no 'coat_ior' of a material: coats there have an index of 1.5");
+            writing
+                .warn("glTF files cannot store 'coat_ior' of a material: coats there have an index of 1.5");
         }
         if let Some(normals) = self.normals(spec, "coat_normal", writing)? {
             let of = &mut out["extensions"][self.uses("KHR_materials_clearcoat")];

@@ -35,7 +35,7 @@ pub(super) struct Document<'s> {
 
 pub(super) fn write(scene: &SceneBuilder, writing: &mut Writing) -> Result<(), FormatError> {
     if !scene.settings.0.is_empty() {
-        writing.warn("glTF files hold no render settings: left out");
+        writing.warn("glTF files cannot store render settings: left out");
     }
     let mut document = Document {
         scene,
@@ -120,7 +120,7 @@ impl Document<'_> {
             return Ok(*known);
         }
         if !mesh.vertex_ks.is_empty() {
-            writing.warn("glTF files hold no ks of vertices: left out");
+            writing.warn("glTF files cannot store ks of vertices: left out");
         }
         let mut attributes = Map::new();
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
@@ -193,9 +193,8 @@ impl Document<'_> {
         if !binary.is_empty() {
             let mut buffer = json!({ "byteLength": binary.len() });
             if !is_glb {
-                let name = format!("{}.bin", writing.stem);
+                let name = writing.add("bin", binary.clone());
                 buffer["uri"] = json!(name.replace('%', "%25").replace(' ', "%20"));
-                writing.beside.push((name, binary.clone()));
             }
             root.insert("buffers".into(), json!([buffer]));
             root.insert("bufferViews".into(), Json::Array(views));

@@ -44,10 +44,10 @@ impl Document<'_> {
     pub(super) fn camera(&mut self, camera: &CameraSpec, writing: &mut Writing) {
         let spec = &camera.spec;
         if !camera.keyframes.is_empty() {
-            writing.warn("cameras are written where they are at 0 seconds");
+            writing.warn("cameras are written as they are at 0 seconds");
         }
         if number(spec, "aperture").is_some_and(|aperture| aperture > 0.0) {
-            writing.warn("glTF files hold no apertures of cameras: left out");
+            writing.warn("glTF files cannot store apertures of cameras: left out");
         }
         let point = |key, default: Vec3| vector(spec, key).unwrap_or(default);
         let position = point("position", Vec3::new(0.0, 0.0, 5.0));
@@ -86,13 +86,15 @@ impl Document<'_> {
                 let direction = vector(spec, "direction").unwrap_or(Vec3::NEG_ONE);
                 if number(spec, "diameter").is_some_and(|angle| angle > 0.0) {
                     writing.warn(
-                        "glTF files hold no 'diameter' of a directional light: its shadows become hard",
+                        "glTF files cannot store 'diameter' of a directional light: its shadows become hard",
                     );
                 }
                 ("directional", colour(spec, "irradiance").unwrap_or(Rgb::grey(3.0)), direction)
             }
             "rect" | "sphere" => return self.glowing(spec, position, writing),
-            other => return writing.warn(format!("glTF files hold no light of kind '{other}': left out")),
+            other => {
+                return writing.warn(format!("glTF files cannot store lights of kind '{other}': left out"));
+            }
         };
         self.uses("KHR_lights_punctual");
         let brightest = power.max_channel();
@@ -119,7 +121,7 @@ impl Document<'_> {
         let one_sided =
             matches!(spec.parameters.find("sides"), Some((bilux_scene::Value::Text(t), _)) if t == "front");
         if is_panel && one_sided {
-            writing.warn("panels that give light in front alone are written to give it on both sides");
+            writing.warn("lights that emit only at the front are written as emitting on both sides");
         }
         let area = if is_panel { u.cross(v).length() } else { std::f32::consts::PI * radius * radius };
         let radiance = match colour(spec, "radiance").filter(|radiance| !radiance.is_black()) {

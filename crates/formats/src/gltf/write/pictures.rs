@@ -62,7 +62,7 @@ impl Document<'_> {
         writing: &mut Writing,
     ) -> Result<Json, FormatError> {
         if texture.texels().any(|texel| texel.max_channel() > 1.0) {
-            writing.warn("what is brighter than white in a picture is written as white");
+            writing.warn("texels brighter than white are written as white");
         }
         let encode =
             |c: f32| if texture.is_data { c.clamp(0.0, 1.0) } else { srgb_encode(c.clamp(0.0, 1.0)) };

@@ -49,7 +49,7 @@ impl Pbrt<'_, '_> {
         if let Some(albedo) = self.ink(list, "albedo", Meaning::Surface)?
             && !albedo.is_black()
         {
-            self.oddities.note("a medium between layers is not shown", || list.place("albedo"));
+            self.oddities.note("a medium between layers is not supported", || list.place("albedo"));
         }
         Ok(())
     }
@@ -109,7 +109,7 @@ pub(super) fn conductor(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<
 
 /// Subsurface scattering, approximated by a diffuse surface with the colour that it has from a distance.
 pub(super) fn subsurface(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let what = "light that comes out elsewhere than it went in is not shown: the surface is matt, of the same colour";
+    let what = "subsurface scattering is not supported: the surface is diffuse, with the same colour";
     pbrt.oddities.note(what, || list.at.clone());
     let asymmetry = list.finite("g", 0.0)?.clamp(-0.99, 0.99);
     for name in ["mfp", "scale"] {

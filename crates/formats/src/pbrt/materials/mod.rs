@@ -90,7 +90,7 @@ impl Pbrt<'_, '_> {
             list.has(name);
         }
         if let Some(name) = ["displacement", "bumpmap"].into_iter().find(|name| list.has(name)) {
-            self.oddities.note("displacement of a material is not shown", || list.place(name));
+            self.oddities.note("displacement of a material is not supported", || list.place(name));
         }
         if let Some(name) = list.text("normalmap")? {
             let at = list.place("normalmap");
@@ -111,7 +111,7 @@ impl Pbrt<'_, '_> {
     }
 
     fn refracts_alike(&mut self, list: &ParameterList, name: &'static str) {
-        let what = "light of all colours is refracted alike, by the index at 587.6 nm";
+        let what = "dispersion is not supported: all colours are refracted with the index at 587.6 nm";
         self.oddities.note(what, || list.place(name));
     }
 
@@ -167,7 +167,7 @@ impl Pbrt<'_, '_> {
             return mix;
         }
         self.scene.materials.truncate(first);
-        let note = format!("{what} of a material is not shown");
+        let note = format!("{what} of a material is not supported");
         self.oddities.note(&note, || whole.span.clone());
         whole
     }
@@ -194,12 +194,12 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatErro
         names => (names.to_vec(), false),
     };
     let [a, b] = names.as_slice() else {
-        let message = format!("a mix is of two materials, and here are {}", names.len());
+        let message = format!("a mix takes two materials, not {}", names.len());
         return Err(FormatError::malformed(message, list.at.clone()));
     };
     pbrt.mix_depth += 1;
     if pbrt.mix_depth > MAX_DEPTH {
-        let message = format!("materials are mixed more than {MAX_DEPTH} deep, or one with itself");
+        let message = format!("mixes are nested more than {MAX_DEPTH} levels deep, or contain themselves");
         return Err(FormatError::malformed(message, list.at.clone()));
     }
     let mut part = |name: &str| pbrt.material(&MaterialKey::Named(name.into()), &list.place("materials"));
@@ -207,7 +207,7 @@ fn mix(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatErro
     let (first, second) = if is_old { (part(b)?, part(a)?) } else { (part(a)?, part(b)?) };
     pbrt.mix_depth -= 1;
     let (Some(first), Some(second)) = (first, second) else {
-        let what = "an interface cannot be mixed with a material: the material alone is shown";
+        let what = "an interface cannot be mixed with a material: only the material is used";
         pbrt.oddities.note(what, || list.at.clone());
         return Ok(None);
     };

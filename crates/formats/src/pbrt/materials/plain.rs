@@ -92,7 +92,7 @@ impl Pbrt<'_, '_> {
         let held = if index.is_finite() { index.clamp(0.1, 10.0) } else { 1.5 };
         if held != index {
             self.oddities
-                .note("a refractive index is out of range: taken as 0.1 to 10", || list.place("eta"));
+                .note("a refractive index is out of range: it is limited to 0.1 to 10", || list.place("eta"));
         }
         held
     }
@@ -124,7 +124,7 @@ impl Pbrt<'_, '_> {
         if let Some(reflectance) = self.ink(list, "reflectance", Meaning::Surface)? {
             if given {
                 let message =
-                    "'reflectance' and a refractive index both say what metal this is: take one out";
+                    "'reflectance' and a refractive index both define the metal: remove one of them";
                 return Err(FormatError::malformed(message, list.place("reflectance")));
             }
             return Ok(Metal::Reflectance(reflectance));
@@ -148,8 +148,7 @@ impl Pbrt<'_, '_> {
         if let (Some(eta), Some(k)) = spectra {
             let Reduced { indices, is_cut } = metals::from_spectra(&eta, &k);
             if is_cut {
-                let what =
-                    "a metal is of a stronger colour than sRGB holds: the nearest that it holds is used";
+                let what = "a metal's colour lies outside sRGB: the nearest sRGB colour is used";
                 self.oddities.note(what, || list.place(eta_name));
             }
             return Ok(Metal::Indices(indices));
@@ -158,7 +157,7 @@ impl Pbrt<'_, '_> {
         let mut part = |name, default| {
             let ink = self.ink(list, name, Meaning::Number)?;
             if let Some(TextureOrValue::Picture(_)) = &ink {
-                let what = "a refractive index from a picture is not shown: its mean is taken";
+                let what = "a refractive index from a texture is not supported: its mean is used";
                 self.oddities.note(what, || list.place(name));
             }
             Ok::<_, FormatError>(ink.map_or(default, |ink| ink.mean()))
@@ -207,7 +206,7 @@ pub(in crate::pbrt) fn extinction_of(reflectance: Rgb) -> Rgb {
 }
 
 pub(super) fn measured(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let what = "measured materials are not shown: a grey one stands in place";
+    let what = "measured materials are not supported: a grey one is used instead";
     pbrt.oddities.note(what, || list.at.clone());
     for name in ["filename", "bsdffile"] {
         list.has(name);
@@ -216,7 +215,7 @@ pub(super) fn measured(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<S
 }
 
 pub(super) fn hair(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
-    let what = "hair is shown as glossy fibres, which no light passes";
+    let what = "hair is shown as opaque glossy fibres";
     pbrt.oddities.note(what, || list.at.clone());
     let mut colour = None;
     for name in ["reflectance", "color"] {

@@ -83,7 +83,7 @@ impl Pbrt<'_, '_> {
         };
         if !is_same {
             let what =
-                "roughness that differs along u and v is shown where both are numbers: that along u is taken";
+                "roughness that differs along u and v is supported only for numbers: the one along u is used";
             self.oddities.note(what, || at.clone());
         }
         let ink = self.mapped(u, |c| Rgb::grey(remap.alpha(c.luminance()).clamp(0.0, 1.0).sqrt()))?;

@@ -30,7 +30,7 @@ impl Pbrt<'_, '_> {
 pub(super) fn matte(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let kd = pbrt.texture_or(list, "Kd", 0.5)?;
     if list.number("sigma")?.unwrap_or(0.0) != 0.0 {
-        let what = "a matt surface's 'sigma' is not shown: it is equally bright from everywhere";
+        let what = "'sigma' of a matte material is not supported: the surface is Lambertian";
         pbrt.oddities.note(what, || list.place("sigma"));
     }
     let mut spec = Spec::new("", "diffuse");
@@ -45,7 +45,7 @@ pub(super) fn plastic(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Sp
     let index = pbrt.old_index(list)?.max(1.0);
     for name in ["Kr", "Kt", "mfp"] {
         if list.has(name) {
-            let what = format!("'{name}' of a material of version 3 is not shown");
+            let what = format!("'{name}' of a pbrt-v3 material is not supported");
             pbrt.oddities.note(&what, || list.place(name));
         }
     }
@@ -84,7 +84,7 @@ pub(super) fn mirror(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
 pub(super) fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let (kr, kt) = (pbrt.texture_or(list, "Kr", 1.0)?, pbrt.texture_or(list, "Kt", 1.0)?);
     if kr.mean() != kt.mean() {
-        let what = "glass that reflects in another colour than it lets through is shown in the latter";
+        let what = "glass with different colours for reflection and transmission uses the transmitted colour for both";
         pbrt.oddities.note(what, || list.place("Kt"));
     }
     let index = pbrt.old_index(list)?;
@@ -102,7 +102,7 @@ pub(super) fn glass(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec
 
 pub(super) fn translucent(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spec>, FormatError> {
     let reflect = pbrt.texture_or(list, "reflect", 0.5)?.mean();
-    let what = "light that passes a surface diffusely is not shown";
+    let what = "diffuse transmission is not supported here";
     pbrt.oddities.note(what, || list.at.clone());
     list.has("transmit");
     let mut spec = match plastic(pbrt, list)? {
@@ -141,7 +141,7 @@ pub(super) fn disney(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Spe
     spec.parameters.set("coat_ior", 1.5f32);
     for name in ["speculartint", "sheen", "sheentint", "flatness", "difftrans", "scatterdistance", "thin"] {
         if list.has(name) {
-            let what = format!("'{name}' of a material of version 3 is not shown");
+            let what = format!("'{name}' of a pbrt-v3 material is not supported");
             pbrt.oddities.note(&what, || list.place(name));
         }
     }

@@ -32,11 +32,12 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     }
     let is_ribbon = kind == "ribbon" && normals.len() == segments.len() + 1;
     if kind == "ribbon" && !is_ribbon {
-        let what = "a ribbon needs a normal for each end of its segments, and is drawn round without";
+        let what = "a ribbon needs a normal at each end of its segments; without them it is rendered as a round curve";
         pbrt.oddities.note(what, || list.place("N"));
     }
     if kind == "flat" {
-        pbrt.oddities.note("flat curves, which turn to who looks, are drawn round", || list.at.clone());
+        pbrt.oddities
+            .note("flat curves that face the viewer are rendered as round curves", || list.at.clone());
     }
     pbrt.cache.curves += 1;
     let (along, around) = if pbrt.cache.curves > MANY { COARSE } else { FINE };
@@ -60,14 +61,14 @@ fn segments(list: &ParameterList, p: &[DVec3]) -> Result<Vec<[DVec3; 4]>, Format
         2 => 2,
         3 => 3,
         other => {
-            let message = format!("degree {other} of a curve is none: 2 or 3 is");
+            let message = format!("a curve cannot have degree {other}: write 2 or 3");
             return Err(FormatError::malformed(message, list.place("degree")));
         }
     };
     if basis == "bspline" {
         if p.len() < step + 1 {
             return wrong(format!(
-                "a curve of degree {degree} has {} points at least, and not {}",
+                "a curve of degree {degree} has at least {} points, not {}",
                 step + 1,
                 p.len()
             ));
@@ -76,7 +77,7 @@ fn segments(list: &ParameterList, p: &[DVec3]) -> Result<Vec<[DVec3; 4]>, Format
     }
     if p.len() < step + 1 || !(p.len() - 1).is_multiple_of(step) {
         let message = format!(
-            "a curve of degree {degree} has {} points or {step} more, over and over, and not {}",
+            "a curve of degree {degree} has {} points plus a multiple of {step}, not {}",
             step + 1,
             p.len()
         );

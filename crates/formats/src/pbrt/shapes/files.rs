@@ -17,7 +17,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     };
     let at = list.place("filename");
     if list.has("displacement") {
-        pbrt.oddities.note("displacement of a mesh is not shown", || list.place("displacement"));
+        pbrt.oddities.note("displacement of a mesh is not supported", || list.place("displacement"));
         list.has("edgelength");
     }
     let path = pbrt.reading.locate(pbrt.folder.as_deref(), name, &at)?;
@@ -36,6 +36,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     let mut model = model?;
     pbrt.reading.release(bytes);
     pbrt.scene.warnings.append(&mut model.warnings);
+    pbrt.scene.notes.append(&mut model.notes);
     let mut meshes = model.objects.into_iter().map(|object| Arc::unwrap_or_clone(object.mesh));
     let mesh = meshes.next().unwrap_or_default();
     // pbrt ignores vertex colours.

@@ -24,7 +24,7 @@ pub(super) fn make(pbrt: &mut Pbrt, list: &ParameterList) -> Result<Option<Shape
     };
     list.has("scheme");
     if levels > MAX_LEVELS {
-        let what = format!("a mesh is subdivided {MAX_LEVELS} times at most");
+        let what = format!("a mesh is subdivided at most {MAX_LEVELS} times");
         pbrt.oddities.note(&what, || list.place("levels"));
     }
     let mut cage = Cage { points: points.iter().map(|p| p.as_dvec3()).collect(), triangles };

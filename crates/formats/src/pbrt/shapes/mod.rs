@@ -57,7 +57,7 @@ impl Pbrt<'_, '_> {
         let made = match SHAPES.iter().find(|(name, _)| *name == entity.kind) {
             Some((_, make)) => make(self, list)?,
             None if LEFT_OUT.contains(&entity.kind.as_str()) => {
-                let what = format!("the shape '{}' of version 3 is left out", entity.kind);
+                let what = format!("the pbrt-v3 shape '{}' is left out", entity.kind);
                 self.oddities.note(&what, || entity.at.clone());
                 None
             }
@@ -81,7 +81,7 @@ impl Pbrt<'_, '_> {
     fn finished(&mut self, mesh: Mesh, list: &ParameterList) -> Result<Option<ShapeGeometry>, FormatError> {
         self.reading.budget.take_bytes(mesh.size(), &list.at.file)?;
         if mesh.positions.iter().any(|p| !p.is_finite()) {
-            let what = "positions have numbers that are infinite or no numbers; they are kept";
+            let what = "positions have numbers that are infinite or not numbers (NaN); they are kept";
             self.oddities.note(what, || list.place("P"));
         }
         let mesh = if self.state.reverses { reversed(mesh) } else { mesh };
@@ -140,12 +140,13 @@ fn corners<const N: usize>(list: &ParameterList, vertices: usize) -> Result<Vec<
     }
     let at = || list.place("indices");
     if !given.len().is_multiple_of(N) {
-        let message = format!("'indices' has {} numbers, which {N} do not divide", given.len());
+        let message = format!("'indices' has {} numbers, which is not a multiple of {N}", given.len());
         return Err(FormatError::malformed(message, at()));
     }
     let in_range = |&&index: &&i32| usize::try_from(index).is_ok_and(|i| i < vertices);
     if let Some(bad) = given.iter().find(|index| !in_range(index)) {
-        let message = format!("'indices' names vertex {bad}, but there are {vertices}, counted from 0");
+        let message =
+            format!("'indices' refers to vertex {bad}, but there are only {vertices}, counted from 0");
         return Err(FormatError::malformed(message, at()));
     }
     if given.is_empty() {
@@ -184,7 +185,7 @@ impl Pbrt<'_, '_> {
         if values.is_empty() || values.len() == vertices {
             return values;
         }
-        let what = format!("'{name}' is not as many as the points, and not used");
+        let what = format!("'{name}' does not have one entry per point and is not used");
         self.oddities.note(&what, || list.place(name));
         Vec::new()
     }

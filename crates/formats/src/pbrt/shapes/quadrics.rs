@@ -27,7 +27,7 @@ fn radius(pbrt: &mut Pbrt, list: &ParameterList, name: &'static str) -> Result<O
     if radius.abs() > 0.0 {
         return Ok(Some(radius.abs()));
     }
-    pbrt.oddities.note("a shape without size is left out", || list.place(name));
+    pbrt.oddities.note("a shape of zero size is left out", || list.place(name));
     Ok(None)
 }
 

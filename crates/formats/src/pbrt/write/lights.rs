@@ -29,7 +29,7 @@ impl Document<'_> {
                 self.say(&format!("LightSource \"distant\"{given}"));
                 if number(spec, "diameter").is_some_and(|angle| angle > 0.0) {
                     writing.warn(
-                        "pbrt files hold no 'diameter' of a directional light: its shadows become hard",
+                        "pbrt files cannot store 'diameter' of a directional light: its shadows become hard",
                     );
                 }
             }
@@ -62,7 +62,7 @@ impl Document<'_> {
                 self.glowing(&place, &format!("\"sphere\"{}", float("radius", radius)), radiance, false);
             }
             "environment" => return self.environment(spec, writing),
-            other => writing.warn(format!("pbrt files hold no light of kind '{other}': left out")),
+            other => writing.warn(format!("pbrt files cannot store lights of kind '{other}': left out")),
         }
         Ok(())
     }
@@ -76,7 +76,7 @@ impl Document<'_> {
     fn environment(&mut self, spec: &Spec, writing: &mut Writing) -> Result<(), FormatError> {
         let BuiltLight::Light(built) = build(spec, &self.scene.textures)? else { return Ok(()) };
         if built.is_backdrop() {
-            writing.warn("pbrt files hold no backdrops, which light nothing: left out");
+            writing.warn("pbrt files cannot store backdrops, which light nothing: left out");
             return Ok(());
         }
         let picture = texture(spec, "radiance").and_then(|i| self.scene.textures.get(i));
@@ -93,10 +93,9 @@ impl Document<'_> {
             built.le(direction.as_vec3())
         });
         let picture = Picture::from_rgb(side, side, texels.collect())?;
-        let name = format!("{}-sky-{}.exr", writing.stem, writing.beside.len() + 1);
         let bytes = write_bytes("exr", &picture, &bilux_pictures::WriteOptions::default())?;
-        writing.beside.push((name.clone(), bytes));
-        writing.warn("environments are drawn anew on the square that pbrt has them on");
+        let name = writing.add_numbered("sky", writing.count() + 1, "exr", bytes);
+        writing.warn("environment maps are resampled to pbrt's square layout");
         self.say(&format!("LightSource \"infinite\" \"string filename\" \"{name}\""));
         Ok(())
     }

@@ -31,7 +31,7 @@ impl Document<'_> {
         let given = match spec.kind.as_str() {
             "diffuse" => self.matt(spec, "reflectance", 0.7, writing)?,
             "mirror" => {
-                writing.warn("mirrors are written as metal, which reflects more along the surface");
+                writing.warn("mirrors are written as metal, which reflects more at grazing angles");
                 let reflectance = self.colour_of(spec, "reflectance", 0.95, AS_IT_IS, writing)?;
                 format!(" \"string type\" \"conductor\"{}", renamed(&reflectance, "reflectance"))
             }
@@ -101,7 +101,10 @@ impl Document<'_> {
                     renamed(&self.colour_of(spec, "reflectance", 1.0, AS_IT_IS, writing)?, "reflectance")
                 }
                 None => {
-                    writing.warn("metal with a reflectance is written with an index of 1, and an extinction that gives it");
+                    writing.warn(
+                        "metal with a reflectance is written with a refractive index of 1 and a matching \
+                                  extinction coefficient",
+                    );
                     rgb("eta", Rgb::WHITE) + &rgb("k", extinction_of(shade))
                 }
             },
@@ -166,7 +169,7 @@ impl Document<'_> {
         let across = rough * rough / ((1.0 + ratio * ratio) * 0.5).sqrt();
         let turned = number(spec, turn).unwrap_or(0.0) / quarter;
         if (turned - turned.round()).abs() > 1e-3 {
-            writing.warn("pbrt's brushing goes along u or v: turned to the nearer one");
+            writing.warn("pbrt supports anisotropy only along u or v: the nearer one is written");
         }
         let is_along_v = turned.round() as i64 % 2 != 0;
         let (u, v) = if is_along_v { (across, ratio * across) } else { (ratio * across, across) };
@@ -188,7 +191,7 @@ impl Document<'_> {
             if given("transmission_weight") {
                 absorbed = absorption(spec);
                 if absorbed.is_black() && !white("transmission_color") {
-                    writing.warn("pbrt files hold no 'transmission_color' at the surface: left out");
+                    writing.warn("pbrt files cannot store 'transmission_color' at the surface: left out");
                 }
                 let keys = ["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"];
                 let clear = self.glass(spec, "specular_ior", "thin_walled", keys, writing)?;
@@ -199,7 +202,7 @@ impl Document<'_> {
             let metal = self.coated_metal(spec, writing)?;
             whole = Some(self.blended(spec, whole, metal, "base_metalness", writing)?);
         } else if given("coat_weight") {
-            writing.warn("pbrt files hold a 'coat_weight' of metal alone: left out");
+            writing.warn("pbrt files can store 'coat_weight' only for metal: left out");
         }
         let name = self.named(spec, &spec.name, &whole.unwrap_or_default(), writing)?;
         Ok((name, absorbed))
@@ -237,7 +240,7 @@ impl Document<'_> {
         let behind = number(spec, "diffuse_transmission_weight").unwrap_or(0.0);
         if behind > 0.0 {
             if weight > 0.0 {
-                writing.warn("what lets diffuse light through has no boundary in pbrt");
+                writing.warn("pbrt's diffuse transmission has no dielectric boundary: left out");
             }
             let [front, through] = [1.0 - behind, behind];
             let dimmed = |c: Rgb| c * front;
@@ -273,7 +276,7 @@ impl Document<'_> {
         let keys = ["specular_roughness", "specular_roughness_anisotropy", "anisotropy_rotation"];
         let shade = self.colour_of(spec, "base_color", 0.8, AS_IT_IS, writing)?;
         let reflectance = renamed(&shade, "reflectance");
-        writing.warn("metal with a colour is written as one that reflects it straight on");
+        writing.warn("metal with a colour is written as metal with that reflectance at normal incidence");
         if number(spec, "coat_weight").is_none_or(|weight| weight < 0.5) {
             let rough = self.roughness(spec, keys, 0.3, 0.25, "", writing)?;
             return Ok(format!(" \"string type\" \"conductor\"{reflectance}{rough}{AS_ALPHA}"));
@@ -305,25 +308,23 @@ impl Document<'_> {
         let clear = strongest("kt", 0.0);
         let mut left_out = |keys: &[&str], of: &str| {
             for key in keys.iter().filter(|key| spec.parameters.find(key).is_some()) {
-                writing.warn(format!("pbrt files hold no '{key}' of {of}: left out"));
+                writing.warn(format!("pbrt files cannot store '{key}' of {of}: left out"));
             }
         };
         if clear > 0.5 {
             writing.warn(
-                "what is clear for the most part is written as glass, which reflects by its index alone",
+                "mostly transmissive materials are written as glass, whose reflection depends only on its index",
             );
             return self.glass(spec, "eta", "thin", ["roughness", "", ""], writing);
         }
         if clear > 0.0 {
-            left_out(&["kt", "eta", "thin"], "what is hardly clear");
+            left_out(&["kt", "eta", "thin"], "barely transmissive materials");
         }
         let (kd, ks) = (strongest("kd", 0.7), strongest("ks", 0.3));
         if ks <= 0.0 {
             return self.matt(spec, "kd", 0.7, writing);
         }
-        writing.warn(
-            "highlights of 'phong' are written as metal of the same width, for their share of the light",
-        );
+        writing.warn("highlights of 'phong' are written as metal of the same highlight width and weight");
         let share = (ks / (kd + ks)).clamp(0.01, 0.99);
         let (over_rest, over_share) = (1.0 / (1.0 - share), 1.0 / share);
         let rest = |c: Rgb| (c * over_rest).clamp(0.0, 1.0);

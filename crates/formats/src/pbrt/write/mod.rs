@@ -83,7 +83,7 @@ impl Document<'_> {
             return Ok(());
         }
         if !object.motion.is_still() {
-            writing.warn("moving objects are written where they are at 0 seconds");
+            writing.warn("moving objects are written as they are at 0 seconds");
         }
         let place = object.motion.at(0.0);
         let look = self.shape_attributes.get(object.material).cloned().unwrap_or_default();
@@ -119,10 +119,10 @@ impl Document<'_> {
             return Ok(file.clone());
         }
         if !mesh.vertex_kd.is_empty() || !mesh.vertex_ks.is_empty() {
-            writing.warn("pbrt files hold no colours of vertices: left out");
+            writing.warn("pbrt files cannot store vertex colours: left out");
         }
         if !mesh.uvs2.is_empty() {
-            writing.warn("pbrt files hold one set of texture coordinates: the second is left out");
+            writing.warn("pbrt files store one set of texture coordinates: the second is left out");
         }
         let bare =
             Mesh { vertex_kd: Vec::new(), vertex_ks: Vec::new(), uvs2: Vec::new(), ..(**mesh).clone() };
@@ -130,8 +130,7 @@ impl Document<'_> {
             let message = "a mesh has more vertices than its file can hold";
             return Err(FormatError::malformed(message, whole_file(&writing.stem.as_str().into())));
         };
-        let file = format!("{}-mesh-{}.ply", writing.stem, self.meshes.len() + 1);
-        writing.beside.push((file.clone(), bytes));
+        let file = writing.add_numbered("mesh", self.meshes.len() + 1, "ply", bytes);
         self.meshes.insert(Arc::as_ptr(mesh), file.clone());
         Ok(file)
     }

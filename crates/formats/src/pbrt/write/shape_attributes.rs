@@ -48,7 +48,7 @@ impl Document<'_> {
         if let Some(index) = texture(spec, "opacity") {
             let threshold = self.scene.textures.get(index).and_then(|texture| texture.threshold);
             if threshold.is_some() {
-                writing.warn("the edges of cut-outs are those of their texels");
+                writing.warn("cut-outs get the hard edges of their texels");
             }
             if let Some(name) = self.texture(index, TexelMeaning::Numbers, AS_IT_IS, writing)? {
                 look.alpha = format!(" \"texture alpha\" \"{name}\"");
@@ -69,9 +69,7 @@ impl Document<'_> {
         let Some(texture) = self.scene.textures.get(index).cloned() else { return Ok(None) };
         let greatest = scale.max_channel();
         if scale != Rgb::grey(scale.r) {
-            writing.warn(
-                "the factor of a picture that gives light is grey in pbrt: its greatest channel is taken",
-            );
+            writing.warn("pbrt scales an emission texture by one number: the maximum channel is used");
         }
         let file = self.picture(&texture, false, AS_IT_IS, writing)?;
         Ok(Some(format!(" \"string filename\" \"{file}\"{}", float("scale", greatest))))

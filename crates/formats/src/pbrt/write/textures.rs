@@ -50,19 +50,19 @@ impl Document<'_> {
             line += " \"string filter\" \"point\"";
         }
         if texture.second_uv {
-            writing.warn("pbrt files hold one set of texture coordinates: the second is left out");
+            writing.warn("pbrt files store one set of texture coordinates: the second is left out");
         }
         match texture.wrap {
             [Wrap::Repeat, Wrap::Repeat] => {}
             [Wrap::Clamp, Wrap::Clamp] => line += " \"string wrap\" \"clamp\"",
-            _ => writing.warn("textures whose edges are mirrored, or differ, are written to repeat"),
+            _ => writing.warn("textures with mirrored or different wrap modes are written as repeating"),
         }
         if let Some(transform) = &texture.transform {
             // In pbrt, v points up.
             let at = |u, v| transform.apply(Vec2::new(u, v));
             let (zero, u, v) = (at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0));
             if (u.y - zero.y).abs() + (v.x - zero.x).abs() > 1e-5 {
-                writing.warn("pbrt files hold no textures that are turned: written as if they were not");
+                writing.warn("pbrt files cannot store rotated textures: they are written without rotation");
             }
             let scale = [u.x - zero.x, v.y - zero.y];
             let shift = [zero.x, 1.0 - scale[1] - zero.y];
@@ -100,8 +100,6 @@ impl Document<'_> {
         }
         picture.alpha = Alpha::Straight;
         let bytes = write_bytes(format, &picture, &bilux_pictures::WriteOptions::default())?;
-        let name = format!("{}-texture-{}.{format}", writing.stem, writing.beside.len() + 1);
-        writing.beside.push((name.clone(), bytes));
-        Ok(name)
+        Ok(writing.add_numbered("texture", writing.count() + 1, format, bytes))
     }
 }

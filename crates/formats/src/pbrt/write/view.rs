@@ -38,7 +38,9 @@ impl Document<'_> {
             Some("tent") => "PixelFilter \"triangle\" \"float xradius\" [ 1 ] \"float yradius\" [ 1 ]",
             Some("gaussian") => "PixelFilter \"gaussian\"",
             Some(other) => {
-                writing.warn(format!("pbrt files hold no filter '{other}': gaussian in its place"));
+                writing.warn(format!(
+                    "pbrt files cannot store the filter '{other}': gaussian is written instead"
+                ));
                 "PixelFilter \"gaussian\""
             }
         };
@@ -56,14 +58,14 @@ impl Document<'_> {
         self.say(&format!("Integrator \"volpath\" \"integer maxdepth\" [ {depth} ]"));
         for (key, ..) in &settings.0 {
             if !QUIET.contains(&key.as_str()) && !["spp", "seed"].contains(&key.as_str()) {
-                writing.warn(format!("pbrt files hold no setting '{key}': left out"));
+                writing.warn(format!("pbrt files cannot store the setting '{key}': left out"));
             }
         }
         match self.scene.cameras.as_slice() {
             [] => {}
             [first, rest @ ..] => {
                 if !rest.is_empty() {
-                    writing.warn("pbrt files hold one camera: the first");
+                    writing.warn("pbrt files store one camera: the first is written");
                 }
                 self.camera(first, width as f32 / height as f32, writing);
             }
@@ -73,7 +75,7 @@ impl Document<'_> {
     /// A pbrt camera looks along +z with +x to the right.
     fn camera(&mut self, camera: &CameraSpec, aspect: f32, writing: &mut Writing) {
         if !camera.keyframes.is_empty() {
-            writing.warn("cameras are written where they are at 0 seconds");
+            writing.warn("cameras are written as they are at 0 seconds");
         }
         let spec = &camera.spec;
         let at = |key, default: Vec3| vector(spec, key).unwrap_or(default);

@@ -56,8 +56,8 @@ pub(super) struct Builtin {
 impl Builtin {
     pub(super) fn new(threads: usize) -> Result<Builtin, PictureError> {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool =
-            pool.map_err(|why| PictureError::NoDenoiser { what: format!("no threads for it: {why}") })?;
+        let pool = pool
+            .map_err(|why| PictureError::NoDenoiser { what: format!("cannot start its threads: {why}") })?;
         Ok(Builtin { pool })
     }
 }

@@ -66,12 +66,12 @@ impl Device {
         // SAFETY: the library comes from where the user, or the system, keeps libraries, and is trusted like those.
         let library = unsafe { Library::new(place) }.map_err(|why| format!("{}: {why}", place.display()))?;
         let library = ManuallyDrop::new(library);
-        let functions =
-            Functions::find(&library).map_err(|why| format!("{} is no version 2: {why}", place.display()))?;
+        let functions = Functions::find(&library)
+            .map_err(|why| format!("{} is not version 2: {why}", place.display()))?;
         // SAFETY: the only argument is a constant from the documentation.
         let device = unsafe { (functions.oidnNewDevice)(DEVICE_CPU) };
         if device.is_null() {
-            return Err(format!("{} gives no device for this processor", place.display()));
+            return Err(format!("{} does not support this processor", place.display()));
         }
         let mut device =
             Device { functions, device, version: [0; 3], place: place.to_owned(), _library: library };

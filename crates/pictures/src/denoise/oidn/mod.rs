@@ -21,7 +21,7 @@ use std::thread::JoinHandle;
 pub(super) const ENTRY: DenoiserEntry = DenoiserEntry {
     entry: Entry {
         name: "oidn",
-        summary: "Open Image Denoise 2: a trained network, where its library is found",
+        summary: "Open Image Denoise 2: a trained neural network, if its library is installed",
         source: "Áfra 2025",
         parameters: &[],
     },

@@ -9,7 +9,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 static DEVICES: Mutex<Vec<(usize, Arc<Device>)>> = Mutex::new(Vec::new());
 
 /// How to get the library, for users who do not have it.
-const ADVICE: &str = "Open Image Denoise does better: pip install pyoidn, or name its library in OIDN_LIB";
+const ADVICE: &str =
+    "Open Image Denoise gives cleaner pictures: pip install pyoidn, or set OIDN_LIB to its library";
 
 /// The device for a number of threads, 0 for one per core. While another thread loads the library, this waits for it.
 /// If `may_load` is false, the device is available only if it was loaded before.
@@ -22,7 +23,7 @@ pub(super) fn device(threads: usize, may_load: bool) -> Result<Arc<Device>, Stri
         return Ok(device.clone());
     }
     if !may_load {
-        return Err("no library is loaded after a file of the sandbox was opened".to_owned());
+        return Err("a sandbox loads no library once it has opened a file".to_owned());
     }
     let device = Arc::new(open(threads)?);
     devices.push((threads, device.clone()));

@@ -7,24 +7,24 @@ use zune_jpeg::errors::DecodeErrors;
 const FORMAT: &str = "JPEG";
 
 const PHRASES: &[super::Phrase] = &[
-    ("huffman code", "its compressed pixels cannot be unpacked"),
-    ("huffman", "a Huffman table of it is wrong"),
-    ("dqt", "a quantization table of it is wrong"),
-    ("quantization", "a quantization table of it is wrong"),
-    ("qt table", "a quantization table of it is wrong"),
+    ("huffman code", "its compressed pixels cannot be decompressed"),
+    ("huffman", "one of its Huffman tables is wrong"),
+    ("dqt", "one of its quantization tables is wrong"),
+    ("quantization", "one of its quantization tables is wrong"),
+    ("qt table", "one of its quantization tables is wrong"),
     ("sos", "the header of a scan is wrong"),
     ("scan", "the header of a scan is wrong"),
     ("sof", "its frame header is wrong"),
     ("component", "its frame header is wrong"),
-    ("sampling", "its frame header has a sampling of colours that cannot be"),
+    ("sampling", "its frame header has an impossible chroma subsampling"),
     ("zero", "its header says that it has no pixels"),
-    ("width", "its header has a width that cannot be"),
-    ("height", "its header has a height that cannot be"),
+    ("width", "its header has an impossible width"),
+    ("height", "its header has an impossible height"),
     ("start bytes", "it does not begin as a JPEG does"),
-    ("marker", "it has a marker where none may be"),
+    ("marker", "it has a marker where none is allowed"),
     ("length", "one of its segments has a wrong length"),
-    ("mcu", "its compressed pixels cannot be unpacked"),
-    ("corrupt", "its compressed pixels cannot be unpacked"),
+    ("mcu", "its compressed pixels cannot be decompressed"),
+    ("corrupt", "its compressed pixels cannot be decompressed"),
 ];
 
 /// Why the decoder rejects these bytes.

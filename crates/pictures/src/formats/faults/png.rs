@@ -9,25 +9,25 @@ const FORMAT: &str = "PNG";
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 const PHRASES: &[super::Phrase] = &[
-    ("corrupt deflate", "its compressed pixels cannot be unpacked"),
+    ("corrupt deflate", "its compressed pixels cannot be decompressed"),
     ("enough data for image", "it has fewer pixels than its header says"),
     ("idat or fdat chunk is missing", "it has no pixels (no IDAT chunk)"),
     ("before ihdr", "it does not begin with its header (IHDR)"),
     ("palette entries", "its palette is too short"),
-    ("missing palette", "its pixels are indices, and there is no palette (PLTE) for them"),
+    ("missing palette", "its pixels are palette indices, but it has no palette (PLTE)"),
     ("palette", "its palette is wrong"),
     ("dimensions", "its header says that it has no pixels"),
-    ("color/depth", "its header has a number of bits that its kind of colour cannot have"),
-    ("bit depth", "its header has a number of bits that does not exist"),
-    ("color type", "its header has a kind of colour that does not exist"),
+    ("color/depth", "its header has a bit depth that its colour type does not allow"),
+    ("bit depth", "its header has a bit depth that does not exist"),
+    ("color type", "its header has a colour type that does not exist"),
     ("sbit", "its chunk sBIT is wrong"),
-    ("compression method", "it is packed in an unknown way"),
-    ("filter", "it is filtered in an unknown way"),
-    ("interlace", "it is interlaced in an unknown way"),
+    ("compression method", "its compression is unknown"),
+    ("filter", "its filter method is unknown"),
+    ("interlace", "its interlace method is unknown"),
     ("signature", "it does not begin as a PNG does"),
-    ("at most once", "one of its chunks stands there twice"),
-    ("chunk", "its chunks are not in the order that PNG asks for"),
-    ("text", "one of its texts is wrong"),
+    ("at most once", "one of its chunks occurs twice"),
+    ("chunk", "its chunks are not in the order that PNG requires"),
+    ("text", "one of its text entries is wrong"),
     ("frame", "one of its frames is wrong"),
 ];
 
@@ -37,7 +37,7 @@ pub(in super::super) fn explain(error: &DecodingError, bytes: &[u8]) -> PictureE
         return PictureError::Unsupported {
             format: FORMAT,
             what: "a chunk that needs more memory than the limit".to_owned(),
-            advice: "raise the memory limit if the file is to be trusted",
+            advice: "raise the memory limit if you trust the file",
         };
     }
     if let Some(found) = structure(bytes) {
@@ -95,7 +95,7 @@ fn structure(bytes: &[u8]) -> Option<PictureError> {
         return if SIGNATURE.starts_with(bytes) {
             Some(PictureError::truncated(FORMAT, "the header"))
         } else {
-            invalid("its first 8 bytes are not those of a PNG, as when it was copied as text".to_owned())
+            invalid("its first 8 bytes are not those of a PNG; perhaps it was copied as text".to_owned())
         };
     }
     let mut chunks = Chunks { bytes, at: SIGNATURE.len() };
@@ -103,7 +103,7 @@ fn structure(bytes: &[u8]) -> Option<PictureError> {
     for chunk in chunks.by_ref() {
         let at = chunk.at;
         let Some(name) = letters(chunk.name) else {
-            return invalid(format!("at byte {at} a chunk should begin, and what stands there is none"));
+            return invalid(format!("a chunk should begin at byte {at}, but there is none"));
         };
         let Some((data, checksum)) =
             chunk.rest.split_at_checked(chunk.length + 4).filter(|(_, c)| c.len() == 4)
@@ -114,7 +114,7 @@ fn structure(bytes: &[u8]) -> Option<PictureError> {
             ));
         };
         if u32_at(checksum, 0, true) != Some(crc(data)) {
-            return invalid(format!("the checksum of the chunk {name} at byte {at} does not fit its data"));
+            return invalid(format!("the checksum of the chunk {name} at byte {at} does not match its data"));
         }
         if at == SIGNATURE.len() && name != "IHDR" {
             return invalid(format!("its first chunk is {name} and not the header, IHDR"));
@@ -124,7 +124,7 @@ fn structure(bytes: &[u8]) -> Option<PictureError> {
         }
         end = at + 12 + chunk.length;
     }
-    Some(PictureError::truncated(FORMAT, format!("its chunks: after byte {end} more should come")))
+    Some(PictureError::truncated(FORMAT, format!("its chunks: more should follow after byte {end}")))
 }
 
 /// The checksum of a chunk's name and data. [PNG, annex D]

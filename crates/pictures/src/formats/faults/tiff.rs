@@ -20,7 +20,7 @@ pub(in super::super) fn explain(error: TiffError, bytes: &[u8]) -> PictureError 
         TiffError::LimitsExceeded => PictureError::Unsupported {
             format: FORMAT,
             what: "a part that needs more memory than the limit".to_owned(),
-            advice: "raise the memory limit if the file is to be trusted",
+            advice: "raise the memory limit if you trust the file",
         },
         TiffError::FormatError(error) => invalid(format_fault(&error, &directory(bytes))),
         TiffError::IntSizeError => invalid(format!("a number{} is larger than any file", directory(bytes))),
@@ -30,7 +30,7 @@ pub(in super::super) fn explain(error: TiffError, bytes: &[u8]) -> PictureError 
 
 /// Rejects a valid feature that this program does not read.
 pub(in super::super) fn unsupported(what: String) -> PictureError {
-    let advice = "save it as grey or RGB, packed by Deflate or not at all";
+    let advice = "save it as grey or RGB, with Deflate compression or none";
     PictureError::Unsupported { format: FORMAT, what, advice }
 }
 
@@ -43,7 +43,7 @@ pub(in super::super) fn colours(kind: ColorType) -> &'static str {
         ColorType::CMYK(_) | ColorType::CMYKA(_) => "CMYK colour",
         ColorType::YCbCr(_) => "YCbCr colour",
         ColorType::Lab(_) => "Lab colour",
-        _ => "its kind of colour",
+        _ => "its colour type",
     }
 }
 
@@ -69,22 +69,24 @@ fn format_fault(error: &TiffFormatError, place: &str) -> String {
     match error {
         E::TiffSignatureNotFound | E::TiffSignatureInvalid => "it does not begin as a TIFF does".to_owned(),
         E::ImageFileDirectoryNotFound => "it has no directory of tags".to_owned(),
-        E::InconsistentSizesEncountered => "its parts have sizes that do not fit together".to_owned(),
+        E::InconsistentSizesEncountered => "its parts have sizes that contradict each other".to_owned(),
         E::InvalidDimensions(width, height) => format!("it says that it has {width} x {height} pixels"),
-        E::InvalidTag | E::InvalidTypeForTag => format!("a tag{place} has a value that it cannot have"),
-        E::InvalidTagValueType(of) => format!("{}{place} has a kind of value that it cannot have", tag(*of)),
-        E::RequiredTagNotFound(of) => format!("{}, which every picture needs, is not{place}", tag(*of)),
+        E::InvalidTag | E::InvalidTypeForTag => format!("a tag{place} has an invalid value"),
+        E::InvalidTagValueType(of) => format!("{}{place} has a value of the wrong type", tag(*of)),
+        E::RequiredTagNotFound(of) => format!("{}, which every picture needs, is missing{place}", tag(*of)),
         E::InvalidCountForTag(of, count) => {
-            format!("{}{place} has {count} values, which is not the number that it needs", tag(*of))
+            format!("{}{place} has {count} values, which is the wrong number", tag(*of))
         }
-        E::UnknownPredictor(number) => format!("the tag Predictor{place} is {number}, which means nothing"),
+        E::UnknownPredictor(number) => {
+            format!("the tag Predictor{place} is {number}, which is not a predictor")
+        }
         E::UnknownPlanarConfiguration(number) => {
-            format!("the tag PlanarConfiguration{place} is {number}, which means nothing")
+            format!("the tag PlanarConfiguration{place} is {number}, which is not a configuration")
         }
-        E::StripTileTagConflict => "it says both or neither of where strips and where tiles are".to_owned(),
-        E::CycleInOffsets => "its directories follow each other in a circle".to_owned(),
+        E::StripTileTagConflict => "it has both or neither of the tags for strips and for tiles".to_owned(),
+        E::CycleInOffsets => "its directories form a loop".to_owned(),
         E::SamplesPerPixelIsZero => format!("the tag SamplesPerPixel{place} is 0"),
-        E::CompressedDataCorrupt(_) => "its compressed pixels cannot be unpacked".to_owned(),
+        E::CompressedDataCorrupt(_) => "its compressed pixels cannot be decompressed".to_owned(),
         _ => super::CONTRADICTION.to_owned(),
     }
 }
@@ -97,15 +99,15 @@ fn in_words(error: &TiffUnsupportedError) -> String {
             "a picture whose channels have different numbers of bits".to_owned()
         }
         E::InterpretationWithBits(..) | E::UnsupportedBitsPerChannel(_) => {
-            "the number of bits that its samples have".to_owned()
+            "the bit depth of its samples".to_owned()
         }
-        E::UnknownInterpretation | E::UnsupportedInterpretation(_) => "its kind of colour".to_owned(),
+        E::UnknownInterpretation | E::UnsupportedInterpretation(_) => "its colour type".to_owned(),
         E::UnsupportedColorType(kind) => colours(*kind).to_owned(),
         E::UnknownCompressionMethod | E::UnsupportedCompressionMethod(_) => {
-            "the way in which its pixels are packed".to_owned()
+            "the compression of its pixels".to_owned()
         }
-        E::UnsupportedSampleDepth(count) => format!("a picture of {count} samples a pixel"),
-        E::UnsupportedSampleFormat(_) => "the kind of numbers that its samples are".to_owned(),
+        E::UnsupportedSampleDepth(count) => format!("a picture with {count} samples per pixel"),
+        E::UnsupportedSampleFormat(_) => "the number type of its samples".to_owned(),
         E::UnsupportedPlanarConfig(_) => "the order of its channels".to_owned(),
         E::ChromaSubsampling => "subsampled colour".to_owned(),
         _ => "a part of it".to_owned(),

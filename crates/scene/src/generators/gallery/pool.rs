@@ -11,7 +11,7 @@ use bilux_math::transcendental::sin_cos;
 use bilux_math::{Rgb, Vec3};
 
 pub(in crate::generators) const ENTRY: GeneratorEntry = GeneratorEntry {
-    entry: about("pool", "a tiled basin under rippled water, in the light of a lamp like a low sun"),
+    entry: about("pool", "a tiled basin under rippled water, lit by a lamp like a low sun"),
     generate: |_| Ok(build()),
 };
 

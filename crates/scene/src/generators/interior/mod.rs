@@ -24,7 +24,7 @@ pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
         source: "",
         parameters: &[integer(
             "detail",
-            "how finely round things are cut: 1 makes 84,000 triangles, 2 239,000, 3 478,000",
+            "tessellation of round objects: 1 makes 84,000 triangles, 2 makes 239,000, 3 makes 478,000",
             1,
             6,
             "1",

@@ -22,11 +22,11 @@ use std::sync::Arc;
 pub(super) const ENTRY: GeneratorEntry = GeneratorEntry {
     entry: Entry {
         name: "scan",
-        summary: "a coiled dragon like a statue from a scanner: closed, fine, uneven",
+        summary: "a coiled dragon like a scanned statue: closed, finely and unevenly tessellated",
         source: "Doi 1991",
         parameters: &[integer(
             "detail",
-            "samples over the height: 64 make 58,000 triangles, 252 make 900,000",
+            "samples along the height: 64 make 58,000 triangles, 252 make 900,000",
             8,
             800,
             "64",

@@ -26,28 +26,28 @@ use std::sync::Arc;
 pub(super) const ENTRY: MaterialEntry = MaterialEntry {
     entry: Entry {
         name: "principled",
-        summary: "plastic, metal, paint, glass: one surface for nearly everything",
+        summary: "plastic, metal, paint, glass: one material for nearly everything",
         source: "OpenPBR 1.1",
         parameters: &[
-            reflectance("base_color", "what diffuse parts reflect, and metal straight on", "0.8"),
+            reflectance("base_color", "colour of the diffuse part, and of metal at normal incidence", "0.8"),
             number(
                 "base_diffuse_roughness",
-                "of what scatters diffusely: 0 is Lambert's, 1 as clay or the moon",
+                "roughness of the diffuse part: 0 is Lambertian, 1 is like clay or the moon",
                 1.0,
                 "0",
             ),
-            number("base_metalness", "how much of the surface is metal", 1.0, "0"),
-            number("specular_weight", "factor on what is reflected straight on at the surface", 1.0, "1"),
+            number("base_metalness", "fraction of the surface that is metal", 1.0, "0"),
+            number("specular_weight", "factor on specular reflection at normal incidence", 1.0, "1"),
             reflectance(
                 "specular_color",
-                "factor on what is reflected at the surface; of metal, near grazing",
+                "colour of specular reflection; of metal, near grazing angles",
                 "1",
             ),
             number("specular_roughness", ROUGHNESS, 1.0, "0.3"),
-            index("specular_ior", "refractive index of what is not metal", "1.5"),
+            index("specular_ior", "refractive index of the non-metallic part", "1.5"),
             number(
                 "specular_roughness_anisotropy",
-                "anisotropy: how much smoother the surface is along its tangent than across",
+                "anisotropy: how much smoother the surface is along its tangent than across it",
                 1.0,
                 "0",
             ),
@@ -58,74 +58,65 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
                 kind: ParameterKind::NumberTexture { min: -1.0, max: 1.0 },
                 default: "0",
             },
-            number("transmission_weight", "how much of what is not metal is clear", 1.0, "0"),
+            number("transmission_weight", "fraction of the non-metallic part that transmits light", 1.0, "0"),
             reflectance(
                 "transmission_color",
-                "what is left of light that passes: at each surface, or after transmission_depth inside",
+                "colour of transmitted light: at each surface, or after transmission_depth inside",
                 "1",
             ),
             Parameter {
                 name: "transmission_depth",
-                summary: "how far light goes inside until it has transmission_color; 0 tints at the surface",
+                summary: "distance inside after which light has transmission_color; 0 tints it at the surface",
                 unit: "m",
                 kind: ParameterKind::Number { min: 0.0, max: 1e6 },
                 default: "0",
             },
             Parameter {
                 name: "transmission_dispersion_scale",
-                summary: "how much of what transmission_dispersion_abbe_number says parts colours inside of what is clear",
+                summary: "scale of the dispersion that transmission_dispersion_abbe_number gives",
                 unit: "",
                 kind: ParameterKind::Number { min: 0.0, max: 1.0 },
                 default: "0",
             },
             Parameter {
                 name: "transmission_dispersion_abbe_number",
-                summary: "the less it is, the further colours are parted: 64 for window glass, 36 for flint glass",
+                summary: "Abbe number; lower values disperse more: 64 for window glass, 36 for flint glass",
                 unit: "",
                 kind: ParameterKind::Number { min: 1.0, max: 1e4 },
                 default: "20",
             },
             Parameter { name: "thin_walled", ..THIN },
             PRIORITY,
-            number("coat_weight", "how much of the surface has a clear coat", 1.0, "0"),
-            reflectance("coat_color", "what is left of light that passes the coat and comes back", "1"),
+            number("coat_weight", "weight of the clear coat", 1.0, "0"),
+            reflectance("coat_color", "colour of light that passes the coat and returns", "1"),
             number("coat_roughness", ROUGHNESS, 1.0, "0"),
             index("coat_ior", "refractive index of the coat", "1.6"),
             COAT_NORMAL,
             COAT_NORMAL_SCALE,
-            number("fuzz_weight", "how much of the surface has fine fibres on top, as velvet has", 1.0, "0"),
+            number("fuzz_weight", "weight of the fuzz: fine fibres, as on velvet", 1.0, "0"),
             reflectance("fuzz_color", "colour of the fibres", "1"),
             number(
                 "fuzz_roughness",
-                "low for fibres that stand upright and are seen only along the surface",
+                "roughness of the fuzz; low for upright fibres that show only at grazing angles",
                 1.0,
                 "0.5",
             ),
             number(
                 "diffuse_transmission_weight",
-                "how much of the diffuse part comes out behind, as in a leaf",
+                "fraction of the diffuse part that is transmitted to the back, as in a leaf",
                 1.0,
                 "0",
             ),
-            reflectance(
-                "diffuse_transmission_color",
-                "what comes out behind of light that scatters there",
-                "1",
-            ),
-            number(
-                "thin_film_weight",
-                "how much of the surface has a film as thin as light's waves",
-                1.0,
-                "0",
-            ),
+            reflectance("diffuse_transmission_color", "colour of diffuse transmission", "1"),
+            number("thin_film_weight", "weight of the thin film", 1.0, "0"),
             Parameter {
                 name: "thin_film_thickness",
-                summary: "thickness of that film",
+                summary: "thickness of the thin film",
                 unit: "µm",
                 kind: ParameterKind::NumberTexture { min: 0.0, max: 10.0 },
                 default: "0.5",
             },
-            index("thin_film_ior", "refractive index of that film", "1.4"),
+            index("thin_film_ior", "refractive index of the thin film", "1.4"),
             EMISSION,
             EMISSION_SCALE,
             EMISSION_SIDES,
@@ -141,12 +132,12 @@ pub(super) const ENTRY: MaterialEntry = MaterialEntry {
         let depth = reader.number("transmission_depth");
         let is_deep = !maps.tints_surface;
         if is_deep && maps.transmission_color.texture.is_some() {
-            let message =
-                "with a transmission_depth transmission_color is of the inside, which has no texture";
+            let message = "with a transmission_depth, transmission_color belongs to the inside, which cannot have a texture: \
+                 use a colour";
             return Err(SceneError::invalid(message, reader.span("transmission_color")));
         }
         if is_there(&maps.transmission_weight) && !maps.thin && reader.text("visible_sides") == "front" {
-            let message = "what light goes into is seen from both sides: leave visible_sides out";
+            let message = "a transmissive material is visible from both sides: remove visible_sides";
             return Err(SceneError::invalid(message, reader.span("visible_sides")));
         }
         let sigma_a = if is_deep && is_there(&maps.transmission_weight) {

@@ -20,7 +20,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: PresetEntry = PresetEntry {
     entry: Entry {
         name: "studio",
-        summary: "framed from the front, a little from the right and above, softly lit, before a cove",
+        summary: "framed from the front, slightly from the right and above, softly lit, on a seamless backdrop",
         source: "",
         parameters: &[],
     },

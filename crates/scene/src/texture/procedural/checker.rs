@@ -14,7 +14,7 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         summary: "checkerboard of two colours",
         source: "",
         parameters: &[
-            tone("a", "the square at the lower left, and every second one from there", "1 1 1"),
+            tone("a", "the colour of the lower left square, and of every second one from there", "1 1 1"),
             tone("b", "the others", "0 0 0"),
             u_scale("8"),
             v_scale("8"),

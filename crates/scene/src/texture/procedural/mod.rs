@@ -72,7 +72,7 @@ impl Formula {
         let formulas = parts.iter().filter_map(|part| part.formula());
         let cost = formulas.fold(1, |cost: usize, formula| cost.saturating_add(formula.cost));
         if cost > MAX_FORMULAS {
-            let message = format!("procedural textures are made of more than {MAX_FORMULAS} other textures");
+            let message = format!("a procedural texture is made of more than {MAX_FORMULAS} other textures");
             return Err(SceneError::invalid(message, &spec.span));
         }
         let pattern = (row.build)(&Reader::new(&spec, &row.entry)?, &Parts(&parts))?;

@@ -16,15 +16,15 @@ const fn number(name: &'static str, summary: &'static str, default: &'static str
 }
 
 pub(super) const fn u_scale(default: &'static str) -> Parameter {
-    number("u_scale", "what u is multiplied by: how often it comes across the texture", default)
+    number("u_scale", "factor on u: how often the texture repeats across", default)
 }
 
 pub(super) const fn v_scale(default: &'static str) -> Parameter {
-    number("v_scale", "the same of v, upwards", default)
+    number("v_scale", "factor on v: how often it repeats upwards", default)
 }
 
-pub(super) const U_OFFSET: Parameter = number("u_offset", "what is added to u behind that", "0");
-pub(super) const V_OFFSET: Parameter = number("v_offset", "the same of v", "0");
+pub(super) const U_OFFSET: Parameter = number("u_offset", "offset added to u afterwards", "0");
+pub(super) const V_OFFSET: Parameter = number("v_offset", "offset added to v afterwards", "0");
 
 impl UvPlacement {
     pub(super) fn read(reader: &Reader) -> UvPlacement {

@@ -16,21 +16,21 @@ pub(super) const ENTRY: TextureEntry = TextureEntry {
         parameters: &[
             Parameter {
                 name: "stops",
-                summary: "where which colour is; before the first and behind the last it stays",
+                summary: "the colour stops; the colour is constant before the first and after the last",
                 unit: "",
                 kind: ParameterKind::Stops { min: 0.0, max: 1e12 },
                 default: "",
             },
             Parameter {
                 name: "along",
-                summary: "what says where: u, v, or the radius, 0 in the middle and 1 in the middle of an edge",
+                summary: "the coordinate: u, v, or radius, which is 0 at the centre and 1 at the middle of an edge",
                 unit: "",
                 kind: ParameterKind::Choice(&["u", "v", "radius"]),
                 default: "u",
             },
             Parameter {
                 name: "input",
-                summary: "a texture of numbers that says where, in place of `along`",
+                summary: "a texture of numbers to use as the coordinate, instead of `along`",
                 unit: "",
                 kind: ParameterKind::Texture,
                 default: "none",

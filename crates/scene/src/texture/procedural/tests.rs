@@ -184,7 +184,7 @@ fn errors_are_reported() {
     for stops in [falling, Value::List(Vec::new()), number(1.0), Value::List(vec![stop(f32::NAN, [0.0; 3])])]
     {
         let told = refusal("ramp", &[("stops", stops)]);
-        assert!(told.contains("whose positions never fall"), "{told}");
+        assert!(told.contains("whose positions never decrease"), "{told}");
     }
     // A texture that contains itself twice, again and again, would take hours.
     let mut doubled = texture("checker", &[], &[]);

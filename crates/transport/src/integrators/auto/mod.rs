@@ -28,19 +28,20 @@ use std::sync::Arc;
 pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
     entry: Entry {
         name: "auto",
-        summary: "path tracing, with light subpaths, connections and photons where a pilot finds that they pay",
+        summary: "path tracing, with light subpaths, connections and photons where a pilot render finds that they pay \
+                  off",
         source: "Grittmann 2022",
         parameters: &[
             Parameter {
                 name: "merge",
-                summary: "whether vertex merging may be used, which is biased: it blurs a little",
+                summary: "whether vertex merging may be used, which is slightly biased (it blurs)",
                 unit: "",
                 kind: ParameterKind::Choice(&["auto", "never"]),
                 default: "auto",
             },
             Parameter {
                 name: "ways",
-                summary: "always use this set of techniques, whatever the pilot suggests",
+                summary: "always use this set of techniques, whatever the pilot render suggests",
                 unit: "",
                 kind: ParameterKind::Choice(&WAYS),
                 default: "auto",
@@ -57,7 +58,7 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
             merging::LIGHT_PATHS,
             Parameter {
                 name: "aim",
-                summary: "guide light paths to where the pilot found them useful",
+                summary: "guide light paths to where the pilot render found them useful",
                 unit: "",
                 kind: ParameterKind::Bool,
                 default: "true",
@@ -71,7 +72,8 @@ pub(super) const ENTRY: IntegratorEntry = IntegratorEntry {
         let (may_merge, techniques) = (reader.text("merge") == "auto", reader.text("ways"));
         let given = SETS.iter().position(|set| set.techniques == techniques);
         if !may_merge && given.is_some_and(|set| SETS[set].merges()) {
-            let message = format!("'{techniques}' merges, and 'merge' is never");
+            let message =
+                format!("'{techniques}' needs vertex merging, but 'merge' is 'never': set it to auto");
             return Err(SceneError::invalid(message, reader.span("ways")));
         }
         Ok(Box::new(Auto {
