@@ -105,6 +105,39 @@ fn a_model_that_faces_backwards_is_turned_round() {
 }
 
 #[test]
+fn an_animal_stands_on_its_legs_where_the_usual_axis_would_topple_it() {
+    // A bull: legs under a part of its length, a heavy head, and a tail.
+    let mut parts = vec![[[-0.4, 1.0, -1.6], [0.4, 1.7, 1.6]]];
+    for (x, z) in [(-0.3, -0.6), (0.3, -0.6), (-0.3, 2.3), (0.3, 2.3)] {
+        parts.push([[x - 0.1, 0.0, z - 0.1], [x + 0.1, 1.0, z + 0.1]]);
+    }
+    parts.push([[-0.4, 1.6, 1.6], [0.4, 2.6, 3.1]]);
+    parts.push([[-0.05, 1.6, -3.1], [0.05, 1.7, -1.6]]);
+    let scene = scene(joined(&parts), UpHint::Usually(Axis::Z));
+    let found = Orientation::of(&scene, None, None).unwrap();
+    assert_eq!((found.up, found.because), (Axis::Y, Because::Shape));
+}
+
+/// A room that lacks its wall at +z or at -z, its triangles facing inwards; and a box that lacks one, its triangles facing outwards.
+#[test]
+fn a_room_is_seen_through_its_missing_wall() {
+    let room = |open: f32, inwards: bool| {
+        let mut mesh = joined(&[[[-1.0, 0.0, -1.0], [1.0, 1.5, 1.0]]]);
+        let at = |i: u32, mesh: &Mesh| mesh.positions[i as usize].z == open;
+        let is_wall = |t: &[u32; 3]| !t.iter().all(|&i| at(i, &mesh));
+        mesh.triangles = mesh.triangles.iter().copied().filter(is_wall).collect();
+        mesh.normals.clear();
+        if inwards {
+            mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        let scene = scene(mesh, UpHint::Usually(Axis::Y));
+        Orientation::of(&scene, Some(Axis::Y), None).unwrap().front
+    };
+    assert_eq!((room(1.0, true), room(-1.0, true)), (Axis::Z, Axis::NegZ));
+    assert_eq!((room(1.0, false), room(-1.0, false)), (Axis::NegZ, Axis::Z), "a box, from outside");
+}
+
+#[test]
 fn requested_axes_are_applied_and_scenes_with_cameras_stay() {
     let height = |scene: &SceneBuilder| scene.bounds(0.0).extent();
     let asked = |up, front| Studio { up, front, ..Studio::default() };

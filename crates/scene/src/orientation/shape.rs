@@ -17,6 +17,9 @@ const SAMPLES: usize = 1 << 14;
 /// Cells along the longest side of the bounding box, for measuring symmetry.
 const CELLS: usize = 24;
 
+/// The part of the bounding box that a foot has to cover for a shape to stand on it.
+const STEADY: f64 = 0.1;
+
 /// The measurements.
 pub(super) struct Shape {
     /// The sides of its bounding box.
@@ -116,7 +119,7 @@ impl Shape {
         score + self.support(up)
     }
 
-    /// A score for a broad, flat base and a low centre of mass.
+    /// A score for a broad, flat base and a low centre of mass. What would topple scores nothing for its base.
     fn support(&self, up: Axis) -> f64 {
         let (axis, longest) = (up.index(), self.extent.max_element());
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -147,14 +150,41 @@ impl Shape {
         let cross = (self.extent[u] * self.extent[v]).max(f64::MIN_POSITIVE);
         let stands = [u, v].into_iter().enumerate().all(|(i, s)| (low[i]..=high[i]).contains(&middle[s]));
         let foot = if stands { (high[0] - low[0]) * (high[1] - low[1]) / cross } else { 0.0 };
+        let steady = 0.2 * (foot / STEADY).min(1.0);
         let lowness = 0.5 - height(middle) / self.extent[axis].max(f64::MIN_POSITIVE);
-        0.22 * (contact / cross).min(1.0) + 1.08 * foot.min(1.0) + 0.12 * lowness
+        0.22 * (contact / cross).min(1.0) + 1.08 * foot.min(1.0) + steady + 0.12 * lowness
     }
 
-    /// True when the head looks backwards.
+    /// The part of what is seen from the side of an axis that is backs of triangles.
+    fn backs(&self, from: Axis) -> f64 {
+        let axis = from.index();
+        let sides = [(axis + 1) % 3, (axis + 2) % 3];
+        let cell = |p: DVec3, side: usize| {
+            let along = (p[side] - self.low[side]) / self.extent[side].max(f64::MIN_POSITIVE);
+            ((along * CELLS as f64) as usize).min(CELLS - 1)
+        };
+        let mut nearest: Vec<Option<&Sample>> = vec![None; CELLS * CELLS];
+        for sample in &self.samples {
+            let place = &mut nearest[cell(sample.p, sides[0]) * CELLS + cell(sample.p, sides[1])];
+            let near = |sample: &Sample| sample.p[axis] * from.sign();
+            if place.is_none_or(|before| near(before) < near(sample)) {
+                *place = Some(sample);
+            }
+        }
+        let seen = nearest.iter().flatten().count();
+        let is_back = |sample: &&&Sample| sample.n[axis] * from.sign() < -0.1;
+        nearest.iter().flatten().filter(is_back).count() as f64 / seen.max(1) as f64
+    }
+
+    /// True when the front is on the other side.
     ///
-    /// A shape with left-right symmetry does if its upper half and its finer triangles tend to lie behind the centre.
+    /// A room without a wall, or a relief, that shows its backs on one side and none on the other is made to be seen
+    /// from the other. A shape with left-right symmetry looks backwards if its upper half and its finer triangles tend
+    /// to lie behind the centre.
     pub(super) fn looks_back(&self, up: Axis, front: Axis) -> bool {
+        if self.backs(front) > 0.8 && self.backs(front.opposite()) < 0.1 {
+            return true;
+        }
         let [up_axis, axis] = [up.index(), front.index()];
         let across = 3 - up_axis - axis;
         if self.symmetry[across] < 0.97 || self.symmetry[axis] > 0.97 {
