@@ -169,16 +169,14 @@ impl<'a> Reader<'a> {
     /// The first key or value that is wrong, with its location and, for a key, the nearest name.
     pub fn new(spec: &'a Spec, entry: &Entry) -> Result<Reader<'a>, SceneError> {
         for (key, value, span) in &spec.parameters.0 {
+            let is_flag = span.file.starts_with("--");
             let Some(parameter) = entry.parameters.iter().find(|p| p.name == key) else {
                 let names = entry.parameters.iter().map(|p| p.name);
                 return Err(SceneError::unknown(format!("parameter of {}", entry.name), key, names, span));
             };
             check_kind(parameter, value).map_err(|wanted| SceneError::BadValue {
                 // A flag is its own name.
-                what: match span.file.starts_with("--") {
-                    true => "the value".to_owned(),
-                    false => format!("{}.{}", entry.name, key),
-                },
+                what: if is_flag { "the value".to_owned() } else { format!("{}.{}", entry.name, key) },
                 wanted,
                 found: describe(value),
                 at: span.clone(),

@@ -64,18 +64,15 @@ impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.best().name)?;
         let best = self.best().time_to_error();
-        let mut others = self.candidates.iter().enumerate().filter(|(i, _)| *i != self.chosen).peekable();
-        if others.peek().is_some() {
-            write!(f, " (to the same noise")?;
+        // Without any light there is nothing to compare.
+        if best <= 0.0 || self.candidates.len() < 2 {
+            return Ok(());
         }
+        write!(f, " (to the same noise")?;
         let mut mark = "";
-        for (_, candidate) in others {
-            write!(
-                f,
-                "{mark} {} takes {:.2} times as long",
-                candidate.name,
-                candidate.time_to_error() / best
-            )?;
+        for (_, candidate) in self.candidates.iter().enumerate().filter(|(i, _)| *i != self.chosen) {
+            let factor = candidate.time_to_error() / best;
+            write!(f, "{mark} {} takes {factor:.2} times as long", candidate.name)?;
             if candidate.misses_more_than(self.best()) {
                 write!(f, " and misses {:.2}% of the light", candidate.lost * 100.0)?;
             }

@@ -1,16 +1,16 @@
 //! Every setting of a render, whether from a scene file's `[render]`, a preset or the command line: all of them use the
 //! same keys of one table.
 
+mod accel;
 mod background;
 mod size;
 mod studio;
 
 use crate::Error;
 use crate::presets::Studio;
+use accel::accel_choice;
 pub use background::Background;
 use background::background;
-use bilux_accel::registry::{BspGroup, BspSplit, Quality};
-use bilux_accel::{CpuLevel, Culling, Query};
 use bilux_math::registry::{Entry, Parameter, ParameterKind, choice, integer};
 use bilux_scene::{AccelChoice, Parameters, Reader, SceneBuilder, SceneError, Span, Spec, Value, Warning};
 use bilux_transport::Stop;
@@ -363,72 +363,9 @@ fn integrator_parameters(
     Ok(spec)
 }
 
-/// The number of samples per triangle from which the best tree is built. In interiors it pays off from about four, so
-/// at this number several times over; where it saves nothing, it costs a fiftieth of the time of the rays here.
-const MIN_SAMPLES_FOR_BEST_TREE: u64 = 64;
-
-/// Roughly the number of samples that there is time for, if time ends the picture.
-const SAMPLES_A_SECOND: u64 = 1_000_000;
-
-impl Settings {
-    /// The acceleration structure for a scene of so many triangles.
-    pub(crate) fn accel_for(&self, triangles: usize) -> AccelChoice {
-        let mut accel = self.accel.clone();
-        let in_time =
-            self.stop.time_limit.map_or(u64::MAX, |limit| limit.as_secs_f64() as u64 * SAMPLES_A_SECOND);
-        let samples = (u64::from(self.width) * u64::from(self.height) * u64::from(self.spp)).min(in_time);
-        let is_wide = matches!(accel.name.as_str(), "auto" | "bvh8");
-        if self.build_by_size && is_wide && samples / MIN_SAMPLES_FOR_BEST_TREE >= triangles as u64 {
-            accel.options.quality = Quality::Best;
-        }
-        accel
-    }
-}
-
-fn accel_choice(reader: &Reader) -> Result<AccelChoice, Error> {
-    let name = reader.text("accel");
-    let names = || bilux_accel::ACCELERATORS.iter().map(|row| row.entry.name).chain(["auto"]);
-    if !names().any(|n| n == name) {
-        return Err(SceneError::unknown("accelerator", &name, names(), reader.span("accel")).into());
-    }
-    let mut choice = AccelChoice { name, ..AccelChoice::default() };
-    choice.options.bsp_split =
-        if reader.text("bsp_split") == "fuchs" { BspSplit::Fuchs } else { BspSplit::Mean };
-    choice.options.bsp_group =
-        if reader.text("bsp_group") == "objects" { BspGroup::Objects } else { BspGroup::Polygons };
-    // `auto` is not a quality: it starts from the default.
-    choice.options.quality = Quality::from_name(&reader.text("build")).unwrap_or_default();
-    let wanted = CpuLevel::ALL.into_iter().find(|level| level.name() == reader.text("cpu"));
-    choice.options.cpu_level = wanted.unwrap_or_default();
-    choice.query = Query {
-        culling: if reader.text("culling") == "back" { Culling::Back } else { Culling::None },
-        early_out: reader.bool("early_out"),
-        cull_by_partition: reader.bool("cull_by_partition"),
-        filter: None,
-    };
-    Ok(choice)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Parameters, Quality, Settings, Value};
-
-    #[test]
-    fn many_samples_are_worth_the_best_tree_unless_another_is_asked_for() {
-        let quality = |pairs: &[(&str, &str)], triangles: usize| {
-            let mut parameters = Parameters::default();
-            parameters.set("size", Value::Text("100x64".to_owned()));
-            parameters.set("spp", Value::Integer(10));
-            pairs.iter().for_each(|(key, value)| parameters.set(key, Value::Text((*value).to_owned())));
-            Settings::resolve(&parameters).unwrap().accel_for(triangles).options.quality
-        };
-        assert_eq!(quality(&[], 1000), Quality::Best);
-        assert_eq!(quality(&[], 1001), Quality::Balanced);
-        assert_eq!(quality(&[("build", "fast")], 10), Quality::Fast);
-        assert_eq!(quality(&[("build", "balanced")], 10), Quality::Balanced);
-        assert_eq!(quality(&[("build", "best")], 1001), Quality::Best);
-        assert_eq!(quality(&[("accel", "bsp-sah")], 10), Quality::Balanced);
-    }
+    use super::{Parameters, Settings, Value};
 
     #[test]
     fn settings_of_other_integrators_are_reported() {

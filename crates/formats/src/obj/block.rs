@@ -114,8 +114,7 @@ const VERTEX_LEFT_OUT: &str = ": this vertex is left out, together with the face
 const ATTRIBUTE_LEFT_OUT: &str = ": this normal or texture coordinate is set to 0";
 const FACE_LEFT_OUT: &str = ": this face is left out";
 /// This is known only when blocks are joined.
-pub(super) const BACKWARD_LEFT_OUT: &str =
-    ": this face counts back to a vertex that does not exist, and is left out";
+pub(super) const BACKWARD_LEFT_OUT: &str = ": this face counts back to a missing vertex, and is left out";
 
 pub(super) struct Reader<'a> {
     pub(super) cursor: Cursor<'a>,

@@ -397,7 +397,7 @@ fn one_bad_number_costs_its_element_and_not_the_file() {
             "scene.obj:9:3: '1/x' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
              vertex/uv/normal, each counted from 1, or backwards from -1: this face is left out (3 times; this is the first)",
             "scene.obj:11:7: '-99' is not a corner of a face, which is written vertex, vertex/uv, vertex//normal or \
-             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to a vertex that does not exist, and is left out",
+             vertex/uv/normal, each counted from 1, or backwards from -1: this face counts back to a missing vertex, and is left out",
             "scene.obj:13:1: 'maybe' is not a smoothing group: write a number or 'off': this line is left out",
         ]
     );
